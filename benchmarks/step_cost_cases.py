@@ -13,10 +13,8 @@ from dynamics.assembly.assemble import assemble
 from dynamics.forces.elements import evaluate
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.advance import add_table_work
-from dynamics.integrators.explicit_step import accelerate
+from dynamics.integrators.explicit_step import accelerate, set_motion, write_powers
 from dynamics.integrators.march import march_on, start_march
-from dynamics.integrators.powers import write_powers
-from dynamics.integrators.stage import set_motion
 from dynamics.integrators.state_sink import MemorySink
 from dynamics.integrators.workspace import Count, Workspace
 from dynamics.kernels.compiled import compiled

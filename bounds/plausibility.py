@@ -32,7 +32,7 @@ TYPED: dict[str, tuple[Unit, ...]] = {
 SI_UNITS = {name: Unit(name, 1.0) for name in TYPED}
 
 
-def suspected_unit(value: float, own: Unit, dimension: str, low: float, high: float) -> str:
+def _suspected_unit(value: float, own: Unit, dimension: str, low: float, high: float) -> str:
     """Return the unit in which a number makes sense that does not in its own; empty where there is none.
 
     Parameters
@@ -120,7 +120,7 @@ class Finding:
     def message(self, field: str | None = None, own: Unit | None = None) -> str:
         """Say it in one line, in the caller's name and unit of the field (default: ours, SI)."""
         unit = own or SI_UNITS[self.unit]
-        suspected = suspected_unit(self.value, unit, self.unit, self.low, self.high)
+        suspected = _suspected_unit(self.value, unit, self.unit, self.low, self.high)
         written = f"{self.value / unit.factor:.6g}" + (f" {unit.name}" if unit.name != "1" else "")
         question = f" Did you give {suspected}{self.whole}?" if suspected else ""
         return f"{field or self.field} = {written}: {self.reason} ({self.source}).{question}"

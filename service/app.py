@@ -15,7 +15,7 @@ from service.access import open_identities
 from service.access.capacity import capacity
 from service.live.kept_answers import KeptAnswers
 from service.live.pool import live_pool
-from service.management.registry import process_registry
+from service.management.figures import process_registry
 from service.queue.machinery import job_machinery
 from service.queue.watcher import Watcher
 from service.reading.pool import ReadingPool

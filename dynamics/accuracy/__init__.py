@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dynamics.accuracy.fidelities import FIDELITIES
-from dynamics.accuracy.frontier import FidelityResult, Frontier, frontier
+from dynamics.accuracy.frontier import FIDELITIES, FidelityResult, Frontier, frontier
 
 __all__ = ["FIDELITIES", "FidelityResult", "Frontier", "frontier"]

@@ -5,21 +5,229 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 
 import model_studies
-from dynamics.accuracy.fidelities import FIDELITIES, Fidelity, TimeIntegration
-from dynamics.accuracy.vibration import Blocks, Vibration, blocks_of
-from dynamics.assembly.assemble import assemble
+from dynamics.accuracy.vibration import Blocks, Vibration, blocks_of, vibration_of
+from dynamics.assembly.assemble import System, assemble
+from dynamics.assembly.decimated_tables import with_decimated_tables
 from dynamics.checks import chosen
+from dynamics.effects import EFFECTS
 from dynamics.errors import InputError, SolveError
-from dynamics.integrators import integrate, static_equilibrium
+from dynamics.integrators import Trajectory, integrate, static_equilibrium
 from dynamics.integrators.method_choice import EVALUATIONS
-from dynamics.scene import Scene
+from dynamics.linearize import HarmonicResponse, harmonic_response
+from dynamics.mechanism.additions import COAST_FLANKS
+from dynamics.motion.observation import observe, observe_laws, static_deflections
+from dynamics.scene import Outputs, Scene
 from dynamics.types import FloatArray, Json
 from model_studies import Outcome, Progress, against_finest, in_unit, knee_above, run_fidelities, silent
 from model_studies.frontier import Errors
+
+# The fidelities of the accuracy study of dynamics: time integration, and what does without it.
+
+
+# The interface of a fidelity of the accuracy study of dynamics.
+
+
+class Fidelity(model_studies.Fidelity[Scene], Protocol):
+    """A way to the vibration of a scene; its family is "model", "table" or "steps"."""
+
+    def run(self, scene: Scene, blocks: Blocks) -> Vibration:
+        """Compute the vibration.
+
+        Raises
+        ------
+        SolveError
+            It ended early.
+        InputError
+            The scene has what this model cannot hold.
+        """
+
+
+# Fidelities of time integration: fewer effects, coarser tables, longer steps.
+
+
+BY_TORSION = (COAST_FLANKS,)
+IN_PLANE = (COAST_FLANKS, "x", "y")
+
+
+@dataclass(frozen=True)
+class TimeIntegration:
+    """A run of the scene with changes.
+
+    Attributes
+    ----------
+    name, title, family : str
+    tolerance : float or None
+        m; None: the scene's own.
+    every : int
+        Position nodes of the tables that are kept: every one, every second ...
+    additions : tuple of str or None
+        What effects may add; those that add something else, or nothing, are off. None: all.
+    """
+
+    name: str
+    title: str
+    family: str
+    tolerance: float | None = None
+    every: int = 1
+    additions: tuple[str, ...] | None = None
+
+    def refusal(self, scene: Scene) -> str | None:
+        """Say that fewer effects change nothing, or that a fixed step knows no tolerance."""
+        if self.tolerance is not None and scene.integration.fixed_step is not None:
+            return "the scene has a fixed step"
+        if self.additions is None:
+            return None
+        here, there = _decided(scene), _decided(self.as_run(scene))
+        return "the scene has no more effects than these" if here == there else None
+
+    def as_run(self, scene: Scene) -> Scene:
+        """Return the scene as this fidelity runs it."""
+        integration, effects = scene.integration, dict(scene.effects)
+        if self.tolerance is not None:
+            integration = replace(integration, tolerance=self.tolerance)
+        if self.additions is not None:
+            kept = [effect for effect in EFFECTS if effect.adds and {*effect.adds} <= {*self.additions}]
+            effects |= {effect.name: "off" for effect in EFFECTS if effect not in kept}
+        outputs = Outputs(scene.outputs.sample_rate, energy_audit=False, receipt="minimal", anti_alias=False)
+        return replace(scene, integration=integration, effects=effects, outputs=outputs)
+
+    def run(self, scene: Scene, blocks: Blocks) -> Vibration:
+        """Integrate."""
+        system = assemble(self.as_run(scene))
+        if self.every > 1:
+            system = with_decimated_tables(system, self.every)
+        start = static_equilibrium(system)
+        if not start.status.usable:
+            raise SolveError(f"no static equilibrium at t = 0: {start.status.name.lower()}")
+        trajectory = integrate(system, start, system.scene.integration)
+        if not trajectory.status.usable:
+            raise SolveError(f"run ended early, {trajectory.status.name.lower()} at {trajectory.end:.6g} s")
+        return vibration_of(blocks, *_series(system, trajectory))
+
+
+def _decided(scene: Scene) -> set[tuple[str, str]]:
+    """Return the effects that are on, and where."""
+    return {(entry.effect, entry.part) for entry in assemble(scene).ledger.entries if entry.on}
+
+
+def _series(system: System, trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
+    """Transmission errors (m, T) and bearing forces in their own frames (b, 3, T)."""
+    observed = observe(system.arrays, trajectory.time, trajectory.q, trajectory.v, trajectory.moved)
+    force = system.bearing_force(observed.force, trajectory.q, trajectory.v)[:, :3]
+    elastic = np.any(system.bearing_stiffness) or system.housed or system.bearings
+    if system.freedoms.column.size and not elastic:
+        force = np.full_like(force, np.nan)  # bearings hold nothing here: no freedom moves them
+    return observed.coordinate[system.driving_rows], force
+
+
+# Fidelities that integrate nothing: the quasi-static one, and the linear response about the equilibrium.
+
+
+ORDER_MATCH = 1e-6
+
+
+@dataclass(frozen=True)
+class QuasiStatic:
+    """Static transmission error under the forces that balance loads and imposed accelerations.
+
+    Mesh and bearing forces do not vibrate: their orders are 0.
+    """
+
+    name: str = "quasi_static"
+    title: str = "quasi-static"
+    family: str = "model"
+
+    def refusal(self, scene: Scene) -> str | None:
+        """Say nothing: it is valid for every scene."""
+        return None
+
+    def run(self, scene: Scene, blocks: Blocks) -> Vibration:
+        """Read the tables at the positions and forces of every block."""
+        system = assemble(scene)
+        error = np.zeros_like(blocks.position)
+        for (first, stop), middle in zip(blocks.bounds, blocks.middle, strict=True):
+            rest = static_equilibrium(system, float(middle))
+            if not rest.status.usable:
+                raise SolveError(f"no static equilibrium at {middle:.6g} s")
+            for f, force in enumerate(rest.mesh_force):
+                position = np.ascontiguousarray(blocks.position[f, first:stop])
+                deflection = np.empty_like(position)
+                static_deflections(system.flanks.static, f, position, float(force), deflection)
+                error[f, first:stop] = deflection
+        return vibration_of(blocks, error, np.zeros((len(system.supports.name), 3, blocks.time.size)))
+
+
+@dataclass(frozen=True)
+class LinearResponse:
+    """Harmonic response to the static transmission errors, with mean stiffnesses."""
+
+    name: str = "harmonic_response"
+    title: str = "harmonic response"
+    family: str = "model"
+
+    def refusal(self, scene: Scene) -> str | None:
+        """Say nothing: what it cannot hold shows when it runs."""
+        return None
+
+    def run(self, scene: Scene, blocks: Blocks) -> Vibration:
+        """Respond at the speed in the middle of every block."""
+        system = assemble(scene)
+        speeds = np.abs(observe_laws(system.arrays, blocks.middle)[2])
+        law = int(np.flatnonzero(np.max(speeds, axis=1) > 0.0)[0])
+        parts = [
+            _of_one_speed(
+                harmonic_response(system, np.array([speed]), 4 * blocks.orders, float(time)), system, blocks
+            )
+            for speed, time in zip(speeds[law], blocks.middle, strict=True)
+        ]
+        return Vibration(*(np.array([getattr(part, name) for part in parts]) for name in _FIELDS))
+
+
+_FIELDS = ("rms", "error_orders", "force_orders")
+
+
+def _of_one_speed(response: HarmonicResponse, system: System, blocks: Blocks) -> Vibration:
+    """Pick each mesh's own orders, and those of the first mesh for bearings."""
+    pace = np.abs(blocks.position[:, -1] - blocks.position[:, 0])
+    ratio = pace / pace[0]
+    size = np.abs(response.dynamic_transmission_error[:, 0])
+    errors = [_at(response.order, size[f], ratio[f], blocks.orders) for f in range(len(size))]
+    pushed = np.linalg.norm(np.abs(response.bearing_force[:, :3, 0]), axis=1)
+    forces = [_at(response.order, line, 1.0, blocks.orders) for line in pushed]
+    empty = np.zeros((0, blocks.orders))
+    return Vibration(
+        np.sqrt(0.5 * np.sum(size**2, axis=1)), np.array(errors), np.array(forces) if forces else empty
+    )
+
+
+def _at(order: FloatArray, amplitude: FloatArray, ratio: float, orders: int) -> FloatArray:
+    """Amplitudes at the multiples 1 to `orders` of `ratio`; 0 where nothing is excited."""
+    own = ratio * np.arange(1, orders + 1)
+    match = np.abs(order[None, :] - own[:, None]) <= ORDER_MATCH * own[:, None]
+    return np.asarray(np.sum(np.where(match, amplitude[None, :], 0.0), axis=1))
+
+
+NM = 1e-9
+
+FIDELITIES: tuple[Fidelity, ...] = (
+    QuasiStatic(),
+    LinearResponse(),
+    TimeIntegration("torsion", "torsion only", "model", additions=BY_TORSION),
+    TimeIntegration("in_plane", "torsion and lateral motion", "model", additions=IN_PLANE),
+    TimeIntegration("table_quarter", "every fourth position node", "table", every=4),
+    TimeIntegration("table_half", "every second position node", "table", every=2),
+    TimeIntegration("100_nm", "tolerance 100 nm", "steps", tolerance=100 * NM),
+    TimeIntegration("10_nm", "tolerance 10 nm", "steps", tolerance=10 * NM),
+    TimeIntegration("1_nm", "tolerance 1 nm", "steps", tolerance=NM),
+    TimeIntegration("0.1_nm", "tolerance 0.1 nm", "steps", tolerance=0.1 * NM),
+    TimeIntegration("0.01_nm", "tolerance 0.01 nm", "steps", tolerance=0.01 * NM),
+)
+
 
 FIGURES = ("rms_error", "transmission_error_orders", "bearing_force_orders")
 NAN = float("nan")

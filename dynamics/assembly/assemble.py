@@ -5,42 +5,115 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.elements import Element, gradients, pack_elements
 from dynamics.arrays.sparse_rows import NO_ENTRIES
-from dynamics.assembly.bearing_force import BearingForce, bearing_force_map
 from dynamics.assembly.bearing_rest import linear_scene
 from dynamics.assembly.force_elements import force_elements
 from dynamics.assembly.housed_bearings import housed_bearings
 from dynamics.assembly.model import Model, decide_model
 from dynamics.assembly.phases import phases
 from dynamics.assembly.references import drive_springs, lay_out_drives, lay_out_loads, lay_out_reference
+from dynamics.bearings.seat import SEAT
 from dynamics.effects import EFFECTS, EffectLedger
-from dynamics.forces.elements import ElementLaws
+from dynamics.forces.elements import ElementLaws, Elements
 from dynamics.kernels.by_address import by_address
 from dynamics.mechanism.additions import BEARING_LAWS, ELEMENT_PASSING, HOUSING_AMPLITUDES
 from dynamics.mechanism.base_pitches import Corrections
 from dynamics.mechanism.bearing_elements import BearingElement
-from dynamics.mechanism.bodies import Bodies
+from dynamics.mechanism.bodies import Bodies, ModalHousing
 from dynamics.mechanism.columns import column_count, times_mass, turn_row
-from dynamics.mechanism.connections import elastic_matrices, forces_on_ground, linear_matrices
+from dynamics.mechanism.connections import Seats, elastic_matrices, forces_on_ground, linear_matrices
 from dynamics.mechanism.coupling_rows import CouplingRows
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import FREEDOMS, ROTATION, Freedoms
 from dynamics.mechanism.kinematics import Kinematics, mesh_shafts
 from dynamics.mechanism.line_of_action import LineOfAction
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.mechanism.modal_housing import ModalHousing
 from dynamics.mechanism.resting_housings import resting_housings, under_laws
 from dynamics.mechanism.sampling import Sampling, choose_sampling, top_mode
-from dynamics.mechanism.seats import Seats
 from dynamics.mechanism.supports import Supports
 from dynamics.mechanism.weight import weight
 from dynamics.scene.scene import LEAST_RATE, Scene
 from dynamics.types import FloatArray, IntArray, Json
+
+# Forces of the shafts on the ground or on pins at every support, linear in state and local forces.
+
+
+class BearingForce(NamedTuple):
+    """The sparse linear map from local forces (R), displacements (n) and rates (n) to forces at supports.
+
+    Attributes
+    ----------
+    first : (S + 1,) int array
+        Where the entries of each signal begin: 3 or 6 (with moments) signals per support, in its own frame.
+    column : (E,) int array
+        Local force, R + freedom, or R + n + freedom.
+    weight : (E,) array
+        N or N m per unit.
+    constant : (S,) array
+        N or N m.
+    freedoms : int
+        n.
+    """
+
+    first: IntArray
+    column: IntArray
+    weight: FloatArray
+    constant: FloatArray
+    freedoms: int
+
+    def of(self, local: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
+        """Return the signals (S, T) of the local forces (R, T), `q` and `v` (T, n).
+
+        Freedoms that move no support may be missing at the end of `q` and `v`.
+        """
+        missing = [None] * (self.freedoms - q.shape[1])
+        state = [*local, *q.T, *missing, *v.T]
+        signals, part = np.repeat(self.constant[:, None], q.shape[0], axis=1), np.empty(q.shape[0])
+        for signal, (start, end) in enumerate(zip(self.first[:-1], self.first[1:], strict=True)):
+            for entry in range(start, end):
+                signals[signal] += np.multiply(self.weight[entry], state[self.column[entry]], out=part)
+        return signals
+
+
+def _bearing_force_map(
+    stiffness: FloatArray,
+    damping: FloatArray,
+    supports: Supports,
+    seats: Seats,
+    bearings: Sequence[BearingElement],
+    elements: Elements,
+) -> BearingForce:
+    """Gather the map from `stiffness` and `damping` (b, 3 or 6, n) and the laws of the bearings.
+
+    Springs of supports press against their errors, seats have preloads, and bearings that are not linear or
+    sit in a housing that moves give their own forces: the last elements.
+    """
+    count, rows, n = stiffness.shape
+    total = elements.offset.size
+    weight = np.zeros((count, rows, total + 2 * n))
+    weight[:, :, total : total + n], weight[:, :, total + n :] = stiffness, damping
+    constant = np.zeros((count, rows))
+    constant[:, :3] -= supports.stiffness * supports.error
+    if seats.name:
+        constant[seats.support, :SEAT] -= seats.preload.reshape(-1, SEAT)
+    first = elements.first[len(elements.law) - len(bearings) :]
+    for start, at in zip(first, bearings, strict=False):
+        for local, way in enumerate(at.way, start=start):
+            moved = np.flatnonzero(np.any(at.way != 0.0, axis=0))
+            weight[at.support, moved, local] += way[moved]
+    flat = weight.reshape(count * rows, total + 2 * n)
+    signal, column = np.nonzero(flat)
+    starts = np.searchsorted(signal, np.arange(count * rows + 1))
+    return BearingForce(
+        starts.astype(np.int64), column.astype(np.int64), flat[signal, column], constant.ravel(), n
+    )
+
 
 # A model laid out as the plain arrays that the compiled loops see.
 
@@ -309,7 +382,7 @@ def _put_together(model: Model, elements: tuple[Element, ...], arrays: SystemArr
         joined.couplings,
         stiffness,
         damping,
-        bearing_force_map(
+        _bearing_force_map(
             stiffness,
             damping,
             joined.supports,

@@ -10,15 +10,14 @@ import numpy as np
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.elements import Element
 from dynamics.bearings.seat import SEAT
-from dynamics.forces.frame_coupling import FrameCouplingLaws
+from dynamics.forces.elements import FrameCouplingLaws
 from dynamics.kernels.law import Law
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import section_rows
 from dynamics.mechanism.coupling_rows import ACROSS, full_matrix
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.motion.observation import local_state
-from dynamics.scene.frame_check import crosses_frames
-from dynamics.scene.scene import Scene
+from dynamics.scene.scene import Scene, crosses_frames
 from dynamics.types import FloatArray
 
 

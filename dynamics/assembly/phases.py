@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dynamics.assembly.frame_couplings import frame_turns
-from dynamics.mechanism.cage_turns import cage_turns
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.load_phases import LoadPhase, load_phases
 from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.sampling import cage_turns
 from dynamics.scene.scene import Scene
 
 

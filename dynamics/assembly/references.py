@@ -13,11 +13,10 @@ from dynamics.joints import ImposedRotation
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, times_mass, turn_row
 from dynamics.mechanism.connections import Connections
-from dynamics.mechanism.freedoms import ROTATION, Freedoms
+from dynamics.mechanism.freedoms import ROTATION, Freedoms, carried_motion
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.motion_check import check_loads
-from dynamics.mechanism.planets import carried_motion
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 

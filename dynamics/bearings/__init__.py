@@ -3,10 +3,10 @@
 from dynamics.bearings.ball_bearing import BallBearing, EllipticContact
 from dynamics.bearings.bearing_stiffness import BearingStiffness
 from dynamics.bearings.bushing import Bushing
-from dynamics.bearings.catalog_line import CatalogLine
 from dynamics.bearings.planet_bearing import PlanetBearing
 from dynamics.bearings.roller_bearing import RollerBearing
 from dynamics.bearings.rolling_bearing import RollingBearing
+from dynamics.bearings.row import CatalogLine
 
 __all__ = [
     "BallBearing",

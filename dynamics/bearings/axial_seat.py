@@ -13,12 +13,20 @@ from __future__ import annotations
 import math
 
 from dynamics.bearings.ball_grooves import BallElements, grooves
-from dynamics.bearings.cage_angle import cage_angle
 from dynamics.bearings.roller_bearing import AGAINST, ALONG
 from dynamics.kernels.compiled import inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray
+
+# The angle of a bearing's cage among the positions of a local state.
+
+
+@inner
+def cage_angle(local: LocalState, turned: int) -> float:
+    """Return the angle of the position `turned`, which is in revolutions, rad; 0 if it is -1: averaged."""
+    return 2.0 * math.pi * float(local.position[turned]) if turned >= 0 else 0.0
+
 
 HOLDS = ALONG | AGAINST
 STEPS = 100

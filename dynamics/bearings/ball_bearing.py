@@ -10,7 +10,7 @@ from bounds import Declared, Kind, below, between, declared, described, required
 from dynamics.bearings.row import ANGLE, CLEARANCE, COUNT, DIAMETER, PITCH, Row
 from dynamics.checks import positive
 from dynamics.errors import InputError
-from dynamics.shafts.steel import STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
+from dynamics.shafts.inertia import STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
 
 # Hertz contact of two elastic bodies over an ellipse, by exact integrals.
 

@@ -14,9 +14,8 @@ from __future__ import annotations
 
 import math
 
-from dynamics.bearings.axial_seat import HOLDS, axial_seat
+from dynamics.bearings.axial_seat import HOLDS, axial_seat, cage_angle
 from dynamics.bearings.ball_grooves import BallElements, grooves
-from dynamics.bearings.cage_angle import cage_angle
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine

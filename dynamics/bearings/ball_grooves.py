@@ -7,15 +7,42 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from dynamics.bearings import BallBearing
-from dynamics.bearings.roller_bearing import HELD
-from dynamics.bearings.row_placement import RowPlacement
+from dynamics.bearings.roller_bearing import BOTH, HELD
 from dynamics.kernels.compiled import inner
 from dynamics.types import FloatArray, IntArray
+
+# How a row of rolling elements is laid out for compiled functions.
+
+
+@dataclass(frozen=True)
+class RowPlacement:
+    """What a row's geometry does not say.
+
+    Attributes
+    ----------
+    copies : int
+        Each element as so many that share its stiffness, evenly spaced: more than 1 averages its passing.
+    lever : float
+        Length that makes coordinates of tilts, m; 1: coordinates are in rad and moments in N m.
+    shift : float
+        Displacement of the inner ring along z, less that of the outer, at which the coordinates are 0, m.
+    damping : float
+        Damping of an element over its load, s/m.
+    locating : str
+        Directions in which the rings are held in their seats, see `dynamics.bearings.roller_bearing`.
+    """
+
+    copies: int = 1
+    lever: float = 1.0
+    shift: float = 0.0
+    damping: float = 0.0
+    locating: str = BOTH
 
 
 class BallElements(NamedTuple):

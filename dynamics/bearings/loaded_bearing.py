@@ -13,10 +13,9 @@ from numpy.typing import ArrayLike
 from dynamics.bearings import BallBearing, RollerBearing
 from dynamics.bearings.axial_seat import axial_seat
 from dynamics.bearings.ball_elements import ball_reaction, balls, balls_energy
-from dynamics.bearings.ball_grooves import pack_balls
+from dynamics.bearings.ball_grooves import RowPlacement, pack_balls
 from dynamics.bearings.roller_bearing import BOTH, check_locating
 from dynamics.bearings.roller_elements import pack_rollers, roller_reaction, rollers, rollers_energy
-from dynamics.bearings.row_placement import RowPlacement
 from dynamics.bearings.seat import SEAT
 from dynamics.errors import SolveError
 from dynamics.kernels.by_address import by_address

@@ -10,21 +10,50 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from bounds import Choice, Declared, Kind, between, declared, described, integers, required
 from dynamics.bearings.ball_bearing import BallBearing
-from dynamics.bearings.roller_profile import (
-    CROWNED,
-    LOGARITHMIC,
-    PROFILES,
-    crowned_drop,
-    lamina_stiffness,
-    logarithmic_drop,
-)
 from dynamics.bearings.row import ANGLE, CLEARANCE, COUNT, DIAMETER, PITCH, Row
 from dynamics.checks import one_of
 from dynamics.errors import InputError
-from dynamics.shafts.steel import STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
+from dynamics.shafts.inertia import STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
 from dynamics.types import FloatArray
+
+# Profiles of rollers, and the stiffness of their laminae, by ISO/TS 16281.
+
+
+LOGARITHMIC, CROWNED, STRAIGHT = "logarithmic", "crowned", "straight"
+PROFILES = (LOGARITHMIC, CROWNED, STRAIGHT)
+LINE_STIFFNESS = 35948e6  # N/m^2: 35948 N/mm^2 of [1]_, of steel rollers between steel raceways
+LONG = 2.5  # diameters: longer cylindrical rollers are straight in their middle
+
+
+def lamina_places(length: float, laminae: int) -> FloatArray:
+    """Return the middles of equal laminae along a roller of `length` (m), (laminae,), m from its middle."""
+    return np.asarray((np.arange(laminae) + 0.5) / laminae - 0.5) * length
+
+
+def lamina_stiffness(length: float, laminae: int) -> float:
+    """Return c of one lamina of a roller of `length` (m), N/m^(10/9): both contacts in series [1]_."""
+    return float(LINE_STIFFNESS * length ** (8.0 / 9.0) / laminae)
+
+
+def _logarithmic_drop(place: FloatArray, diameter: float, length: float, tapered: bool) -> FloatArray:
+    """Return how far the logarithmic profile [1]_ of a roller lies below its middle at `place`, m.
+
+    Diameter and effective length in m.
+    """
+    straight = 0.0 if tapered or length <= LONG * diameter else length - LONG * diameter
+    factor = 0.00045 if tapered else 0.0005 if straight > 0.0 else 0.00035
+    ratio = np.maximum(2.0 * np.abs(place) - straight, 0.0) / (length - straight)
+    return np.asarray(-factor * diameter * np.log1p(-(ratio**2)))
+
+
+def _crowned_drop(place: FloatArray, crown: float, length: float) -> FloatArray:
+    """Return how far a circular crowning lies below its middle at `place`, m; `crown` (m) at the ends."""
+    return np.asarray(crown * (2.0 * place / length) ** 2)
+
 
 # Cylindrical and tapered roller bearings by their internal geometry, in laminae.
 
@@ -79,8 +108,8 @@ class RollerBearing(Row):
     def drop(self, place: FloatArray) -> FloatArray:
         """Return how far the profile lies below the middle at `place` along the roller, m; one contact."""
         if self.profile == LOGARITHMIC:
-            return logarithmic_drop(place, self.diameter, self.length, self.contact_angle != 0.0)
-        return crowned_drop(place, self.crown if self.profile == CROWNED else 0.0, self.length)
+            return _logarithmic_drop(place, self.diameter, self.length, self.contact_angle != 0.0)
+        return _crowned_drop(place, self.crown if self.profile == CROWNED else 0.0, self.length)
 
     def peak_pressure(self, load: float) -> float:
         """Return the Hertz pressure of a lamina under `load` (N) on the inner ring, the smaller one, Pa.

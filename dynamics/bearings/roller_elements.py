@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.bearings import RollerBearing
-from dynamics.bearings.cage_angle import cage_angle
-from dynamics.bearings.roller_profile import lamina_places, lamina_stiffness
-from dynamics.bearings.row_placement import RowPlacement
+from dynamics.bearings.axial_seat import cage_angle
+from dynamics.bearings.ball_grooves import RowPlacement
+from dynamics.bearings.roller_bearing import lamina_places, lamina_stiffness
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
-from bounds import Declared, Kind, above, between, integers
+from bounds import Declared, Kind, above, between, declared, described, integers, required
 from dynamics.checks import declared_fields
 from dynamics.errors import InputError
+
+# A line of a bearing catalog.
+
 
 COUNT = Declared(Kind.COUNT, "", integers(3, 500), "Number of rolling elements", 8)
 DIAMETER = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Diameter of a rolling element", 0.008)
@@ -62,3 +66,24 @@ class Row:
             bound = above(least, "m", "where the elements touch each other")
             suggestion = "Check number and diameter of the elements."
             raise InputError("pitch_diameter", self.pitch_diameter, bound, suggestion)
+
+
+BORE = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Bore of the inner ring", 0.025)
+OUTSIDE = Declared(Kind.LENGTH, "m", between(1e-4, 20.0), "Outside diameter of the outer ring", 0.062)
+RATING = Declared(Kind.FORCE, "N", between(1.0, 1e9), "Basic static load rating C_0", 11600.0)
+
+
+@described
+@dataclass(frozen=True)
+class CatalogLine:
+    """What a catalog says of a deep groove ball bearing, and its clearance, which it does not."""
+
+    bore: float = required(BORE)
+    outside_diameter: float = required(OUTSIDE)
+    static_rating: float = required(RATING)
+    clearance: float = declared(0.0, CLEARANCE)
+
+    def __post_init__(self) -> None:
+        declared_fields(self)
+        if self.outside_diameter <= self.bore:
+            raise InputError("outside_diameter", self.outside_diameter, above(self.bore, "m", "the bore"))

@@ -11,12 +11,11 @@ import numpy as np
 from scipy.optimize import brentq
 
 from dynamics.bearings import BallBearing, RollerBearing
-from dynamics.bearings.ball_grooves import BallElements, pack_balls
+from dynamics.bearings.ball_grooves import BallElements, RowPlacement, pack_balls
 from dynamics.bearings.bearing_law import BearingDuty
 from dynamics.bearings.loaded_bearing import LoadedBearing, Reaction
 from dynamics.bearings.roller_elements import EXPONENT, RollerElements, pack_rollers
 from dynamics.bearings.rolling_bearing import RollingBearing
-from dynamics.bearings.row_placement import RowPlacement
 from dynamics.kernels.law import Law
 from dynamics.types import FloatArray
 

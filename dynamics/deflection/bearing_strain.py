@@ -14,8 +14,8 @@ from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
 from dynamics.kernels.local_state import LocalState
 from dynamics.mechanism.bearing_elements import supports_by_name
+from dynamics.mechanism.connections import condensed_housings, seat_compliance
 from dynamics.mechanism.seat_motion import carried_seat, seat_motion
-from dynamics.mechanism.seats import condensed_housings, seat_compliance
 from dynamics.types import FloatArray
 
 # The part of a bearing's displacement that is clearance: what it moves before anything presses back.

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.errors import InputError
-from dynamics.forces.rotating_frame import RotatingFrameLaws
+from dynamics.forces.elements import RotatingFrameLaws
 from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.meshes.coast_flank import mirrored

@@ -11,8 +11,8 @@ from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.joints import Housing
 from dynamics.mechanism.additions import HOUSING_AMPLITUDES
+from dynamics.mechanism.bodies import ModalHousing, modal_housing
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.mechanism.modal_housing import ModalHousing, modal_housing
 from dynamics.mechanism.sampling import top_load_frequency, top_mesh_frequency, top_passing_frequency
 
 SHARE = 0.01

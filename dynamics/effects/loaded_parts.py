@@ -12,8 +12,7 @@ from dynamics.mechanism.connections import Connections, elastic_matrices
 from dynamics.mechanism.flank_gradients import approach, distance_gradient, misalignment_gradient
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import Freedoms
-from dynamics.mechanism.mechanism import Mechanism
-from dynamics.mechanism.nominal_forces import mean_forces, telling_moments
+from dynamics.mechanism.mechanism import Mechanism, mean_forces, telling_moments
 from dynamics.mechanism.rotor import Rotor
 from dynamics.meshes.gear_mesh import GearMesh
 from dynamics.shafts.shaft_position import OnShaft

@@ -5,9 +5,12 @@ The only package of dynamics that uses scikit-fem, meshlane and, in a child proc
 
 import host.analysis  # noqa: F401 (says what to install)
 from dynamics.housings.mesh_files import mesh_step, read_mesh, write_surface
-from dynamics.housings.meshed_housing import USUAL_DAMPING, MaterialDamping, MeshedHousing, ModalDamping
 from dynamics.housings.reduced_housing import ReducedHousing, receptance, scene_housing
 from dynamics.housings.reduced_matrices import (
+    USUAL_DAMPING,
+    MaterialDamping,
+    MeshedHousing,
+    ModalDamping,
     ReducedMatrices,
     housing_of_matrices,
     read_matrix_market,

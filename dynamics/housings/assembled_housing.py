@@ -9,9 +9,9 @@ import scipy.sparse as sp
 
 from bounds import inside
 from dynamics.errors import InputError
-from dynamics.housings.meshed_housing import MeshedHousing
 from dynamics.housings.quadrature import over_surface, over_volume, tetrahedron
 from dynamics.housings.reduced_housing import RigidBody, rigid_body, rigid_motions
+from dynamics.housings.reduced_matrices import MeshedHousing
 from dynamics.housings.supports import Foot, SeatBore, SeatFrame, in_axes, mean_motion, seat_frame, wall_nodes
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import Material, Ring

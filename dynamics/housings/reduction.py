@@ -17,7 +17,6 @@ from dynamics.errors import InputError, ResultError, SolveError
 from dynamics.housings.assembled_housing import AssembledHousing, assemble
 from dynamics.housings.free_modes import ACCEPTED, FreeModes, ModeStatus, basis_vectors, free_modes
 from dynamics.housings.mesh_files import WALL_ELEMENTS, mesh_step
-from dynamics.housings.meshed_housing import MaterialDamping, MeshedHousing
 from dynamics.housings.quadrature import over_surface
 from dynamics.housings.reduced_housing import (
     PointMotion,
@@ -26,6 +25,7 @@ from dynamics.housings.reduced_housing import (
     SurfaceMotion,
     rigid_motions,
 )
+from dynamics.housings.reduced_matrices import MaterialDamping, MeshedHousing
 from dynamics.housings.supports import in_axes
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.types import FloatArray, IntArray

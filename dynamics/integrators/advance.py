@@ -6,9 +6,8 @@ import math
 
 from dynamics.arrays.arrays import LawArrays, SystemArrays
 from dynamics.forces.elements import FLANK, SPATIAL_FLANK, Elements
-from dynamics.integrators.explicit_step import accelerate, explicit_step
+from dynamics.integrators.explicit_step import accelerate, add_drive_work, explicit_step, write_powers
 from dynamics.integrators.implicit_step import implicit_step, solve_stage
-from dynamics.integrators.powers import add_drive_work, write_powers
 from dynamics.integrators.sample_ring import Sampler, SampleRing
 from dynamics.integrators.sampler import move_sampled_trains, sample_start, sample_step
 from dynamics.integrators.step_control import Control, next_level, slow_enough, step_error
@@ -19,8 +18,8 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.meshes.packed_tables import BUCKETS_PER_KNOT, PackedTables
 from dynamics.meshes.spatial_flank import spatial_energy
-from dynamics.meshes.table_energy import table_energy
 from dynamics.meshes.table_lookup import position_interval
+from dynamics.meshes.technique import table_energy
 from dynamics.motion.motion import SPEED, piece_at
 from dynamics.motion.sampled_states import States
 from dynamics.types import RunStatus

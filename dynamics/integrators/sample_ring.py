@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.assembly.assemble import System
-from dynamics.assembly.bearing_force import BearingForce
+from dynamics.assembly.assemble import BearingForce, System
 from dynamics.forces.elements import make_local
 from dynamics.kernels.local_state import LocalState
 from dynamics.meshes.packed_tables import PackedTables

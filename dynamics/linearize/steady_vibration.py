@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.arrays.modal_freedoms import ModalFreedoms
+from dynamics.arrays.sparse_rows import ModalFreedoms
 from dynamics.assembly.assemble import System
 from dynamics.kernels.law import Law
 from dynamics.linearize.campbell import terms_at

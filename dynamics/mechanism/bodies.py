@@ -1,4 +1,4 @@
-"""The bodies of a scene that move: its rotors, and the housings with mass that carry them."""
+"""The bodies of a mechanism; a housing with mass is one by its natural modes with the seats free."""
 
 from __future__ import annotations
 
@@ -6,8 +6,87 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import overload
 
-from dynamics.mechanism.modal_housing import ModalHousing
+import numpy as np
+from scipy.linalg import eigh
+
+from dynamics.bearings.seat import SEAT
+from dynamics.identity_cache import identity_cached
+from dynamics.joints import Housing
 from dynamics.mechanism.rotor import Rotor
+from dynamics.types import FloatArray
+
+# The bodies of a scene that move: its rotors, and the housings with mass that carry them.
+
+
+ROUNDING = 1e-9
+"""Of the damping of two modes: what couples them by less is rounding."""
+
+
+@dataclass(frozen=True)
+class ModalHousing:
+    """M = 1, C and K over m modal amplitudes, and the motion of s seats by them.
+
+    All modes of the matrices are kept, so that static motions are those of the matrices.
+
+    Attributes
+    ----------
+    name : str
+    bearings : tuple of str
+        That sit in it.
+    stiffness : (m,) array
+        Squares of the natural circular frequencies, rising, 1/s^2.
+    damping : (m, m) array
+        1/s.
+    shape : (s, 5, m) array
+        x, y, z (m), tilt_x, tilt_y (rad) of each seat per amplitude, of unit modal mass.
+    """
+
+    name: str
+    bearings: tuple[str, ...]
+    stiffness: FloatArray
+    damping: FloatArray
+    shape: FloatArray
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """Names of the amplitudes: mode_1, ... (m kg^1/2)."""
+        return tuple(f"mode_{number + 1}" for number in range(self.stiffness.size))
+
+    @property
+    def frequency(self) -> FloatArray:
+        """Natural frequencies, Hz."""
+        return np.asarray(np.sqrt(self.stiffness) / (2.0 * np.pi))
+
+    def seat(self, bearing: str) -> FloatArray:
+        """Return the motion of the seat of `bearing`, (5, m)."""
+        return np.asarray(self.shape[self.bearings.index(bearing)])
+
+
+@identity_cached
+def modal_housing(housing: Housing) -> ModalHousing:
+    """Return the modes of a housing with mass.
+
+    They are those of M x = theta K x, in which the shapes reproduce the compliance: sum theta x x^T = K^-1 to
+    rounding, however stiff the highest modes are.
+    """
+    mass, stiffness = _symmetric(housing.mass), _symmetric(housing.stiffness)
+    unit = 1.0 / np.sqrt(np.diag(stiffness))
+    theta, shape = eigh(unit[:, None] * mass * unit, unit[:, None] * stiffness * unit)
+    theta, shape = theta[::-1], (unit[:, None] * shape / np.sqrt(theta))[:, ::-1]
+    square = 1.0 / theta
+    damping = np.diag(2.0 * housing.damping_ratio * np.sqrt(square))
+    if housing.damping is not None:
+        damping = shape.T @ _symmetric(housing.damping) @ shape
+        own = np.sqrt(np.maximum(np.diag(damping), 0.0))
+        damping = np.where(np.abs(damping) > ROUNDING * np.outer(own, own), damping, 0.0)
+    seats = np.zeros((SEAT * len(housing.bushings), square.size))
+    seats[list(housing.columns)] = shape[list(housing.own_columns)]
+    return ModalHousing(housing.name, housing.bushings, square, damping, seats.reshape(-1, SEAT, square.size))
+
+
+def _symmetric(matrix: object) -> FloatArray:
+    whole = np.array(matrix, dtype=float)
+    return np.asarray(0.5 * (whole + whole.T))
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,20 +1,162 @@
-"""The linear springs and dampers of a scene, laid out on all rotors: supports, seats, couplings."""
+"""Connections of a mechanism; bearings with matrices, preload or a housing couple five strains."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.bearings.seat import SEAT
+from dynamics.joints import Housing
 from dynamics.mechanism.bodies import Bodies
-from dynamics.mechanism.columns import elastic_terms
+from dynamics.mechanism.columns import column_count, elastic_terms
 from dynamics.mechanism.coupling_rows import CouplingRows, gather_couplings
 from dynamics.mechanism.freedoms import Freedoms
-from dynamics.mechanism.seats import Seats, gather_seats, seated
+from dynamics.mechanism.rotor import Rotor
+from dynamics.mechanism.seat_motion import seat_axes, seat_error, seat_motion
 from dynamics.mechanism.supports import Supports, gather_supports
 from dynamics.scene.scene import Scene
-from dynamics.types import FloatArray
+from dynamics.types import FloatArray, IntArray
+
+# The linear springs and dampers of a scene, laid out on all rotors: supports, seats, couplings.
+
+
+QUARTER = np.zeros((SEAT, SEAT))
+"""z x of a seat's displacement and of its tilt."""
+QUARTER[0, 1], QUARTER[1, 0], QUARTER[3, 4], QUARTER[4, 3] = -1.0, 1.0, -1.0, 1.0
+
+
+@dataclass(frozen=True)
+class Seats:
+    """s bearings whose forces on ground or pin are K d + C d' - preload, d their 5 s strains.
+
+    Attributes
+    ----------
+    name : tuple of str
+    support : (s,) int array
+        Of each among the supports.
+    frame : tuple of int or None
+        Rotor of the carrier in whose rotating frame the ground is seen from each; None in the fixed frame and
+        on planet bearings, whose pins stay in the carrier's.
+    group : tuple of (str, slice)
+        Parts of the matrix that nothing couples: a bushing or a housing, and its rows.
+    motion : (5 s, N) array
+        Strain per freedom: x, y, z, tilt_x, tilt_y of the shaft's section there, less those of a pin.
+    stiffness, damping : (5 s, 5 s) arrays
+        Of bearing and housing in series.
+    preload : (5 s,) array
+        On the shaft where d = 0, N and N m; on a planet also what a pin off its nominal position exerts.
+    """
+
+    name: tuple[str, ...]
+    support: IntArray
+    frame: tuple[int | None, ...]
+    group: tuple[tuple[str, slice], ...]
+    motion: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    preload: FloatArray
+
+    @property
+    def turned_damping(self) -> FloatArray:
+        """Force per strain and unit speed of the frame a seat is seen from: C (z x d), (5 s, 5 s)."""
+        quarter = np.kron(np.diag([0.0 if frame is None else 1.0 for frame in self.frame]), QUARTER)
+        return np.asarray(self.damping @ quarter)
+
+
+def seated(scene: Scene, rotors: Bodies) -> frozenset[str]:
+    """Return the names of the bearings that are more than three springs to what holds them.
+
+    Those in a housing without mass, or whose mass is neglected, have its matrix in series.
+    """
+    housed = {name for housing in condensed_housings(scene, rotors) for name in housing.bushings}
+    full = {part.name for part in (*scene.ground_bearings, *scene.planet_bearings) if part.full}
+    return frozenset(housed | full)
+
+
+def condensed_housings(scene: Scene, rotors: Bodies) -> list[Housing]:
+    """Return the housings that are no freedoms."""
+    return [part for part in scene.housings if part.name not in {own.name for own in rotors.housings}]
+
+
+def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
+    """Lay out the bearings of `scene` that are seats; `names` are those of all supports."""
+    chosen, condensed = seated(scene, rotors), condensed_housings(scene, rotors)
+    housed = [name for housing in condensed for name in housing.bushings]
+    order = [*housed, *(name for name in names if name in chosen and name not in housed)]
+    supports = {part.name: (i, part) for i, rotor in enumerate(rotors) for part in rotor.supports}
+    size = SEAT * len(order)
+    motion, preload = np.zeros((size, column_count(rotors))), np.zeros(size)
+    stiffness, damping = np.zeros((size, size)), np.zeros((size, size))
+    for seat, name in enumerate(order):
+        index, part = supports[name]
+        rows = slice(SEAT * seat, SEAT * seat + SEAT)
+        motion[rows], turn = seat_motion(rotors, index, part), seat_axes(rotors, index, part)
+        stiffness[rows, rows] = turn.T @ part.seat_stiffness @ turn
+        damping[rows, rows] = turn.T @ part.seat_damping @ turn
+        own = np.zeros(SEAT) if part.preload is None else np.array(part.preload)
+        preload[rows] = turn.T @ own + stiffness[rows, rows] @ seat_error(rotors, index, part)
+    first, groups = 0, []
+    for housing in condensed:
+        rows = slice(first, first + SEAT * len(housing.bushings))
+        yielding = condense_housing(housing, stiffness[rows, rows], damping[rows, rows], preload[rows])
+        stiffness[rows, rows], damping[rows, rows], preload[rows] = yielding
+        groups.append((housing.name, rows))
+        first = rows.stop
+    groups += [(name, slice(SEAT * k, SEAT * k + SEAT)) for k, name in enumerate(order) if SEAT * k >= first]
+    return Seats(
+        tuple(order),
+        np.array([list(names).index(name) for name in order], dtype=np.int64),
+        tuple(_frame(rotors, *supports[name]) for name in order),
+        tuple(groups),
+        motion,
+        stiffness,
+        damping,
+        preload,
+    )
+
+
+def _frame(rotors: Sequence[Rotor], index: int, part: Bushing | PlanetBearing) -> int | None:
+    return None if isinstance(part, PlanetBearing) else rotors[index].frame
+
+
+def condense_housing(
+    housing: Housing, stiffness: FloatArray, damping: FloatArray, preload: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return stiffness, damping and preload of bearings in series with a housing, its mass neglected.
+
+    The seats follow the shaft by S = (K_b + K_h)^-1 K_b and leave T = 1 - S to the bearings:
+
+        K = K_b T,    C = T^T C_b T + S^T C_h S,    preload = T^T preload,
+
+    the exact stiffness, and the exact damping at frequencies at which damping is small against stiffness.
+    """
+    loss, follow = housing.matrices()[1], seat_compliance(housing, stiffness) @ stiffness
+    left = np.eye(stiffness.shape[0]) - follow
+    series = stiffness @ left
+    moved = follow[list(housing.columns)]
+    return (
+        0.5 * (series + series.T),
+        left.T @ damping @ left + moved.T @ loss @ moved,
+        left.T @ preload,
+    )
+
+
+def seat_compliance(housing: Housing, stiffness: FloatArray) -> FloatArray:
+    """Return (K_b + K_h)^-1 over the five directions of all seats, zero where the housing is rigid.
+
+    `stiffness` (5 s, 5 s) is K_b of the bearings alone. Under the shaft's motion d the seats move by this
+    times K_b d - preload.
+    """
+    followed = list(housing.columns)
+    both = stiffness[np.ix_(followed, followed)] + housing.matrices()[0]
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(both), 1e-300))
+    inverse = np.linalg.pinv(scale[:, None] * both * scale, hermitian=True)
+    compliance = np.zeros_like(stiffness)
+    compliance[np.ix_(followed, followed)] = scale[:, None] * inverse * scale
+    return compliance
 
 
 @dataclass(frozen=True)
@@ -39,7 +181,7 @@ def gather_connections(scene: Scene, rotors: Bodies) -> Connections:
     """Lay out what joins the rotors of `scene`."""
     supports = gather_supports(rotors, seated(scene, rotors))
     couplings = gather_couplings(scene, rotors)
-    return Connections(supports, gather_seats(scene, rotors, supports.name), couplings)
+    return Connections(supports, _gather_seats(scene, rotors, supports.name), couplings)
 
 
 def linear_matrices(

@@ -10,8 +10,7 @@ from dynamics.bearings.matrix import Matrix
 from dynamics.joints import Coupling
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, section_rows
-from dynamics.scene.frame_check import crosses_frames
-from dynamics.scene.scene import Scene
+from dynamics.scene.scene import Scene, crosses_frames
 from dynamics.types import FloatArray
 
 ROTATION = 5

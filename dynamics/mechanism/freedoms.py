@@ -8,10 +8,63 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.mechanism.bodies import Bodies
-from dynamics.mechanism.columns import elastic_columns, housing_columns
+from dynamics.mechanism.columns import column_count, elastic_columns, housing_columns, rigid_motion
 from dynamics.mechanism.kinematics import Kinematics
-from dynamics.mechanism.planets import carried_motion
+from dynamics.mechanism.rotor import Rotor
 from dynamics.types import BoolArray, FloatArray, IntArray
+
+# Planets on their carrier: rigid in the kinematic motion and where nothing lets them move.
+
+
+PLANET_KINDS = 5  # x, y, z, tilt_x, tilt_y: the carrier takes a planet along in these, not in its rotation
+
+
+def carried_motion(rotors: Bodies, free: IntArray) -> FloatArray:
+    """Return (N, N): what all freedoms do where only the freedoms `free` move on their own.
+
+    What is not free goes with the carrier on a planet and with nothing else.
+    """
+    motion = np.eye(column_count(rotors))
+    for index, rotor in enumerate(rotors):
+        if rotor.carrier is None:
+            continue
+        arm = rotor.center - rotors[rotor.carrier].center
+        with_carrier = np.vstack([rigid_motion(arm), np.eye(6)[3:5]])
+        for kind in range(PLANET_KINDS):
+            if 6 * index + kind not in free:
+                motion[6 * index + kind, 6 * rotor.carrier : 6 * rotor.carrier + 6] = with_carrier[kind]
+    return motion
+
+
+def kinematic_vectors(rotors: Bodies, kinematics: Kinematics) -> FloatArray:
+    """Return (k, N): motion of all rotors per radian of each law, planets' centers with their carriers.
+
+    In the frame of a carrier its planets are at rest in the kinematic motion. These vectors are that motion
+    seen from where the frame was: what a little more rotation of the law does to the freedoms, and what an
+    acceleration of it loads with inertia.
+    """
+    ratio = kinematics.float_ratio
+    vectors = np.zeros((ratio.shape[1], len(rotors), 6))
+    vectors[:, :, 5] = ratio.T
+    for index, rotor in enumerate(rotors):
+        if rotor.carrier is not None:
+            arm = rotor.center - rotors[rotor.carrier].center
+            vectors[:, index, 0] = -arm[1] * ratio[rotor.carrier]
+            vectors[:, index, 1] = arm[0] * ratio[rotor.carrier]
+    full = np.zeros((ratio.shape[1], column_count(rotors)))  # elastic coordinates rest
+    full[:, : 6 * len(rotors)] = vectors.reshape(ratio.shape[1], 6 * len(rotors))
+    return full
+
+
+def rotational_inertia(rotors: Sequence[Rotor]) -> FloatArray:
+    """Return (r,): polar inertia of each rotor; on a carrier also its planets' masses about its axis."""
+    inertia = np.array([rotor.inertia.polar for rotor in rotors], dtype=float)
+    for rotor in rotors:
+        if rotor.carrier is not None:
+            arm = rotor.center - rotors[rotor.carrier].center
+            inertia[rotor.carrier] += rotor.inertia.mass * float(arm[0] ** 2 + arm[1] ** 2)
+    return inertia
+
 
 FREEDOMS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
 ROTATION = FREEDOMS.index("rotation")

@@ -14,8 +14,7 @@ from dynamics.errors import InputError
 from dynamics.forces import RollingContact, SpringCurve
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
 from dynamics.meshes import GearMesh
-from dynamics.scene.frame_check import on_axis
-from dynamics.scene.scene import Scene
+from dynamics.scene.scene import Scene, on_axis
 from dynamics.shafts import DiscBody, GearBody, Shaft
 
 TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit all central gears

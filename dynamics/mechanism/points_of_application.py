@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from dynamics.mechanism.connections import seated
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.sampling import order_rate
-from dynamics.mechanism.seats import seated
 from dynamics.scene.scene import Scene
 from dynamics.shafts import Disc, ElasticShaft, PointOfApplication, elastic_shaft
 from dynamics.shafts.shaft_position import OnShaft, on_length

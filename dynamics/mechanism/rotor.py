@@ -8,8 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from dynamics.bearings import Bushing, PlanetBearing
-from dynamics.scene.frame_check import on_axis
-from dynamics.scene.scene import Scene
+from dynamics.scene.scene import Scene, on_axis
 from dynamics.shafts import ElasticShaft, Inertia, Shaft
 from dynamics.shafts.shaft_position import nearest_on
 from dynamics.types import FloatArray

@@ -4,8 +4,7 @@ import host.analysis  # noqa: F401 (says what to install)
 from dynamics.meshes.coast_flank import CoastFlank
 from dynamics.meshes.gear_mesh import GearMesh
 from dynamics.meshes.mesh_table import MeshTable
-from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table
-from dynamics.meshes.straight_table import straight_table
+from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
 
 __all__ = [
     "CoastFlank",

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.meshes.energy_below import ORDER, energy_below
 from dynamics.meshes.grid_tables import GridTables
-from dynamics.meshes.packed_tables import PackedTables, bucket_starts
+from dynamics.meshes.packed_tables import ORDER, PackedTables, bucket_starts, energy_below
 from dynamics.types import FloatArray, IntArray
 
 LEAST = 4  # knots of a table that can be decimated

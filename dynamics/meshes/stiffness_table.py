@@ -7,10 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.checks import finite, increasing
+from dynamics.checks import finite, increasing, positive
 from dynamics.errors import InputError
 from dynamics.meshes.technique import PlainTable
 from dynamics.types import FloatArray
+
+# A mesh-force table of constant stiffness.
+
 
 PER_HARMONIC = 64
 """Knots per period of the highest harmonic: cubic pieces are then within 2.5e-7 of its amplitude."""
@@ -107,3 +110,19 @@ def stiffness_table(stiffness: PeriodicCurve, error: PeriodicCurve | None = None
         k[:, None] * twice,
         k_slope[:, None] * twice,
     )
+
+
+def straight_table(stiffness: float) -> PlainTable:
+    """Return the table of a flank of the same stiffness at all positions: F = stiffness d, in contact only.
+
+    Parameters
+    ----------
+    stiffness : float
+        Along the transverse line of action, N/m.
+
+    Raises
+    ------
+    InputError
+        If it is not above 0.
+    """
+    return stiffness_table(PeriodicCurve.constant(positive("stiffness", stiffness)))

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from dynamics.arrays.arrays import LawArrays, Reference, SystemArrays
-from dynamics.arrays.modal_freedoms import add_modal_motion
-from dynamics.arrays.sparse_rows import row_product, row_products
+from dynamics.arrays.sparse_rows import add_modal_motion, row_product, row_products
 from dynamics.forces.elements import Elements
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.local_state import LocalState

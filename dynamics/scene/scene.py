@@ -2,27 +2,191 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from bounds import Text, at_most, between
+import numpy as np
+
+from bounds import Quantity, Text, at_most, between
 from dynamics.bearings import Bushing, PlanetBearing, RollingBearing
 from dynamics.bearings.bearing_law import BearingLaw
+from dynamics.bearings.matrix import least_share
 from dynamics.bearings.row_law import row_law
-from dynamics.checks import distinct, not_negative, one_of, positive, within
+from dynamics.bearings.seat import SEAT
+from dynamics.checks import distinct, finite, not_negative, one_of, positive, within
 from dynamics.errors import InputError, SolveError
 from dynamics.forces import RollingContact, SpeedTorque, SpringCurve
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
+from dynamics.joints.housing import DEFINITE
 from dynamics.loads import AngleLaw, AppliedForce, LoadTorque, TimeLaw, Unbalance
 from dynamics.meshes import GearMesh
 from dynamics.parts import KINDS, ON_A_SHAFT
 from dynamics.scene.force_check import check_force_shafts
-from dynamics.scene.frame_check import check_couplings, check_frames, check_gravity, check_on_axis
-from dynamics.scene.housing_check import check_housings
 from dynamics.settings import Integration, Outputs
 from dynamics.shafts import DiscBody, GearBody, Shaft
 from dynamics.shafts.shaft_position import OnShaft, on_length
+from dynamics.types import FloatArray
+
+# Housings and bushings with matrices: what they can carry, and where.
+
+
+ISOTROPY = 1e-9  # relative
+SEAT_AGREEMENT = 1e-3  # m; a bearing acts at its middle, which need not be that of its bore
+IRRATIONAL = 1.0  # rad; what this turn leaves alone any turn does
+
+
+def _check_housings(
+    shafts: tuple[Shaft, ...],
+    bushings: tuple[Bushing, ...],
+    housings: tuple[Housing, ...],
+    lawful: frozenset[str],
+) -> None:
+    """Each bushing sits in one housing at most; what a rotating frame holds is alike in all directions.
+
+    A housing under a bearing that is not linear, of those named in `lawful`, is held in all directions.
+    """
+    by_name = {bushing.name: bushing for bushing in bushings}
+    frames = {shaft.name: shaft.frame for shaft in shafts}
+    taken: dict[str, str] = {}
+    for index, housing in enumerate(housings):
+        for position, name in enumerate(housing.bushings):
+            field = f"housings[{index}].bushings[{position}]"
+            one_of(field, name, list(by_name))
+            if name in taken:
+                raise InputError(field, name, f'in one housing only; "{taken[name]}" has it')
+            if frames[by_name[name].shaft] is not None:
+                bound = "a bushing of a shaft described in the fixed frame"
+                raise InputError(field, name, bound, "A planetary set's frame turns against the housing.")
+            taken[name] = housing.name
+        _housing_check_check_positions(index, housing, shafts, by_name)
+        if not lawful.isdisjoint(housing.bushings) and least_share(housing.matrices()[0]) <= DEFINITE:
+            bound = "positive definite under bearings that are not linear"
+            advice = "Hold the housing at its feet, or on mounts, in every direction that has a row."
+            raise InputError(f"housings[{index}].stiffness", housing.name, bound, advice)
+    for index, bushing in enumerate(bushings):
+        if frames[bushing.shaft] is not None:
+            _check_isotropic(f"bushings[{index}]", bushing)
+
+
+def _housing_check_check_positions(
+    index: int, housing: Housing, shafts: tuple[Shaft, ...], bushings: dict[str, Bushing]
+) -> None:
+    """Refuse a seat of a housing that is not where its bearing is."""
+    origins = {shaft.name: shaft.origin for shaft in shafts}
+    for seat, (name, at) in enumerate(zip(housing.bushings, housing.seat_positions or (), strict=False)):
+        bearing = bushings[name]
+        expected = np.add(origins[bearing.shaft], (0.0, 0.0, bearing.position))
+        off = np.subtract(at, expected)
+        if float(np.max(np.abs(off))) > SEAT_AGREEMENT:
+            x, y, z = (Quantity(float(value), "m", digits=3) for value in off)
+            limit = Quantity(SEAT_AGREEMENT, "m")
+            bound = Text.of("within ", limit, f' of "{name}"; it is off by ', x, ", ", y, ", ", z)
+            advice = "Move and turn the mesh so that it stands as the scene does, z along the shafts."
+            raise InputError(f"housings[{index}].seat_positions[{seat}]", at, bound, advice)
+
+
+def _check_isotropic(field: str, bushing: Bushing) -> None:
+    """Refuse a bushing seen from a rotating frame unless all directions across the axis are alike."""
+    for name, matrix in (("stiffness", bushing.seat_stiffness), ("damping", bushing.seat_damping)):
+        if not _alike_across(matrix):
+            bound = "the same in all directions across the axis"
+            raise InputError(f"{field}.{name}", bushing.name, bound, "The carrier's frame turns against it.")
+    preload = np.zeros(SEAT) if bushing.preload is None else np.abs(bushing.preload)
+    if np.any(preload[[0, 1, 3, 4]] > ISOTROPY * np.max(preload)):
+        bound = "zero across the axis: the carrier's frame turns against it"
+        raise InputError(f"{field}.preload", bushing.preload, bound)
+
+
+def _alike_across(matrix: FloatArray) -> bool:
+    """Whether a matrix in x, y, z, tilt_x, tilt_y (and rotation) is the same turned by any angle about z."""
+    turn = np.eye(matrix.shape[0])
+    c, s = np.cos(IRRATIONAL), np.sin(IRRATIONAL)
+    turn[:2, :2] = turn[3:5, 3:5] = [[c, -s], [s, c]]
+    off = np.abs(turn @ matrix @ turn.T - matrix)
+    return bool(np.all(off <= ISOTROPY * np.max(np.abs(matrix), initial=0.0)))
+
+
+# Shafts of different frames: which lie on one axis, and what may join them.
+
+
+AXIS_AGREEMENT = 1e-9  # of a shaft's length: shafts nearer than this share an axis
+
+
+def _check_frames(shafts: tuple[Shaft, ...], planet_bearings: tuple[PlanetBearing, ...]) -> None:
+    """Frames are those of carriers, pins turn with the planet's own carrier."""
+    by_name = {shaft.name: shaft for shaft in shafts}
+    for index, shaft in enumerate(shafts):
+        if shaft.frame is None:
+            continue
+        one_of(f"shafts[{index}].frame", shaft.frame, list(by_name))
+        if by_name[shaft.frame].frame != shaft.frame:
+            bound = "a carrier: a shaft described in its own frame"
+            raise InputError(f"shafts[{index}].frame", shaft.frame, bound, "Let the carrier name itself.")
+    for index, bearing in enumerate(planet_bearings):
+        field = f"planet_bearings[{index}].carrier"
+        one_of(
+            field, bearing.carrier, [by_name[bearing.shaft].frame or ""], "The frame of its planet's shaft."
+        )
+        if bearing.carrier == bearing.shaft:
+            raise InputError(field, bearing.carrier, "another shaft than the planet's")
+
+
+def _check_on_axis(
+    shafts: tuple[Shaft, ...], kind: str, bearings: Sequence[Bushing | RollingBearing]
+) -> None:
+    """Planets have no bearings to the ground; `kind` is what a scene calls these."""
+    by_name = {shaft.name: shaft for shaft in shafts}
+    for index, bearing in enumerate(bearings):
+        shaft = by_name[bearing.shaft]
+        if shaft.frame is not None and not on_axis(shaft, by_name[shaft.frame]):
+            bound = "a shaft on the carrier's axis"
+            raise InputError(f"{kind}[{index}].shaft", shaft.name, bound, "Planets rest on planet bearings.")
+
+
+def _check_gravity(shafts: tuple[Shaft, ...], gravity: tuple[float, float, float]) -> None:
+    """Gravity turns against rotating frames, unless it lies along the axis."""
+    for axis, value in zip("xyz", gravity, strict=True):
+        finite(f"gravity.{axis}", value)
+    if any(gravity[:2]) and any(shaft.frame is not None for shaft in shafts):
+        bound = "zero in x and y where shafts are described in a carrier's frame, which turns against it"
+        raise InputError("gravity", gravity, bound)
+
+
+def _check_couplings(shafts: tuple[Shaft, ...], couplings: tuple[Coupling, ...]) -> None:
+    """Couplings with matrices join coaxial shafts, those across frames alike in all directions."""
+    by_name = {shaft.name: shaft for shaft in shafts}
+    for index, coupling in enumerate(couplings):
+        first, second = by_name[coupling.first], by_name[coupling.second]
+        if coupling.stiffness is None and coupling.damping is None:
+            continue
+        if not on_axis(first, second):
+            suggestion = "Leave the matrices out: torsion alone joins any two shafts."
+            raise InputError(f"couplings[{index}].second", second.name, "coaxial with the first", suggestion)
+        if not crosses_frames(first, second, coupling):
+            continue
+        for side, shaft in (("first", first), ("second", second)):
+            if shaft.frame is not None and not on_axis(shaft, by_name[shaft.frame]):
+                bound = f"on the axis of its carrier {shaft.frame}, as it joins shafts of different frames"
+                raise InputError(f"couplings[{index}].{side}", shaft.name, bound)
+        for name, matrix in (("stiffness", coupling.stiffness), ("damping", coupling.damping)):
+            if matrix is not None and not _alike_across(np.asarray(matrix, dtype=float)):
+                bound = "the same in all directions across the axis, without terms between these and the axis"
+                suggestion = "The frames of its shafts turn against each other."
+                raise InputError(f"couplings[{index}].{name}", coupling.name, bound, suggestion)
+
+
+def crosses_frames(first: Shaft, second: Shaft, coupling: Coupling) -> bool:
+    """Whether a coupling has matrices and joins shafts of different frames."""
+    return first.frame != second.frame and (coupling.stiffness is not None or coupling.damping is not None)
+
+
+def on_axis(shaft: Shaft, carrier: Shaft) -> bool:
+    """Whether `shaft` lies on the axis of `carrier`."""
+    apart = math.dist(shaft.origin[:2], carrier.origin[:2])
+    return apart <= AXIS_AGREEMENT * max(shaft.length, carrier.length)
+
 
 # Laws of bearings that are not linear: what they can act on.
 
@@ -187,12 +351,12 @@ class Scene:
             for side in ("first", "second"):
                 one_of(f"couplings[{index}].{side}", getattr(coupling, side), shafts)
         self._check_references()
-        check_frames(self.shafts, self.planet_bearings)
+        _check_frames(self.shafts, self.planet_bearings)
         for kind in ("bushings", "rolling_bearings"):
-            check_on_axis(self.shafts, kind, getattr(self, kind))
-        check_gravity(self.shafts, self.gravity)
-        check_couplings(self.shafts, self.couplings)
-        check_housings(
+            _check_on_axis(self.shafts, kind, getattr(self, kind))
+        _check_gravity(self.shafts, self.gravity)
+        _check_couplings(self.shafts, self.couplings)
+        _check_housings(
             self.shafts,
             self.ground_bearings,
             self.housings,

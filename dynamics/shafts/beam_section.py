@@ -11,8 +11,13 @@ import numpy as np
 from bounds import Declared, Kind, below, between, declared, described, required, up_to
 from dynamics.checks import declared_fields
 from dynamics.errors import InputError
-from dynamics.shafts.inertia import Inertia, hollow_cylinder
-from dynamics.shafts.steel import STEEL_DENSITY, STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
+from dynamics.shafts.inertia import (
+    STEEL_DENSITY,
+    STEEL_POISSON_RATIO,
+    STEEL_YOUNGS_MODULUS,
+    Inertia,
+    hollow_cylinder,
+)
 from dynamics.types import FloatArray
 
 _EXACT = np.polynomial.legendre.leggauss(4)

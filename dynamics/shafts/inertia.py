@@ -8,7 +8,16 @@ from dataclasses import dataclass
 from bounds import Declared, Kind, below, between, declarations, declared, described
 from dynamics.checks import not_negative, positive
 from dynamics.errors import InputError
-from dynamics.shafts.steel import STEEL_DENSITY
+
+# The steel of shafts whose material is not stated: that of the gears' tables.
+
+
+STEEL_YOUNGS_MODULUS = 210e9
+"""Pa."""
+STEEL_POISSON_RATIO = 0.3
+STEEL_DENSITY = 7850.0
+"""kg/m^3."""
+
 
 _MASS = Declared(Kind.INERTIA, "kg", between(0.0, 1e9), "Mass", 2.0)
 _POLAR = Declared(

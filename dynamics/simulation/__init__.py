@@ -1,6 +1,5 @@
 """Entry points: from a scene to its result, in memory or streamed to a file."""
 
-from dynamics.simulation.in_memory import run_scene, simulate
-from dynamics.simulation.to_file import interrupted_run, simulate_to_file
+from dynamics.simulation.to_file import interrupted_run, run_scene, simulate, simulate_to_file
 
 __all__ = ["interrupted_run", "run_scene", "simulate", "simulate_to_file"]

@@ -18,16 +18,19 @@ from dynamics.assembly.static_reference import with_static_reference
 from dynamics.errors import ResultError, SolveError
 from dynamics.influence import Decided, decide_effects
 from dynamics.influence.neglected_check import NeglectedChecks
-from dynamics.integrators import Cancel, Progress, static_equilibrium
+from dynamics.integrators import Cancel, Progress, StaticSolution, Trajectory, integrate, static_equilibrium
+from dynamics.integrators import march as marching
 from dynamics.integrators.march import Ending
 from dynamics.integrators.method_choice import MethodChoice, choose_method
 from dynamics.integrators.start_value import Trail
-from dynamics.integrators.state_sink import blocks
+from dynamics.integrators.state_sink import MemorySink, blocks
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
+from dynamics.results import RunResult
 from dynamics.results.force_check import ending
 from dynamics.results.run_checks import RunChecks
 from dynamics.results.run_files import RunFile, attributes
+from dynamics.results.series import over_time
 from dynamics.scene import Scene
 from dynamics.simulation.documents import (
     documents,
@@ -38,10 +41,188 @@ from dynamics.simulation.documents import (
     squared_difference,
 )
 from dynamics.simulation.error_by_source import error_by_source
-from dynamics.simulation.in_memory import require_equilibrium
 from dynamics.simulation.leg import Leg, MadeRun
-from dynamics.simulation.violations import FIRST, EarlierRun, needed_effects
+from dynamics.simulation.violations import FIRST, EarlierRun, needed_effects, taken_over
 from dynamics.types import Json, RunStatus
+
+# From a scene to its result in memory.
+
+
+def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | None = None) -> RunResult:
+    """Run `scene` from static equilibrium at t = 0 over its duration.
+
+    All series are kept in memory; for longer runs use `simulate_to_file`.
+
+    Parameters
+    ----------
+    scene : Scene
+    progress : callable, optional
+        Called with the fraction done (0..1) and the stage; an exception in it ends the run.
+    cancel : callable, optional
+        Polled for whether to stop; e.g. ``threading.Event().is_set``.
+
+    Returns
+    -------
+    RunResult
+        Complete: its status is `RunStatus.COMPLETED`.
+
+    Raises
+    ------
+    InputError
+        If the scene's parts do not fit each other.
+    SolveError
+        If there is no equilibrium to start from, the run stopped early or was cancelled, or it violates an
+        assumption and the scene's ``on_violation`` is "fail", or "repeat" and no effect corrects it;
+        ``partial`` is the result up to then.
+
+    Warns
+    -----
+    PlausibilityWarning
+        Once for each implausible value of the scene; all are in `RunResult.warnings`.
+    """
+    warn_of(scene_findings(scene))
+    return run_scene(scene, progress, cancel)
+
+
+def run_scene(scene: Scene, progress: Progress | None = None, cancel: Cancel | None = None) -> RunResult:
+    """Run `scene` as `simulate` does; what is implausible about it is in the result alone."""
+    decided, before = decide_effects(scene), FIRST
+    run = _run(decided, before, None, progress, cancel)
+    while needed := _in_memory_needed(scene, run.result):
+        before = before.then(needed, sum(run.result.receipt["seconds"].values()))
+        run = _run(before.of(decided), before, run, progress, cancel)
+    if progress is not None:
+        progress(1.0, "done")
+    return run.result
+
+
+def _in_memory_needed(scene: Scene, result: RunResult) -> dict[str, str]:
+    """Return the effects that a run is to be repeated with; raises where it cannot be left as it is."""
+    needed = needed_effects(result.effect_ledger) if scene.on_violation == "repeat" else {}
+    wrong = "" if needed else ending(result.effect_ledger["checks"], scene.on_violation)
+    if wrong:
+        raise SolveError(f"violated assumptions of the run: {wrong}", result)
+    return needed
+
+
+@dataclass(frozen=True)
+class _Run:
+    """A run as made: its result, and what another one needs to go on for it."""
+
+    result: RunResult
+    trail: Trail
+    trajectory: Trajectory
+
+    def states(self, first: int, stop: int) -> States:
+        """Return its samples `first` to `stop` - 1."""
+        return self.trajectory.states.rows(first, stop)
+
+
+def _run(
+    decided: Decided,
+    before: EarlierRun,
+    earlier: _Run | None,
+    progress: Progress | None,
+    cancel: Cancel | None,
+) -> _Run:
+    """Run a scene once; `before` says what of the run `earlier` it repeats."""
+    began, scene = clock.perf_counter(), decided.scene
+    system = assemble(scene)
+    start = static_equilibrium(system)
+    seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
+    _require_equilibrium(system, start, seconds, decided)
+    choice = choose_method(system, start.displacement, scene.integration)
+    system, trail = choice.of(with_static_reference(system, start.displacement)), Trail(system)
+    taken = None
+    if earlier is not None:
+        taken = taken_over(earlier.result.effect_ledger, earlier.trail, earlier.states, system)
+        before = before if taken is None else replace(before, since=taken.at.time)
+    trajectory = integrate(
+        system, start, system.scene.integration, progress, cancel=cancel, trail=trail, taken=taken
+    )
+    seconds["integration"] = trajectory.seconds
+    error = _error_estimate(system, start, trajectory, progress)
+    result = _result(system, trajectory, seconds, error, decided, before, choice)
+    if not trajectory.status.usable:
+        reached = f"at {trajectory.end:.6g} s of {scene.duration:g} s"
+        raise SolveError(f"run ended early, {trajectory.status.name.lower()} {reached}", result)
+    return _Run(result, trail, trajectory)
+
+
+def _require_equilibrium(
+    system: System, start: StaticSolution, seconds: dict[str, float], decided: Decided
+) -> None:
+    """Refuse to start from anything but an equilibrium.
+
+    Raises
+    ------
+    SolveError
+        If `start` is none; ``partial`` shows where the search for it ended.
+    """
+    if not start.status.usable:
+        message = f"no static equilibrium at t = 0: {start.status.name.lower()}, {start.residual:.3g} N left"
+        raise SolveError(message, _result(system, _no_trajectory(system, start), seconds, {}, decided))
+
+
+def _result(
+    system: System,
+    trajectory: Trajectory,
+    seconds: dict[str, float],
+    error: Json,
+    decided: Decided,
+    before: EarlierRun = FIRST,
+    choice: MethodChoice | None = None,
+) -> RunResult:
+    """Put the result together."""
+    began = clock.perf_counter()
+    checks = RunChecks(system, [NeglectedChecks(decided)])
+    parts: list[dict[str, Any]] = []
+    for first, stop in blocks(trajectory.samples):
+        states = trajectory.states.rows(first, stop)
+        series, raw = series_of(system, trajectory.time[first:stop], states)
+        parts.append(series)
+        checks.see(raw, states)
+    seconds = {**seconds, "outputs": clock.perf_counter() - began}
+    about = documents(system, trajectory, checks, seconds, error, decided, before, choice)
+    return RunResult(**_joined(parts), **about)
+
+
+def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
+    """Join blocks of series."""
+    if len(parts) == 1:
+        return parts[0]
+    whole = dict(parts[0])
+    for name in over_time():
+        whole[name] = np.concatenate([part.pop(name) for part in parts], axis=-1)
+    return whole
+
+
+def _error_estimate(
+    system: System, start: StaticSolution, trajectory: Trajectory, progress: Progress | None
+) -> Json:
+    """Errors by source; that of the steps from a finer run where it is requested."""
+    integration = system.scene.integration
+    if not trajectory.status.usable:
+        return requested_error(integration)
+    error = error_by_source(system, trajectory.states.rows, trajectory.samples)
+    if not integration.estimate_error:
+        return error
+    check = integrate(system, start, finer(integration), progress)
+    total = squared_difference(system, trajectory.q, check.q)
+    return error | measured_error(total, trajectory.samples, len(system.scene.meshes), check.seconds)
+
+
+def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:
+    """Return the trajectory of a run that never started: the end of the search for equilibrium."""
+    march = marching.start_march(system, start, system.scene.integration)
+    sink = MemorySink(1, march.widths)
+    marching.sample_rest(march, sink)
+    return Trajectory(
+        **vars(marching.ending(march, sink, RunStatus.NO_EQUILIBRIUM, 0.0)),
+        time=np.zeros(1),
+        states=sink.states(0, 1),
+    )
+
 
 CHECKPOINT_EVERY = 5.0  # s of wall time
 REPEATED = "repeated.json"
@@ -146,7 +327,7 @@ def _run_to_file(
     system = assemble(scene)
     start = static_equilibrium(system)
     seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
-    require_equilibrium(system, start, seconds, decided)
+    _require_equilibrium(system, start, seconds, decided)
     choice = choose_method(system, start.displacement, scene.integration)
     system, trail = choice.of(with_static_reference(system, start.displacement)), Trail(system)
     integration = system.scene.integration

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from fe_contact.contact.local_law import approach, carrying_strip
 from fe_contact.contact.model import Break, GapTerm
 from fe_contact.contact.newton import NewtonSystem, empty_system, newton_system
 from fe_contact.contact.point_problem import (
     PointProblem,
     PointProblems,
     State,
+    approach,
+    carrying_strip,
     dot,
     eliminate,
     motion_at,

@@ -24,10 +24,10 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from fe_contact.contact.local_law import approach
 from fe_contact.contact.point_problem import (
     PointProblem,
     State,
+    approach,
     dot,
     eliminate,
     evaluate,

@@ -29,7 +29,7 @@ _CHAMFER_RISES = Text.of("The chamfer must run on towards the tip circle. ", SiN
 _CHAMFER_FITS = "It must leave an involute and some of the tip; at a smaller angle it takes less of the tip."
 
 
-def rounding_start(gear: Tooth, radius: float) -> float:
+def _rounding_start(gear: Tooth, radius: float) -> float:
     """Roll length in m of the tip form point of a rounding that touches involute and tip circle.
 
     Its center lies on the normal of the tip form point, `radius` inside the tooth, and as far from the tip
@@ -41,31 +41,31 @@ def rounding_start(gear: Tooth, radius: float) -> float:
     return math.sqrt(center**2 - gear.base_radius**2) + gear.sign * radius
 
 
-def chamfer_start(gear: Tooth, height: float) -> float:
+def _chamfer_start(gear: Tooth, height: float) -> float:
     """Roll length in m of the tip form point of a chamfer that starts `height` from the tip circle."""
     radius = gear.tip_radius - gear.sign * height
     return math.nan if radius < gear.base_radius else gear.roll_length(radius)
 
 
-def check_rounding(gear: Tooth, radius: float) -> None:
+def _check_rounding(gear: Tooth, radius: float) -> None:
     """Raise `InputError` if a rounding does not fit between form circle and tip, or into half the tip."""
 
     def fits(trial: float) -> bool:
-        roll = rounding_start(gear, trial)
+        roll = _rounding_start(gear, trial)
         return _above_form_point(gear, roll) and _rounding_angle(gear, roll, trial) >= 0.0
 
     _check("modification.tip_rounding", radius, 0.0, fits, _ROUNDING_FITS)
 
 
-def check_chamfer(gear: Tooth, height: float, angle: float) -> None:
+def _check_chamfer(gear: Tooth, height: float, angle: float) -> None:
     """Raise `InputError` if a chamfer does not fit between form circle and tip, or into half the tip."""
 
     def fits(trial: float) -> bool:
-        roll = chamfer_start(gear, trial)
+        roll = _chamfer_start(gear, trial)
         return _above_form_point(gear, roll) and _chamfer_reaches(gear, roll, angle)
 
     def rises(trial: float) -> bool:
-        return _chamfer_reaches(gear, chamfer_start(gear, _LOWEST * gear.normal_module), trial)
+        return _chamfer_reaches(gear, _chamfer_start(gear, _LOWEST * gear.normal_module), trial)
 
     _check("modification.tip_chamfer_angle", angle, FLATTEST, rises, _CHAMFER_RISES)
     _check("modification.tip_chamfer", height, 0.0, fits, _CHAMFER_FITS)
@@ -140,9 +140,9 @@ class CutTip(FlankPart):
     def check_fits(self, gear: Tooth) -> None:
         """Raise `InputError` if the edge leaves no involute or no tip."""
         if self.tip_rounding:
-            check_rounding(gear, self.tip_rounding)
+            _check_rounding(gear, self.tip_rounding)
         if self.tip_chamfer:
-            check_chamfer(gear, self.tip_chamfer, self.tip_chamfer_angle)
+            _check_chamfer(gear, self.tip_chamfer, self.tip_chamfer_angle)
 
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """See `FlankPart.removed`."""
@@ -158,7 +158,7 @@ class CutTip(FlankPart):
         The involute turns away from its tangent too, with the curvature 1/l; hollow in a ring gear.
         """
         if self.tip_rounding:
-            start = rounding_start(gear, self.tip_rounding)
+            start = _rounding_start(gear, self.tip_rounding)
             return (ReliefStart(start, True, 0.0, 1.0 / self.tip_rounding - gear.sign / start, True),)
-        start = chamfer_start(gear, self.tip_chamfer)
+        start = _chamfer_start(gear, self.tip_chamfer)
         return (ReliefStart(start, True, math.tan(self.tip_chamfer_angle), -gear.sign / start, True),)

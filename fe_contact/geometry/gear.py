@@ -51,7 +51,7 @@ def seat_compliance(gear: Toothing) -> float:
     return gear.base_radius**2 / torsion
 
 
-def refuse_misfit_seat(gear: Toothing) -> None:
+def _refuse_misfit_seat(gear: Toothing) -> None:
     """Raise `InfeasibleGeometry` if the seat of a gear leaves its face."""
     seat, face = gear.seat, gear.face_width
     width = face if seat.width is None else seat.width
@@ -87,7 +87,7 @@ def _refuse_infeasible_gear(gear: Toothing, blank: GearBlank | None) -> None:
     if blank is not None:
         _refuse_rim(gear, blank)
         _refuse_web(gear, blank)
-    refuse_misfit_seat(gear)
+    _refuse_misfit_seat(gear)
     _refuse_undercut(gear)
     _refuse_pointed_tooth(gear)
 

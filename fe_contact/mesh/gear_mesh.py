@@ -2,19 +2,185 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from fe_contact.geometry import Toothing, ToothProfile, tooth_profile
-from fe_contact.mesh.hub import Hub, hub, hub_outline, inner_rings
-from fe_contact.mesh.outline import Outline
+from fe_contact.mesh.outline import Outline, Piece, arc, divide, piece
 from fe_contact.mesh.quadratic import QuadraticMesh, quadratic_mesh, region, rotated
 from fe_contact.mesh.quality import QualityLimits, refuse_poor_elements
 from fe_contact.mesh.recipe import MeshRecipe
-from fe_contact.mesh.tooth_sector import ToothSector, tooth_outline, tooth_sector
+from fe_contact.mesh.tooth_sector import LARGEST_ARC, ToothSector, tooth_outline, tooth_sector
 from fe_contact.mesh.triangulation import triangulate
 from fe_contact.types import FloatArray, IntArray
+
+# Mesh of what lies below and beside the real teeth: the rest of the ring down to the bore.
+
+
+HALF = 0.5  # largest element of the plain ring, in parts of its thickness
+
+
+@dataclass(frozen=True)
+class Hub:
+    """The ring without the sectors of the real teeth.
+
+    Attributes
+    ----------
+    points : (n, 2) array
+        Nodes, m.
+    triangles : (m, 6) array
+        Six-node triangles.
+    bottoms : (t, b) int array
+        Nodes shared with the bottom of each sector, left to right.
+    right_side, left_side : int arrays
+        Nodes shared with the first sector's right and the last one's left side, from the bottom up; empty
+        if all teeth are real.
+    bore : int array
+        Nodes on the bore, or on the outside of a ring gear's rim.
+    thickness : (m,) array
+        Axial thickness of each element over the face width: below 1 in a web.
+    """
+
+    points: FloatArray
+    triangles: IntArray
+    bottoms: IntArray
+    right_side: IntArray
+    left_side: IntArray
+    bore: IntArray
+    thickness: FloatArray
+
+
+@dataclass(frozen=True)
+class InnerRing:
+    """A region between a boundary and the next circle, and its thickness over the face width."""
+
+    circle: Outline
+    thickness: float
+
+
+def _hub_outline(gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe) -> Outline:
+    """Return the boundary that follows the sectors of `teeth`; that of a ring gear is the inner one."""
+    pitch = 2.0 * np.pi / gear.teeth
+    # From the right end of a bottom to its left: counter-clockwise, as the teeth are numbered.
+    pieces = [Piece(f"bottom {j}", rotated(sector.points[sector.bottom[::-1]], j * pitch)) for j in teeth]
+    if len(teeth) < gear.teeth:
+        left = Piece("left side", rotated(sector.points[sector.left_side], teeth[-1] * pitch))
+        right = Piece("right side", rotated(sector.points[sector.right_side[::-1]], teeth[0] * pitch))
+        rim = _plain_rim(left, gear.teeth - len(teeth), pitch, gear.rim_inside_radius, recipe)
+        pieces += [left, rim, right]
+    return Outline(tuple(pieces))
+
+
+def _plain_rim(side: Piece, missing: int, pitch: float, inside: float, recipe: MeshRecipe) -> Piece:
+    """Return the root circle from the end of `side` counter-clockwise over the missing teeth."""
+    x, y = side.nodes[-1]
+    radius, angle, length = float(np.hypot(x, y)), float(np.arctan2(x, y)), missing * pitch
+    largest = min(HALF * abs(1.0 - inside / radius), LARGEST_ARC)
+
+    def size(turned: FloatArray) -> FloatArray:
+        distance = np.minimum(turned, length - turned)
+        target: FloatArray = side.edge_lengths[-1] / radius + recipe.growth * distance
+        return np.minimum(target, largest)
+
+    circle = arc(radius)
+    return piece("plain rim", lambda turned: circle(angle - turned), divide(0.0, length, size))
+
+
+def _inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tuple[InnerRing, ...]:
+    """Return what lies below the sectors from there on: one ring, or the rim's rest, web and hub."""
+    held, web = gear.held_radius, gear.web
+    radii, thickness = [bottom_radius, held], [1.0]
+    if web is not None:
+        radii = [bottom_radius, web.outer_radius, web.inner_radius]
+        thickness = [1.0, web.thickness / gear.face_width]
+        if web.inner_radius > held:
+            radii, thickness = [*radii, held], [*thickness, 1.0]
+    depths = [*(abs(a - b) for a, b in pairwise(radii)), np.inf]
+    return tuple(
+        InnerRing(circle(r, min(near), abs(bottom_radius - r), recipe), part)
+        for r, near, part in zip(radii[1:], pairwise(depths), thickness, strict=True)
+    )
+
+
+def circle(radius: float, depth: float, distance: float, recipe: MeshRecipe) -> Outline:
+    """Return a circle, clockwise.
+
+    Parameters
+    ----------
+    radius : float
+        m.
+    depth : float
+        Of the thinner ring beside it, m.
+    distance : float
+        From the sectors, m.
+    recipe : MeshRecipe
+        Element sizes.
+    """
+    size = min(recipe.body_size + recipe.growth * distance, HALF * depth)
+    step = min(size / radius, LARGEST_ARC)
+    ends = divide(0.0, 2.0 * np.pi, lambda angle: np.full_like(angle, step))
+    return Outline((piece("circle", arc(radius), ends),))
+
+
+def hub(
+    meshes: Sequence[QuadraticMesh],
+    toothed: Outline,
+    thickness: Sequence[float],
+    teeth: IntArray,
+    sign: int = 1,
+) -> Hub:
+    """Join the meshes of the rings and name their boundary nodes.
+
+    Parameters
+    ----------
+    meshes : sequence of QuadraticMesh
+        Of `_inner_rings`, from the sectors to the circle that the gear is held by.
+    toothed : Outline
+        The one that follows the sectors.
+    thickness : sequence of float
+        Of the rings over the face width.
+    teeth : (t,) int array
+        Numbers of the real teeth.
+    sign : int
+        -1 for a ring gear, whose toothed outline is the inner one.
+    """
+    mesh, parts = meshes[0], [np.full(len(meshes[0].triangles), thickness[0])]
+    for ring, thick in zip(meshes[1:], thickness[1:], strict=True):
+        mesh = _joined(mesh, ring)
+        parts.append(np.full(len(ring.triangles), thick))
+    around, held = mesh.boundary[::sign]
+    names = {p.name for p in toothed.pieces}
+
+    def nodes(name: str) -> IntArray:
+        return around[toothed.positions(name)] if name in names else np.empty(0, dtype=np.int64)
+
+    return Hub(
+        points=mesh.points,
+        triangles=mesh.triangles,
+        bottoms=np.array([nodes(f"bottom {j}")[::-1] for j in teeth]),
+        right_side=nodes("right side")[::-1],
+        left_side=nodes("left side"),
+        bore=held,
+        thickness=np.concatenate(parts),
+    )
+
+
+def _joined(outside: QuadraticMesh, inside: QuadraticMesh) -> QuadraticMesh:
+    """Join two meshes along the inner boundary of one and the outer one of the other, its reverse."""
+    own = np.ones(len(inside.points), dtype=bool)
+    own[inside.boundary[0]] = False
+    number = np.empty(len(own), dtype=np.int64)
+    number[own] = len(outside.points) + np.arange(int(own.sum()))
+    number[inside.boundary[0]] = np.roll(outside.boundary[1][::-1], 1)
+    return QuadraticMesh(
+        points=np.concatenate([outside.points, inside.points[own]]),
+        triangles=np.concatenate([outside.triangles, number[inside.triangles]]),
+        boundary=(outside.boundary[0], number[inside.boundary[1]]),
+    )
+
 
 # The finite-element mesh of one gear: identical tooth sectors, and a hub that closes the ring.
 
@@ -231,8 +397,8 @@ def _mesh_hub(
     gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe, filling: Filling
 ) -> Hub:
     """Mesh the rest of the ring: of a solid gear in one piece, else what is left of the rim, web and hub."""
-    toothed = hub_outline(gear, sector, teeth, recipe)
-    rings = inner_rings(gear, float(np.linalg.norm(sector.points[sector.bottom[0]])), recipe)
+    toothed = _hub_outline(gear, sector, teeth, recipe)
+    rings = _inner_rings(gear, float(np.linalg.norm(sector.points[sector.bottom[0]])), recipe)
     meshes, around = [], toothed
     for ring in rings:
         outermost_first = (around, ring.circle)[:: gear.sign]

@@ -14,9 +14,8 @@ import numpy as np
 
 from bounds import written
 from fe_contact.errors import SolveError
-from fe_contact.microgeometry.confirmation import ConfirmedDesign, confirm
+from fe_contact.microgeometry.confirmation import ConfirmedDesign, DesignStudy, confirm
 from fe_contact.microgeometry.design_problem import DesignProblem
-from fe_contact.microgeometry.design_study import DesignStudy
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.optimization import OptimizationRequest, Perturbation
 from fe_contact.microgeometry.scatter import Scatter

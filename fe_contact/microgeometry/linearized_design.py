@@ -177,7 +177,7 @@ def curve_derivatives(
             further = bodies.solve(pair, loads, misalignment, center_distance_change + DISTANCE_STEP).solution
             _require_solved(further)
             return (further.deflection - solution.deflection) / DISTANCE_STEP
-        return strips.change(opened_by(strips, pair, name))
+        return strips.change(_opened_by(strips, pair, name))
 
     derivatives = np.stack([derivative(name) for name in names])
     curves, period = solution.deflection.T, checked.model.period
@@ -226,7 +226,7 @@ def _require_solved(solution: ContactSolution) -> None:
         raise SolveError("the contact of a position cannot be solved", solution.status)
 
 
-def opened_by(strips: CarryingStrips, pair: ParallelAxes, name: str) -> FloatArray:
+def _opened_by(strips: CarryingStrips, pair: ParallelAxes, name: str) -> FloatArray:
     """Return the normal approach that a figure of the flanks or the misalignment takes away, (k,)."""
     if name == MISALIGNMENT:
         return strips.opened(MisalignmentGap(1.0))
@@ -321,7 +321,7 @@ def _differentiated(
     pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution, names: tuple[str, ...]
 ) -> _Solved:
     strips = CarryingStrips.of(pair, problem.candidates, adjoint(problem, solution))
-    opened = np.stack([opened_by(strips, pair, name) for name in names])
+    opened = np.stack([_opened_by(strips, pair, name) for name in names])
     return _Solved(pair, problem, solution, figures(problem, solution), names, strips, opened)
 
 
@@ -372,5 +372,5 @@ def _edge_load(solved: _Solved, limit: float) -> Rows:
     points = CarryingStrips.at(solved.pair, c, load.shape[1], (p, k, m), zero, zero + _POINT, zero)
     for a, name in enumerate(solved.names):
         moved = problem.moved(solved.force[a])[p, k, m] - c.motion_arm[p, m] * solved.ste[a, p, k]
-        by[a][p, k] = -(opened_by(points, solved.pair, name) + moved) * per_gap
+        by[a][p, k] = -(_opened_by(points, solved.pair, name) + moved) * per_gap
     return share.ravel() - limit, np.stack([each.ravel() for each in by], axis=-1)

@@ -9,8 +9,14 @@ import numpy as np
 
 from fe_contact.errors import increasing
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.confirmation import ConfirmedDesign, rising
-from fe_contact.microgeometry.design_study import DesignLoads, DesignSpace, DesignStudy, Misalignments
+from fe_contact.microgeometry.confirmation import (
+    ConfirmedDesign,
+    DesignLoads,
+    DesignSpace,
+    DesignStudy,
+    Misalignments,
+    rising,
+)
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits, Objective, WeightedMean
 from fe_contact.microgeometry.scatter import NO_SCATTER, Scatter, ScatterNodes
 from fe_contact.microgeometry.search import Search, SearchRun

@@ -10,9 +10,8 @@ from scipy.stats import qmc
 
 from bounds import engineering
 from fe_contact.microgeometry.choice import SLACK, Choice, choose, perturbation, posed
-from fe_contact.microgeometry.confirmation import rising
+from fe_contact.microgeometry.confirmation import DesignStudy, design_study, rising
 from fe_contact.microgeometry.design_problem import DesignProblem
-from fe_contact.microgeometry.design_study import DesignStudy, design_study
 from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest, Outcome, Perturbation
 from fe_contact.microgeometry.scatter import MISALIGNMENT
 from fe_contact.microgeometry.search import Cancel, Ended, Search, SearchRun, never, search_from

@@ -9,8 +9,7 @@ import numpy as np
 
 from fe_contact.errors import SolveError, integer, within
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.confirmation import full_table, ripple_errors
-from fe_contact.microgeometry.design_study import DesignSpace, design_study
+from fe_contact.microgeometry.confirmation import DesignSpace, design_study, full_table, ripple_errors
 from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
 from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS

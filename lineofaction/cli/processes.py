@@ -32,7 +32,7 @@ from host import child_environment
 from host.directories import keep_private
 from lineofaction.cli.guard import leave
 from lineofaction.gearbox.problems import Unexpected
-from service.management.registry import process_registry
+from service.management.figures import process_registry
 from service.management.server import ManagementServer
 from service.management.vitals import Vitals
 from service.queue.machinery import Machinery, job_machinery

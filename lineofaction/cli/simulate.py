@@ -22,7 +22,7 @@ from lineofaction.cli.output import (
 )
 from lineofaction.cli.remote import watching
 from lineofaction.client import LineOfActionClient
-from lineofaction.client.scene_calls import ServiceTables
+from lineofaction.client.client import ServiceTables
 from lineofaction.gearbox.convert.run_effects import model_lines
 from lineofaction.gearbox.convert.runs import run_json, staged
 from lineofaction.gearbox.convert.scene import TabledScene

@@ -10,30 +10,98 @@ from copy import copy
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import httpx2
 
 from host.directories import cache_home
-from lineofaction.client.awaiting import AwaitingDriver
+from lineofaction.client.answers import libraries
 from lineofaction.client.batch import AsyncBatch, Batch
-from lineofaction.client.blocking import BlockingDriver
 from lineofaction.client.cache import ResultCache
 from lineofaction.client.exchange import Exchange
 from lineofaction.client.job import AsyncJob, Job
 from lineofaction.client.job_calls import JobCalls
-from lineofaction.client.offers import reader_of
+from lineofaction.client.offers import ANALYZE, reader_of
+from lineofaction.client.process import obtained
 from lineofaction.client.processes import Processes
 from lineofaction.client.result_calls import ResultCalls
-from lineofaction.client.scene_calls import SceneCalls
 from lineofaction.client.status import Watch
 from lineofaction.client.steps import Steps
-from lineofaction.client.surface import Awaiting, Blocking, Session, Surface, operation
+from lineofaction.client.surface import (
+    Awaiting,
+    AwaitingDriver,
+    Blocking,
+    BlockingDriver,
+    Session,
+    Surface,
+    operation,
+)
 from lineofaction.gearbox import schemas
+from lineofaction.gearbox.mesh_tables import MeshTables
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.subjects import CaseLike, SceneLike, case_inputs, scene_inputs
+from lineofaction.gearbox.subjects import CaseLike, SceneLike, case_inputs, scene_inputs, scene_of
 from service.schemas.answers import EffectBody, ExampleBody, UnitBody
 from service.version import solver_version
+
+if TYPE_CHECKING:
+    from dynamics.scene import Scene
+    from fe_contact.ste import SteDatabase
+    from lineofaction.gearbox.schemas import Case
+
+# Scenes of dynamics on the tables of a service.
+
+
+class ServiceTables:
+    """A service as the source of a scene's STE databases."""
+
+    def __init__(self, client: Surface) -> None:
+        self._client = client
+
+    def by_hash(self, key: str) -> Steps[SteDatabase]:
+        """Return the database of a content hash."""
+        return ResultCalls.fetch(self._client, key)
+
+    def by_case(self, case: Case) -> Steps[SteDatabase]:
+        """Return the database of a case."""
+        return obtained(self._client, ANALYZE, case_inputs(case))
+
+
+class SceneCalls(Surface):
+    """Scenes on the tables of a service."""
+
+    @operation
+    def analysis_key(self, case: CaseLike) -> Steps[str]:
+        """Return the content hash of a case's database, after it has been computed."""
+        result = yield from JobCalls.obtain(self, ANALYZE.name, case_inputs(case))
+        return result.key
+
+    @operation
+    def scene(self, scene: SceneLike) -> Steps[Scene]:
+        """Return a scene in SI on tables of the service, for a local run by `dynamics.simulation.simulate`.
+
+        Its meshes take their tables by ``case``, ``case_file``, ``database_hash`` or ``database_file``,
+        unless they state their ``stiffness``; those
+        of cases are as from `analyze`, those of files are read here. Housings by their solids are reduced
+        here.
+
+        Raises
+        ------
+        BadInput
+            Named by the fields of the scene.
+        JobFailed, NotFound, Unreachable, ServiceError
+        """
+        inputs, folder = scene_of(scene)
+        source, tables = MeshTables(folder, ServiceTables(self)), {}
+        for index, mesh in inputs.with_database:
+            tables[mesh.name] = yield from source.of(index, mesh)
+        with libraries():
+            # keeps the import of the client light
+            from lineofaction.gearbox.convert.housings import reduced_in  # noqa: PLC0415
+            from lineofaction.gearbox.convert.scene import dynamic_scene  # noqa: PLC0415
+
+            housings = reduced_in(inputs, cache_home())
+        return dynamic_scene(inputs, tables, housings)
+
 
 # What a service says before anything is computed: plans, drawings, examples, effects, files.
 

@@ -36,7 +36,7 @@ from lineofaction.gearbox.studies.root_stress import RootStressFigures as Gearbo
 from lineofaction.gearbox.studies.root_stress.run import Roots as GearboxRoots
 from lineofaction.gearbox.studies.scatter import ScatterFigures as GearboxScatterFigures
 from lineofaction.gearbox.studies.sensitivity import SensitivityFigures as GearboxSensitivityFigures
-from lineofaction.gearbox.studies.sensitivity.stored import PairStudy as GearboxPairStudy
+from lineofaction.gearbox.studies.sensitivity.run import PairStudy as GearboxPairStudy
 from lineofaction.gearbox.studies.steady import SteadyFigures as GearboxSteadyFigures
 from lineofaction.gearbox.studies.study import StudyFigures as GearboxStudyFigures
 from lineofaction.gearbox.studies.sweep import SweepFigures as GearboxSweepFigures

@@ -26,9 +26,8 @@ from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.rexs import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
-from lineofaction.gearbox.schemas.housing_file import READERS
 from lineofaction.gearbox.schemas.named_files import beside
-from lineofaction.gearbox.schemas.reading import written_out
+from lineofaction.gearbox.schemas.reading import READERS, written_out
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.warning import left_out_warnings
 from lineofaction.gearbox.studies.computation import Means

@@ -13,8 +13,7 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 from lineofaction.gearbox.problems import BadInput, Fault, KeyExpired, Unauthorised
 from service.access.holder import Holder, Scope
 from service.access.issuer import Issuer
-from service.access.key_file import PREFIX, KeyFile
-from service.access.keyring import Keyring
+from service.access.keyring import PREFIX, KeyFile, Keyring
 from service.project import COMMON, PROJECT
 from service.settings import Settings
 

@@ -9,18 +9,76 @@ from datetime import datetime
 from pathlib import Path
 
 import structlog
+from prometheus_client import Counter, Histogram, Metric
+from prometheus_client.registry import Collector
 
 from lineofaction.gearbox.stages import PacedFraction
 from model_studies.progress import stage_name
 from service.queue.claims import Claim
-from service.queue.worker_figures import WorkerFigures
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.tracing.tracer import Fact, Span, trace_facts, tracer
 from service.worker.child_process import Launch
 from service.worker.order import USABLE, WorkOrder
 from service.worker.process import Process
-from service.worker.usage import Usage, machine_memory_mb
+from service.worker.usage import BYTES_PER_MB, Usage, machine_memory_mb
 from service.worker.worker import Step, Worker
+
+# What the workers of one scheduler did: counted by the process they worked for.
+
+
+_MEMORY_MB = (128, 256, 512, 1024, 2048, 4096, 8192, 16384)
+"""Upper bounds of the classes of peak memory."""
+_ALARMING = ("died", "defect")
+"""Outcomes that an operator is to look into."""
+
+
+class WorkerFigures(Collector):
+    """Counts of starts, ends and resources; what follows from them is for who reads them."""
+
+    def __init__(self) -> None:
+        self._starts = Counter("loa_worker_starts", "Workers started", ["process"], registry=None)
+        self._ends = Counter("loa_worker_ends", "Workers ended", ["process", "outcome"], registry=None)
+        text = "Warnings of ended workers, as that the Dask cluster is away"
+        self._warnings = Counter("loa_worker_warnings", text, ["process"], registry=None)
+        self._cpu = Counter("loa_worker_cpu_seconds", "CPU time of ended workers", ["process"], registry=None)
+        self._memory = Histogram(
+            "loa_worker_peak_memory_bytes",
+            "Most resident memory of ended workers",
+            ["process"],
+            buckets=[bound * BYTES_PER_MB for bound in _MEMORY_MB],
+            registry=None,
+        )
+        self._reads = Counter(
+            "loa_compliance_cache_reads",
+            "Bodies that workers looked for in the compliance cache",
+            ["outcome"],
+            registry=None,
+        )
+        for outcome in ("hit", "miss"):
+            self._reads.labels(outcome)
+
+    def started(self, process: str) -> None:
+        """Count a worker that was started; what alerts are about counts from 0, not from its first time."""
+        self._starts.labels(process).inc()
+        self._warnings.labels(process)
+        for outcome in _ALARMING:
+            self._ends.labels(process, outcome)
+
+    def ended(self, process: str, outcome: str, worker: Worker) -> None:
+        """Count a worker that ended, and what it took if it was reaped."""
+        self._ends.labels(process, outcome).inc()
+        self._warnings.labels(process).inc(worker.warnings)
+        self._reads.labels("hit").inc(worker.compliance_reads.hits)
+        self._reads.labels("miss").inc(worker.compliance_reads.misses)
+        if worker.usage is not None:
+            self._cpu.labels(process).inc(worker.usage.cpu_s)
+            self._memory.labels(process).observe(worker.usage.peak_mb * BYTES_PER_MB)
+
+    def collect(self) -> Iterable[Metric]:
+        """Return the figures."""
+        for figure in (self._starts, self._ends, self._warnings, self._cpu, self._memory, self._reads):
+            yield from figure.collect()
+
 
 # The spans of one attempt: its wait in the queue, the attempt, and the stages of its worker.
 

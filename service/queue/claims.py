@@ -17,9 +17,8 @@ from packaging.version import InvalidVersion, Version
 from sqlalchemy import ColumnElement, Connection, Engine, Row, delete, select, update
 
 from service.project import COMMON, address_of, at_address
-from service.queue.batches import batch_steps
 from service.queue.tables import computations, jobs
-from service.queue.workload import end_computations
+from service.queue.workload import batch_steps, end_computations
 from service.store import dialect_of, now, reading, retried, writing
 from service.version import solver_version
 

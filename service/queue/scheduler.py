@@ -15,13 +15,12 @@ import structlog
 from host import never_wait_at
 from lineofaction.gearbox.problems import DatabaseUnavailable, ServiceError, StoreUnavailable
 from service.queue.adoption import Adoption
-from service.queue.attempt import Attempt, begun
+from service.queue.attempt import Attempt, WorkerFigures, begun
 from service.queue.claims import Claim, Claims
 from service.queue.cost_limit import reached
 from service.queue.leases import RENEWALS, Leases
 from service.queue.retention import Housekeeper
 from service.queue.settlement import Ended, Settlement
-from service.queue.worker_figures import WorkerFigures
 from service.settings import Settings
 from service.store import ResultStore
 from service.worker.forks import Forks

@@ -10,9 +10,8 @@ from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.file_content import LARGEST, FileContentInput
-from lineofaction.gearbox.schemas.housing_file import SENT
 from lineofaction.gearbox.schemas.named_files import Find, own_name
-from lineofaction.gearbox.schemas.reading import read_text, validated, written_out
+from lineofaction.gearbox.schemas.reading import SENT, read_text, validated, written_out
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml_table import toml_table
 

@@ -10,11 +10,11 @@ import structlog
 from fastapi import APIRouter, Response
 
 from lineofaction.gearbox.problems import BadInput, Fault, QueueFull
-from lineofaction.gearbox.schemas.few_faults import MOST_FAULTS
+from lineofaction.gearbox.schemas.model import MOST_FAULTS
 from lineofaction.gearbox.schemas.reading import validated
 from service.access import Scope
-from service.queue.batch_entry import BatchCase
 from service.queue.cost_limit import cost_limit
+from service.queue.submissions import BatchCase
 from service.queue.terms import Label, Terms, check_priority
 from service.routes.context import Context, Ctx, From
 from service.routes.jobs import status_info

@@ -83,7 +83,7 @@ def _points_of_raw(body: bytes, columns: Sequence[str]) -> FloatArray:
     return points_of_columns(np.frombuffer(body, "<f8").reshape(len(columns), -1), columns)
 
 
-def as_json(answer: ForceAnswer) -> bytes:
+def _as_json(answer: ForceAnswer) -> bytes:
     """Write an answer in JSON: the shortest decimals that give the same float64."""
     return to_json(_plain(answer))
 
@@ -102,7 +102,7 @@ READ: dict[str, Callable[[bytes, Sequence[str]], FloatArray]] = {
     CBOR: _points_of_cbor,
     RAW: _points_of_raw,
 }
-WRITE: dict[str, Callable[[ForceAnswer], bytes]] = {JSON: as_json, CBOR: _as_cbor, RAW: _as_raw}
+WRITE: dict[str, Callable[[ForceAnswer], bytes]] = {JSON: _as_json, CBOR: _as_cbor, RAW: _as_raw}
 
 
 def _plain(answer: ForceAnswer) -> dict[str, Any]:

@@ -101,7 +101,7 @@ def _figures(context: Context, stored: StoredResult) -> dict[str, Any]:
 
         return metadata_json(context.databases.get(context.store, stored.key).database)
     with LOADING:
-        from lineofaction.gearbox.convert.result_figures import figures_of  # noqa: PLC0415 (start-up time)
+        from lineofaction.gearbox.convert.runs import figures_of  # noqa: PLC0415 (start-up time)
 
     return figures_of(stored.kind, stored.path)
 

@@ -13,7 +13,7 @@ HEAVY = (
     "service.worker.preparations",
     "lineofaction.gearbox.convert.answers",
     "lineofaction.gearbox.convert.outline",
-    "lineofaction.gearbox.convert.result_figures",
+    "lineofaction.gearbox.convert.runs",
     "service.worker.study_work",
     "fe_contact.ste.compiled_force",
 )

@@ -17,12 +17,11 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from lineofaction.gearbox.problems import BadInput, NoSpace
 from service.store.database import metadata, now, reading, writing
-from service.store.dialects import dialect_of
+from service.store.dialects import dialect_of, shortage
 from service.store.files import ResultName
 from service.store.outages import outage_of, retried
 from service.store.results import ResultStore
 from service.store.schema import shown
-from service.store.space import shortage
 
 NOTE = "deployment.json"
 """Name of the note beside the files."""

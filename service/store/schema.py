@@ -55,7 +55,7 @@ class SchemaNumbers:
         return self.ours or (self.unknown and self.usable_since in REVISIONS)
 
 
-def schema_numbers(connection: Connection) -> SchemaNumbers:
+def _schema_numbers(connection: Connection) -> SchemaNumbers:
     """Read the numbers of a database; one of version 0.2.0 or older has the second alone."""
     tables = inspect(connection).get_table_names()
     oldest = _number(connection, _OLDEST) if _OLDEST in tables else None
@@ -66,7 +66,7 @@ def schema_numbers(connection: Connection) -> SchemaNumbers:
     return SchemaNumbers(oldest, oldest)
 
 
-def write_oldest(connection: Connection) -> None:
+def _write_oldest(connection: Connection) -> None:
     """Write down the oldest schema whose program can use the tables of this one."""
     connection.execute(text(f"CREATE TABLE IF NOT EXISTS {_OLDEST} (version_num VARCHAR(32) NOT NULL)"))
     connection.execute(text(f"DELETE FROM {_OLDEST}"))
@@ -95,7 +95,7 @@ class Schema:
     def numbers(self) -> SchemaNumbers:
         """Return the numbers of the schema."""
         with self._engine.begin() as connection:
-            return schema_numbers(connection)
+            return _schema_numbers(connection)
 
     def revision(self) -> str | None:
         """Return the number of the schema; None: there are no tables."""
@@ -128,7 +128,7 @@ class Schema:
         """
         with self._engine.execution_options(immediate=True).begin() as connection:
             dialect_of(connection).take_turn(connection)
-            numbers = schema_numbers(connection)
+            numbers = _schema_numbers(connection)
             _refuse_newer(numbers, self._engine)
             if not numbers.usable:
                 _migrate(connection, numbers.newest)
@@ -176,7 +176,7 @@ def _migrate(connection: Connection, revision: str | None) -> None:
     if revision is not None:
         command.stamp(config, revision)
     command.upgrade(config, REVISIONS[-1])
-    write_oldest(connection)
+    _write_oldest(connection)
 
 
 def _config(connection: Connection) -> Config:

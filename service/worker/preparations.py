@@ -1,19 +1,71 @@
-"""Checks of a request beyond its schema, and the normalized inputs that are hashed and worked on.
-
-Loads both libraries; the catalogue refers to these functions by name, so that a service answers before.
-"""
+"""What is prepared before a job runs; a scene is feasible, and its tables can be had."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NoReturn
 
 from fe_contact.solver_version import SOLVER_VERSION
+from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.scene import check_scene
+from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.scene_meshes import MeshInput
 from service.schemas.execute import AnalyzeInputs, SimulateInputs
 from service.store import ResultStore
-from service.worker.scene_inputs import check_scene_inputs
+
+# Checks of a request beyond its schema, and the normalized inputs that are hashed and worked on.
+
+
+def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
+    """Check a scene and the sources of its tables.
+
+    Raises
+    ------
+    BadInput
+        It cannot be or cannot move, names a file of the caller, or a database that is not stored.
+    """
+    for index, housing in enumerate(scene.housings):
+        if housing.modes_file is not None:
+            _refuse_file(f"housings[{index}].modes_file", housing.modes_file, "Give its matrices")
+    check_scene(scene, {mesh.name: _facts(f"meshes[{i}]", mesh, store) for i, mesh in scene.with_database})
+
+
+def _facts(field: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
+    _check_source(field, mesh, store)
+    if mesh.case is not None:
+        try:
+            return facts_of(check_case(mesh.case))
+        except BadInput as error:
+            raise error.within(f"{field}.case") from None
+    return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path).facts
+
+
+def _check_source(field: str, mesh: MeshInput, store: ResultStore) -> None:
+    """Refuse files of the callers, which a service does not read, and hashes it does not hold."""
+    for name, path in (("case_file", mesh.case_file), ("database_file", mesh.database_file)):
+        if path is not None:
+            _refuse_file(f"{field}.{name}", path, "Write the case out, or submit it and give database_hash")
+    key = mesh.database_hash
+    if key is not None and store.find(key, "database") is None:
+        raise BadInput.of(
+            f"{field}.database_hash", key, "the hash of a stored database", "Submit its case first."
+        )
+
+
+def check_run(key: str | None, store: ResultStore) -> None:
+    """Refuse the hash of a run that is not stored; raises `BadInput`."""
+    if key is not None and store.find(key, "run") is None:
+        raise BadInput.of("run", key, "the hash of a stored run", "Submit its scene to simulate first.")
+
+
+def _refuse_file(field: str, path: str, instead: str) -> NoReturn:
+    bound = "left out: the service reads no files of its callers"
+    raise BadInput.of(field, path, bound, f"{instead}; the client does this for you.")
+
 
 Json = dict[str, Any]
 

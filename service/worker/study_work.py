@@ -17,7 +17,7 @@ from lineofaction.gearbox.studies.computation import Means
 from service.store import ResultStore
 from service.worker.cluster import cluster_of, table_workers
 from service.worker.order import Product, Progress, WorkOrder
-from service.worker.scene_inputs import check_run, check_scene_inputs
+from service.worker.preparations import check_run, check_scene_inputs
 from service.worker.simulation_work import housed_scene, ordered_scene, store_of
 
 Json = dict[str, Any]

@@ -19,7 +19,7 @@ from walked_routes import WalkedRoute, walked_routes
 
 from lineofaction.gearbox.problems import KeyExpired, MissingScope, NotFound, Unauthorised
 from service.access import KeyFile, Scope
-from service.access.key_file import written
+from service.access.keyring import written
 from service.app import create_app
 from service.routes.access import OPEN_FOLDER, OPEN_PATHS
 from service.routes.scopes import OPEN_TO_ALL, ScopedRoute
@@ -217,7 +217,7 @@ def test_a_scene_takes_no_table_of_another_project(two: Two) -> None:
     """Checked by the worker too: `tests/unit/service/test_projects.py`."""
     from lineofaction.gearbox.problems import BadInput  # noqa: PLC0415
     from lineofaction.gearbox.schemas.scene_meshes import MeshInput  # noqa: PLC0415
-    from service.worker.scene_inputs import _check_source  # noqa: PLC0415
+    from service.worker.preparations import _check_source  # noqa: PLC0415
 
     mesh = MeshInput.model_construct(database_hash=KEY, case=None, case_file=None, database_file=None)
     _check_source("mesh", mesh, APP.state.context.within("axle").store)

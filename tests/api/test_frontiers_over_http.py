@@ -11,12 +11,12 @@ from typing import Any
 import pytest
 from study_service import CASE, Served, figures_alone, prepared, scene_by_hash, study_service, without
 
-from dynamics.accuracy.fidelities import FIDELITIES as SCENE_FIDELITIES
+from dynamics.accuracy.frontier import FIDELITIES as SCENE_FIDELITIES
 from fe_contact.analysis.studies.accuracy_study import FIDELITIES
 from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase
 from lineofaction.client import JobState
-from lineofaction.gearbox.convert.result_figures import figures_of
+from lineofaction.gearbox.convert.runs import figures_of
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.scene import SceneInput

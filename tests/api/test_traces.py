@@ -21,7 +21,7 @@ from trace_receiver import TraceReceiver, trace_receiver
 from lineofaction.cli.processes import log_to_standard_error
 from lineofaction.client import LineOfActionClient
 from service.app import create_app
-from service.queue.worker_figures import WorkerFigures
+from service.queue.attempt import WorkerFigures
 from service.settings import Settings
 from service.tracing.tracer import tracer
 

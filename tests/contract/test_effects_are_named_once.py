@@ -25,7 +25,7 @@ REMAINS = {
     ("fe_contact/analysis/estimates/assessed_table.py", "finite_width"): "the same source",
     ("lineofaction/gearbox/convert/scene.py", "shaft_deflection"): "the ledger of a stored table",
     (
-        "lineofaction/gearbox/studies/sensitivity/stored.py",
+        "lineofaction/gearbox/studies/sensitivity/run.py",
         "corner_contact",
     ): "field of the result's file",
 }

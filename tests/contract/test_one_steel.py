@@ -6,7 +6,7 @@ from dynamics.shafts import BeamSection
 from fe_contact import STEEL
 from fe_contact.body import Shaft
 from lineofaction.gearbox.schemas.gear_body import MaterialInput
-from lineofaction.gearbox.schemas.scene_shafts import SectionInput
+from lineofaction.gearbox.schemas.scene import SectionInput
 
 
 def in_si(young, poisson, density):

@@ -15,18 +15,18 @@ structure = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(structure)
 
 BUDGETS = {
-    ("fe_contact",): (40_200, 930),
-    ("dynamics",): (42_600, 1020),
-    ("lineofaction.gearbox",): (24_700, 710),
-    ("lineofaction.report",): (12_000, 295),
-    ("service",): (16_500, 420),
-    ("lineofaction.client",): (2_900, 65),
-    ("lineofaction.cli",): (5_100, 110),
-    ("lineofaction.hardcases",): (4_200, 55),
+    ("fe_contact",): (40_150, 915),
+    ("dynamics",): (42_350, 1005),
+    ("lineofaction.gearbox",): (24_550, 700),
+    ("lineofaction.report",): (11_950, 285),
+    ("service",): (16_400, 415),
+    ("lineofaction.client",): (2_850, 65),
+    ("lineofaction.cli",): (5_050, 110),
+    ("lineofaction.hardcases",): (4_150, 55),
     ("bounds", "host", "model_studies"): (3_500, 135),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 1029
+MOST_FILES = 962
 LONGEST = 500
 LONGER = {
     "lineofaction/report/tables/over_torque.py": 529,

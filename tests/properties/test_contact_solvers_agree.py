@@ -15,9 +15,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fe_contact.contact.interior_point import GapAbout, Problem, solve
-from fe_contact.contact.local_law import LocalLaw, free_strips
 from fe_contact.contact.newton import CONVERGED, solve_point
-from fe_contact.contact.point_problem import PointProblem
+from fe_contact.contact.point_problem import LocalLaw, PointProblem, free_strips
 from fe_contact.contact.strip import Gap
 
 MODULUS = 115e9

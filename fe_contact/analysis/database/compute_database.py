@@ -44,7 +44,7 @@ FEW_ITERATIONS = 40
 Solved = Sequence[tuple[ContactProblem, ContactSolution]]
 
 
-def contact_receipt(
+def _contact_receipt(
     solved: Solved, support: Solved, *, condition: bool = True, known: FloatArray | None = None
 ) -> Json:
     """Return figures over all places of a table, at its own loads and at the support loads.
@@ -108,7 +108,7 @@ def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
     return np.asarray(table.curve_error[:, [MEAN, PEAK_TO_PEAK]] / allowed.of(values))
 
 
-def tolerance_receipt(table: SteDatabase, allowed: AllowedError) -> Json:
+def _tolerance_receipt(table: SteDatabase, allowed: AllowedError) -> Json:
     """Hold the errors of mean and peak-to-peak at all nodes of a table against the tolerance.
 
     Returns
@@ -213,7 +213,7 @@ def compute_pass(
     )
     tolerance = made.checked.request.options.tolerance
     if tolerance is not None:
-        kept = tolerance_receipt(table, tolerance)
+        kept = _tolerance_receipt(table, tolerance)
         metadata.receipt["tolerance"] = kept
         metadata.receipt["choice"]["met"] = kept["met"]
     return Computed(table, made.decided)
@@ -236,7 +236,7 @@ def _assessed(made: SolvedTable, clock: StageClock, run: Run) -> tuple[AssessedT
     """Return the table's errors, and what its receipt says of the contact."""
     full = _full(made)
     with clock.stage("contact"):
-        contact = contact_receipt(made.solved, made.support, condition=full, known=made.condition)
+        contact = _contact_receipt(made.solved, made.support, condition=full, known=made.condition)
     if not full:
         return unassessed_table(made.table, made.places, made.plan), contact
     stage = "error estimate"

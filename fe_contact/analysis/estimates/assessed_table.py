@@ -155,7 +155,7 @@ def with_axes(at_nodes: FloatArray, axes: Mapping[str, AxisError]) -> FloatArray
     return np.concatenate([at_nodes, np.stack(between)])
 
 
-def unestimated(points: OperatingPoints, plan: Plan) -> FloatArray:
+def _unestimated(points: OperatingPoints, plan: Plan) -> FloatArray:
     """Return the errors of a run in which none was estimated, (9, 22, F, M, D): NaN."""
     return np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
 
@@ -240,4 +240,4 @@ def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) ->
     """Return the errors of a table of which none was estimated, but for what is known in closed form."""
     left = {"plane_for_finite_width_relative": left_out(points.places[0].contact.pair, plan.discretization)}
     unknown = np.full(table.error_estimate.shape, np.nan)
-    return AssessedTable(unknown, unestimated(points, plan), left, {})
+    return AssessedTable(unknown, _unestimated(points, plan), left, {})

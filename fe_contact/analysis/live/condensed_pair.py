@@ -50,7 +50,7 @@ OVER_MEDIAN = 2.0
 BY_MESH = AT_NODES.index("discretisation")
 
 
-def condensed_errors(
+def _condensed_errors(
     table: SteDatabase,
     points: OperatingPoints,
     solution: ContactSolution,
@@ -293,7 +293,7 @@ class CondensedPair:
             pairs = [(solved.problem, solved.solution)]
             table = assembled_table(checked.request, points, nodes, pairs, [])
         with clock.stage("error estimate"):
-            assessed = condensed_errors(table, points, solved.solution, contacts, sample, plan)
+            assessed = _condensed_errors(table, points, solved.solution, contacts, sample, plan)
         assumptions = _check_condensed(CondensedRun(checked, plan, points, pairs), self.neglected)
         receipt = _condensed_receipt(plan, solved.solution, assessed, assumptions, clock)
         receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"

@@ -49,7 +49,7 @@ BENDING_HARMONICS = 12
 
 
 @lru_cache(maxsize=64)
-def plate_bending(gear: Toothing) -> FloatArray:
+def _plate_bending(gear: Toothing) -> FloatArray:
     """Axial displacement (z,) of the load's place per axial force, m/N, 0, 1, ... teeth apart."""
     material, radius = gear.material, gear.root_radius
     rigidity = material.youngs_modulus * gear.face_width**3 / (12.0 * (1.0 - material.poissons_ratio**2))
@@ -60,7 +60,7 @@ def plate_bending(gear: Toothing) -> FloatArray:
 
 
 @lru_cache(maxsize=64)
-def antiplane_shear(gear: Toothing) -> FloatArray:
+def _antiplane_shear(gear: Toothing) -> FloatArray:
     """Axial displacement (z,) per line load, m/(N/m), of the body's edge 0, 1, ... teeth apart.
 
     A load is spread over half a pitch, the thickness of its tooth.
@@ -297,13 +297,13 @@ def _body(gear: Toothing, slices: LoadedSlices, model: ContactModel) -> FloatArr
     transverse, axial = math.cos(gear.base_helix_angle) ** 2, math.sin(gear.base_helix_angle) ** 2
     elastic = transverse * (rigid + sunk) + axial * _axial_shear(gear, apart)
     elastic = elastic * _along_face(face, BODY_DECAY * depth, slices.slice_width)
-    return np.asarray(elastic + transverse * whole + axial * plate_bending(gear)[apart % gear.teeth])
+    return np.asarray(elastic + transverse * whole + axial * _plate_bending(gear)[apart % gear.teeth])
 
 
 def _axial_shear(gear: Toothing, apart: FloatArray) -> FloatArray:
     """Axial displacement (n, n) of the body; what is near the tooth is in the half plane it is clamped in."""
     near = math.log(SUNK_DEPTH * gear.normal_module / (0.5 * math.pi * gear.transverse_module))
-    here = antiplane_shear(gear)[apart % gear.teeth] - (apart == 0) * near / (
+    here = _antiplane_shear(gear)[apart % gear.teeth] - (apart == 0) * near / (
         math.pi * shear_modulus(gear.material)
     )
     return np.asarray(np.maximum(here, 0.0))

@@ -16,8 +16,8 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve, cholesky, solve_tri
 from scipy.linalg.blas import dsyrk
 
 from fe_contact.errors import SolveError
+from fe_contact.full_contact.condensation.contact_model import dissected, mesh_graph
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody
-from fe_contact.full_contact.condensation.stiffness import dissected, mesh_graph
 from fe_contact.full_contact.over_face.extruded_stiffness import (
     ExtrudedStiffness,
     Layers,

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from fe_contact.full_contact.condensation.stiffness import POINTS, WEIGHTS
+from fe_contact.full_contact.condensation.contact_model import POINTS, WEIGHTS
 from fe_contact.material import Material
 from fe_contact.mesh.quality import shape_derivatives
 from fe_contact.types import FloatArray, IntArray

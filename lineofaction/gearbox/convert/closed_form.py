@@ -9,7 +9,7 @@ from dynamics.meshes import MeshTable, PeriodicCurve, stiffness_table
 from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas.scene_stiffness import PeriodicInput, StiffnessMeshInput
+from lineofaction.gearbox.schemas.scene_meshes import PeriodicInput, StiffnessMeshInput
 from lineofaction.gearbox.units import DEGREE, MM, UM
 
 if TYPE_CHECKING:

@@ -7,8 +7,7 @@ from typing import Any
 
 from bounds import engineering
 from fe_contact.effects.influence.estimate import TRIFLE
-from lineofaction.gearbox.convert.effect_lines import run_lines
-from lineofaction.gearbox.convert.effect_sizes import trifles_title
+from lineofaction.gearbox.convert.effect_lines import run_lines, trifles_title
 
 Json = Mapping[str, Any]
 LEAST = 1e-9  # m, of the static displacement of an effect whose influence is not estimated

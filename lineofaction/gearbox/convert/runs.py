@@ -9,7 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from lineofaction.gearbox.convert.stamp import WARNINGS, stamped
+from lineofaction.gearbox.registry import study_of
 from model_studies.netcdf import opened_netcdf
+
+# The figures of a stored file, as JSON, by the kind of the result.
 
 
 def staged(report: Callable[[str, float], None]) -> Callable[[float, str], None]:
@@ -44,3 +48,10 @@ def _plain(value: object) -> object:
         except json.JSONDecodeError:
             return value
     return value
+
+
+def figures_of(kind: str, file: Path) -> dict[str, Any]:
+    """Return what a stored file of a run or a study says, its warnings included."""
+    study = study_of(kind)
+    figures = run_json(file) if study is None else study.run.facts(study.run.file.read(file))
+    return figures | {WARNINGS: stamped(file)}

@@ -42,8 +42,7 @@ from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.scene_bearings import RollingBearingInput
 from lineofaction.gearbox.schemas.scene_bodies import BushingInput
-from lineofaction.gearbox.schemas.scene_housings import HousingInput
-from lineofaction.gearbox.schemas.scene_solids import HousingFootInput, HousingSeatInput
+from lineofaction.gearbox.schemas.scene_housings import HousingFootInput, HousingInput, HousingSeatInput
 from lineofaction.gearbox.units import MM
 from model_studies.progress import Progress, by_cost, silent
 

@@ -49,7 +49,7 @@ def root_diameter(gear: ToothingData, depth: ToothDepth, shift: float) -> float:
     return gear.reference_diameter - 2.0 * gear.sign * gear.normal_module * height
 
 
-def held_diameter(unit: GearUnit, gear: ToothingData, root: float) -> float:
+def _held_diameter(unit: GearUnit, gear: ToothingData, root: float) -> float:
     """Return the bore of an external gear, the outside of a ring gear's rim, m.
 
     Parameters
@@ -120,7 +120,7 @@ def bodies(unit: GearUnit, gear: Part) -> tuple[Part, ...]:
     return unit.children(gear, "gear_body")
 
 
-def blank_of(unit: GearUnit, gear: Part) -> Blank | None:
+def _blank_of(unit: GearUnit, gear: Part) -> Blank | None:
     """Return rim and web of a gear's body, None for a solid one."""
     for body in bodies(unit, gear):
         rim = body.number("gear_body_rim_thickness", "blank.rim_thickness_mm")
@@ -400,7 +400,7 @@ def _gear(unit: GearUnit, gear: ToothingData, depth: ToothDepth, shift: float) -
         "dedendum_coefficient": rounded(depth.dedendum_coefficient),
         "root_radius_coefficient": rounded(depth.root_radius_coefficient),
         "thickness_allowance_um": rounded(thickness_allowance(gear) / UM),
-        held: rounded(held_diameter(unit, gear, root_diameter(gear, depth, shift)) / MM),
+        held: rounded(_held_diameter(unit, gear, root_diameter(gear, depth, shift)) / MM),
         **_cutter(depth),
         **_blank(unit, gear),
     }
@@ -441,7 +441,7 @@ def _cutter(depth: ToothDepth) -> Table:
 
 def _blank(unit: GearUnit, gear: ToothingData) -> Table:
     """Return rim and web of an external gear."""
-    blank = None if gear.sign < 0 else blank_of(unit, gear.part)
+    blank = None if gear.sign < 0 else _blank_of(unit, gear.part)
     if blank is None:
         return {}
     sizes = {"rim_thickness_mm": blank.rim_thickness, "web_thickness_mm": blank.web_thickness}

@@ -72,7 +72,7 @@ class Rotors:
         return tuple(part for part, own in self.of.items() if own == rotor)
 
 
-def rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
+def _rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
     """Return the rotors: the parts of a carrier are one, with what is rigidly coupled to them."""
     of = {part.id: part.id for part in unit.of_type("shaft", "side_plate")}
     joined = [entry for entry in couplings(unit) if entry.on_ground is None and _turn(entry, of)]
@@ -318,7 +318,7 @@ def layout_of(unit: GearUnit) -> Layout:
             part.say("", "refused", "not parallel to the shafts of the first stage: left out of the scene")
             continue
         shafts[part.id] = placed_shaft(unit, part, place, axes)
-    rotors = rotors_of(unit, planetary_sets(unit))
+    rotors = _rotors_of(unit, planetary_sets(unit))
     turning = tuple(s for s in stages if len({rotors.of[shaft.id] for shaft in s.shafts}) == 2)
     return Layout(unit, axes, shafts, rotors, turning)
 

@@ -149,7 +149,7 @@ def _end(
     return depth * relative_depth(shape, (face - start) / (stated - start))
 
 
-def at_both_ends(place: FlankPlace, modifications: Sequence[Modification]) -> list[Modification]:
+def _at_both_ends(place: FlankPlace, modifications: Sequence[Modification]) -> list[Modification]:
     """Return the modifications with end reliefs that are alike at both faces as one."""
     ends = [entry for entry in modifications if entry.part.type.startswith("end_relief_")]
     plain = [{_both(name): value for name, value in entry.fields.items()} for entry in ends]
@@ -400,7 +400,7 @@ def micro_geometry(unit: GearUnit, gear: Toothing, loaded: LoadedFlank) -> Table
     if loaded.flank is None:
         return {}
     place = FlankPlace(gear, loaded)
-    entries = at_both_ends(place, list(_modifications(unit, place, loaded.flank)))
+    entries = _at_both_ends(place, list(_modifications(unit, place, loaded.flank)))
     fields: Table = _tip_edge(place, loaded.flank)
     rest: list[Modification] = []
     for entry in entries:

@@ -40,7 +40,7 @@ _OF_TYPE = {
 }
 
 
-def say_left_out(unit: GearUnit) -> None:
+def _say_left_out(unit: GearUnit) -> None:
     """State of every part of which nothing is said that the scene has not got it."""
     descriptive = words("descriptive_components")
     for component in unit.model.components:
@@ -164,7 +164,7 @@ def opened(document: Document, assumptions: Iterable[Assumption] = ()) -> Opened
     table = scene_table(layout, flows, cases) if flows and cases else None
     _say_missing(layout, flows, cases)
     if table is not None:
-        say_left_out(unit)
+        _say_left_out(unit)
     scene = None if table is None else _scene(layout, table)
     loads = _load_cases(flows, table)
     parts = SceneParts() if table is None or scene is None else table.parts

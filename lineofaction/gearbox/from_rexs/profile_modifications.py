@@ -164,7 +164,7 @@ def relative_depth(shape: str, fraction: FloatArray) -> FloatArray:
     return np.asarray(LAWS[shape](np.maximum(fraction, 0.0)))
 
 
-def blended_depth(fraction: FloatArray, start: float, end: float) -> FloatArray:
+def _blended_depth(fraction: FloatArray, start: float, end: float) -> FloatArray:
     """Return the depth of a linear relief whose slope grows evenly between two fractions.
 
     1 at the fraction 1; tangential to the involute at `start`, straight from `end` on.
@@ -225,7 +225,7 @@ def _blended(
     roll: FloatArray,
     _face: FloatArray,
 ) -> FloatArray:
-    return depth * blended_depth((roll - start) / (stated - start), *transition)
+    return depth * _blended_depth((roll - start) / (stated - start), *transition)
 
 
 def _start(place: FlankPlace, part: Part, name: str, end: float) -> float:

@@ -116,7 +116,7 @@ class SceneParts:
     meshes: Mapping[str, MeshPart] = field(default_factory=dict)
 
 
-def scene_parts(
+def _scene_parts(
     layout: Layout,
     flow: PowerFlow,
     shafts: SceneShafts,
@@ -376,7 +376,7 @@ def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[Stag
         {key: value for key, value in table.items() if value != []},
         drivers[0] if drivers else None,
         forces,
-        scene_parts(layout, flow, shafts, bearings.seats, named),
+        _scene_parts(layout, flow, shafts, bearings.seats, named),
     )
 
 

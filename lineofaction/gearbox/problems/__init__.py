@@ -59,10 +59,10 @@ from lineofaction.gearbox.problems.error import (
     EXIT_UNREACHABLE,
     EXIT_WARNINGS,
     BadInput,
+    Fault,
     ServiceError,
     Unexpected,
 )
-from lineofaction.gearbox.problems.fault import Fault
 from lineofaction.gearbox.problems.no_result import (
     HeadTooLarge,
     JobDismissed,

@@ -10,9 +10,9 @@ from lineofaction.gearbox.problems.error import (
     EXIT_FAILED,
     EXIT_UNREACHABLE,
     OGC,
+    Fault,
     ServiceError,
 )
-from lineofaction.gearbox.problems.fault import Fault
 
 # Requests that are refused as they are.
 

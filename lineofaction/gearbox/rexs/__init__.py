@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from lineofaction.gearbox.rexs.external import external_file, external_files
+from lineofaction.gearbox.rexs.archive import external_file, external_files
 from lineofaction.gearbox.rexs.files import parsed, read_rexs, serialized
 from lineofaction.gearbox.rexs.model import (
     Attribute,
@@ -15,8 +15,7 @@ from lineofaction.gearbox.rexs.model import (
     Relation,
 )
 from lineofaction.gearbox.rexs.quantities import listed_unit, quantities, quantity
-from lineofaction.gearbox.rexs.units import si_value
-from lineofaction.gearbox.rexs.upgrade import NEWEST, VERSIONS, Change, upgrade
+from lineofaction.gearbox.rexs.upgrade import NEWEST, VERSIONS, Change, si_value, upgrade
 
 __all__ = [
     "NEWEST",

@@ -8,7 +8,7 @@ from importlib.resources import files
 
 from lineofaction.gearbox.rexs.model import Attribute, Component
 from lineofaction.gearbox.rexs.refusal import refused
-from lineofaction.gearbox.rexs.units import si_value
+from lineofaction.gearbox.rexs.upgrade import si_value
 
 
 def quantity(component: Component, name: str, place: str) -> float | None:

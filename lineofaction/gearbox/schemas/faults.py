@@ -13,7 +13,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from lineofaction.gearbox.problems import Fault
-from lineofaction.gearbox.schemas.few_faults import MOST_FAULTS
+from lineofaction.gearbox.schemas.model import MOST_FAULTS
 
 Loc = Sequence[int | str]
 
@@ -48,7 +48,7 @@ def faults_of(error: ValidationError, model: type[BaseModel]) -> tuple[Fault, ..
 def innermost(items: Sequence[Any]) -> list[Any]:
     """Return the errors without those of a list or table whose own parts are at fault already.
 
-    At most the first 50; see `lineofaction.gearbox.schemas.few_faults`.
+    At most the first 50; see `lineofaction.gearbox.schemas.model`.
     """
     locations = [tuple(item["loc"]) for item in items]
     around = {location[:depth] for location in locations for depth in range(len(location))}

@@ -1,13 +1,92 @@
-"""The base of all boundary models: strict, closed, finite, frozen."""
+"""Models of the boundary, whose validation stops when enough is wrong: a body may hold a million faults.
+
+A list of numbers or texts is left at its first fault. A list of tables, or a table of free names, that is
+longer than it may be is not looked into, and of the fields that a table should not have the first 50 are
+looked at. What is right is validated as before.
+"""
 
 from __future__ import annotations
 
-from typing import NoReturn
+from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import islice
+from typing import Any, NoReturn, cast
 
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
-from pydantic_core import CoreSchema, PydanticCustomError
+from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
-from lineofaction.gearbox.schemas.few_faults import with_few_faults
+# The base of all boundary models: strict, closed, finite, frozen.
+
+
+MOST_FAULTS = 50
+"""Faults that are reported of one body."""
+
+_MOST_ENTRIES = 1000
+"""Of tables in a list, and of names in a table, where no other number is declared."""
+_TABLES = ("model", "definition-ref")
+
+
+def _with_few_faults(schema: CoreSchema) -> CoreSchema:
+    """Return the schema of a model so that its validation stops when enough is wrong."""
+    for node in list(_nodes(cast(dict[str, Any], schema))):
+        listed = node["type"] in ("tuple", "list")
+        if listed and not any(entry["type"] in _TABLES for entry in _entries(node)):
+            node["fail_fast"] = True
+        elif listed or node["type"] == "dict":
+            _look_first(node, partial(_not_longer, most=node.get("max_length", _MOST_ENTRIES)))
+        elif node["type"] == "model-fields":
+            _look_first(node, partial(_few_unknown, names=frozenset(node["fields"])))
+    return schema
+
+
+def _nodes(node: dict[str, Any], *, of_field: bool = False) -> Iterator[dict[str, Any]]:
+    """Yield a schema and those inside it, but for models of its fields, which are bounded by themselves.
+
+    A schema comes back as it was left for every model that has it in a field: what is bounded is not again.
+    """
+    if (of_field and node["type"] in _TABLES) or _looked_first(node):
+        return
+    yield node
+    if "schema" in node:
+        yield from _nodes(node["schema"], of_field=of_field)
+    inside = [field["schema"] for field in node.get("fields", {}).values()]
+    for inner in (*inside, *_entries(node)):
+        yield from _nodes(inner, of_field=True)
+
+
+def _entries(node: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the schemas of the entries of a list: a tuple may have several, a list has one or none."""
+    entries = node.get("items_schema", [])
+    return entries if isinstance(entries, list) else [entries]
+
+
+def _look_first(node: dict[str, Any], look: Callable[[Any], Any]) -> None:
+    """Let a function see the data of a schema before it is validated."""
+    inner = dict(node)
+    node.clear()
+    node.update(core_schema.no_info_before_validator_function(look, inner))
+
+
+def _looked_first(node: dict[str, Any]) -> bool:
+    """Whether a schema is one of ours, which sees the data before another."""
+    look = node["function"]["function"] if node["type"] == "function-before" else None
+    return isinstance(look, partial) and look.func in (_not_longer, _few_unknown)
+
+
+def _not_longer(data: Any, most: int) -> Any:
+    """Refuse a list or table for its length alone."""
+    if isinstance(data, list | tuple | dict) and len(data) > most:
+        facts = {"field_type": "List", "max_length": most, "actual_length": len(data)}
+        raise PydanticKnownError("too_long", facts)
+    return data
+
+
+def _few_unknown(data: Any, names: frozenset[str]) -> Any:
+    """Return a table without most of the fields that it should not have."""
+    if not isinstance(data, dict) or len(data) <= len(names) + MOST_FAULTS:
+        return data
+    unknown = set(islice((name for name in data if name not in names), MOST_FAULTS))
+    return {name: value for name, value in data.items() if name in names or name in unknown}
 
 
 class BoundaryModel(BaseModel):
@@ -20,7 +99,7 @@ class BoundaryModel(BaseModel):
         cls, source: type[BaseModel], handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         """Stop looking when enough is wrong."""
-        return with_few_faults(handler(source))
+        return _with_few_faults(handler(source))
 
 
 def refuse(field: str, value: object, bound: str, suggestion: str = "") -> NoReturn:

@@ -18,7 +18,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs import Attribute, Document, upgrade
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
 from lineofaction.gearbox.studies.deflect.run import scene_of
-from lineofaction.gearbox.to_rexs.calculated import calculated, with_case_results
+from lineofaction.gearbox.to_rexs.exported import calculated, with_case_results
 from lineofaction.gearbox.units import MM, RPM, UM
 
 # Whether a deflection is that of a gear unit: the first difference of their scenes and load cases.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,11 +12,89 @@ from fe_contact.ste import Curve, SteDatabase
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
 from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Attribute, Document, upgrade
+from lineofaction.gearbox.rexs import Attribute, Component, Document, upgrade
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.reading import validated
-from lineofaction.gearbox.to_rexs.calculated import calculated, with_calculated
 from lineofaction.gearbox.units import UM
+
+# Calculated attributes in a REXS document.
+
+
+CALCULATED = "calculated"
+"""Origin of what this program writes (REXS, since 1.5)."""
+
+
+def calculated(name: str, value: float | Sequence[float], unit: str) -> Attribute:
+    """Return an attribute of a number or an array in `unit`, a unit of REXS."""
+    if isinstance(value, Sequence):
+        return Attribute(name, "floating_point_array", tuple(map(float, value)), unit, origin=CALCULATED)
+    return Attribute(name, "floating_point", float(value), unit, origin=CALCULATED)
+
+
+Results = Mapping[int, Iterable[Attribute]]
+"""Calculated attributes by id of the component."""
+
+
+def _with_calculated(document: Document, results: Results) -> Document:
+    """Return a document with results on its components; everything else stays as it is.
+
+    A result takes the place of an attribute of its name, another program's too.
+
+    Raises
+    ------
+    BadInput
+        The document has no component of an id.
+    """
+    model = document.model
+    _refuse_unknown(document, results)
+    components = tuple(_with(component, results.get(component.id, ())) for component in model.components)
+    return replace(document, model=replace(model, components=components))
+
+
+def with_case_results(document: Document, number: int, results: Results) -> Document:
+    """Return a document with results in a load case of its first spectrum; see `_with_calculated`.
+
+    Without a spectrum the results are the components' own.
+
+    Parameters
+    ----------
+    document : Document
+    number : int
+        Place of the load case in the spectrum, from 1.
+    results : mapping of int to iterable of Attribute
+        By id of the component.
+    """
+    model = document.model
+    if not model.spectra:
+        return _with_calculated(document, results)
+    _refuse_unknown(document, results)
+    first, cases = model.spectra[0], list(model.spectra[0].cases)
+    case = cases[number - 1]
+    present = {component.id for component in case.components}
+    further = (
+        Component(part.id, part.type) for part in model.components if part.id in results.keys() - present
+    )
+    components = tuple(_with(part, results.get(part.id, ())) for part in (*case.components, *further))
+    cases[number - 1] = replace(case, components=components)
+    spectra = (replace(first, cases=tuple(cases)), *model.spectra[1:])
+    return replace(document, model=replace(model, spectra=spectra))
+
+
+def _refuse_unknown(document: Document, results: Results) -> None:
+    """Refuse results of components that the document has not."""
+    known = {component.id for component in document.model.components}
+    for number in results:
+        if number not in known:
+            raise BadInput.of("results", number, "the id of a component of the document")
+
+
+def _with(component: Component, results: Iterable[Attribute]) -> Component:
+    """Return a component with results, after what else it has."""
+    new = tuple(results)
+    names = {attribute.id for attribute in new}
+    kept = tuple(attribute for attribute in component.attributes if attribute.id not in names)
+    return replace(component, attributes=(*kept, *new))
+
 
 # Results of a cylindrical stage: contact ratios, stiffness over the mesh, transmission error.
 
@@ -115,7 +193,7 @@ def exported(
         attributes = _stage_results(gear_pair(stage.case), database, torque)
         results |= dict.fromkeys((stage.stage, *stage.equal), attributes)
     newest = replace(document, model=upgrade(document.model)[0])
-    return with_calculated(newest, results)
+    return _with_calculated(newest, results)
 
 
 def _stage_of(cases: Sequence[StageCase], database: SteDatabase) -> StageCase:

@@ -24,24 +24,24 @@ CAUSE_WORDS = ("of shafts", "bearings", "clearance", "housing", "couplings", "se
 def meshes_worst_first(result: GearboxDeflection) -> list[str]:
     """Return the meshes by their largest misalignment under any load case, the worst first."""
     largest = {
-        name: max(abs(mesh_of(case, name).misalignment) for case in result.deflection.cases)
+        name: max(abs(_mesh_of(case, name).misalignment) for case in result.deflection.cases)
         for name in mesh_names(result)
     }
     return sorted(largest, key=lambda name: -largest[name])
 
 
-def worst_case(result: GearboxDeflection, mesh: str) -> CaseDeflection:
+def _worst_case(result: GearboxDeflection, mesh: str) -> CaseDeflection:
     """Return the load case of the largest misalignment of a mesh."""
-    return max(result.deflection.cases, key=lambda case: abs(mesh_of(case, mesh).misalignment))
+    return max(result.deflection.cases, key=lambda case: abs(_mesh_of(case, mesh).misalignment))
 
 
-def drawn_case(result: GearboxDeflection) -> CaseDeflection:
+def _drawn_case(result: GearboxDeflection) -> CaseDeflection:
     """Return the load case that misaligns a mesh most; without meshes, that moves the axes most."""
     names = meshes_worst_first(result)
-    return worst_case(result, names[0]) if names else max(result.deflection.cases, key=largest_motion)
+    return _worst_case(result, names[0]) if names else max(result.deflection.cases, key=largest_motion)
 
 
-def mesh_of(case: CaseDeflection, name: str) -> MeshAlignment:
+def _mesh_of(case: CaseDeflection, name: str) -> MeshAlignment:
     """Return a mesh under a load case."""
     return next(mesh for mesh in case.meshes if mesh.name == name)
 
@@ -96,7 +96,7 @@ def _component(value: float) -> str:
 
 
 def _row(name: str, case: CaseDeflection, flanks: MeshFlanks | None, acting: BoolArray) -> tuple[str, ...]:
-    mesh = mesh_of(case, name)
+    mesh = _mesh_of(case, name)
     own = (name, _titled(case), number(case.torque), number(mesh.misalignment / UM, 3))
     parts = tuple("0" if part == 0.0 else number(float(part) / UM, 3) for part in mesh.causes[acting])
     if flanks is None:
@@ -200,8 +200,8 @@ LOADED = 1e-3  # of the largest pressure: less is blank
 def _causes_figure(result: GearboxDeflection) -> Figure:
     """Draw the parts of the misalignments as stacked bars, a panel a mesh."""
     names, cases = meshes_worst_first(result), result.deflection.cases
-    worst = worst_case(result, names[0])
-    largest = number(mesh_of(worst, names[0]).misalignment / UM, 3)
+    worst = _worst_case(result, names[0])
+    largest = number(_mesh_of(worst, names[0]).misalignment / UM, 3)
     return Figure(
         key="misalignment_by_cause",
         title="Misalignment of each mesh by cause",
@@ -215,7 +215,7 @@ def _causes_figure(result: GearboxDeflection) -> Figure:
 def _causes_panel(name: str, cases: tuple[CaseDeflection, ...]) -> Panel:
     """Stack the parts of one mesh over the load cases."""
     x = np.arange(len(cases), dtype=float)
-    parts = np.array([mesh_of(case, name).causes for case in cases]) / UM
+    parts = np.array([_mesh_of(case, name).causes for case in cases]) / UM
     above, below, bars = np.zeros(len(cases)), np.zeros(len(cases)), []
     for cause, color, part in zip(CAUSES, COLORS, parts.T, strict=True):
         if not np.any(part):
@@ -268,7 +268,7 @@ def _pattern_figure(result: GearboxDeflection) -> Figure | None:
     """Draw the contact pattern of every mesh under its worst load case; None without flanks."""
     panels, texts = [], []
     for name in meshes_worst_first(result):
-        case = worst_case(result, name)
+        case = _worst_case(result, name)
         own = next((p for p in result.flanks if (p.mesh, p.case) == (name, case.name)), None)
         if own is None or not np.isfinite(own.face_load_factor):
             continue
@@ -302,12 +302,12 @@ def _pattern_figure(result: GearboxDeflection) -> Figure | None:
 
 def headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
     """Return the worst mesh and the most uneven load; without meshes how far the axes move."""
-    case = drawn_case(result)
+    case = _drawn_case(result)
     if not case.meshes:
         size = f"{number(largest_motion(case) / UM, 3)} µm"
         return (Headline("largest displacement of an axis", size, case.name),)
     name = meshes_worst_first(result)[0]
-    mesh = mesh_of(case, name)
+    mesh = _mesh_of(case, name)
     most = f"; most by the {CAUSES[int(np.argmax(np.abs(mesh.causes)))]}" if np.any(mesh.causes) else ""
     size = f"{number(mesh.misalignment / UM, 3)} µm"
     lines = [Headline("largest misalignment", size, f"mesh {name}, {case.name}{most}")]
@@ -376,7 +376,7 @@ def text(result: GearboxDeflection) -> Iterator[Table | str]:
 
 def figure(result: GearboxDeflection) -> Figure:
     """Return the gearbox under the load case of the largest misalignment, else of the largest motion."""
-    return gearbox_drawing(result, drawn_case(result))
+    return gearbox_drawing(result, _drawn_case(result))
 
 
 PAGE = Presentation(figure, page, text)

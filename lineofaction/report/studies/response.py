@@ -20,12 +20,12 @@ LEAST_SHARE = 1e-3
 """%, of what is listed."""
 
 
-def loses_power(response: ForcedResponse) -> bool:
+def _loses_power(response: ForcedResponse) -> bool:
     """Whether any part loses power; files of older versions do not know."""
     return bool(np.any(_total(response) > 0.0))
 
 
-def power_table(response: ForcedResponse) -> Table:
+def _power_table(response: ForcedResponse) -> Table:
     """List where the power goes at the speed at which most is lost."""
     power, total = response.power, _total(response)
     at = int(np.argmax(total))
@@ -41,9 +41,9 @@ def power_table(response: ForcedResponse) -> Table:
     return Table(title, ("lost in", "most in", "W", "%"), tuple(rows))
 
 
-def power_figure(response: ForcedResponse) -> Figure:
+def _power_figure(response: ForcedResponse) -> Figure:
     """Draw what kinds of parts lose over speed."""
-    speed, table = response.speed / RPM, power_table(response)
+    speed, table = response.speed / RPM, _power_table(response)
     kinds = {row[0] for row in table.rows}
     ends = (float(speed[0]), float(speed[-1])) if speed.size > 1 else None
     lines = tuple(
@@ -216,7 +216,7 @@ def _largest(what: str, names: Sequence[str], size: FloatArray, response: Forced
 def _figures(response: ForcedResponse) -> tuple[Figure, ...]:
     """Return amplitudes, and the power lost if any is."""
     figure = _response_figure(response)
-    return (figure, power_figure(response)) if loses_power(response) else (figure,)
+    return (figure, _power_figure(response)) if _loses_power(response) else (figure,)
 
 
 def _text(response: ForcedResponse) -> Iterator[Table | str]:
@@ -231,8 +231,8 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         "first-order theory: the other excitation changes "
         f"amplitudes by up to {engineering(worst, 2)} % of the largest"
     )
-    if loses_power(response):
-        yield power_table(response)
+    if _loses_power(response):
+        yield _power_table(response)
     left = response.power.residual
     yield f"residual of the solves {leftover(response.residual)}, of the power balance {leftover(left)}"
     yield from cost_tables(response.facts)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from itertools import chain
 
 from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
-from lineofaction.gearbox.studies.sensitivity.stored import PairStudy
+from lineofaction.gearbox.studies.sensitivity.run import PairStudy
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Section

@@ -19,7 +19,7 @@ from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import surface_panels
 from lineofaction.report.drawing.tables import cost_tables
 from lineofaction.report.presentation import Presentation, dynamics_page
-from lineofaction.report.studies.bearing_force_words import force_words, row_axis
+from lineofaction.report.studies.noise_over_time import force_words, row_axis
 
 # Tables of a housing's vibration.
 

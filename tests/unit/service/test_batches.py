@@ -12,10 +12,10 @@ from service_fakes import REGISTRY
 from sqlalchemy import select, update
 
 from service.project import COMMON
-from service.queue.batch_entry import BatchCase, BatchEntry
 from service.queue.claims import Claim
 from service.queue.job import Job, JobFilter
 from service.queue.retention import Retention
+from service.queue.submissions import BatchCase, BatchEntry
 from service.queue.tables import computations, durations, jobs
 from service.store import now, reading, writing
 

@@ -8,7 +8,7 @@ from rexs_bearing_units import BALL, LEFT, LINE, RIGHT, ROLLER, ROW, Values, at,
 from rexs_reference import needs_reference, reference
 
 from dynamics.bearings.loaded_bearing import LoadedBearing
-from lineofaction.gearbox.convert.bearings import rolling_bearing_of
+from lineofaction.gearbox.convert.scene import rolling_bearing_of
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
 from lineofaction.gearbox.rexs import read_rexs
 from lineofaction.gearbox.schemas.scene_bearings import RollingBearingInput

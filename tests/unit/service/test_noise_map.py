@@ -9,7 +9,7 @@ from sounding_scene import sound
 
 from dynamics.noise import RadiatedSound
 from lineofaction.report.drawing.figure import HeatMap, Panel, Table
-from lineofaction.report.studies.noise_drawings import DEPTH, sound_map
+from lineofaction.report.studies.noise import DEPTH, sound_map
 
 
 def quiet_above() -> RadiatedSound:

@@ -42,7 +42,7 @@ from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.from_rexs.scene import BearingPart
 from lineofaction.gearbox.rexs import Document, parsed, read_rexs, serialized, upgrade
 from lineofaction.gearbox.rexs.kinds import KINDS, kind_of
-from lineofaction.gearbox.rexs.units import UNITS
+from lineofaction.gearbox.rexs.upgrade import UNITS
 from lineofaction.gearbox.rexs.vocabulary import words
 from lineofaction.gearbox.to_rexs.deflected import bearing_results, deflected
 from lineofaction.gearbox.to_rexs.exported import exported

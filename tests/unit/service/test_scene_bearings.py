@@ -19,10 +19,14 @@ from dynamics.bearings import BallBearing, RollerBearing
 from dynamics.bearings.catalog import from_catalog
 from dynamics.housings import ReducedHousing, ReducedMatrices, Ring, SeatFrame, housing_of_matrices
 from dynamics.integrators import static_equilibrium
-from dynamics.mechanism.modal_housing import modal_housing
+from dynamics.mechanism.bodies import modal_housing
 from dynamics.scene import Scene
-from lineofaction.gearbox.convert.bearings import planet_bearing_of, rolling_contacts_of, spring_curves_of
-from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.convert.scene import (
+    dynamic_scene,
+    planet_bearing_of,
+    rolling_contacts_of,
+    spring_curves_of,
+)
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput

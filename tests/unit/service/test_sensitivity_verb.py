@@ -23,8 +23,14 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.sensitivity import Inputs
-from lineofaction.gearbox.studies.sensitivity.run import RUN, studies_json, study_case
-from lineofaction.gearbox.studies.sensitivity.stored import PairStudy, read_studies, write_studies
+from lineofaction.gearbox.studies.sensitivity.run import (
+    RUN,
+    PairStudy,
+    read_studies,
+    studies_json,
+    study_case,
+    write_studies,
+)
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import Panel
 from lineofaction.report.studies.sensitivity import page, sensitivity_figure, sensitivity_table

@@ -23,8 +23,8 @@ from lineofaction.gearbox.schemas import (
     scene_loads,
     scene_meshes,
     scene_motion,
-    scene_solids,
 )
+from lineofaction.gearbox.schemas import scene_housings as scene_solids
 from service.settings import Settings, load_settings
 
 DOCS = Path(__file__).parents[3] / "docs"

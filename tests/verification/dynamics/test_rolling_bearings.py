@@ -10,10 +10,9 @@ import pytest
 from scipy.integrate import quad
 
 from dynamics.bearings import BallBearing, EllipticContact, RollerBearing
-from dynamics.bearings.ball_grooves import pack_balls
+from dynamics.bearings.ball_grooves import RowPlacement, pack_balls
 from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.bearings.rating_life import rating_life
-from dynamics.bearings.row_placement import RowPlacement
 from dynamics.errors import SolveError
 
 STEEL = 206e9 / (2.0 * (1.0 - 0.3**2))

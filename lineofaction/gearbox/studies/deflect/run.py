@@ -27,11 +27,9 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.scene_meshes import MeshInput
 from lineofaction.gearbox.studies.computation import Computation, Means
 from lineofaction.gearbox.studies.deflect import CaseForceInput, Inputs
-from lineofaction.gearbox.studies.deflect.agreement import Agreement, in_agreement
-from lineofaction.gearbox.studies.deflect.figures import facts
-from lineofaction.gearbox.studies.deflect.mesh_contact import MeshContact, mesh_contact
+from lineofaction.gearbox.studies.deflect.agreement import Agreement, MeshContact, in_agreement, mesh_contact
+from lineofaction.gearbox.studies.deflect.figures import facts, write_spectrum
 from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks, outline_of
-from lineofaction.gearbox.studies.deflect.spectrum import write_spectrum
 from lineofaction.gearbox.studies.result_file import record_file
 
 ALONG_FACE, ALONG_PROFILE = 41, 40

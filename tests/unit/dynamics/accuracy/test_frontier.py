@@ -10,8 +10,7 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
 
 from dynamics.accuracy import FIDELITIES, frontier
-from dynamics.accuracy.fidelities import TimeIntegration
-from dynamics.accuracy.frontier import FIGURES, knee_of_results
+from dynamics.accuracy.frontier import FIGURES, TimeIntegration, knee_of_results
 from dynamics.accuracy.vibration import blocks_of
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError

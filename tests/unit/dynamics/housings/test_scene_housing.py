@@ -24,7 +24,7 @@ from dynamics.housings import (
     reduced_housing,
     scene_housing,
 )
-from dynamics.mechanism.modal_housing import modal_housing
+from dynamics.mechanism.bodies import modal_housing
 
 SEATS = tuple(
     SeatBore(name, Bore((0.0, 0.0, z), (0.0, 0.0, toward), 0.08, 0.05))

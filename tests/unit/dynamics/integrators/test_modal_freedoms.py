@@ -10,8 +10,7 @@ from geared_scenes import gear_pair_scene, square_wave_table
 from housed_pair import MODES, NAMES, SEATS, SPEED, housed_pair
 from scipy.linalg import expm
 
-from dynamics.arrays.modal_freedoms import LEAST, TOGETHER, modal_freedoms
-from dynamics.arrays.sparse_rows import sparse_matrices
+from dynamics.arrays.sparse_rows import LEAST, TOGETHER, modal_freedoms, sparse_matrices
 from dynamics.assembly.assemble import assemble
 from dynamics.forces import RollingContact
 from dynamics.integrators import integrate, static_equilibrium

@@ -12,7 +12,7 @@ from foreign_netcdf import SECRET, write_canary
 from dynamics.errors import InputError
 from dynamics.housings import read_reduced_matrices
 from dynamics.joints import read_housing
-from dynamics.joints.matrix_file import LARGEST
+from dynamics.joints.housing import LARGEST
 
 
 @pytest.mark.parametrize("name", FOREIGN_MATRICES)

@@ -15,7 +15,7 @@ from dynamics.integrators import static_equilibrium
 from dynamics.joints import Coupling, Housing, read_housing
 from dynamics.linearize import natural_modes, whirl_modes
 from dynamics.loads import TimeLaw
-from dynamics.mechanism.seats import condense_housing
+from dynamics.mechanism.connections import condense_housing
 from dynamics.results import RunResult
 from dynamics.scene import Integration
 from dynamics.shafts import Inertia, Shaft

@@ -13,7 +13,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.housings import receptance, scene_housing
 from dynamics.linearize import forced_response
-from dynamics.mechanism.modal_housing import modal_housing
+from dynamics.mechanism.bodies import modal_housing
 from dynamics.vibration import housing_motion, seat_forces
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on", "housing_modes": "on"}

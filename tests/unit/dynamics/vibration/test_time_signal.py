@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from dynamics import simulate
 from dynamics.errors import InputError
 from dynamics.housings import scene_housing
-from dynamics.mechanism.modal_housing import modal_housing
+from dynamics.mechanism.bodies import modal_housing
 from dynamics.scene import Outputs
 from dynamics.vibration import MotionQuantity, housing_motion, motion_signal, point_signal, run_seat_forces
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from fe_contact.contact.local_law import (
+from fe_contact.contact.point_problem import (
     LARGEST_STRIP,
     SMALLEST_STRIP,
     LocalLaw,

@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 from fe_contact.contact import ContactProblem, LoadedSlices, solve_contact
-from fe_contact.contact.local_law import LocalLaw, approach, free_strips
 from fe_contact.contact.newton import _residuals, solve_point
 from fe_contact.contact.patch import Patches
-from fe_contact.contact.point_problem import PointProblem, State, eliminate
+from fe_contact.contact.point_problem import LocalLaw, PointProblem, State, approach, eliminate, free_strips
 from fe_contact.contact.strip import Gap
 from fe_contact.types import Status
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.full_contact.condensation.stiffness import plane_strain_stiffness
+from fe_contact.full_contact.condensation.contact_model import plane_strain_stiffness
 from fe_contact.material import Material
 
 STEEL = Material(210e9, 0.3)

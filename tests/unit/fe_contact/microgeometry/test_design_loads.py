@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import InputError
-from fe_contact.microgeometry.design_study import DesignLoads, misalignment_axis, on_axis
+from fe_contact.microgeometry.confirmation import DesignLoads, misalignment_axis, on_axis
 
 TORQUES = [100.0, 200.0, 200.0, 400.0]
 SKEWS = [4e-6, 8e-6, -2e-6, 20e-6]

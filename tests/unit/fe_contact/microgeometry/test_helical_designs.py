@@ -22,8 +22,8 @@ from fe_contact.microgeometry import (
     WeightedMean,
     optimize,
 )
+from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.design_problem import DesignProblem
-from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.objective import NO_LIMITS
 from fe_contact.microgeometry.scatter import NO_SCATTER

@@ -23,8 +23,8 @@ from fe_contact.microgeometry import (
     WeightedMean,
     optimize,
 )
+from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.design_problem import DesignProblem
-from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits

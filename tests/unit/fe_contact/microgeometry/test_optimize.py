@@ -26,7 +26,7 @@ from fe_contact.microgeometry import (
     Worst,
     optimize,
 )
-from fe_contact.microgeometry.design_study import DesignSpace, design_study
+from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.stage_clock import StageClock

@@ -11,7 +11,7 @@ import pytest
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
 from fe_contact.microgeometry import GaussHermite, Scatter, SobolSample
-from fe_contact.microgeometry.design_study import DesignSpace, design_study
+from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, Run

@@ -19,9 +19,9 @@ from typer.testing import CliRunner, Result
 from dynamics.deflection import BearingLoad, ForceUnderCase, deflect
 from dynamics.settings.load_case import LoadCase
 from lineofaction.cli.commands import app
+from lineofaction.gearbox.studies.deflect.figures import optimization_inputs, write_spectrum
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, outline_of
 from lineofaction.gearbox.studies.deflect.run import RUN, failure
-from lineofaction.gearbox.studies.deflect.spectrum import optimization_inputs, write_spectrum
 from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import number

@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sp
 
 from fe_contact.errors import SolveError
-from fe_contact.full_contact.condensation.stiffness import dissected
+from fe_contact.full_contact.condensation.contact_model import dissected
 from fe_contact.full_contact.over_face.extruded_body import ColumnMatrix, schur_complement
 from fe_contact.types import FloatArray
 
