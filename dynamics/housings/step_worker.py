@@ -27,7 +27,7 @@ WORST = 0.05
 """Quality below which a mesh is made again: Delaunay's method leaves slivers in the walls of castings."""
 
 
-def _start_gmsh() -> Any:
+def start_gmsh() -> Any:
     """Import and start gmsh: one thread, silent, no user files, signal handlers left as they were."""
     import gmsh  # noqa: PLC0415
 
@@ -101,7 +101,7 @@ def main() -> None:
     end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
     confine(Path.cwd(), Limits(memory_mb=None, cpu_seconds=int(request["seconds"]) + 1))
     try:
-        answer = mesh(_start_gmsh(), request)
+        answer = mesh(start_gmsh(), request)
     except MemoryError:
         answer = {"error": "MemoryError"}
     except Exception:  # noqa: BLE001 - bare Exception is what gmsh raises; its text may hold what is in the file

@@ -34,7 +34,7 @@ FRONTAL_DELAUNAY = 6
 QUADRILATERAL = 3
 
 
-def _start_gmsh() -> Any:
+def start_gmsh() -> Any:
     """Import and start gmsh: one thread, silent, no user files, signal handlers left as they were."""
     sys.modules["numpy"] = None  # type: ignore[assignment] # gmsh's documented fallback; saves 0.2 CPU s of start-up
     import gmsh  # noqa: PLC0415
@@ -163,7 +163,7 @@ def main() -> None:
     request = json.load(sys.stdin)
     end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
     try:
-        gmsh = _start_gmsh()
+        gmsh = start_gmsh()
         answer: dict[str, Any] = {
             "regions": [_triangulate(gmsh, loops, request["growth"]) for loops in request.get("regions", [])],
             "blocks": [_fill_block(gmsh, sides) for sides in request.get("blocks", [])],
