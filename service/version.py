@@ -8,7 +8,7 @@ from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-_PACKAGES = ("bounds", "dynamics", "fe_contact", "model_studies", "service")
+_PACKAGES = ("bounds", "dynamics", "fe_contact", "host", "lineofaction", "model_studies", "service")
 
 
 @lru_cache(maxsize=1)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import pytest
+
 from service.live.kept_answers import KeptAnswers
 from service.version import modules_digest
 
@@ -37,8 +39,9 @@ def test_a_folder_that_cannot_be_written_keeps_nothing(tmp_path: Path) -> None:
     assert kept.find("a tag") is None
 
 
-def test_answers_of_an_edited_program_are_others(tmp_path: Path) -> None:
-    module = tmp_path / "service" / "report" / "content.py"
+@pytest.mark.parametrize("package", ["service", "lineofaction", "host", "dynamics"])
+def test_answers_of_an_edited_program_are_others(tmp_path: Path, package: str) -> None:
+    module = tmp_path / package / "report" / "content.py"
     module.parent.mkdir(parents=True)
     module.write_text("ROOM = 1\n", encoding="utf-8")
     before = modules_digest(tmp_path)

@@ -24,7 +24,6 @@ from lineofaction.gearbox.schemas import (
     scene_meshes,
     scene_motion,
 )
-from lineofaction.gearbox.schemas import scene_housings as scene_solids
 from service.settings import Settings, load_settings
 
 DOCS = Path(__file__).parents[3] / "docs"
@@ -38,7 +37,7 @@ def page(name: str) -> str:
 def models() -> list[type[BaseModel]]:
     """Return the tables of case and scene files."""
     modules = (case, gear, scene, scene_bearings, scene_bodies, scene_housings)
-    modules += (scene_loads, scene_meshes, scene_motion, scene_solids)
+    modules += (scene_loads, scene_meshes, scene_motion)
     found = [vars(module).values() for module in modules]
     return [m for group in found for m in group if inspect.isclass(m) and issubclass(m, BaseModel)]
 
