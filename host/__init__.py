@@ -25,7 +25,6 @@ from host.json_child import (
 )
 from host.proc import family_cpu_seconds, memory_figure, processes_in
 from host.sessions import (
-    halt,
     has_exited,
     kill,
     kill_group,
@@ -80,7 +79,6 @@ __all__ = [
     "end_after",
     "ending_signal",
     "family_cpu_seconds",
-    "halt",
     "handlers_kept",
     "has_exited",
     "keep_to_one_thread",

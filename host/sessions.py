@@ -45,13 +45,6 @@ def kill(pid: int) -> None:
     os.kill(pid, signal.SIGKILL)
 
 
-def halt(pid: int) -> None:
-    """Stop a process where it is. ProcessLookupError: there is none."""
-    if sys.platform == "win32":
-        raise Unavailable("Signals to processes")
-    os.kill(pid, signal.SIGSTOP)
-
-
 def lower_priority(niceness: int) -> None:
     """Let other processes go before this one."""
     if sys.platform == "win32":

@@ -12,14 +12,15 @@ import numpy as np
 
 from fe_contact.analysis import ste_database
 from fe_contact.types import FloatArray
-from host import halt, limit_file_size, memory_figure
 from host import kill as end
+from host import limit_file_size, memory_figure
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.hardcases.jobs.aftermath import (
     LARGE,
     LONG,
     MEDIUM,
+    Aftermath,
     Disturb,
     JobService,
     aftermath,
@@ -93,27 +94,41 @@ MESHER_COMMAND, WORKER_COMMAND = "gmsh_worker", "service.worker."
 """What their commands hold; a worker is started anew or forked."""
 
 
-def _kill_meshers(times: int, killed: list[int]) -> Disturb:
-    """Return what kills so many meshers as they run, and notes them."""
-
-    def kill(service: JobService, _job: Job) -> None:
-        if len(killed) < times:
-            killed.extend(_reached(end, service.processes(MESHER_COMMAND)))
-
-    return kill
+_HANGING = """
+import time
+time.sleep(3600.0)
+"""
+"""A mesher that is met, however short its mesh."""
 
 
-def _kill_workers(times: int, killed: list[int]) -> Disturb:
-    """Return what kills so many workers while their mesher runs, and notes them.
+@contextmanager
+def _mesher_that(does: str) -> Iterator[Path]:
+    """Put what the mesher loads first on the path of the workers, which hand it on; undone once unlinked."""
+    undisturbed()
+    before = os.environ.get("PYTHONPATH")
+    with tempfile.TemporaryDirectory(prefix="loa-hard-mesher-") as name:
+        stand_in = Path(name, "gmsh.py")
+        stand_in.write_text(does, encoding="utf-8")
+        os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (name, before)))
+        try:
+            yield stand_in
+        finally:
+            os.environ.pop("PYTHONPATH") if before is None else os.environ.update(PYTHONPATH=before)
 
-    The mesher is stopped first: it would be left for ever if nobody ended it.
-    """
 
-    def kill(service: JobService, _job: Job) -> None:
-        if len(killed) < times and _reached(halt, service.processes(MESHER_COMMAND)):
-            killed.extend(_reached(end, service.processes(WORKER_COMMAND)))
+def _killing(command: str, times: int) -> tuple[Aftermath, int]:
+    """Kill the process of this command each time the mesher hangs; returns how often it was."""
+    killed: list[int] = []
+    with _mesher_that(_HANGING) as hangs:
 
-    return kill
+        def kill(service: JobService, _job: Job) -> None:
+            met = service.processes(command) if service.processes(MESHER_COMMAND) else []
+            if met and len(killed) < times:
+                if len(killed) + len(met) == times:
+                    hangs.unlink()
+                killed.extend(_reached(end, met))
+
+        return aftermath(MEDIUM, kill), len(killed)
 
 
 def _reached(act: Callable[[int], None], processes: Sequence[int]) -> list[int]:
@@ -127,11 +142,10 @@ def _reached(act: Callable[[int], None], processes: Sequence[int]) -> list[int]:
 
 
 def _mesher_killed() -> Sequence[Measured]:
-    killed: list[int] = []
-    outcome = aftermath(MEDIUM, _kill_meshers(1, killed))
+    outcome, killed = _killing(MESHER_COMMAND, 1)
     stated = "gmsh worker: killed by SIGKILL" in outcome.job.message
     return (
-        Measured("meshers killed", float(len(killed)), 1.0, 1.0),
+        Measured("meshers killed", float(killed), 1.0, 1.0),
         Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
         Measured("says that the mesh failed, and how", float(stated), least=1.0),
         *outcome.figures,
@@ -140,11 +154,10 @@ def _mesher_killed() -> Sequence[Measured]:
 
 def worker_killed_once() -> Sequence[Measured]:
     """Kill the first worker in mid-mesh."""
-    killed: list[int] = []
-    outcome = aftermath(MEDIUM, _kill_workers(1, killed))
+    outcome, killed = _killing(WORKER_COMMAND, 1)
     off = np.inf if outcome.errors is None else largest_difference(outcome.errors, _of_python())
     return (
-        Measured("workers killed", float(len(killed)), 1.0, 1.0),
+        Measured("workers killed", float(killed), 1.0, 1.0),
         Measured("done at the second attempt", float(outcome.ended_as("successful", 2)), least=1.0),
         Measured("result off that of Python, m", off, most=0.0),
         *outcome.figures,
@@ -153,12 +166,11 @@ def worker_killed_once() -> Sequence[Measured]:
 
 def _worker_killed_always() -> Sequence[Measured]:
     """Kill every worker in mid-mesh."""
-    killed: list[int] = []
-    outcome = aftermath(MEDIUM, _kill_workers(2, killed))
+    outcome, killed = _killing(WORKER_COMMAND, 2)
     message = outcome.job.message
     stated = "ended by SIGKILL" in message and message.endswith("That was attempt 2 of 2.")
     return (
-        Measured("workers killed", float(len(killed)), 2.0, 2.0),
+        Measured("workers killed", float(killed), 2.0, 2.0),
         Measured("failed at the last attempt", float(outcome.ended_as("failed", 2)), least=1.0),
         Measured("says what ended it, and how often it was tried", float(stated), least=1.0),
         *outcome.figures,
@@ -198,12 +210,11 @@ WORKER_ALWAYS = HardScene(
 
 
 _MB = 1 << 20
-_DEVOURER = """
+_DEVOURS = """
 held = []
 while True:
     held.append(b"x" * 2**22)
 """
-"""Stands in the mesher's way as the module that it loads first."""
 
 
 def _no_room(held: list[int]) -> Disturb:
@@ -233,25 +244,10 @@ def _disk_full() -> Sequence[Measured]:
     )
 
 
-@contextmanager
-def _devouring_mesher() -> Iterator[Path]:
-    """Put a mesher without end on the path of the workers, which hand it to what they start."""
-    before = os.environ.get("PYTHONPATH")
-    with tempfile.TemporaryDirectory(prefix="loa-hard-greedy-") as name:
-        greed = Path(name, "gmsh.py")
-        greed.write_text(_DEVOURER, encoding="utf-8")
-        os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (name, before)))
-        try:
-            yield greed
-        finally:
-            os.environ.pop("PYTHONPATH") if before is None else os.environ.update(PYTHONPATH=before)
-
-
 def _greedy_mesher() -> Sequence[Measured]:
     """Let the first mesher take memory until the system gives it no more."""
-    undisturbed()
     most = [0.0]
-    with _devouring_mesher() as greed:
+    with _mesher_that(_DEVOURS) as greed:
 
         def look(service: JobService, _job: Job) -> None:
             for pid in service.processes(MESHER_COMMAND):

@@ -50,7 +50,6 @@ REFUSED = {
         host.kill_own_group,
         lambda: host.kill_group(0),
         lambda: host.kill(0),
-        lambda: host.halt(0),
         lambda: host.lower_priority(0),
         lambda: host.never_wait_at(0),
         lambda: host.has_exited(0),
