@@ -14,10 +14,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fe_contact.contact.interior_point import GapAbout, Problem, solve
 from fe_contact.contact.newton import CONVERGED, solve_point
 from fe_contact.contact.point_problem import LocalLaw, PointProblem, free_strips
 from fe_contact.contact.strip import Gap
+from lineofaction.hardcases.contact.interior_point import GapAbout, Problem, solve
 
 MODULUS = 115e9
 NOMINAL = 2660.0

@@ -10,11 +10,11 @@ import numpy as np
 from fe_contact.analysis.pairs.pair_contact import PairContact, operating_points, pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
-from fe_contact.contact.interior_point import GapAbout, Problem, solve
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import Plan, make_plan
 from fe_contact.types import FloatArray, IntArray
+from lineofaction.hardcases.contact.interior_point import GapAbout, Problem, solve
 from lineofaction.hardcases.scene import Measured
 
 NOMINAL_TORQUE = 100.0
@@ -115,10 +115,10 @@ COMPARED = 12
 def soundness(
     problem: ContactProblem, solution: ContactSolution, compared: int = COMPARED
 ) -> tuple[Measured, ...]:
-    """Return failed points, worst residual, most iterations, and the _disagreement of two solvers.
+    """Return failed points, worst residual, most iterations, and the disagreement of two solvers.
 
-    The second one (`fe_contact.contact.interior_point`) shares no line with the first, not even the local
-    law. `compared` points are spread evenly over positions and loads.
+    The second one (`interior_point`) shares no line with the first, not even the local law. `compared`
+    points are spread evenly over positions and loads.
     """
     total = solution.status.size
     chosen = np.unique(np.linspace(0, total - 1, min(compared, total)).astype(int))

@@ -6,8 +6,8 @@ import stat
 from pathlib import Path
 
 import pytest
+from calculix import run_calculix, version_of
 
-from fe_contact.full_contact import run_calculix, version_of
 from fe_contact.types import Status
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from calculix import find_calculix, solve_position
 
 from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.full_contact import Resolution, find_calculix, solve_full_contact, solve_position
+from fe_contact.full_contact import Resolution, solve_full_contact
 
 CALCULIX = find_calculix()
 TORQUE = 400.0

@@ -6,12 +6,11 @@ import re
 
 import numpy as np
 import pytest
+from calculix import Loading, PlacedPair, flank_sides, input_deck, numbered_bodies, placed_pair, read_printed
 
 from fe_contact import Gear, GearPair
 from fe_contact.full_contact.condensation.placed_mesh import placed_bodies
 from fe_contact.full_contact.condensation.sites import Range, Resolution, contact_sites
-from fe_contact.full_contact.loaded_position import Loading, input_deck, numbered_bodies, read_printed
-from fe_contact.full_contact.placed_pair import PlacedPair, flank_sides, placed_pair
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 LOADING = Loading((GEAR.material, GEAR.material), GEAR.base_radius, 25e-3, 2660.0, 1e18)

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from calculix import no_load_gap, placed_pair
 
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
 from fe_contact.full_contact.condensation.contact_model import freedoms
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody, placed_bodies
 from fe_contact.full_contact.condensation.sites import Range, Resolution, contact_sites, least_gap_left_out
-from fe_contact.full_contact.placed_pair import no_load_gap, placed_pair
 from fe_contact.geometry import ParallelAxes
 from fe_contact.mesh.quality import scaled_jacobian
 from fe_contact.types import FloatArray
