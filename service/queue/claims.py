@@ -14,10 +14,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from packaging.version import InvalidVersion, Version
-from sqlalchemy import ColumnElement, Connection, Engine, Row, delete, select, update
+from sqlalchemy import ColumnElement, Connection, Engine, Row, select, update
 
-from service.project import COMMON, address_of, at_address
-from service.queue.tables import computations, jobs
+from service.project import COMMON, at_address
+from service.queue.tables import computations
 from service.queue.workload import batch_steps, end_computations
 from service.store import dialect_of, now, reading, retried, writing
 from service.version import solver_version
@@ -44,8 +44,6 @@ class Claim:
         Of the request that entered it; empty: it belongs to no trace.
     waited_from : str
         When it was entered or put back, RFC 3339; empty where that is not known.
-    program : str
-        Version of the program that entered it, whose name the result has; empty: 0.2.0 or older.
     max_cost_s : float or None
         CPU seconds that it may take, as far as known when it was claimed; None: no limit.
     project : str
@@ -59,7 +57,6 @@ class Claim:
     attempts: int
     lease: str
     asked: float = field(default_factory=time.monotonic, compare=False)
-    program: str = ""
     max_cost_s: float | None = None
     traceparent: str = field(default="", compare=False)
     waited_from: str = field(default="", compare=False)
@@ -92,7 +89,7 @@ class Claims:
         self._newer: set[str] = set()
 
     def claim(self) -> Claim | None:
-        """Take the oldest waiting computation of the highest priority; pass over newer programs' ones."""
+        """Take the oldest waiting computation of the highest priority that this program entered."""
         return self._claim(uuid.uuid4().hex, time.monotonic())
 
     @retried
@@ -114,35 +111,22 @@ class Claims:
             return replace(claim, waited_from=row.updated)
 
     def _first(self, connection: Connection) -> Row[Any] | None:
-        """Return the computation whose turn it is, and lock it; newer programs' are passed over."""
+        """Return the computation whose turn it is, and lock it.
+
+        The name of a result holds the version of the program that makes it. What an older program entered
+        ends with the reason; what a newer one entered is passed over.
+        """
         waiting = select(computations).where(computations.c.state == "accepted")
         turn = (computations.c.priority.desc(), computations.c.created)
         first = waiting.order_by(*turn).limit(1).with_for_update(skip_locked=True)
         while True:
             row = connection.execute(first.where(computations.c.program.not_in(self._newer))).one_or_none()
-            if row is None or not _is_newer(row.program, self.program):
+            if row is None or row.program == self.program:
                 return row
-            self._newer.add(row.program)
-
-    @retried
-    def adopt(self, claim: Claim, key: str, inputs: dict[str, Any]) -> Claim | None:
-        """Give a computation of another program the name that this one has for it.
-
-        None: a computation of this name waits or runs; the jobs of the other are its own now.
-        """
-        live = computations.c.state.in_(("accepted", "running")) & (computations.c.id != claim.id)
-        address = address_of(claim.project, key)
-        same = select(computations.c.id).where(computations.c.key == address, live)
-        values = {"key": address, "inputs": json.dumps(inputs), "program": self.program}
-        with writing(self._engine, in_turn=True) as connection:
-            other = connection.execute(same).scalar()
-            if other is None:
-                connection.execute(update(computations).where(_under([claim])).values(**values))
-                return replace(claim, key=key, inputs=inputs, program=self.program)
-            mine = jobs.c.computation_id == claim.id
-            connection.execute(update(jobs).where(mine).values(computation_id=other))
-            connection.execute(delete(computations).where(_under([claim])))
-            return None
+            if _is_newer(row.program, self.program):
+                self._newer.add(row.program)
+            else:
+                _end_former(connection, row)
 
     def _end(self, connection: Connection) -> float:
         return dialect_of(connection).clock(connection) + self._lease_s
@@ -272,7 +256,13 @@ def _running(connection: Connection, which: ColumnElement[bool]) -> list[Claim]:
 def _claimed(row: Row[Any], requested: float) -> Claim:
     inputs, (project, key) = json.loads(row.inputs), at_address(row.key)
     facts = (row.id, row.process, key, inputs, row.attempts, row.lease, requested)
-    return Claim(*facts, row.program, row.max_cost_s, row.traceparent, project=project)
+    return Claim(*facts, row.max_cost_s, row.traceparent, project=project)
+
+
+def _end_former(connection: Connection, row: Row[Any]) -> None:
+    """End a computation that an older program entered; 0.2.0 did not write its version down."""
+    text = f"The job was entered by version {row.program or '0.2.0 or older'}; submit it again."
+    end_computations(connection, computations.c.id == row.id, {"state": "failed", "message": text})
 
 
 def _is_newer(program: str, than: str) -> bool:

@@ -14,7 +14,6 @@ import structlog
 
 from host import never_wait_at
 from lineofaction.gearbox.problems import DatabaseUnavailable, ServiceError, StoreUnavailable
-from service.queue.adoption import Adoption
 from service.queue.attempt import Attempt, WorkerFigures, begun
 from service.queue.claims import Claim, Claims
 from service.queue.cost_limit import reached
@@ -50,7 +49,6 @@ class Scheduler:
         self._settings, self._registry, self._claims = settings, registry, claims
         self._housekeeper = housekeeper
         self._settlement = Settlement(claims, store, settings.attempts)
-        self._adoption = Adoption(claims, registry, store, settings.data_directory / "work")
         self._leases = Leases(claims, settings.lease_s)
         self._forks = Forks(registry.modules, settings.data_directory / "log" / "warm.log")
         self._running: dict[int, Attempt] = {}
@@ -162,7 +160,7 @@ class Scheduler:
         self._clear()
         self._claims.advance_batches()
         while len(self._running) < self._settings.workers and (claim := self._claims.claim()) is not None:
-            self._take(claim)
+            self._begin(claim)
 
     def _listen_to_all(self) -> None:
         """Hear workers and wake-ups; wait for one if there is none."""
@@ -173,17 +171,6 @@ class Scheduler:
                 os.read(self._wake_out, 65536)
             elif key.fd in self._running:
                 self._listen(self._running[key.fd])
-
-    def _take(self, claim: Claim) -> None:
-        """Begin a claim, whichever program entered it."""
-        try:
-            ours = self._adoption.adopted(claim)
-        except _OUTAGES:
-            with contextlib.suppress(ServiceError):
-                self._claims.put_back(claim, "Waits for a worker.", counted=False)
-            raise
-        if ours is not None:
-            self._begin(ours)
 
     def _begin(self, claim: Claim) -> None:
         """Start a worker for a claim."""

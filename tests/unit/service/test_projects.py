@@ -165,18 +165,6 @@ def test_a_job_is_compared_with_former_ones_of_its_project(machine: Bench) -> No
     assert [former and former[0] for former in found] == [None, job.id, None]
 
 
-def test_work_of_a_former_program_is_adopted_in_its_project(machine: Bench) -> None:
-    """Under the name that this program has for it, which waits in another project too."""
-    job, key = enter(machine, "axle"), "ef" * 32
-    claim = machine.claims.claim()
-    assert claim is not None
-    machine.submissions.within("drum").submit("fake", key, {}, stored=False)
-    adopted = machine.claims.adopt(claim, key, {})
-    assert adopted is not None and (adopted.project, adopted.key) == ("axle", key)
-    assert machine.submissions.within("axle").find(job.id).key == key
-    assert {(left.project, left.key) for left in machine.claims.left()} == {("axle", key)}
-
-
 def test_what_a_former_program_enters_is_common(machine: Bench) -> None:
     """It names no column of ours."""
     machine.store.put(KEY, "database", file_with(machine, "former"))

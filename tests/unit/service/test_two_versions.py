@@ -1,0 +1,109 @@
+"""Two versions of the program on one job table: no result gets the other's name, and no job waits in vain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from named_run import put_named_run
+from running_service import Bench, bench
+from service_fakes import REGISTRY
+from sqlalchemy import update
+
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.reading import validated
+from service.queue.claims import Claims
+from service.queue.tables import computations
+from service.schemas.request_examples import INPUTS, SCENE
+from service.store import writing
+from service.version import solver_version
+from service.worker.catalogue import default_registry
+
+NEWER, OLDER = "9.0.0", "0.0.9"
+
+
+@pytest.fixture
+def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
+    """The table without a running scheduler, on each database; its jobs are of the installed version."""
+    found = bench(tmp_path, REGISTRY, database_url=database_url)
+    yield found
+    found.close()
+
+
+def claims_of(machine: Bench, version: str) -> Claims:
+    """Return the claims of a scheduler of a version."""
+    return Claims(machine.engine, version, 60.0, version)
+
+
+def test_own_work_is_claimed(machine: Bench) -> None:
+    job = machine.submit(text="a")
+    claim = claims_of(machine, solver_version()).claim()
+    assert claim is not None and claim.key == job.key
+
+
+def test_work_of_an_older_version_ends_with_the_reason(machine: Bench) -> None:
+    jobs = [machine.submit(text=text) for text in "ab"]
+    assert claims_of(machine, NEWER).claim() is None
+    for job in jobs:
+        found = machine.submissions.find(job.id)
+        text = f"The job was entered by version {solver_version()}; submit it again."
+        assert (found.status, found.message, found.attempts) == ("failed", text, 0)
+        assert found.finished is not None
+    assert machine.submissions.counts() == {"failed": 2}
+
+
+def test_a_scheduler_ends_what_an_older_version_left_and_goes_on(machine: Bench) -> None:
+    old, new = machine.submit(text="old"), machine.submit(text="new")
+    with writing(machine.engine) as connection:
+        mine = computations.c.id == old.computation
+        connection.execute(update(computations).where(mine).values(program=""))
+    machine.scheduler.start()
+    assert machine.ended(old).message == "The job was entered by version 0.2.0 or older; submit it again."
+    assert machine.ended(new).status == "successful" and machine.starts(old) == []
+
+
+def test_an_older_version_leaves_newer_work(machine: Bench) -> None:
+    newer = machine.submit(text="newer")
+    older = machine.submit(text="older")
+    with writing(machine.engine) as connection:
+        mine = computations.c.id == older.computation
+        connection.execute(update(computations).where(mine).values(program=OLDER))
+    claims = claims_of(machine, OLDER)
+    claim = claims.claim()
+    assert claim is not None and claim.id == older.computation
+    assert claims.claim() is None
+    assert machine.submissions.find(newer.id).status == "accepted"
+
+
+def test_equal_work_of_an_older_version_is_computed_anew(machine: Bench) -> None:
+    """The older version has another hash for it; its end keeps no job of the newer one waiting."""
+    old, new = (machine.submissions.submit("fake", key * 64, {}, stored=False) for key in "ab")
+    with writing(machine.engine) as connection:
+        mine = computations.c.id == new.computation
+        connection.execute(update(computations).where(mine).values(program=NEWER))
+    claim = claims_of(machine, NEWER).claim()
+    assert claim is not None and claim.id == new.computation
+    assert machine.submissions.find(old.id).status == "failed"
+
+
+def test_a_request_repeated_at_a_server_of_another_version_is_the_same_job(machine: Bench) -> None:
+    def named(key: str) -> str:
+        return machine.submissions.submit("fake", key, {}, stored=False, name="mine").id
+
+    first = named("a" * 64)
+    with pytest.raises(BadInput):
+        named("b" * 64)
+    with writing(machine.engine) as connection:
+        connection.execute(update(computations).values(program=""))
+    assert named("b" * 64) == first
+
+
+@pytest.mark.parametrize("name", [*INPUTS, *(f"{name} of a scene" for name in ("ablate", "frontier"))])
+def test_normalized_inputs_are_inputs_of_the_same_work(machine: Bench, name: str) -> None:
+    """A job is submitted again with the inputs that it shows: that is the same work."""
+    process = default_registry()[name.partition(" ")[0]]
+    sent = INPUTS[process.id] if name in INPUTS else {"scene": SCENE}
+    put_named_run(machine.store)
+    inputs = process.prepare(validated(process.inputs, sent), machine.store)
+    assert process.prepare(validated(process.inputs, inputs), machine.store) == inputs
