@@ -72,7 +72,7 @@ class PredictedCost(NamedTuple):
         return sum(self.parts.values())
 
 
-class SectorSizes(NamedTuple):
+class _SectorSizes(NamedTuple):
     """Numbers that the cost follows from.
 
     Attributes
@@ -132,13 +132,13 @@ def predict_cost(
     return PredictedCost({"mesh": MESH_SECONDS} | seconds, _working_bytes(tree, sizes) + keyed)
 
 
-def _sector_sizes(sector: SweptSector, teeth: int, reach: int) -> SectorSizes:
+def _sector_sizes(sector: SweptSector, teeth: int, reach: int) -> _SectorSizes:
     """Count what the cost follows from."""
     matrices = sum(len(batch.quads) for batch in sector.batches)
-    return SectorSizes(len(sector.loaded), len(sector.left), teeth // 2 + 1, reach, matrices)
+    return _SectorSizes(len(sector.loaded), len(sector.left), teeth // 2 + 1, reach, matrices)
 
 
-def _ring_operations(sizes: SectorSizes) -> float:
+def _ring_operations(sizes: _SectorSizes) -> float:
     """Return the multiplications with addition of holding the sector and closing the ring."""
     nf, nc = float(sizes.flank), float(sizes.cut)
     rank = RANK_SHARE * nf
@@ -150,7 +150,7 @@ def _ring_operations(sizes: SectorSizes) -> float:
     return holding + row_space + sizes.harmonics * (harmonic + summing) + back
 
 
-def _working_bytes(tree: EliminationTree, sizes: SectorSizes) -> int:
+def _working_bytes(tree: EliminationTree, sizes: _SectorSizes) -> int:
     """Return the bytes of the largest working set: factorising fronts, or closing the ring."""
     nf, nc = sizes.flank, sizes.cut
     rank = RANK_SHARE * nf

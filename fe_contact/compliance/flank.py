@@ -179,7 +179,7 @@ class FlankCompliance:
         return self.matrix[rows : rows + k, columns : columns + k]
 
 
-class HasChecks(Protocol):
+class _HasChecks(Protocol):
     """Any compliance, of the transverse section or over the face."""
 
     @property
@@ -187,7 +187,7 @@ class HasChecks(Protocol):
         """Laws kept."""
 
 
-Checked = TypeVar("Checked", bound=HasChecks)
+Checked = TypeVar("Checked", bound=_HasChecks)
 
 
 def refuse_broken_laws(compliance: Checked) -> Checked:

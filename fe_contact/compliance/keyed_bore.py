@@ -29,7 +29,7 @@ POINTS = 3  # of Gauss each way on the part of a face that the key covers: exact
 KEPT = 1e-10  # least over largest singular value of what is kept of Z
 
 
-class KeyUpdate(NamedTuple):
+class _KeyUpdate(NamedTuple):
     """The contribution of the key to the compliance of the ring.
 
     Attributes
@@ -52,7 +52,7 @@ class KeyPoints(NamedTuple):
     shares: FloatArray
 
 
-def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -> KeyUpdate:
+def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -> _KeyUpdate:
     """Return what the key of a right-hand gear adds.
 
     Parameters
@@ -180,7 +180,7 @@ def _modes(points: KeyPoints, count: int) -> tuple[IntArray, IntArray, FloatArra
     return used // count, used % count, vectors[:, kept] * np.sqrt(values[kept])
 
 
-def _compressed(rows: FloatArray, matrix: FloatArray) -> KeyUpdate:
+def _compressed(rows: FloatArray, matrix: FloatArray) -> _KeyUpdate:
     """Return Z' H^-1 Z with as few rows as it has directions."""
     teeth, _, flank = rows.shape
     flat = rows.transpose(1, 0, 2).reshape(rows.shape[1], -1)
@@ -192,4 +192,4 @@ def _compressed(rows: FloatArray, matrix: FloatArray) -> KeyUpdate:
     left = left[:, kept] * values[kept] * scale[:, None]
     core = left.T @ np.linalg.solve(matrix, left)
     shaped = right[kept].reshape(-1, teeth, flank).transpose(1, 0, 2)
-    return KeyUpdate(np.ascontiguousarray(shaped), 0.5 * (core + core.T))
+    return _KeyUpdate(np.ascontiguousarray(shaped), 0.5 * (core + core.T))

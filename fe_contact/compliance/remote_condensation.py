@@ -60,7 +60,7 @@ FEWEST = 2
 
 
 @dataclass(frozen=True)
-class Solid:
+class _Solid:
     """A gear to be condensed over its face, of right hand."""
 
     gear: Toothing
@@ -69,7 +69,7 @@ class Solid:
     support: BoreSupport
 
     @classmethod
-    def of(cls, gear: Toothing, recipe: SectorRecipe) -> Solid:
+    def of(cls, gear: Toothing, recipe: SectorRecipe) -> _Solid:
         """Return the solid that `flank_compliances_3d` condenses."""
         right = gear.right_handed()
         return cls(right, recipe, usual_reach(gear), bore_support(right))
@@ -105,7 +105,7 @@ def condense_remotely(
     workers = condensing(workers)
     if isinstance(workers, InProcess):
         return
-    solids = {solid.key: solid for solid in map(Solid.of, gears, recipes)}
+    solids = {solid.key: solid for solid in map(_Solid.of, gears, recipes)}
     missing = {key: solid for key, solid in solids.items() if not kept_size(cache, key)}
     if len(missing) < FEWEST:
         return
@@ -115,6 +115,6 @@ def condense_remotely(
         report(count / len(missing))
 
 
-def condense(_: None, solid: Solid) -> FlankCompliance3D:
+def condense(_: None, solid: _Solid) -> FlankCompliance3D:
     """Condense a gear: one task."""
     return compute_flank_compliance_3d(solid.gear, solid.recipe, solid.reach, solid.support)

@@ -150,7 +150,7 @@ SIDE = [0, 1, 0, 1, 4, 4, 0, 1]
 
 
 @dataclass(frozen=True)
-class CoarseFace:
+class _CoarseFace:
     """The face that hanging nodes lie on.
 
     Attributes
@@ -184,7 +184,7 @@ class CoarseFace:
         return transform.reshape(len(frames), 60, 60)
 
 
-def coarse_face(section: FloatArray, thickness: float, turn: float, half: int) -> CoarseFace:
+def coarse_face(section: FloatArray, thickness: float, turn: float, half: int) -> _CoarseFace:
     """Return the face that elements hang on.
 
     Parameters
@@ -197,7 +197,7 @@ def coarse_face(section: FloatArray, thickness: float, turn: float, half: int) -
         -1: the elements are on the lower half of the coarse face; +1: on the upper half.
     """
     nodes = above(section[:, SIDE], ACROSS - 0.5 * half, thickness, turn)
-    return CoarseFace(nodes, face_functions(ALONG, 0.5 * (ACROSS + half)))
+    return _CoarseFace(nodes, face_functions(ALONG, 0.5 * (ACROSS + half)))
 
 
 def face_functions(x: FloatArray, y: FloatArray) -> FloatArray:

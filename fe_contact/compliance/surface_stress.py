@@ -48,7 +48,7 @@ def triangle_root(sector: ToothSector, profile: FlankProfile) -> RootSurface:
         ahead, back = back, ahead
     right = _walk(ahead, int(sector.right_side[-1]), int(sector.flank[2 * form]))
     left = _walk(back, int(sector.left_side[-1]), int(sector.coast_flank[2 * form]))
-    return RootSurface(np.array([right, left]), flank_coordinate(profile, sector.points[right]))
+    return RootSurface(np.array([right, left]), _flank_coordinate(profile, sector.points[right]))
 
 
 def quad_root(section: QuadSector, profile: FlankProfile) -> RootSurface:
@@ -59,10 +59,10 @@ def quad_root(section: QuadSector, profile: FlankProfile) -> RootSurface:
     low, high = 2 * grid.land, 2 * (grid.land + grid.across)
     right = np.concatenate([land[:low], tooth[:, low]])
     left = np.concatenate([land[:high:-1], tooth[:, high]])
-    return RootSurface(np.array([right, left]), flank_coordinate(profile, section.points[right]))
+    return RootSurface(np.array([right, left]), _flank_coordinate(profile, section.points[right]))
 
 
-def flank_coordinate(profile: FlankProfile, points: FloatArray) -> FloatArray:
+def _flank_coordinate(profile: FlankProfile, points: FloatArray) -> FloatArray:
     """Return the flank coordinates (n,) in m of points (n, 2) on the root of the right flank.
 
     The nearest sample of the exact profile, then along its tangent: good to the square of the sample's

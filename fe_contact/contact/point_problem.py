@@ -224,7 +224,7 @@ def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
         for i in range(j + 1, n):
             if a[i, j] != 0.0:
                 part = a[i, j] / a[j, j]
-                subtract(a[i, j + 1 : n], a[j, j + 1 : n], part)
+                _subtract(a[i, j + 1 : n], a[j, j + 1 : n], part)
                 for each in right:
                     each[i] -= part * each[j]
     for each in right:
@@ -234,7 +234,7 @@ def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
 
 
 @njit(cache=True, error_model="numpy")
-def subtract(x: FloatArray, y: FloatArray, part: float) -> None:
+def _subtract(x: FloatArray, y: FloatArray, part: float) -> None:
     """Subtract a part of one row from another of the same length."""
     for k in range(x.size):
         x[k] -= part * y[k]

@@ -18,7 +18,7 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 
 
 @njit(cache=True, error_model="numpy")
-def rounded(gap: Gap, least: FloatArray) -> Gap:
+def _rounded(gap: Gap, least: FloatArray) -> Gap:
     """Return gaps whose curvature (n,) is nowhere below `least` in 1/m."""
     curvature, bend = np.maximum(gap.curvature, least), gap.bend.copy()
     for i in range(curvature.size):
@@ -132,7 +132,7 @@ _REACH = 0.5
 _ROUNDEST = 0.25
 """Least curvature of the gap over that of plain involutes."""
 _NEAR = 1e-4
-"""Of `_STEP`: step of differences of the exact gap, whose slope is nowhere rounded."""
+"""Of `_STEP`: step of differences of the exact gap, whose slope is nowhere _rounded."""
 _SIDES: tuple[Side, Side] = ("exit", "approach")
 """Where the tips of the pinion and of the wheel leave contact."""
 
@@ -358,7 +358,7 @@ class _Flanks:
             bends[:, k] = np.where(inside, -each.bend, each.bend)
         ends = touch.low - x, touch.high - x
         # flanks hollowed out more than they are round would touch at several places
-        return rounded(Gap(slope, curvature, *ends, position, jump, bends), _ROUNDEST * touch.curvature)
+        return _rounded(Gap(slope, curvature, *ends, position, jump, bends), _ROUNDEST * touch.curvature)
 
     def _removed(self, x: FloatArray) -> FloatArray:
         """Return what is removed at x, m."""

@@ -20,7 +20,7 @@ from fe_contact.geometry.toothing import Toothing
 
 
 @dataclass(frozen=True)
-class PrintedDigits:
+class _PrintedDigits:
     """The printed form of a quantity.
 
     Attributes
@@ -42,10 +42,10 @@ class PrintedDigits:
         return 0.5 * next(fits, self.last[-1])
 
 
-PROFILE_SHIFT = PrintedDigits(last=(1e-3, 1e-4))
-CENTER_DISTANCE = PrintedDigits(last=(1e-5, 1e-6), round_grid=5e-4)
-NORMAL_MODULE = PrintedDigits(last=(1e-6, 1e-7), round_grid=5e-6)
-HELIX_ANGLE = PrintedDigits(
+PROFILE_SHIFT = _PrintedDigits(last=(1e-3, 1e-4))
+CENTER_DISTANCE = _PrintedDigits(last=(1e-5, 1e-6), round_grid=5e-4)
+NORMAL_MODULE = _PrintedDigits(last=(1e-6, 1e-7), round_grid=5e-6)
+HELIX_ANGLE = _PrintedDigits(
     last=tuple(math.radians(degrees) for degrees in (0.01, 1.0 / 60.0, 1.0 / 3600.0)),
     round_grid=math.radians(0.1),
 )

@@ -75,7 +75,7 @@ def radial_clearance(
 
 
 @dataclass(frozen=True)
-class PinionCutter:
+class _PinionCutter:
     """An external involute toothing with rounded tips, rolling inside the gear without backlash.
 
     Attributes
@@ -134,7 +134,7 @@ class PinionCutter:
 
     @property
     def first_tool_angle(self) -> float:
-        """Tool angle at which the rounding leaves the involute, rad (see `CutterTrochoid`)."""
+        """Tool angle at which the rounding leaves the involute, rad (see `_CutterTrochoid`)."""
         return math.atan2(self.corner_roll_length, self.base_radius)
 
     @property
@@ -148,18 +148,18 @@ class PinionCutter:
 
 
 @dataclass(frozen=True)
-class CutterTrochoid(FilletCurve):
+class _CutterTrochoid(FilletCurve):
     """Fillet of the right flank of a ring gear, in the tooth frame.
 
     Attributes
     ----------
-    cutter : PinionCutter
+    cutter : _PinionCutter
         The tool and its place in the gear.
     half_pitch_angle : float
         pi / z of the gear, rad: from its tooth's center line to that of the tooth space.
     """
 
-    cutter: PinionCutter
+    cutter: _PinionCutter
     half_pitch_angle: float
 
     @property
@@ -232,7 +232,7 @@ class CutterTrochoid(FilletCurve):
 _OTHER_CUTTER = "Choose another number of teeth or profile shift of the cutter."
 
 
-def _refuse_infeasible_ring(gear: Toothing, cutter: PinionCutter) -> None:
+def _refuse_infeasible_ring(gear: Toothing, cutter: _PinionCutter) -> None:
     """Raise `InfeasibleGeometry` if the cutter cannot generate such a ring gear."""
     _refuse_rounding(gear, cutter)
     _refuse_tip_diameter(gear, cutter)
@@ -263,7 +263,7 @@ def _refuse_narrow_rim(gear: Toothing) -> None:
         raise InfeasibleGeometry("rim", "rim_diameter", rim, bound, "Raise the rim diameter.")
 
 
-def _refuse_tip_diameter(gear: Toothing, cutter: PinionCutter) -> None:
+def _refuse_tip_diameter(gear: Toothing, cutter: _PinionCutter) -> None:
     """Refuse a tip circle beyond the involute at the fillet, or inside what the cutter's involute reaches."""
     if gear.tip_radius >= gear.form_radius:
         bound = below(2.0 * gear.form_radius, "m", "the form diameter", ", where the fillet begins")
@@ -276,7 +276,7 @@ def _refuse_tip_diameter(gear: Toothing, cutter: PinionCutter) -> None:
         raise InfeasibleGeometry(name, "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
 
 
-def _refuse_rounding(gear: Toothing, cutter: PinionCutter) -> None:
+def _refuse_rounding(gear: Toothing, cutter: _PinionCutter) -> None:
     """Refuse a rounding that does not fit on the cutter's tip."""
     if cutter.corner_angle < 0.0 or cutter.corner_center_radius < cutter.base_radius:
         bound = "smaller: the rounding does not fit between the two flanks of the cutter's tooth"
@@ -286,7 +286,7 @@ def _refuse_rounding(gear: Toothing, cutter: PinionCutter) -> None:
         )
 
 
-def _refuse_cut_tips(gear: Toothing, cutter: PinionCutter) -> None:
+def _refuse_cut_tips(gear: Toothing, cutter: _PinionCutter) -> None:
     """Refuse a cutter that trims the tips it passes while it is fed in radially."""
     at_tips = (
         math.acos(cutter.base_radius / cutter.tip_radius),
@@ -365,7 +365,7 @@ class RingGear(Toothing):
         )
 
     @cached_property
-    def cutter(self) -> PinionCutter:
+    def cutter(self) -> _PinionCutter:
         """The generating pinion cutter at full depth."""
         pressure, ratio = self._generating_pressure_angle, self.cutter_teeth / self.teeth
         radius = ratio * self.base_radius
@@ -373,7 +373,7 @@ class RingGear(Toothing):
         shift = 2.0 * self.cutter_profile_shift_coefficient * math.tan(self.normal_pressure_angle)
         thickness = self.normal_module * (0.5 * math.pi + shift) + self.thickness_allowance
         half_angle = thickness / (self.cutter_teeth * self.normal_module)
-        return PinionCutter(
+        return _PinionCutter(
             teeth=self.cutter_teeth,
             base_radius=radius,
             base_half_angle=half_angle + involute_function(self.transverse_pressure_angle),
@@ -399,9 +399,9 @@ class RingGear(Toothing):
         return 0.5 * self.rim_diameter
 
     @cached_property
-    def trochoid(self) -> CutterTrochoid:
+    def trochoid(self) -> _CutterTrochoid:
         """The fillet of the right flank."""
-        return CutterTrochoid(self.cutter, math.pi / self.teeth)
+        return _CutterTrochoid(self.cutter, math.pi / self.teeth)
 
     @cached_property
     def form_point(self) -> FormPoint:

@@ -24,7 +24,7 @@ HALF = 0.5  # largest element of the plain ring, in parts of its thickness
 
 
 @dataclass(frozen=True)
-class Hub:
+class _Hub:
     """The ring without the sectors of the real teeth.
 
     Attributes
@@ -131,7 +131,7 @@ def hub(
     thickness: Sequence[float],
     teeth: IntArray,
     sign: int = 1,
-) -> Hub:
+) -> _Hub:
     """Join the meshes of the rings and name their boundary nodes.
 
     Parameters
@@ -157,7 +157,7 @@ def hub(
     def nodes(name: str) -> IntArray:
         return around[toothed.positions(name)] if name in names else np.empty(0, dtype=np.int64)
 
-    return Hub(
+    return _Hub(
         points=mesh.points,
         triangles=mesh.triangles,
         bottoms=np.array([nodes(f"bottom {j}")[::-1] for j in teeth]),
@@ -234,7 +234,7 @@ class GearMesh:
         Node of the gear mesh that each sector node is.
     hub_nodes : (n_hub,) int array
         Node of the gear mesh that each hub node is.
-    hub : Hub or None
+    hub : _Hub or None
         None if the sectors reach down to that circle.
     """
 
@@ -247,7 +247,7 @@ class GearMesh:
     sector: ToothSector
     sector_nodes: IntArray
     hub_nodes: IntArray
-    hub: Hub | None
+    hub: _Hub | None
 
 
 def real_teeth(teeth: int, modeled: int | None) -> IntArray:
@@ -257,7 +257,7 @@ def real_teeth(teeth: int, modeled: int | None) -> IntArray:
 
 
 def assemble(
-    sector: ToothSector, hub: Hub | None, teeth: IntArray, pitch_angle: float, normals: FloatArray
+    sector: ToothSector, hub: _Hub | None, teeth: IntArray, pitch_angle: float, normals: FloatArray
 ) -> GearMesh:
     """Join the sectors of `teeth` and the hub.
 
@@ -265,7 +265,7 @@ def assemble(
     ----------
     sector : ToothSector
         Mesh of one tooth.
-    hub : Hub or None
+    hub : _Hub or None
         The rest of the ring.
     teeth : (t,) int array
         Consecutive tooth numbers.
@@ -308,7 +308,7 @@ def _number_sectors(sector: ToothSector, count: int, closed: bool) -> IntArray:
     return nodes
 
 
-def _number_hub(sector: ToothSector, sector_nodes: IntArray, hub: Hub | None) -> IntArray:
+def _number_hub(sector: ToothSector, sector_nodes: IntArray, hub: _Hub | None) -> IntArray:
     """Return the number in the gear of every hub node; shared ones keep the sectors' numbers."""
     if hub is None:
         return np.empty(0, dtype=np.int64)
@@ -351,7 +351,7 @@ def mesh_gear(
     MeshError
         gmsh failed, was killed or ran out of time, or an element misses its quality limit.
     """
-    recipe, filling = recipe or MeshRecipe.standard(gear), Filling(limits or QualityLimits(), seconds)
+    recipe, filling = recipe or MeshRecipe.standard(gear), _Filling(limits or QualityLimits(), seconds)
     profile = tooth_profile(gear)
     teeth = real_teeth(gear.teeth, recipe.real_teeth)
     bottom_radius = _sector_bottom(gear, profile, all_real=len(teeth) == gear.teeth)
@@ -371,7 +371,7 @@ def _sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> flo
 
 
 @dataclass(frozen=True)
-class Filling:
+class _Filling:
     """Limits on filling outlines with elements: quality, and time in s."""
 
     limits: QualityLimits
@@ -386,7 +386,7 @@ class Filling:
 
 
 def _mesh_sector(
-    profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe, filling: Filling
+    profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe, filling: _Filling
 ) -> ToothSector:
     outline = tooth_outline(profile, bottom_radius, recipe)
     scale = profile.gear.normal_module
@@ -394,8 +394,8 @@ def _mesh_sector(
 
 
 def _mesh_hub(
-    gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe, filling: Filling
-) -> Hub:
+    gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe, filling: _Filling
+) -> _Hub:
     """Mesh the rest of the ring: of a solid gear in one piece, else what is left of the rim, web and hub."""
     toothed = _hub_outline(gear, sector, teeth, recipe)
     rings = _inner_rings(gear, float(np.linalg.norm(sector.points[sector.bottom[0]])), recipe)

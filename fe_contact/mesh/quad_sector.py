@@ -160,7 +160,7 @@ def _with_middles(x: FloatArray) -> FloatArray:
     return out
 
 
-def graded(length: float, size: Callable[[float], float], start: float = 0.0) -> FloatArray:
+def _graded(length: float, size: Callable[[float], float], start: float = 0.0) -> FloatArray:
     """Divide 0 .. length into parts of about size(start + x), x where a part begins."""
     x = [0.0]
     while x[-1] < length:
@@ -177,7 +177,7 @@ def _flank_divisions(profile: ToothProfile, split: float, recipe: SectorRecipe) 
         return min(recipe.flank_size, recipe.tip_size + recipe.tip_growth * x)
 
     below = max(1, int(np.ceil((profile.s_form - split) / recipe.flank_size)))
-    involute = profile.s_tip - graded(profile.s_tip - profile.s_form, size)[::-1]
+    involute = profile.s_tip - _graded(profile.s_tip - profile.s_form, size)[::-1]
     return np.concatenate([np.linspace(split, profile.s_form, below + 1)[:-1], involute])
 
 
@@ -187,7 +187,7 @@ def _tooth_divisions(half_width: float, recipe: SectorRecipe) -> FloatArray:
     def size(x: float, factor: float) -> float:
         return min(recipe.depth_limit, factor * recipe.depth_size + recipe.depth_growth * x)
 
-    loaded, coast = (graded(half_width, partial(size, factor=factor)) for factor in (1.0, 1.5))
+    loaded, coast = (_graded(half_width, partial(size, factor=factor)) for factor in (1.0, 1.5))
     return np.concatenate([loaded, 2.0 * half_width - coast[-2::-1]]) / (2.0 * half_width)
 
 
@@ -206,11 +206,11 @@ def _body_divisions(gear: Toothing, recipe: SectorRecipe) -> tuple[FloatArray, t
 
     depth, web = gear.body_depth, gear.web
     if web is None:
-        return graded(depth, size) / depth, (0, 0)
+        return _graded(depth, size) / depth, (0, 0)
     rim, hub = gear.root_radius - web.outer_radius, gear.root_radius - web.inner_radius
     ends, x = [0.0, rim, hub, depth][: 4 if hub < depth else 3], [np.zeros(1)]
     for low, high in pairwise(ends):
-        x.append(low + graded(high - low, size, low)[1:])
+        x.append(low + _graded(high - low, size, low)[1:])
     return np.concatenate(x) / depth, (-len(x[1]) - len(x[2]), -len(x[1]))
 
 

@@ -16,7 +16,7 @@ from fe_contact.types import Json
 # The recipe of a gear's mesh: element sizes, real teeth, limits.
 
 
-class HasNormalModule(Protocol):
+class _HasNormalModule(Protocol):
     """Anything that knows its normal module in m."""
 
     @property
@@ -69,7 +69,7 @@ class MeshRecipe:
                 raise InputError("real_teeth", self.real_teeth, "odd", "The teeth are centered on tooth 0.")
 
     @classmethod
-    def standard(cls, gear: HasNormalModule) -> MeshRecipe:
+    def standard(cls, gear: _HasNormalModule) -> MeshRecipe:
         """Return the recipe of everyday use: sizes in proportion to the normal module of `gear`."""
         m = gear.normal_module
         return cls(

@@ -26,7 +26,7 @@ THINNEST = 0.01  # rim that still limits the element size by its thickness, in n
 
 
 @dataclass(frozen=True)
-class ToothOutline:
+class _ToothOutline:
     """Right half of the sector of one tooth.
 
     Pieces: ``bottom`` (from the center line to the side), ``side`` (to the root), ``land`` (root circle) and
@@ -45,7 +45,7 @@ class ToothOutline:
     s: FloatArray
 
 
-def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe) -> ToothOutline:
+def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe) -> _ToothOutline:
     """Divide the boundary of half a tooth sector.
 
     Parameters
@@ -64,7 +64,7 @@ def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecip
     inner = _inner_pieces(surface, 0.5 * profile.pitch_angle, bottom_radius, recipe)
     s = np.empty(2 * len(ends) - 1)
     s[::2], s[1::2] = ends, middles(ends)
-    return ToothOutline(Outline((*inner[:2], *surface, inner[2])), s)
+    return _ToothOutline(Outline((*inner[:2], *surface, inner[2])), s)
 
 
 def _lowest_flank_node(profile: ToothProfile, recipe: MeshRecipe) -> float:
@@ -200,7 +200,7 @@ class ToothSector:
     s: FloatArray
 
 
-def tooth_sector(half: QuadraticMesh, outline: ToothOutline) -> ToothSector:
+def tooth_sector(half: QuadraticMesh, outline: _ToothOutline) -> ToothSector:
     """Join the mesh of the right half of a sector with its mirror image."""
     (boundary,) = half.boundary
     center = boundary[outline.outline.positions("center")]

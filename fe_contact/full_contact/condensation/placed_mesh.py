@@ -40,7 +40,7 @@ Size = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)
-class GearBoundary:
+class _GearBoundary:
     """Closed loops around one gear in its own frame, tooth 0 on +y.
 
     Attributes
@@ -58,7 +58,7 @@ class GearBoundary:
 
 def _gear_boundary(
     gear: Toothing, teeth: IntArray, strips: Mapping[int, SizedStrip], resolution: Resolution
-) -> GearBoundary:
+) -> _GearBoundary:
     """Divide the boundary of a gear.
 
     Parameters
@@ -78,7 +78,7 @@ def _gear_boundary(
         pieces += made
     if len(teeth) < gear.teeth:
         pieces.append(_plain_ring(gear, pieces, gear.teeth - len(teeth), resolution))
-    return GearBoundary(Outline(tuple(pieces)), _held_circle(gear, resolution), s)
+    return _GearBoundary(Outline(tuple(pieces)), _held_circle(gear, resolution), s)
 
 
 def _size_near(gear: Toothing, strips: Mapping[int, SizedStrip], resolution: Resolution) -> Size:
@@ -284,7 +284,7 @@ def _teeth(pair: ParallelAxes, gear: Toothing, sites: Sequence[ContactSite]) -> 
 def _strip(
     gear: Toothing,
     mesh: QuadraticMesh,
-    boundary: GearBoundary,
+    boundary: _GearBoundary,
     tooth: int,
     site: ContactSite,
     number: int,

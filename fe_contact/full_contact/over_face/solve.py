@@ -100,7 +100,7 @@ def _over_functions(sections: FloatArray, products: FloatArray, functions: int) 
 
 
 @dataclass(frozen=True)
-class FaceGeometry:
+class _FaceGeometry:
     """Two condensed bodies over their face that may touch at sites.
 
     Displacements of a gear are those of the functions of its strips, (2, 2 k f) flat: in the half of positive
@@ -220,7 +220,7 @@ class FaceGeometry:
 class _Sections:
     """Sections of a pair across its axes in one configuration."""
 
-    geometry: FaceGeometry
+    geometry: _FaceGeometry
     at: Configuration
 
     @cached_property
@@ -316,7 +316,7 @@ class WholeFace:
             extruded_body(mesh, over, material) for mesh, material in zip(meshes, materials, strict=True)
         ]
         both = bodies[0], bodies[1]
-        contacts = tuple(FaceGeometry(pair, sites, both, growth) for growth in self.misalignments)
+        contacts = tuple(_FaceGeometry(pair, sites, both, growth) for growth in self.misalignments)
         return contacts, sum(body.unknowns for body in bodies)
 
     def _opened(self, pair: ParallelAxes) -> FloatArray:
