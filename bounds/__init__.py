@@ -1,10 +1,12 @@
 """The declaration of fields as data: bounds, quantities, checks, findings.
 
 Both libraries raise their input errors through this package, which knows neither of them. It depends on numpy
-alone.
+and annotated_types alone.
 """
 
 from __future__ import annotations
+
+from annotated_types import Interval
 
 from bounds.bound import (
     LIMIT_SLACK,
@@ -16,6 +18,7 @@ from bounds.bound import (
     below,
     between,
     exactly,
+    from_to,
     integers,
     one_of,
     up_to,
@@ -48,6 +51,7 @@ __all__ = [
     "Direction",
     "FieldName",
     "Finding",
+    "Interval",
     "Kind",
     "PlausibilityWarning",
     "Quantity",
@@ -68,6 +72,7 @@ __all__ = [
     "engineering",
     "exactly",
     "finding_of",
+    "from_to",
     "inside",
     "integers",
     "leftover",

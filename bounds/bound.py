@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
+from annotated_types import Interval
+
 from bounds.text import NOTHING, Reader, Text, Words
 
 LIMIT_SLACK = 1e-12
@@ -43,6 +45,12 @@ class Bound:
     low_name: str = ""
     high_name: str = ""
     note: Text = NOTHING
+
+    @classmethod
+    def of(cls, ends: Interval, *, integer: bool = False, unit: str = "") -> Bound:
+        """Return the bound of a static range."""
+        low, high = (ends.ge if ends.gt is None else ends.gt), (ends.le if ends.lt is None else ends.lt)
+        return cls(low, high, ends.gt is not None, ends.lt is not None, integer, unit)  # type: ignore[arg-type]
 
     def holds(self, value: float) -> bool:
         """Whether a finite number is accepted; an end that belongs to the range is so but for rounding."""
@@ -96,11 +104,6 @@ def above(low: float, unit: str = "", name: str = "", note: Words = "") -> Bound
     return Bound(low=low, low_open=True, unit=unit, low_name=name, note=Text.of(note))
 
 
-def up_to(high: float) -> Bound:
-    """Return the bound above 0 up to `high`."""
-    return Bound(low=0.0, high=high, low_open=True)
-
-
 def at_least(low: float, unit: str = "", name: str = "", note: Words = "") -> Bound:
     """Return the bound from `low`, which is the quantity called `name`."""
     return Bound(low=low, unit=unit, low_name=name, note=Text.of(note))
@@ -116,7 +119,7 @@ def at_most(high: float, unit: str = "", name: str = "", note: Words = "") -> Bo
     return Bound(high=high, unit=unit, high_name=name, note=Text.of(note))
 
 
-def between(low: float, high: float, unit: str = "", high_name: str = "", note: Words = "") -> Bound:
+def from_to(low: float, high: float, unit: str = "", high_name: str = "", note: Words = "") -> Bound:
     """Return the bound from `low` to `high`, both accepted; `high` is the quantity called `high_name`."""
     return Bound(low=low, high=high, unit=unit, high_name=high_name, note=Text.of(note))
 
@@ -126,11 +129,24 @@ def exactly(value: float, note: Words = "") -> Bound:
     return Bound(low=value, high=value, note=Text.of(note))
 
 
-def integers(low: int, high: int) -> Bound:
-    """Return the integers from `low` to `high`."""
-    return Bound(low=low, high=high, integer=True)
-
-
 def one_of(names: Collection[str]) -> Choice:
     """Return the choice of `names`."""
     return Choice(tuple(names))
+
+
+# Static ranges of declared fields, which `pydantic` checks too.
+
+
+def between(low: float, high: float) -> Interval:
+    """Return the range from `low` to `high`, both accepted."""
+    return Interval(ge=low, le=high)
+
+
+def up_to(high: float) -> Interval:
+    """Return the range above 0 up to `high`."""
+    return Interval(gt=0.0, le=high)
+
+
+def integers(low: int, high: int) -> Interval:
+    """Return the range of a count from `low` to `high`."""
+    return Interval(ge=low, le=high)

@@ -10,7 +10,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from bounds.bound import Bound, Choice, above, at_least, between, integers, one_of
+from bounds.bound import Bound, Choice, above, at_least, from_to, one_of
 from bounds.declared import declarations
 from bounds.text import Reader, SiNote, Text, Words
 from bounds.types import FloatArray
@@ -100,7 +100,7 @@ class Checks:
 
     def within(self, field: str, value: float, low: float, high: float, suggestion: Words = "") -> float:
         """Return `value` if low <= value <= high, but for rounding."""
-        return self.in_bound(field, value, between(low, high), suggestion)
+        return self.in_bound(field, value, from_to(low, high), suggestion)
 
     def positive(self, field: str, value: float, suggestion: Words = "") -> float:
         """Return `value` if it is finite and above zero."""
@@ -113,7 +113,7 @@ class Checks:
     def integer(self, field: str, value: int, low: int, high: int, suggestion: Words = "") -> int:
         """Return `value` if it is an integer from `low` to `high`."""
         if isinstance(value, bool) or not isinstance(value, int | np.integer) or not low <= value <= high:
-            raise self.refused(field, value, integers(low, high), suggestion)
+            raise self.refused(field, value, Bound(low, high, integer=True), suggestion)
         return int(value)
 
     def one_of(self, field: str, value: str, names: Collection[str], suggestion: Words = "") -> str:
@@ -137,12 +137,13 @@ class Checks:
             value, advice = getattr(thing, field), SiNote(f"In {fact.unit}, for example {fact.example}.")
             if value is None and defaults[field] is None:
                 continue
-            if isinstance(fact.bound, Choice):
-                self.one_of(field, value, fact.bound.names)
-            elif isinstance(fact.bound, Bound) and fact.bound.integer:
-                self.integer(field, value, int(fact.bound.low or 0), int(fact.bound.high or 0))
-            elif isinstance(fact.bound, Bound):
-                self.in_bound(field, value, fact.bound, advice if fact.unit else "")
+            limits = fact.limits
+            if isinstance(limits, Choice):
+                self.one_of(field, value, limits.names)
+            elif limits is not None and limits.integer:
+                self.integer(field, value, int(limits.low or 0), int(limits.high or 0))
+            elif limits is not None:
+                self.in_bound(field, value, limits, advice if fact.unit else "")
 
     def increasing(
         self, field: str, values: Sequence[float] | FloatArray, suggestion: Words = ""

@@ -10,6 +10,8 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any, TypeVar, cast
 
+from annotated_types import Interval
+
 from bounds.bound import Bound, Choice
 
 Thing = TypeVar("Thing")
@@ -74,8 +76,8 @@ class Declared:
     kind : Kind
     unit : str
         Symbol of its SI unit; empty for none.
-    bound : Bound, Choice or None
-        What is accepted whatever the other fields are; None is left to the value itself.
+    bound : Interval, Choice or None
+        What is accepted whatever the other fields are, in SI; None is left to the value itself.
     description : str
         What it is. Its unit is added, before the first semicolon, by who writes it out.
     example : object
@@ -89,17 +91,28 @@ class Declared:
     later : bool
         Whether the field came after results had been stored. At its default it is not written out, so that
         what says nothing of it keeps the address of its result.
+    with_unit : bool
+        Whether a message has the unit behind the ends of the range.
     """
 
     kind: Kind
     unit: str
-    bound: Bound | Choice | None
+    bound: Interval | Choice | None
     description: str
     example: Any = None
     along: Direction = Direction.NONE
     written: str = ""
     part: type | None = None
     later: bool = False
+    with_unit: bool = False
+
+    @property
+    def limits(self) -> Bound | Choice | None:
+        """What is accepted, as a message says it."""
+        if not isinstance(self.bound, Interval):
+            return self.bound
+        unit = self.unit if self.with_unit else ""
+        return Bound.of(self.bound, integer=self.kind is Kind.COUNT, unit=unit)
 
 
 def declared(default: Any, declaration: Declared) -> Any:

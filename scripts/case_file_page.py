@@ -50,9 +50,9 @@ def accepted(figure: Figure) -> str:
         return "`true` or `false`"
     if isinstance(bound, Choice):
         return ", ".join(f'`"{name}"`' for name in bound.names)
-    if "gt" in limits:
-        return f"Above {limits['gt']:.7g}, at most {limits['le']:.7g}"
-    return f"{limits['ge']:.7g} to {limits['le']:.7g}"
+    if limits.gt is not None:
+        return f"Above {limits.gt:.7g}, at most {limits.le:.7g}"
+    return f"{limits.ge:.7g} to {limits.le:.7g}"
 
 
 def default(figure: Figure) -> str:

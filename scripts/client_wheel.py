@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[1]
-NEEDS = ("numpy", "pydantic", "httpx2")
+NEEDS = ("numpy", "pydantic", "annotated-types", "httpx2")
 _LOADED = """
 import importlib, json, pkgutil, sys
 import lineofaction.client

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bounds import between
+from bounds import from_to
 from dynamics.acoustics.air import Air
 from dynamics.acoustics.hull import Hull
 from dynamics.acoustics.levels import a_weighting, sound_power_level
@@ -100,7 +100,7 @@ class ModalResistance:
         low, high = float(self.frequency[0]), float(self.frequency[-1])
         if not np.all((frequency >= low) & (frequency <= high)):
             outside = frequency[(frequency < low) | (frequency > high)][0]
-            raise InputError("frequency", float(outside), between(low, high, "Hz", "the computed"))
+            raise InputError("frequency", float(outside), from_to(low, high, "Hz", "the computed"))
         interval = np.searchsorted(self.frequency[1:-1], frequency, "right")
         for knot in np.unique(np.concatenate([interval, interval + 1])):
             near = (interval == knot) | (interval + 1 == knot)

@@ -18,7 +18,7 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
-from bounds import between
+from bounds import from_to
 from dynamics.bearings.ball_bearing import BallBearing
 from dynamics.bearings.row import CatalogLine
 from dynamics.errors import InputError
@@ -65,7 +65,7 @@ def from_catalog(
     least, most = (_filled_rating(diameter, pitch) for diameter in (_smallest(pitch), largest))
     if not least <= static_rating <= most:
         suggestion = "Check its unit: no deep groove ball bearing of this section has such a rating."
-        raise InputError("static_rating", static_rating, between(least, most, "N"), suggestion)
+        raise InputError("static_rating", static_rating, from_to(least, most, "N"), suggestion)
     choices = [(count, _diameter(count, pitch, static_rating)) for count in NUMBERS]
     count, diameter = min(choices, key=lambda row: abs(_filled(row[0], row[1], pitch) - FILLED))
     return BallBearing(count, diameter, pitch, clearance=clearance)

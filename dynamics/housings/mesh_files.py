@@ -15,7 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
-from bounds import between
+from bounds import from_to
 from dynamics.checks import one_of, positive
 from dynamics.errors import InputError, SolveError
 from dynamics.housings.quadrature import over_volume, tetrahedron
@@ -29,7 +29,7 @@ from host import READING, ChildFailed, ChildOutOfMemory, ask_child
 
 LEAST_SHAPE = 0.02
 """A sliver: its volume is that part of a regular tetrahedron's with edges of the same mean square."""
-SIZE = between(5e-3, 50.0, "m")
+SIZE = from_to(5e-3, 50.0, "m")
 FIELD = "mesh_file"
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bounds import between
+from bounds import from_to
 from dynamics.errors import InputError
 from dynamics.identity_cache import identity_cached
 from dynamics.kernels.compiled import compiled, inner
@@ -226,6 +226,6 @@ def _at_force(level: FloatArray, values: FloatArray, force: float) -> FloatArray
 def _weights(field: str, knots: FloatArray, value: float) -> FloatArray:
     knots = np.atleast_1d(np.asarray(knots, dtype=float))
     if not knots[0] <= value <= knots[-1]:
-        bound = between(float(knots[0]), float(knots[-1]), "m", note=", the table's")
+        bound = from_to(float(knots[0]), float(knots[-1]), "m", note=", the table's")
         raise InputError(field, value, bound, "Compute the table for this operating point.")
     return np.array([np.interp(value, knots, unit) for unit in np.eye(knots.size)])

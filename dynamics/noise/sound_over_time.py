@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bounds import at_least, between
+from bounds import at_least, from_to
 from dynamics.acoustics import a_weighting, sound_power_level
 from dynamics.acoustics.recording import LOWEST
 from dynamics.errors import InputError
@@ -126,7 +126,7 @@ def sound_over_time(
     samples, rate = round(block * result.sample_rate), result.sample_rate
     if not 4 * LEAKAGE <= samples <= result.time.size:
         raise InputError(
-            "block", block, between(4 * LEAKAGE / rate, result.time.size / rate, "s", "the run's")
+            "block", block, from_to(4 * LEAKAGE / rate, result.time.size / rate, "s", "the run's")
         )
     velocities = _blocks(_velocity(result, housing, bearings), samples)
     starts = np.arange(0, result.time.size - samples + 1, samples // 2)

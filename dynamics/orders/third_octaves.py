@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bounds import Bound, at_least, at_most, between
+from bounds import Bound, at_least, at_most, from_to
 from dynamics.checks import integer
 from dynamics.errors import InputError
 from dynamics.orders.resampling import check_series, checked_order, resample_to_position
@@ -153,7 +153,7 @@ def frequency_waterfall(
     unit = check_series(result, series)
     length = round(block * result.sample_rate)
     if not 4 <= length <= result.time.size:
-        bound = between(4.0 / result.sample_rate, float(result.time[-1]), "s", "the run's")
+        bound = from_to(4.0 / result.sample_rate, float(result.time[-1]), "s", "the run's")
         raise InputError("block", block, bound)
     blocks = _blocks(result.time.size, length, overlap)
     values = getattr(result, series)

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from bounds import Quantity, Text, at_most, between
+from bounds import Quantity, Text, at_most, from_to
 from dynamics.bearings import Bushing, PlanetBearing, RollingBearing
 from dynamics.bearings.bearing_law import BearingLaw
 from dynamics.bearings.matrix import least_share
@@ -239,7 +239,7 @@ def _check_positions(shafts: Sequence[Shaft], kind: str, parts: Sequence[OnShaft
     length = {shaft.name: shaft.length for shaft in shafts}
     for index, part in enumerate(parts):
         if not on_length(part.position, length[part.shaft]):
-            ends = between(0.0, length[part.shaft], "m")
+            ends = from_to(0.0, length[part.shaft], "m")
             bound = Text.of(f'on the shaft "{part.shaft}", ', ends, " from its left end")
             advice = "Lengthen the shaft, or move what sits on it."
             raise InputError(f"{kind}[{index}].position", part.position, bound, advice)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bounds import Bound, Declared, Kind, above, declared, described, one_of, up_to
+from bounds import Declared, Interval, Kind, above, declared, described, one_of, up_to
 from dynamics.checks import declared_fields, integer, positive
 from dynamics.errors import InputError
 
@@ -25,9 +25,7 @@ _TOLERANCE = Declared(
     written="nm",
 )
 _FIXED = Declared(Kind.TIME, "s", up_to(1.0), "Step; left out: chosen by error control", 1e-5)
-_LARGEST = Declared(
-    Kind.TIME, "s", Bound(1e-12, 1.0, low_open=True), "Largest step of the error control", 1e-3
-)
+_LARGEST = Declared(Kind.TIME, "s", Interval(gt=1e-12, le=1.0), "Largest step of the error control", 1e-3)
 
 
 @described

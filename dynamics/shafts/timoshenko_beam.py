@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bounds import Text, above, between
+from bounds import Text, above, from_to
 from dynamics.checks import finite
 from dynamics.errors import InputError
 from dynamics.shafts.beam_section import BeamSection
@@ -215,7 +215,7 @@ def timoshenko_beam(
     length = float(ends[-1])
     for index, station in enumerate(stations):
         if not on_length(finite(f"stations[{index}]", station), length):
-            bound = Text.of("on the beam, ", between(0.0, length, "m"))
+            bound = Text.of("on the beam, ", from_to(0.0, length, "m"))
             raise InputError(f"stations[{index}]", station, bound)
     starts = zip(sections, ends, strict=False)
     graded = [start + share * part.length for part, start in starts for share in part.grading]

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bounds import between
+from bounds import from_to
 from fe_contact.errors import InputError
 from fe_contact.flank.involute import involute_normal, involute_point
 from fe_contact.geometry.toothing import Toothing
@@ -147,7 +147,7 @@ class FlankProfile:
         where = np.asarray(s, dtype=float)
         slack = 1e-9 * self.gear.normal_module
         if not np.all((where >= self.s_space - slack) & (where <= self.s_tip + slack)):
-            bound = between(self.s_space, self.s_tip, "m")
+            bound = from_to(self.s_space, self.s_tip, "m")
             raise InputError("s", s, bound, "Flank coordinates run from s_space to s_tip.")
         return np.asarray(np.clip(where, self.s_space, self.s_tip), dtype=float)
 

@@ -22,6 +22,7 @@ from bounds import (
     between,
     declared,
     described,
+    from_to,
     required,
 )
 from fe_contact.body import CLAMPED, BoreSeat, GearBlank, Web
@@ -56,11 +57,11 @@ def _refuse_misfit_seat(gear: Toothing) -> None:
     seat, face = gear.seat, gear.face_width
     width = face if seat.width is None else seat.width
     if not NARROWEST * face * (1.0 - LIMIT_SLACK) <= width <= (1.0 + 1e-9) * face:
-        bound = between(NARROWEST * face, face, "m", "the face width")
+        bound = from_to(NARROWEST * face, face, "m", "the face width")
         raise InfeasibleGeometry("seat", "seat.width", seat.width, bound, "Leave it out for the face width.")
     room = 0.5 * (face - width)
     if abs(seat.offset) > room + 1e-9 * face:
-        bound = between(-room, room, "m", note=", so that the seat stays within the face")
+        bound = from_to(-room, room, "m", note=", so that the seat stays within the face")
         raise InfeasibleGeometry("seat", "seat.offset", seat.offset, bound, "Lower the offset or the width.")
     around = 2.0 * math.pi * gear.held_radius
     if seat.key is not None and seat.key.width > (1.0 + 1e-9) * around:
@@ -129,12 +130,12 @@ def _refuse_web(gear: Toothing, blank: GearBlank) -> None:
     """Refuse a web that is a foil, or that leaves the face."""
     least = THINNEST_WEB * gear.face_width
     if not least * (1.0 - LIMIT_SLACK) <= blank.web_thickness <= (1.0 + 1e-9) * gear.face_width:
-        bound = between(least, gear.face_width, "m", "the face width")
+        bound = from_to(least, gear.face_width, "m", "the face width")
         advice = "A web as thick as the face is wide is a solid gear."
         raise InfeasibleGeometry("web", "blank.web_thickness", blank.web_thickness, bound, advice)
     room = 0.5 * (gear.face_width - blank.web_thickness)
     if abs(blank.web_offset) > room + 1e-9 * gear.face_width:
-        bound = between(-room, room, "m", note=", so that the web stays within the face")
+        bound = from_to(-room, room, "m", note=", so that the web stays within the face")
         advice = "Lower the offset or the web thickness."
         raise InfeasibleGeometry("web", "blank.web_offset", blank.web_offset, bound, advice)
 
@@ -163,7 +164,9 @@ def _refuse_pointed_tooth(gear: Toothing) -> None:
         raise InfeasibleGeometry("pointed tooth", "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
 
 
-_BORE = Declared(Kind.LENGTH, "m", between(1e-6, 500.0, "m"), "Bore diameter; below the root diameter", 0.04)
+_BORE = Declared(
+    Kind.LENGTH, "m", between(1e-6, 500.0), "Bore diameter; below the root diameter", 0.04, with_unit=True
+)
 _BLANK = "Rim, web and hub; left out: a solid body"
 _SEAT = "Seat of the bore; left out: the whole bore is fixed"
 

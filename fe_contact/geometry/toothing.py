@@ -124,7 +124,7 @@ def counted(low: int, high: int) -> Declared:
     return Declared(Kind.COUNT, "", integers(low, high), "Number of teeth", 20)
 
 
-_FACE = Declared(Kind.LENGTH, "m", between(1e-6, 50.0, "m"), "Face width b", 0.025)
+_FACE = Declared(Kind.LENGTH, "m", between(1e-6, 50.0), "Face width b", 0.025, with_unit=True)
 _LIMIT = math.radians(50.0)
 _HELIX = Declared(
     Kind.ANGLE,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bounds import Text, between
+from bounds import Text, from_to
 from fe_contact.errors import InputError
 from fe_contact.ste.curve_errors import OperatingPoint, all_sources, errors_by_source
 from fe_contact.ste.curve_quantities import HARMONICS, Spectrum, even_positions, spectrum
@@ -240,6 +240,6 @@ def _positions(at: ArrayLike, farthest: int) -> FloatArray:
     """Positions as a finite 1-D array of moderate reach."""
     position = np.atleast_1d(np.asarray(at, dtype=float))
     if position.ndim != 1 or position.size == 0 or not np.all(np.abs(position) <= farthest):
-        reach = between(-farthest, farthest)
+        reach = from_to(-farthest, farthest)
         raise InputError("at", at, Text.of("a non-empty list of positions ", reach, " base pitches"))
     return position

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bounds import between
+from bounds import from_to
 from fe_contact.errors import InputError
 from fe_contact.ste import curve as curves
 from fe_contact.ste import extraction, netcdf, repair
@@ -267,7 +267,7 @@ def _require_inside(database: SteDatabase, other: SteDatabase) -> None:
     for name in ("force", "misalignment", "center_distance_change"):
         inner, outer = getattr(other, name), getattr(database, name)
         if inner[0] < outer[0] or inner[-1] > outer[-1]:
-            raise InputError(f"other.{name}", inner.tolist(), between(float(outer[0]), float(outer[-1])))
+            raise InputError(f"other.{name}", inner.tolist(), from_to(float(outer[0]), float(outer[-1])))
     if other.position.size < 2:
         raise InputError("other.position", other.position.tolist(), "two or more positions")
 

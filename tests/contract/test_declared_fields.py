@@ -100,7 +100,7 @@ def test_the_schema_has_the_bound_of_the_library(figure: Figure) -> None:
         return
     for end in (schema["minimum"], schema["maximum"]):
         value = end * figure.unit.factor
-        assert figure.what.bound.holds(value)
+        assert figure.what.limits.holds(value)
         beyond = value + (1e-9 if end == schema["maximum"] else -1e-9)
         with pytest.raises(InputError) as caught:
             FlankModification(**{figure.name: beyond})
@@ -150,7 +150,7 @@ def test_a_body_of_a_case_means_that_of_the_library(kind: type[Any]) -> None:
 )
 def test_a_body_is_refused_beyond_its_bound_by_case_and_library(kind: type[Any], figure: Figure) -> None:
     place, facts = BODIES[kind]
-    beyond = 1.01 * figure.what.bound.high
+    beyond = 1.01 * figure.what.bound.le
     with pytest.raises(InputError) as caught:
         kind(**facts | {figure.name: beyond})
     assert caught.value.field == figure.name
@@ -198,10 +198,10 @@ def test_a_gear_of_a_case_means_that_of_the_library(kind: type[Any], figure: Fig
 
 @OF_GEARS
 def test_a_gear_is_refused_beyond_its_bound_by_case_and_library(kind: type[Any], figure: Figure) -> None:
-    beyond = 2 * figure.what.bound.high
+    beyond = 2 * figure.what.bound.le
     with pytest.raises(InputError) as caught:
         replace(GEARS[kind], **{figure.name: type(figure.what.example)(beyond)})
-    assert (caught.value.field, caught.value.bound) == (figure.name, figure.what.bound)
+    assert (caught.value.field, caught.value.bound) == (figure.name, figure.what.limits)
     table, gear = case_of(kind)
     place = "pair" if figure in SHARED else f"pair.{gear}"
     assert case_field(f"{gear}.{figure.name}") == f"{place}.{figure.field}"
@@ -226,10 +226,10 @@ def test_a_case_takes_as_few_and_as_many_teeth_as_the_library(kind: type[Any], t
 def test_a_pair_is_refused_beyond_its_largest_center_distance_by_case_and_library() -> None:
     (figure,) = figures(GearPair)
     with pytest.raises(InputError) as caught:
-        GearPair(GEARS[Gear], GEARS[Gear], 2 * figure.what.bound.high)
-    assert (caught.value.field, caught.value.bound) == ("center_distance", figure.what.bound)
+        GearPair(GEARS[Gear], GEARS[Gear], 2 * figure.what.bound.le)
+    assert (caught.value.field, caught.value.bound) == ("center_distance", figure.what.limits)
     table = json.loads(json.dumps(CASE))
-    table["pair"]["center_distance_mm"] = figure.own(2 * figure.what.bound.high)
+    table["pair"]["center_distance_mm"] = figure.own(2 * figure.what.bound.le)
     with pytest.raises(ValidationError) as refused:
         Case.model_validate_json(json.dumps(table))
     assert "pair.center_distance_mm" in str(refused.value)

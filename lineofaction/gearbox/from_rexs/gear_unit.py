@@ -213,9 +213,10 @@ def bounded_number(part: Part, item: str, words: str, field: Declared) -> float 
         As of `Part.number`.
     """
     value, attribute = part.number(item, words), part.attribute(item)
-    if value is None or attribute is None or not isinstance(field.bound, Bound) or field.bound.holds(value):
+    limits = field.limits
+    if value is None or attribute is None or not isinstance(limits, Bound) or limits.holds(value):
         return value
-    part.say(item, "refused", f"{attribute.value} {attribute.unit} is not {field.bound} {field.unit}")
+    part.say(item, "refused", f"{attribute.value} {attribute.unit} is not {limits} {field.unit}")
     return None
 
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import Field, create_model
 
-from bounds import Bound, Choice, Declared, Direction, Kind, Unit, declarations
+from bounds import Choice, Declared, Direction, Interval, Kind, Unit, declarations
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.units import BY_SUFFIX, as_typed, suffix_of
 
@@ -50,15 +50,16 @@ class Figure:
         return self.name.replace("_", " ")
 
     @property
-    def limits(self) -> dict[str, Any]:
-        """The ends of what is accepted by pydantic's names; none for a choice of names."""
+    def limits(self) -> Interval:
+        """The range in the unit of the boundary; without ends for a choice of names."""
         bound = self.what.bound
-        if not isinstance(bound, Bound):
-            return {}
-        low = {"gt" if bound.low_open else "ge": bound.low}
-        ends = low | {"lt" if bound.high_open else "le": bound.high}
-        number = int if bound.integer else float
-        return {name: self.own(number(end)) for name, end in ends.items() if end is not None}
+        if not isinstance(bound, Interval):
+            return Interval()
+        number = int if self.what.kind is Kind.COUNT else float
+        ends = {name: getattr(bound, name) for name in ("gt", "ge", "lt", "le")}
+        return Interval(
+            **{name: None if end is None else self.own(number(end)) for name, end in ends.items()}
+        )
 
     @property
     def accepted(self) -> Any:
@@ -68,7 +69,7 @@ class Figure:
         if self.what.kind is Kind.SWITCH:
             return bool
         plain: Any = int if self.what.kind is Kind.COUNT else float
-        number = Annotated[plain, Field(**self.limits)]
+        number = Annotated[plain, *self.limits]
         return number | None if self.default is None else number
 
     def own(self, value: Any) -> Any:

@@ -233,7 +233,7 @@ class CouplingInput(BoundaryModel):
 
 
 _PIN = next(figure for figure in figures(PlanetBearing) if figure.name == "radial_error")
-PinErrors = Annotated[tuple[Annotated[float, Field(**_PIN.limits)], ...], Strict(False)]
+PinErrors = Annotated[tuple[Annotated[float, *_PIN.limits], ...], Strict(False)]
 
 
 class PlanetsInput(BoundaryModel):

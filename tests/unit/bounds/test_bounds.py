@@ -23,8 +23,8 @@ from bounds import (
     at_least,
     at_most,
     below,
-    between,
     exactly,
+    from_to,
     integers,
     one_of,
 )
@@ -73,7 +73,7 @@ def test_a_limit_with_few_digits_is_written_with_few() -> None:
 
 
 def test_integers_are_written_out() -> None:
-    assert str(integers(0, 2**62)) == f"an integer from 0 to {2**62}"
+    assert str(Bound.of(integers(0, 2**62), integer=True)) == f"an integer from 0 to {2**62}"
 
 
 @pytest.mark.parametrize("reader", [Reader("length"), InMillimeters("length")], ids=["si", "mm"])
@@ -101,11 +101,11 @@ def test_both_ends_of_a_range_are_accepted_as_written(reader: Reader) -> None:
         ),
         (below(0.07, "m"), "below 0.07 m", "below 70 mm"),
         (at_most(0.07), "at most 0.07", "at most 70"),
-        (between(-5e-4, 1.0), "from -0.0005 to 1", "from -0.5 to 1000"),
+        (from_to(-5e-4, 1.0), "from -0.0005 to 1", "from -0.5 to 1000"),
         (Bound(0.0, 1.0, high_open=True), "from 0 to below 1", "from 0 to below 1000"),
         (Bound(0.0, 1.0, low_open=True), "above 0 and at most 1", "above 0 and at most 1000"),
         (exactly(0.025, ", to fit"), "0.025, to fit", "25, to fit"),
-        (between(-0.0, 0.0, "m", note=", in the middle"), "0 m, in the middle", "0 mm, in the middle"),
+        (from_to(-0.0, 0.0, "m", note=", in the middle"), "0 m, in the middle", "0 mm, in the middle"),
         (at_least(-0.0), "at least 0", "at least 0"),
         (one_of(("on", "off")), 'one of "on", "off"', 'one of "on", "off"'),
         (one_of(()), "absent", "absent"),

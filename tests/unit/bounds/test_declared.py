@@ -17,6 +17,7 @@ from bounds import (
     declarations,
     declared,
     described,
+    from_to,
     one_of,
     required,
 )
@@ -66,7 +67,7 @@ def test_the_ends_of_a_declared_bound_are_accepted() -> None:
 @pytest.mark.parametrize(
     ("bound", "inside", "beyond"),
     [
-        (between(0.1, 0.3), (0.1, 0.1 + 0.2), (0.0999999, 0.3000001)),
+        (from_to(0.1, 0.3), (0.1, 0.1 + 0.2), (0.0999999, 0.3000001)),
         (above(0.0), (5e-324, 1e300), (0.0, -1.0)),
         (Bound(low=0.0, high=1.0, high_open=True), (0.0, 0.5), (1.0,)),
     ],

@@ -17,8 +17,8 @@ from bounds import (
     at_least,
     at_most,
     below,
-    between,
     exactly,
+    from_to,
 )
 from dynamics.errors import InputError as DynamicsInputError
 from dynamics.errors import SolveError as DynamicsSolveError
@@ -47,7 +47,7 @@ def test_advice_names_other_fields_as_its_reader_knows_them() -> None:
         ),
         (InputError("wheel.helix_angle", 0.5236, "0 rad"), "pair.helix_angle_deg = "),
         (
-            InputError("pinion.modification.tip_relief_length", 0.05, between(0.0, 0.00636)),
+            InputError("pinion.modification.tip_relief_length", 0.05, from_to(0.0, 0.00636)),
             "pair.pinion.tip_relief_length_mm = 50.0: must be from 0 to 6.36",
         ),
         (
@@ -99,7 +99,7 @@ def test_errors_come_back_in_the_users_words_and_units(error: Exception, said: s
 @pytest.mark.parametrize(
     ("bound", "shown"),
     [
-        (between(0.01, 0.02), "from 10 to 20"),
+        (from_to(0.01, 0.02), "from 10 to 20"),
         (above(0.0), "above 0"),
         (Bound(0.01, 0.02, high_open=True), "from 10 to below 20"),
         (Bound(0.01, 0.02, low_open=True, high_open=True), "above 10 and below 20"),
@@ -107,7 +107,7 @@ def test_errors_come_back_in_the_users_words_and_units(error: Exception, said: s
         (exactly(0.0305), "30.5"),
         (below(0.07, "m", "the root diameter"), "below the root diameter 70 mm"),
         (Text.of("larger: the tips cut ", Quantity(1.2e-5, "m"), " deep"), "larger: the tips cut 12 um deep"),
-        (Text.of("at a place ", between(0.0, 0.02, "m")), "at a place from 0 mm to 20 mm"),
+        (Text.of("at a place ", from_to(0.0, 0.02, "m")), "at a place from 0 mm to 20 mm"),
         ("smaller: the contact ratio is 0.93, below 1", "smaller: the contact ratio is 0.93, below 1"),
         ("a finite number", "a finite number"),
     ],

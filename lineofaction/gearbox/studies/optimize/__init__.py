@@ -28,7 +28,7 @@ def _ends(figure: Figure) -> tuple[Any, Any]:
     """Return the field of a figure's lowest and highest value; no length may vanish."""
     number: Any = figure.accepted
     if figure.what.kind is Kind.LENGTH:
-        number = Annotated[float, Field(gt=0.0, le=figure.limits["le"])]
+        number = Annotated[float, Field(gt=0.0, le=figure.limits.le)]
     pair: Any = Annotated[tuple[number, ...], Strict(False), Field(min_length=2, max_length=2)]
     text = figure.with_unit(f"Bounds of the {figure.words}")
     example = [[0.0 if figure.what.kind in DEPTHS else 0.5, figure.own(2.0 * figure.what.example)]]
