@@ -144,24 +144,6 @@ class Hull:
         edges = np.stack([np.roll(self.triangles, 1, axis=1), self.triangles], axis=2)
         return edges[self._edges > length]
 
-    def normal_velocity(self, velocity: ComplexArray) -> ComplexArray:
-        """Return the mean normal velocity of the panels, (T,) or (T, M).
-
-        Parameters
-        ----------
-        velocity : (N, 3) or (N, 3, M) array
-            Of the nodes, m/s, complex amplitudes; > 0 outwards in the result.
-
-        Raises
-        ------
-        InputError
-            If the shape is another.
-        """
-        values = np.asarray(velocity)
-        if values.shape[:2] != self.nodes.shape:
-            raise InputError("velocity", values.shape, f"shape {self.nodes.shape} or (N, 3, M)")
-        return np.asarray(np.einsum("td,td...->t...", self.normals, values[self.triangles].mean(axis=1)))
-
     def require_closed(self) -> None:
         """Refuse a hull that does not enclose a volume with its normals outwards.
 

@@ -45,11 +45,6 @@ def sound_power_level(power: ArrayLike) -> FloatArray:
     return np.asarray(10.0 * np.log10(np.maximum(values, lowest) / REFERENCE_POWER))
 
 
-def level_sum(levels: ArrayLike, axis: int = -1) -> FloatArray:
-    """Return the level of the sum of powers, dB: two equal levels give 3.01 dB more."""
-    return np.asarray(10.0 * np.log10(np.sum(10.0 ** (np.asarray(levels, dtype=float) / 10.0), axis=axis)))
-
-
 def a_weighting(frequency: ArrayLike) -> FloatArray:
     """Return the A-weighting in dB, 0 at 1 kHz; `FLOOR` at most below at 0 Hz.
 
@@ -148,32 +143,19 @@ class LevelBand:
         return LevelBand(self.nominal, {**self.below, name: below}, {**self.above, name: above})
 
 
-def level_band(level: Callable[[Mapping[str, float]], float], ranges: Mapping[str, Range]) -> LevelBand:
-    """Return the band of `level` (dB), by varying one parameter at a time over its range.
-
-    A wider range never narrows the band where the level is monotone in each parameter. An extremum inside a
-    range is found as far as it shows at `STEPS` equal steps.
-
-    Parameters
-    ----------
-    level : callable
-        From the values of all parameters by name to a level in dB.
-    ranges : mapping of str to Range
-    """
-    return level_bands(lambda values: np.array([level(values)]), ranges)[0]
-
-
 def level_bands(
     levels: Callable[[Mapping[str, float]], FloatArray],
     ranges: Mapping[str, Range],
     steps: int = STEPS,
     joint: int = 0,
 ) -> tuple[LevelBand, ...]:
-    """Return the bands of several levels, as `level_band` does that of one.
+    """Return the bands of several levels, by varying one parameter at a time over its range.
 
-    Where parameters act on each other, as one resonance that meets another, sums in squares fall short: the
-    bands then reach as far as the levels of `joint` cases, all parameters at once, spread evenly over the
-    ranges. What that adds is the contribution `JOINTLY`.
+    A wider range never narrows a band where its level is monotone in each parameter. An extremum inside a
+    range is found as far as it shows at `steps` equal steps. Where parameters act on each other, as one
+    resonance that meets another, sums in squares fall short: the bands then reach as far as the levels of
+    `joint` cases, all parameters at once, spread evenly over the ranges. What
+    that adds is the contribution `JOINTLY`.
 
     Parameters
     ----------

@@ -122,24 +122,6 @@ class ModalResistance:
         )
         return tuple((knot, share) for knot, share in hats if share != 0.0)
 
-    def interpolation_error(self, velocity: ComplexArray) -> float:
-        """Return how far every second matrix is missed by those beside it, dB, for a velocity (M,).
-
-        The largest difference of level; the interpolation's own error is about a quarter of it.
-
-        Raises
-        ------
-        InputError
-            With fewer than three frequencies.
-        """
-        if self.frequency.size < 3:
-            raise InputError("frequency", self.frequency.size, "at least three frequencies")
-        coarse = ModalResistance(self.frequency[::2], self.matrix[::2])
-        between_them = self.frequency[1:-1:2] if self.frequency.size % 2 else self.frequency[1:-2:2]
-        repeated = np.broadcast_to(velocity, (between_them.size, np.size(velocity)))
-        ratio = coarse.power(between_them, repeated) / self.power(between_them, repeated)
-        return float(np.max(np.abs(10.0 * np.log10(ratio))))
-
 
 def modal_resistance(
     model: RadiationModel, hull: Hull, frequency: FloatArray, shapes: ComplexArray, air: Air

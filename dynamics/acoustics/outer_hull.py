@@ -32,7 +32,7 @@ MARGIN = 8.0
 """Pixels by which another face must be in front: a face under `STEEP` spans 5 in depth in its own pixel."""
 
 
-def free_sky(corners: FloatArray) -> FloatArray:
+def _free_sky(corners: FloatArray) -> FloatArray:
     """Return the part of the hemisphere over each triangle from which its middle is seen, (t,), 0 to 1.
 
     Directions weigh by the cosine to the normal, as in the view factor to surroundings at infinity: 1 on a
@@ -94,7 +94,7 @@ def _draw(corners: FloatArray, nearest: FloatArray) -> None:
 # Rims of the openings of a surface, and caps that close them.
 
 
-def rims(triangles: IntArray) -> list[IntArray]:
+def _rims(triangles: IntArray) -> list[IntArray]:
     """Return the nodes along every open edge path of a surface, each path closed, in its panels' sense.
 
     Parameters
@@ -127,7 +127,7 @@ def _walk(first: int, onward: dict[int, list[int]]) -> Iterator[IntArray]:
         del path[start + 1 :]
 
 
-def cap(points: FloatArray, rim: IntArray, first: int) -> tuple[IntArray, FloatArray]:
+def _cap(points: FloatArray, rim: IntArray, first: int) -> tuple[IntArray, FloatArray]:
     """Return triangles (C, 3) that close a rim, and their new nodes as weights of the rim's nodes, (K, R).
 
     Rings of nodes between the rim and its middle, the last, are as far apart as the nodes of the rim. The new
@@ -199,7 +199,7 @@ class OuterHull:
 def outer_hull(housing: ReducedHousing) -> OuterHull:
     """Return the outer hull of a housing.
 
-    Outside are the faces that see at least half of their sky (`sky.free_sky`), and those joined to them that
+    Outside are the faces that see at least half of their sky (`_free_sky`), and those joined to them that
     see at least 15 % of theirs, with pockets between them that see 5 % on average. Each opening that is left,
     e.g. in a bore, gets a cap, which moves as its rim does: bearings, covers and shaft ends are there.
 
@@ -216,8 +216,8 @@ def outer_hull(housing: ReducedHousing) -> OuterHull:
     nodes, panels = np.unique(triangles[outer][:, QUARTERS].reshape(-1, 3), return_inverse=True)
     points, motion, panels = points[nodes], housing.surface.motion[nodes], panels.reshape(-1, 3)
     covers = [panels]
-    for rim in rims(panels):
-        triangles_of_cap, weights = cap(points, rim, len(points))
+    for rim in _rims(panels):
+        triangles_of_cap, weights = _cap(points, rim, len(points))
         covers.append(triangles_of_cap)
         points = np.concatenate([points, weights @ points[rim]])
         motion = np.concatenate([motion, np.tensordot(weights, motion[rim], 1)])
@@ -233,8 +233,7 @@ def _area(points: FloatArray, triangles: IntArray) -> float:
 
 
 def _outside(points: FloatArray, triangles: IntArray) -> BoolArray:
-    """Return which triangles are outside, (t,)."""
-    sky = free_sky(points[triangles[:, :3]])
+    sky = _free_sky(points[triangles[:, :3]])
     if not np.any(sky >= OUTSIDE):
         raise InputError("surface", float(sky.max()), f"faces that see {OUTSIDE:.0%} of their sky")
     outside = np.zeros(len(triangles), dtype=bool)
@@ -247,11 +246,10 @@ def _outside(points: FloatArray, triangles: IntArray) -> BoolArray:
 
 def _parts(triangles: IntArray, chosen: BoolArray) -> list[IntArray]:
     members = np.flatnonzero(chosen)
-    count, part = connected_components(_neighbors(triangles[members, :3]))
+    count, part = connected_components(_edge_neighbors(triangles[members, :3]))
     return [members[part == number] for number in range(count)]
 
 
-def _neighbors(triangles: IntArray) -> coo_array:
-    """Return which triangles share an edge, (t, t)."""
+def _edge_neighbors(triangles: IntArray) -> coo_array:
     one, other, _ = shared_edges(triangles)
     return coo_array((np.ones(one.size), (one, other)), shape=(len(triangles),) * 2)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import struct
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -16,7 +15,7 @@ from scipy.signal import butter, detrend, sosfiltfilt
 
 from bounds import above, at_least, at_most
 from dynamics.checks import increasing, integer, one_of, positive
-from dynamics.errors import InputError, ResultError
+from dynamics.errors import InputError
 from dynamics.orders.resampling import resampled
 from dynamics.results import RunResult
 from dynamics.types import ComplexArray, FloatArray
@@ -300,41 +299,5 @@ def wav_file(recording: Recording, full_scale: float) -> bytes:
     return _chunk(b"RIFF", body)
 
 
-def read_wav(path: Path | str) -> Recording:
-    """Read a file of `write_wav`, in its unit.
-
-    Raises
-    ------
-    ResultError
-        The file is no such WAV.
-    """
-    data = Path(path).read_bytes()
-    try:
-        sample_rate, samples = wavfile.read(io.BytesIO(data))
-        about = json.loads(_comment(data))
-        quantity, unit, full_scale = (about[name] for name in COMMENT)
-        return Recording(samples * float(full_scale), sample_rate, quantity, unit)
-    except (ValueError, KeyError, TypeError, struct.error, InputError) as error:
-        name = Path(path).name
-        raise ResultError(f"{name} is no WAV file with quantity, unit and full scale") from error
-
-
 def _chunk(name: bytes, content: bytes) -> bytes:
     return name + struct.pack("<I", len(content)) + content + b"\0" * (len(content) % 2)
-
-
-def _comment(data: bytes) -> str:
-    """Return the comment of a file, empty without one."""
-    for name, content in _chunks(data[12:]):
-        if name == b"LIST" and content[:4] == b"INFO":
-            return dict(_chunks(content[4:])).get(b"ICMT", b"").rstrip(b"\0").decode("ascii")
-    return ""
-
-
-def _chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """Yield names and contents of the chunks in a row."""
-    at = 0
-    while at + 8 <= len(data):
-        (length,) = struct.unpack("<I", data[at + 4 : at + 8])
-        yield data[at : at + 4], data[at + 8 : at + 8 + length]
-        at += 8 + length + length % 2

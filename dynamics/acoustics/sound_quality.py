@@ -108,7 +108,6 @@ def loudness_over_time(recording: Recording) -> tuple[FloatArray, FloatArray]:
 
 
 def _metrics(recording: Recording) -> Any:
-    """Check the recording and load the library."""
     if recording.unit != "Pa":
         raise InputError("unit", recording.unit, "Pa", "Loudness is that of a sound pressure.")
     if recording.sample_rate != SAMPLE_RATE:

@@ -1,6 +1,5 @@
 """Sound of housings in a scene: outer hull, resistance, sound power by order and speed, shares, bands."""
 
-from dynamics.acoustics import OuterHull, outer_hull
 from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation, kept_radiation
 from dynamics.noise.housing_recordings import (
@@ -13,27 +12,15 @@ from dynamics.noise.housing_recordings import (
 )
 from dynamics.noise.panel_sound import PanelSound, Region, models_at, panel_sound, regions, side_by_side
 from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest, radiated_sound, together
-from dynamics.noise.sensitivities import DesignFigure, Sensitivity, ranked, sensitivity
-from dynamics.noise.sound_band import (
-    GUESSES,
-    Guess,
-    SoundBand,
-    SoundModel,
-    forced_power,
-    largest_level,
-    radiated_power,
-    sound_band,
-    usual_ranges,
-)
+from dynamics.noise.sensitivities import DesignFigure, Sensitivity, sound_sensitivities
+from dynamics.noise.sound_band import GUESSES, SoundBand, SoundModel, forced_power, sound_band
 from dynamics.noise.sound_over_time import SoundOverTime, sound_over_time
 
 __all__ = [
     "GUESSES",
     "DesignFigure",
-    "Guess",
     "HousingRadiation",
     "LoudPoint",
-    "OuterHull",
     "PanelSound",
     "RadiatedSound",
     "RadiatingHull",
@@ -45,26 +32,21 @@ __all__ = [
     "forced_power",
     "housing_radiation",
     "kept_radiation",
-    "largest_level",
     "loudest",
     "models_at",
-    "outer_hull",
     "panel_sound",
     "pressure_recording",
     "pressure_signal",
     "pressure_transfer",
-    "radiated_power",
     "radiated_sound",
     "radiating_hull",
-    "ranked",
     "regions",
     "scattered_pressure_transfer",
-    "sensitivity",
     "side_by_side",
     "sound_band",
     "sound_limit",
     "sound_over_time",
+    "sound_sensitivities",
     "together",
-    "usual_ranges",
     "velocity_recording",
 ]

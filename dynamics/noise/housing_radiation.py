@@ -5,9 +5,10 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -22,7 +23,7 @@ from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.types import ComplexArray, FloatArray, Json
-from dynamics.work_cost import Cost, announce, measured, on_this_host
+from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
 from model_studies.kept_file import kept_in
 from model_studies.progress import Progress, silent
 
@@ -42,7 +43,7 @@ WIDEST, CLOSEST = 1.5, 1.03
 
 
 @dataclass(frozen=True)
-class Knots:
+class _Knots:
     """Frequencies (F,) in Hz, matrices (F, r, r), and the largest error in dB between them."""
 
     frequency: FloatArray
@@ -55,7 +56,7 @@ def _knots_between(
     high: float,
     resistance: Callable[[float], ComplexArray],
     modes: FloatArray,
-) -> Knots:
+) -> _Knots:
     """Return frequencies from `low` to `high`, in Hz, between which R/f^2 is linear within `TOLERANCE`.
 
     The middle of each interval is computed and kept. Where it is missed by more, both halves are looked at in
@@ -82,7 +83,7 @@ def _knots_between(
         else:
             error = max(error, missed)
     frequency = np.array(sorted(found))
-    return Knots(frequency, np.stack([found[float(at)] for at in frequency]), error)
+    return _Knots(frequency, np.stack([found[float(at)] for at in frequency]), error)
 
 
 def octaves(low: float, high: float) -> list[tuple[float, float]]:
@@ -106,10 +107,10 @@ def expected_knots(ka: float) -> float:
     return FEWEST + KNOTS[0] * ka + KNOTS[1] * ka**2
 
 
-def _constant_knots(low: float, high: float, matrix: ComplexArray) -> Knots:
+def _constant_knots(low: float, high: float, matrix: ComplexArray) -> _Knots:
     """Return frequencies between which a matrix that does not change is interpolated within 0.01 dB."""
     frequency = np.geomspace(low, high, max(int(np.ceil(np.log(high / low) / np.log(CONSTANT))), 1) + 1)
-    return Knots(frequency, np.broadcast_to(matrix, (frequency.size, *matrix.shape)), 4.0 * CONSTANT_ERROR)
+    return _Knots(frequency, np.broadcast_to(matrix, (frequency.size, *matrix.shape)), 4.0 * CONSTANT_ERROR)
 
 
 def _missed(
@@ -166,6 +167,37 @@ STORED = {
 
 
 @dataclass(frozen=True)
+class RadiationFacts:
+    """How a radiation resistance was computed.
+
+    Attributes
+    ----------
+    panels : int
+        Of the finest hull.
+    cost : WorkCost
+        Without that of the hulls.
+    resolved_frequency : float
+        Hz; above it panels move as parts of a plane (ERP).
+    interpolation_error : float
+        dB.
+    inner_area, cap_area : float
+        As of `OuterHull`, m^2.
+    """
+
+    panels: int
+    cost: WorkCost
+    resolved_frequency: float
+    interpolation_error: float
+    inner_area: float
+    cap_area: float
+
+    @classmethod
+    def from_json(cls, data: Json) -> RadiationFacts:
+        """Read what a file has of them."""
+        return cls(**{**data, "cost": WorkCost(**data["cost"])})
+
+
+@dataclass(frozen=True)
 class HousingRadiation(ModalResistance, ArrayFile):
     """Radiation resistance over the coordinates of a reduced housing.
 
@@ -180,25 +212,23 @@ class HousingRadiation(ModalResistance, ArrayFile):
         rho c of the air, Pa s/m.
     model_name : str
         Of the radiation model.
-    facts : dict
-        Plain JSON: `resolved_frequency` in Hz, above which panels move as parts of a plane (ERP),
-        `interpolation_error` in dB, `inner_area` and `cap_area` in m^2, `panels` (most), `cost`
-        (`WorkCost`, without that of the hulls).
+    facts : RadiationFacts
     """
 
     SCHEMA = "lineofaction housing radiation"
     ARRAYS = STORED
+    RECORDS = MappingProxyType({"facts": RadiationFacts.from_json})
 
-    surface: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
-    area: float = 0.0
-    impedance: float = 0.0
-    model_name: str = ""
-    facts: Json = field(default_factory=dict)
+    surface: FloatArray
+    area: float
+    impedance: float
+    model_name: str
+    facts: RadiationFacts
 
     def hull_at(self, outer: OuterHull, frequency: float, sound_speed: float) -> RadiatingHull | None:
         """Return the panels at a computed frequency, Hz; None above those that the mesh resolves."""
         low, high = float(self.frequency[0]), float(self.frequency[-1])
-        for first, last in octaves(low, min(high, self.facts["resolved_frequency"])):
+        for first, last in octaves(low, min(high, self.facts.resolved_frequency)):
             if first <= frequency <= last:
                 return radiating_hull(outer, last, sound_speed)
         return None
@@ -255,22 +285,11 @@ def housing_radiation(
     def reached(frequency: float) -> None:
         done(((frequency - low) / (high - low)) ** 2)
 
-    parts, own = _resolved_parts(outer, model, air, ends, housing.modes[1], reached, expected, cache)
+    parts, panels, cost = _resolved_parts(outer, model, air, ends, housing.modes[1], reached, expected, cache)
     if high > resolved:
         first = max(low, float(np.nextafter(resolved, np.inf)))
         parts.append(_constant_knots(first, high, cast(ComplexArray, air.impedance * outer.surface)))
-    return _joined(parts, outer, air, model, own | {"resolved_frequency": resolved})
-
-
-def _joined(
-    parts: Sequence[Knots], outer: OuterHull, air: Air, model: RadiationModel, facts: Json
-) -> HousingRadiation:
-    """Return the radiation resistance of a hull over all its ranges of frequencies, with its facts."""
-    own: Json = {
-        "interpolation_error": 0.25 * max(part.error for part in parts),
-        "inner_area": outer.inner_area,
-        "cap_area": outer.cap_area,
-    }
+    error = 0.25 * max(part.error for part in parts)
     return HousingRadiation(
         np.concatenate([part.frequency for part in parts]),
         np.concatenate([part.matrix for part in parts]),
@@ -278,7 +297,7 @@ def _joined(
         outer.hull.area,
         air.impedance,
         model.model_name,
-        facts | own,
+        RadiationFacts(panels, cost, resolved, error, outer.inner_area, outer.cap_area),
     )
 
 
@@ -291,13 +310,13 @@ def _resolved_parts(
     reached: Callable[[float], None],
     expected: Callable[[Cost], object],
     cache: Path | None,
-) -> tuple[list[Knots], Json]:
-    """Return the knots of each octave between `ends`, Hz, and the facts `panels` and `cost`."""
+) -> tuple[list[_Knots], int, WorkCost]:
+    """Return the knots of each octave between `ends`, Hz, and `panels` and `cost` of the facts."""
     parted = [Octave(*each, radiating_hull(outer, each[1], air.sound_speed)) for each in ends]
     kind, reference = WORK.format(model.model_name), radiation_cost(parted, model, air)
     expected(on_this_host(kind, reference, cache))
 
-    def computed() -> list[Knots]:
+    def computed() -> list[_Knots]:
         parts = []
         for octave in parted:
             resistance_at = partial(_resistance, model, octave.hull, air)
@@ -307,11 +326,10 @@ def _resolved_parts(
 
     parts, cost = measured(kind, reference, cache, computed)
     panels = max((len(octave.hull.shapes) for octave in parted), default=len(outer.hull.triangles))
-    return parts, {"panels": panels, "cost": asdict(cost)}
+    return parts, panels, cost
 
 
 def _resistance(model: RadiationModel, hull: RadiatingHull, air: Air, frequency: float) -> ComplexArray:
-    """Return the resistance of the coordinates at a frequency, (r, r)."""
     return resistance(model, hull.hull, frequency, cast(ComplexArray, hull.shapes), air)
 
 
@@ -365,7 +383,7 @@ def kept_radiation(
         )
 
     def costly(made: HousingRadiation) -> bool:
-        return bool(made.facts["cost"]["seconds"] > LEAST_COST)
+        return made.facts.cost.seconds > LEAST_COST
 
     read, write = HousingRadiation.from_netcdf, HousingRadiation.to_netcdf
     return kept_in(file, read, computed, write, ResultError, costly)
@@ -374,7 +392,6 @@ def kept_radiation(
 def _content_key(
     housing: ReducedHousing, model: RadiationModel, ends: tuple[float, float], air: Air | None
 ) -> str:
-    """Return the SHA-256 of surface, modes, model, range and version, hexadecimal."""
     digest = hashlib.sha256(repr((RADIATION_VERSION, model, ends, air or Air())).encode())
     surface = housing.surface
     arrays = () if surface is None else (surface.points, surface.triangles, surface.motion)

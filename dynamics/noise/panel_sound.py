@@ -202,7 +202,6 @@ def regions(sound: PanelSound, points: Sequence[PointMotion] = ()) -> tuple[Regi
 
 
 def _region_numbers(hull: Hull) -> IntArray:
-    """Return the region of each panel, (T,)."""
     one, other, nodes = shared_edges(hull.triangles)
     length = np.linalg.norm(hull.nodes[nodes[:, 0]] - hull.nodes[nodes[:, 1]], axis=1)
     faces = _facing(hull.normals)
@@ -235,7 +234,6 @@ def _without_small(
 
 
 def _region(sound: PanelSound, panels: FloatArray, points: tuple[str, ...]) -> Region:
-    """Put a region together."""
     hull = sound.hull
     area, vector = hull.areas[panels], hull.area_vectors[panels].sum(axis=0)
     normal = vector / max(float(np.linalg.norm(vector)), 1e-300)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -22,23 +23,10 @@ from dynamics.vibration.housing_motion import modal_amplitudes
 # Sound power of a motion, and the shares of its parts: forces of bearings, modes of the housing.
 
 
-@dataclass(frozen=True)
-class Contributions:
-    """Power and shares in it, W, as `RadiatedSound` has them."""
-
-    power: FloatArray
-    efficiency: FloatArray
-    bearing_share: FloatArray
-    bearing_alone: FloatArray
-    mode_share: FloatArray
-    mode_alone: FloatArray
-    natural_frequency: FloatArray
-
-
-def contributions(
+def _powers(
     frequency: FloatArray, amplitudes: ComplexArray, housing: ReducedHousing, radiation: HousingRadiation
-) -> Contributions:
-    """Return the power of the motion in the modes under all bearings, and the shares of both.
+) -> dict[str, Any]:
+    """Return what `RadiatedSound` has of the motion in the modes under all bearings, and of their shares.
 
     The share of a part u of the velocity v is Re(u^H R v) / 2: shares add up to the power v^H R v / 2.
 
@@ -61,15 +49,15 @@ def contributions(
     mode_share = 0.5 * (rate.conj() * (force @ shape[:, kept])).real
     mode_alone = 0.5 * np.abs(rate) ** 2 * radiation.alone(hertz, shape[:, kept])
     alone = [_power(part, radiation.reaction(hertz, part)) for part in by_bearing]
-    return Contributions(
-        power.reshape(grid),
-        radiation.efficiency(power, velocity).reshape(grid),
-        np.stack([_power(part, force) for part in by_bearing]).reshape(-1, *grid),
-        np.stack(alone).reshape(-1, *grid),
-        mode_share.T.reshape(-1, *grid),
-        mode_alone.T.reshape(-1, *grid),
-        natural[kept] / (2.0 * np.pi),
-    )
+    return {
+        "power": power.reshape(grid),
+        "efficiency": radiation.efficiency(power, velocity).reshape(grid),
+        "bearing_share": np.stack([_power(part, force) for part in by_bearing]).reshape(-1, *grid),
+        "bearing_alone": np.stack(alone).reshape(-1, *grid),
+        "mode_share": mode_share.T.reshape(-1, *grid),
+        "mode_alone": mode_alone.T.reshape(-1, *grid),
+        "natural_frequency": natural[kept] / (2.0 * np.pi),
+    }
 
 
 def _power(velocity: ComplexArray, force: ComplexArray) -> FloatArray:
@@ -171,11 +159,6 @@ class RadiatedSound(ArrayFile):
         """Return the power that is left without the force of each bearing, (b, S, H), W."""
         return np.maximum(self.power - 2.0 * self.bearing_share + self.bearing_alone, 0.0)
 
-    @property
-    def without_mode(self) -> FloatArray:
-        """Return the power that is left without each mode, (m, S, H), W."""
-        return np.maximum(self.power - 2.0 * self.mode_share + self.mode_alone, 0.0)
-
 
 def radiated_sound(
     response: BearingHarmonics,
@@ -211,9 +194,24 @@ def radiated_sound(
             radiation.matrix.shape[1],
             f"one of {len(housing.stiffness)} coordinates, the housing's",
         )
-    amplitudes = _amplitudes(response, housing, names)
-    found = contributions(response.frequency, amplitudes, housing, radiation)
-    return _result(response, housing, names, found, radiation, name)
+    powers = _powers(response.frequency, _amplitudes(response, housing, names), housing, radiation)
+    about = {
+        "model_name": radiation.model_name,
+        "area": radiation.area,
+        "valid_frequency": housing.valid_frequency,
+        **asdict(radiation.facts),
+    }
+    return RadiatedSound(
+        housing=(name,),
+        bearing=names,
+        mode_housing=(name,) * powers["natural_frequency"].size,
+        speed=response.speed,
+        order=response.order,
+        frequency=response.frequency,
+        in_contact=response.in_contact,
+        facts={"radiation": {name: about}},
+        **powers,
+    )
 
 
 def _amplitudes(response: BearingHarmonics, housing: ReducedHousing, names: tuple[str, ...]) -> ComplexArray:
@@ -222,32 +220,6 @@ def _amplitudes(response: BearingHarmonics, housing: ReducedHousing, names: tupl
     owner = np.repeat(np.arange(len(names)), [len(seat.motions) for seat in housing.seats])
     alone = np.where(owner == np.arange(len(names))[:, None], force, 0.0)
     return modal_amplitudes(housing, response.frequency.ravel(), alone)
-
-
-def _result(
-    response: BearingHarmonics,
-    housing: ReducedHousing,
-    names: tuple[str, ...],
-    found: Contributions,
-    radiation: HousingRadiation,
-    name: str,
-) -> RadiatedSound:
-    about = {
-        "model_name": radiation.model_name,
-        "area": radiation.area,
-        "valid_frequency": housing.valid_frequency,
-    }
-    return RadiatedSound(
-        housing=(name,),
-        bearing=names,
-        mode_housing=(name,) * found.natural_frequency.size,
-        speed=response.speed,
-        order=response.order,
-        frequency=response.frequency,
-        in_contact=response.in_contact,
-        facts={"radiation": {name: about | radiation.facts}},
-        **vars(found),
-    )
 
 
 # The sound of several housings together.
@@ -272,29 +244,24 @@ def together(sounds: Sequence[RadiatedSound]) -> RadiatedSound:
         if not np.array_equal(sound.frequency, first.frequency):
             raise InputError(f"sounds[{index}].frequency", "others", "those of the first")
     plane = sum(sound.power / np.maximum(sound.efficiency, 1e-300) for sound in sounds)
-    power = _sum(sounds)
+    power = np.asarray(np.sum([sound.power for sound in sounds], axis=0))
+    names = ("housing", "bearing", "mode_housing")
+    by_part = ("bearing_share", "bearing_alone", "mode_share", "mode_alone", "natural_frequency")
+    joined: dict[str, Any] = {
+        **{name: tuple(each for sound in sounds for each in getattr(sound, name)) for name in names},
+        **{name: np.concatenate([getattr(sound, name) for sound in sounds]) for name in by_part},
+    }
+    radiation = {name: about for sound in sounds for name, about in sound.facts["radiation"].items()}
     return RadiatedSound(
-        tuple(name for sound in sounds for name in sound.housing),
-        tuple(name for sound in sounds for name in sound.bearing),
-        tuple(name for sound in sounds for name in sound.mode_housing),
-        first.speed,
-        first.order,
-        first.frequency,
-        power,
-        np.asarray(power / np.maximum(plane, 1e-300)),
-        np.concatenate([sound.bearing_share for sound in sounds]),
-        np.concatenate([sound.bearing_alone for sound in sounds]),
-        np.concatenate([sound.mode_share for sound in sounds]),
-        np.concatenate([sound.mode_alone for sound in sounds]),
-        np.concatenate([sound.natural_frequency for sound in sounds]),
-        first.in_contact,
-        {"radiation": {name: about for sound in sounds for name, about in sound.facts["radiation"].items()}},
+        speed=first.speed,
+        order=first.order,
+        frequency=first.frequency,
+        power=power,
+        efficiency=np.asarray(power / np.maximum(plane, 1e-300)),
+        in_contact=first.in_contact,
+        facts={"radiation": radiation},
+        **joined,
     )
-
-
-def _sum(sounds: Sequence[RadiatedSound]) -> FloatArray:
-    """Return the power of all, (S, H), W."""
-    return np.asarray(np.sum([sound.power for sound in sounds], axis=0))
 
 
 QUIET = 30.0

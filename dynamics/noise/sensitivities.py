@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from dynamics.checks import finite
-from dynamics.errors import InputError
+from dynamics.errors import DynamicsError, InputError
+from dynamics.noise.sound_band import GUESSES, SoundModel, forced_power, largest_level
+from dynamics.scene import Scene
+from dynamics.types import FloatArray
+from model_studies.frontier import run_variants
+from model_studies.progress import Progress
 
+STEPS = {"housing_frequency": 0.02}
+STEP = 0.1
+"""Of factors."""
 CURVED = 0.25
 """Share of the change by slope that the curvature may add where a level counts as linear."""
 
@@ -94,3 +102,50 @@ def sensitivity(figure: DesignFigure, level: Callable[[float], float]) -> Sensit
 def ranked(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
     """Return sensitivities by what a step changes, the largest first."""
     return tuple(sorted(rows, key=lambda row: -abs(row.change)))
+
+
+def sound_sensitivities(
+    model: SoundModel,
+    speed: FloatArray,
+    orders: int,
+    flanks: Iterable[DesignFigure],
+    scenes: Callable[[DesignFigure], Callable[[float], Scene]],
+    progress: Progress,
+) -> tuple[tuple[Sensitivity, ...], dict[str, str]]:
+    """Return what steps of the guesses that a model has and of its flanks change, `ranked`.
+
+    Parameters
+    ----------
+    model, speed, orders
+        As of `forced_power`; the level is the `largest_level`.
+    flanks : iterable of DesignFigure
+    scenes : callable
+        From one of them to the scene by its value.
+    progress : callable
+        Called as progress("sensitivities", fraction).
+
+    Returns
+    -------
+    sensitivities : tuple of Sensitivity
+    left_out : dict of str to str
+        Name of a figure to the reason why it has none.
+    """
+
+    def varied(figure: DesignFigure) -> Callable[[float], SoundModel]:
+        if figure.name in GUESSES:
+            change = GUESSES[figure.name].varied
+            return lambda value: change(model, value) if value != 1.0 else model
+        scene = scenes(figure)
+        return lambda value: replace(model, scene=scene(value))
+
+    def compute(figure: DesignFigure) -> Sensitivity:
+        at = varied(figure)
+        return sensitivity(
+            figure, lambda value: largest_level(speed, forced_power(at(value), speed, orders)[1])
+        )
+
+    known = [name for name, guess in GUESSES.items() if guess.varied(model, 2.0) is not model]
+    figures = (DesignFigure(name, "", 1.0, STEPS.get(name, STEP)) for name in known)
+    by_name = {figure.name: figure for figure in (*figures, *flanks)}
+    rows, left_out = run_variants("sensitivities", by_name, compute, (DynamicsError,), progress)
+    return ranked(rows.values()), left_out

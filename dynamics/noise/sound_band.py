@@ -346,7 +346,6 @@ def _band(
     others: Mapping[str, SoundModel],
     powers: Powers,
 ) -> SoundBand:
-    """Vary the model and put the bands together."""
     order, nominal = powers(model)
     loudest = np.argmax(nominal.weighted_power, axis=1)
 
@@ -413,7 +412,6 @@ def _levels(order: FloatArray, loudest: FloatArray, own: FloatArray, power: Orde
 
 
 def _with_half_of_modes(model: SoundModel) -> SoundModel:
-    """Return the model whose housings keep half of their modes, at least one."""
     for name, housing in model.housings.items():
         model = model.with_housing(name, with_modes(housing, max(len(housing.frequency) // 2, 1)))
     return model

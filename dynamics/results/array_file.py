@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import fields
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from dynamics.errors import ResultError
+from dynamics.types import Json
 from model_studies.array_file import Stored, read_arrays, write_arrays
 from model_studies.netcdf import UnreadableFile
 
@@ -17,7 +18,7 @@ __all__ = ["ArrayFile", "Stored"]
 
 
 class ArrayFile:
-    """A frozen dataclass of arrays, names and plain JSON that is kept as a netCDF-4 file.
+    """A frozen dataclass of arrays, names, records and plain JSON that is kept as a netCDF-4 file.
 
     Attributes
     ----------
@@ -25,10 +26,13 @@ class ArrayFile:
         What a file of it is.
     ARRAYS : mapping of str to Stored
         The fields that are arrays; all others are written as JSON.
+    RECORDS : mapping of str to callable
+        The fields that are dataclasses, and what makes one of its JSON.
     """
 
     SCHEMA: ClassVar[str]
     ARRAYS: ClassVar[Mapping[str, Stored]]
+    RECORDS: ClassVar[Mapping[str, Callable[[Json], Any]]] = {}
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write a netCDF-4 file; it appears whole or not at all.
@@ -37,6 +41,7 @@ class ArrayFile:
         """
         values = {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
         arrays = {name: np.asarray(values.pop(name)) for name in self.ARRAYS}
+        values |= {name: asdict(values[name]) for name in self.RECORDS}
         write_arrays(Path(path), self.SCHEMA, self.ARRAYS, arrays, values)
 
     @classmethod
@@ -50,13 +55,14 @@ class ArrayFile:
         """
         try:
             _, arrays, rest = read_arrays(Path(path), (cls.SCHEMA,))
-            return cls(**arrays, **{name: _plain(value) for name, value in rest.items()})
+            return cls(**arrays, **{name: cls._field(name, value) for name, value in rest.items()})
         except UnreadableFile as error:
             raise ResultError(str(error)) from error
-        except TypeError as error:
+        except (TypeError, KeyError) as error:
             raise ResultError(f"{Path(path).name}: damaged, its fields are others") from error
 
-
-def _plain(value: Any) -> Any:
-    """Return a value of the documents: lists are tuples of names."""
-    return tuple(value) if isinstance(value, list) else value
+    @classmethod
+    def _field(cls, name: str, value: Any) -> Any:
+        if name in cls.RECORDS:
+            return cls.RECORDS[name](value)
+        return tuple(value) if isinstance(value, list) else value

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from small_table import small_table
+from wav_files import read_wav
 
-from dynamics.acoustics import Recording, read_wav
+from dynamics.acoustics import Recording
 from service.app import create_app
 from service.settings import Settings
 

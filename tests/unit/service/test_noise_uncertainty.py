@@ -12,7 +12,8 @@ import pytest
 from housing_solid import housed_scene, write_block
 
 from dynamics.acoustics import EquivalentRadiatedPower
-from dynamics.noise import GUESSES, SoundModel, forced_power, housing_radiation, largest_level
+from dynamics.noise import GUESSES, SoundModel, forced_power, housing_radiation
+from dynamics.noise.sound_band import largest_level
 from lineofaction.cli.simulate import tabled_scene
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput

@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from dynamics.acoustics import LevelBand, Range
-from dynamics.errors import DynamicsError
 from dynamics.noise import (
-    GUESSES,
     DesignFigure,
     HousingRadiation,
     RadiatedSound,
     Sensitivity,
     SoundBand,
     SoundModel,
-    forced_power,
-    largest_level,
-    ranked,
-    sensitivity,
     sound_band,
+    sound_sensitivities,
 )
+from dynamics.scene import Scene
 from dynamics.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
@@ -33,12 +28,8 @@ from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.noise import Inputs
 from lineofaction.gearbox.studies.noise.flank_figures import flank_figures, flank_scenes
 from lineofaction.gearbox.units import RPM
-from model_studies.frontier import run_variants
 
 Json = dict[str, Any]
-STEPS = {"housing_frequency": 0.02}
-STEP = 0.1
-"""Of factors."""
 
 
 def uncertainty(
@@ -87,27 +78,12 @@ def sensitivities_of(
 ) -> tuple[tuple[Sensitivity, ...], dict[str, str]]:
     """Return what steps of damping, stiffness and flanks change, and why others have no result."""
 
-    def level(varied: SoundModel) -> float:
-        return largest_level(speed, forced_power(varied, speed, orders)[1])
+    def scenes(flank: DesignFigure) -> Callable[[float], Scene]:
+        varied = flank_scenes(subject, flank.name, means.home)
+        return lambda value: varied.scene({flank.name: value})
 
-    def of_guess(name: str) -> Callable[[float], float]:
-        return lambda value: level(GUESSES[name].varied(model, value) if value != 1.0 else model)
-
-    def of_flank(path: str) -> Callable[[float], float]:
-        scenes = flank_scenes(subject, path, means.home)
-        return lambda value: level(replace(model, scene=scenes.scene({path: value})))
-
-    known = [name for name, guess in GUESSES.items() if guess.varied(model, 2.0) is not model]
-    figures = {name: DesignFigure(name, "", 1.0, STEPS.get(name, STEP)) for name in known}
-    flanks = {figure.name: figure for figure in flank_figures(subject.inputs)}
-    rows, left_out = run_variants(
-        "sensitivities",
-        figures | flanks,
-        lambda figure: sensitivity(figure, (of_flank if figure.name in flanks else of_guess)(figure.name)),
-        (DynamicsError,),
-        means.report,
-    )
-    return ranked(rows.values()), left_out
+    flanks = flank_figures(subject.inputs)
+    return sound_sensitivities(model, speed, orders, flanks, scenes, means.report)
 
 
 def band_json(band: SoundBand) -> Json:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dynamics.acoustics import Range, level_band
+from dynamics.acoustics import LevelBand, Range, level_bands
 from dynamics.errors import InputError
 
 
@@ -13,6 +13,11 @@ def resonance(values) -> float:
     """Level of an oscillator driven at 1.02 of its nominal frequency."""
     ratio = 1.02 / values["frequency"]
     return -10.0 * np.log10((1.0 - ratio**2) ** 2 + (2.0 * values["damping"] * ratio) ** 2)
+
+
+def level_band(level, ranges) -> LevelBand:
+    """Return the band of one level."""
+    return level_bands(lambda values: np.array([level(values)]), ranges)[0]
 
 
 DAMPING, FREQUENCY = Range(0.005, 0.01, 0.02), Range(0.97, 1.0, 1.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dynamics.acoustics import a_weighting, free_field_pressure, level_sum, sound_power_level
+from dynamics.acoustics import a_weighting, free_field_pressure, sound_power_level
 from dynamics.errors import InputError
 
 TABLE = {10: -70.4, 31.5: -39.4, 63: -26.2, 125: -16.1, 250: -8.6, 500: -3.2, 1000: 0.0, 2000: 1.2}
@@ -24,14 +24,6 @@ def test_one_picowatt_is_zero_decibels_and_one_watt_120() -> None:
     assert np.isfinite(sound_power_level(0.0))
     with pytest.raises(InputError, match="power"):
         sound_power_level([1.0, -1.0])
-
-
-def test_levels_add_as_powers() -> None:
-    assert level_sum([60.0, 60.0]) == pytest.approx(63.0103, abs=1e-4)
-    powers = np.array([[1e-6, 3e-6], [2e-6, 5e-9]])
-    np.testing.assert_allclose(
-        level_sum(sound_power_level(powers)), sound_power_level(powers.sum(axis=-1)), rtol=1e-12
-    )
 
 
 def test_one_watt_is_109_decibels_of_pressure_at_a_meter() -> None:

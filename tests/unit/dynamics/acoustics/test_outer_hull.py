@@ -9,10 +9,10 @@ import pytest
 from lattice_meshes import box
 from reduced_housings import bare_housing
 
-from dynamics.acoustics import Air, ElementalRadiators, resistance
+from dynamics.acoustics import Air, ElementalRadiators, outer_hull, resistance
 from dynamics.housings import TetrahedralMesh
 from dynamics.housings.reduced_housing import SurfaceMotion, rigid_motions
-from dynamics.noise import outer_hull, radiating_hull
+from dynamics.noise import radiating_hull
 from dynamics.vibration import surface_weight
 
 SIZE, WALL = np.array([0.36, 0.24, 0.18]), 0.02

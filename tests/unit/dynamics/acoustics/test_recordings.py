@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.io import wavfile
+from wav_files import read_wav
 
-from dynamics.acoustics import Recording, common_full_scale, order_recording, read_wav, write_wav
+from dynamics.acoustics import Recording, common_full_scale, order_recording, write_wav
 from dynamics.errors import InputError, ResultError
 from dynamics.orders import spectrum
 

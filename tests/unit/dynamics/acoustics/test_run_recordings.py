@@ -8,13 +8,13 @@ from typing import cast
 
 import numpy as np
 import pytest
+from wav_files import read_wav
 
 from dynamics.acoustics import (
     audible,
     common_full_scale,
     force_recording,
     principal_direction,
-    read_wav,
     series_recording,
     write_wav,
 )

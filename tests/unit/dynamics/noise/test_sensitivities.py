@@ -9,7 +9,9 @@ import pytest
 from varied_housing import undamped_elsewhere
 
 from dynamics.errors import InputError
-from dynamics.noise import GUESSES, DesignFigure, forced_power, largest_level, ranked, sensitivity
+from dynamics.noise import GUESSES, DesignFigure, forced_power
+from dynamics.noise.sensitivities import ranked, sensitivity
+from dynamics.noise.sound_band import largest_level
 
 FIGURE = DesignFigure("tip relief", "um", 12.0, 2.0)
 

@@ -19,8 +19,8 @@ from varied_housing import (
 from dynamics.acoustics import Range
 from dynamics.errors import InputError
 from dynamics.housings import reduced_housing
-from dynamics.noise import GUESSES, forced_power, sound_band, usual_ranges
-from dynamics.noise.sound_band import missed_between
+from dynamics.noise import GUESSES, forced_power, sound_band
+from dynamics.noise.sound_band import missed_between, usual_ranges
 
 SPEED = np.geomspace(60.0, 300.0, 24)
 MESH_ERROR = Range(0.945, 1.0, 1.0)

@@ -14,8 +14,8 @@ from reduced_housings import bare_housing
 from scene_files import scene_file
 from sounding_housings import smooth_motion, with_surface
 from typer.testing import CliRunner, Result
+from wav_files import read_wav
 
-from dynamics.acoustics import read_wav
 from dynamics.housings import ReducedHousing, scene_housing
 from dynamics.housings.reduced_housing import PointMotion
 from dynamics.joints import Housing

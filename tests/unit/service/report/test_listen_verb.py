@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from typer.testing import CliRunner, Result
+from wav_files import read_wav
 
-from dynamics.acoustics import read_wav
 from dynamics.results import RunResult
 from lineofaction.cli.commands import app
 
