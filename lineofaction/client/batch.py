@@ -32,7 +32,7 @@ class BatchSurface(Followed, Generic[T, J]):
     """
 
     def __init__(self, client: Surface, state: JobState, read: Callable[[Path], T]) -> None:
-        self.session, self.state = client.session, state
+        self.session, self.driver, self.state = client.session, client.driver, state
         self._read = read
 
     @operation
@@ -63,11 +63,9 @@ class BatchSurface(Followed, Generic[T, J]):
         return results
 
     def _jobs(self, facts: dict[str, Any]) -> list[J]:
-        """Read the results of the batch: its jobs, as they ended."""
         return [self._job(*self._ended(place, entry)) for place, entry in enumerate(facts["jobs"])]
 
     def _ended(self, place: int, entry: dict[str, Any]) -> tuple[JobState, Result | None]:
-        """Read what came of one job."""
         message = entry["problem"]["detail"] if entry["problem"] else "Done."
         state = JobState(entry["jobID"], self.state.process, entry["status"], message, "", 100, 100)
         result = Result.from_json(entry["results"]) if entry["results"] else None
@@ -80,20 +78,12 @@ class BatchSurface(Followed, Generic[T, J]):
 class Batch(BatchSurface[T, Job[T, F]], Blocking):
     """A batch whose calls block."""
 
-    def __init__(self, client: Blocking, state: JobState, read: Callable[[Path], T]) -> None:
-        super().__init__(client, state, read)
-        self.driver = client.driver
-
     def _job(self, state: JobState, result: Result | None) -> Job[T, F]:
         return Job(self, state, self._read, result)
 
 
 class AsyncBatch(BatchSurface[T, AsyncJob[T, F]], Awaiting):
     """A batch whose calls are awaited."""
-
-    def __init__(self, client: Awaiting, state: JobState, read: Callable[[Path], T]) -> None:
-        super().__init__(client, state, read)
-        self.driver = client.driver
 
     def _job(self, state: JobState, result: Result | None) -> AsyncJob[T, F]:
         return AsyncJob(self, state, self._read, result)

@@ -8,6 +8,7 @@ import os
 from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, TypeVar
@@ -15,13 +16,12 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 import httpx2
 
 from host.directories import cache_home
-from lineofaction.client.answers import libraries
 from lineofaction.client.batch import AsyncBatch, Batch
 from lineofaction.client.cache import ResultCache
-from lineofaction.client.exchange import Exchange
+from lineofaction.client.exchange import Exchange, libraries
 from lineofaction.client.job import AsyncJob, Job
 from lineofaction.client.job_calls import JobCalls
-from lineofaction.client.offers import ANALYZE, reader_of
+from lineofaction.client.offers import ANALYZE, reader_of, subject_inputs
 from lineofaction.client.process import obtained
 from lineofaction.client.processes import Processes
 from lineofaction.client.result_calls import ResultCalls
@@ -37,16 +37,15 @@ from lineofaction.client.surface import (
     operation,
 )
 from lineofaction.gearbox import schemas
-from lineofaction.gearbox.mesh_tables import MeshTables
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.subjects import CaseLike, SceneLike, case_inputs, scene_inputs, scene_of
-from service.schemas.answers import EffectBody, ExampleBody, UnitBody
 from service.version import solver_version
 
 if TYPE_CHECKING:
     from dynamics.scene import Scene
     from fe_contact.ste import SteDatabase
     from lineofaction.gearbox.schemas import Case
+    from lineofaction.gearbox.subjects import CaseLike, SceneLike
+    from service.schemas.answers import EffectBody, ExampleBody, UnitBody
 
 # Scenes of dynamics on the tables of a service.
 
@@ -63,7 +62,7 @@ class ServiceTables:
 
     def by_case(self, case: Case) -> Steps[SteDatabase]:
         """Return the database of a case."""
-        return obtained(self._client, ANALYZE, case_inputs(case))
+        return obtained(self._client, ANALYZE, subject_inputs("case", case))
 
 
 class SceneCalls(Surface):
@@ -72,7 +71,7 @@ class SceneCalls(Surface):
     @operation
     def analysis_key(self, case: CaseLike) -> Steps[str]:
         """Return the content hash of a case's database, after it has been computed."""
-        result = yield from JobCalls.obtain(self, ANALYZE.name, case_inputs(case))
+        result = yield from JobCalls.obtain(self, ANALYZE.name, subject_inputs("case", case))
         return result.key
 
     @operation
@@ -90,6 +89,10 @@ class SceneCalls(Surface):
             Named by the fields of the scene.
         JobFailed, NotFound, Unreachable, ServiceError
         """
+        # what declares the fields of a scene is loaded with the first call
+        from lineofaction.gearbox.mesh_tables import MeshTables  # noqa: PLC0415
+        from lineofaction.gearbox.subjects import scene_of  # noqa: PLC0415
+
         inputs, folder = scene_of(scene)
         source, tables = MeshTables(folder, ServiceTables(self)), {}
         for index, mesh in inputs.with_database:
@@ -122,13 +125,13 @@ class LookupCalls(Surface):
         time_budget_s : float, optional
             CPU seconds that may be spent.
         """
-        inputs = case_inputs(case) | {"time_budget_s": time_budget_s}
+        inputs = subject_inputs("case", case) | {"time_budget_s": time_budget_s}
         return (yield from self._answer("/v1/plans", {"inputs": inputs}, schemas.PlanBody.model_validate))
 
     @operation
     def outline(self, case: CaseLike) -> Steps[schemas.OutlineBody]:
         """Return the drawing of both gears, the path of contact and the figures of the pair."""
-        body = {"inputs": case_inputs(case)}
+        body = {"inputs": subject_inputs("case", case)}
         return (yield from self._answer("/v1/cases/outline", body, schemas.OutlineBody.model_validate))
 
     @operation
@@ -150,7 +153,7 @@ class LookupCalls(Surface):
     @operation
     def case_to_toml(self, case: CaseLike) -> Steps[str]:
         """Return a case with all defaults as the text of a case file."""
-        body = {"inputs": case_inputs(case)}
+        body = {"inputs": subject_inputs("case", case)}
         return (yield from self._answer("/v1/cases/to-toml", body, _text))
 
     @operation
@@ -161,7 +164,7 @@ class LookupCalls(Surface):
     @operation
     def scene_to_toml(self, scene: SceneLike) -> Steps[str]:
         """Return a scene, its case files written out, as the text of a scene file."""
-        body = {"inputs": scene_inputs(scene)}
+        body = {"inputs": subject_inputs("scene", scene)}
         return (yield from self._answer("/v1/scenes/to-toml", body, _text))
 
     @operation
@@ -186,7 +189,7 @@ class LookupCalls(Surface):
         except OSError as error:
             raise BadInput.of("file", str(file), f"a file that can be read ({error.strerror})") from None
         body = {"rexs_base64": base64.b64encode(data).decode(), "assume": list(assume)}
-        return (yield from self._answer("/v1/units/open", body, UnitBody.model_validate))
+        return (yield from self._answer("/v1/units/open", body, _unit))
 
     def _answer(self, path: str, body: dict[str, Any], reader: Callable[[Any], T]) -> Steps[T]:
         return (yield from self.session.exchange.read(reader, "POST", path, json=body))
@@ -205,11 +208,21 @@ def _text(answer: dict[str, Any]) -> str:
 
 
 def _effects(answer: list[Any]) -> tuple[EffectBody, ...]:
-    return tuple(map(EffectBody.model_validate, answer))
+    return tuple(map(_bodies().EffectBody.model_validate, answer))
 
 
 def _examples(answer: list[Any]) -> tuple[ExampleBody, ...]:
-    return tuple(map(ExampleBody.model_validate, answer))
+    return tuple(map(_bodies().ExampleBody.model_validate, answer))
+
+
+def _unit(answer: dict[str, Any]) -> UnitBody:
+    unit: UnitBody = _bodies().UnitBody.model_validate(answer)
+    return unit
+
+
+def _bodies() -> Any:
+    """Return the models of answers, loaded with the first of them."""
+    return import_module("service.schemas.answers")
 
 
 # The address of a service, and how HTTP libraries are to reach it.
@@ -223,20 +236,6 @@ def _http_options(base_url: str | None, timeout: float, key: str | None) -> dict
 
     Proxies and certificates are those of the environment (``HTTPS_PROXY``, ``NO_PROXY``, ``SSL_CERT_FILE``);
     this machine is asked without a proxy.
-
-    Parameters
-    ----------
-    base_url : str, optional
-        Default: the environment variable ``LOA_SERVICE``, else ``http://127.0.0.1:8321``.
-    timeout : float
-        Seconds that connecting, sending, or the next piece of an answer may take.
-    key : str, optional
-        Access key; default: the environment variable ``LOA_KEY``.
-
-    Raises
-    ------
-    BadInput
-        The address is none.
     """
     address = base_url or os.environ.get("LOA_SERVICE") or DEFAULT
     key = key or os.environ.get("LOA_KEY")
@@ -250,7 +249,6 @@ def _http_options(base_url: str | None, timeout: float, key: str | None) -> dict
 
 
 def _host(base_url: str) -> str:
-    """Return the host of an address; raises `BadInput` for one that is none."""
     try:
         url = httpx2.URL(base_url)
     except httpx2.InvalidURL:
@@ -262,7 +260,6 @@ def _host(base_url: str) -> str:
 
 
 def _is_loopback(host: str) -> bool:
-    """Whether a host is this machine, which no proxy needs to reach."""
     try:
         return host == "localhost" or ipaddress.ip_address(host).is_loopback
     except ValueError:

@@ -1,10 +1,12 @@
-"""Requests to a service: retries, downloads, and answers checked to be this service's."""
+"""Requests to a service: retries, downloads, and answers checked or turned into errors."""
 
 from __future__ import annotations
 
 import hashlib
+import json
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
@@ -12,9 +14,81 @@ from typing import Any, BinaryIO, TypeVar
 
 import httpx2
 
-from lineofaction.client.answers import problem_of, stranger
 from lineofaction.client.steps import Open, Pause, Piece, Send, Steps, Stream
-from lineofaction.gearbox.problems import Unreachable
+from lineofaction.gearbox import problems
+from lineofaction.gearbox.problems import (
+    BadInput,
+    Fault,
+    JobFailed,
+    NotFound,
+    ServiceError,
+    Unexpected,
+    Unreachable,
+)
+
+# Problems that a service answers with, turned back into the errors they were.
+
+
+def problem_of(response: httpx2.Response) -> ServiceError:
+    """Return the error that an answer tells of; `Unreachable` if it is not this service's."""
+    try:
+        facts = response.json()
+        detail, kind = str(facts["detail"]), str(facts["type"])
+        faults = [Fault(**fault) for fault in facts.get("errors", [])]
+    except (json.JSONDecodeError, UnicodeDecodeError, KeyError, TypeError):
+        return stranger(response)
+    if kind == BadInput.type:
+        return BadInput(faults)
+    if kind == JobFailed.type:
+        return BadInput(faults) if faults else JobFailed(detail)
+    known = _BY_TYPE.get(kind)
+    if known is not None:
+        return known(detail)
+    return NotFound(detail) if response.status_code == NotFound.status else ServiceError(detail)
+
+
+def stranger(response: httpx2.Response) -> Unreachable:
+    """Return the error of an answer that this service does not give."""
+    status, url = response.status_code, response.request.url
+    to = f" and sends to {response.headers['location']}" if response.has_redirect_location else ""
+    return Unreachable(
+        f"{url} answered with status {status}{to}, which is not an answer of this service. Check the address."
+    )
+
+
+_WITH_MORE = (BadInput, JobFailed, Unexpected)
+"""Errors that are not made of their text alone."""
+
+_BY_TYPE = {
+    kind.type: kind
+    for kind in vars(problems).values()
+    if isinstance(kind, type) and issubclass(kind, ServiceError) and "type" in vars(kind)
+    if kind is not ServiceError and kind not in _WITH_MORE
+}
+
+
+_ADVICE = (
+    "Results as objects need the libraries: pip uninstall lineofaction-client, pip install lineofaction. "
+    "job.figures(), job.report() and job.file() do not."
+)
+
+
+@contextmanager
+def libraries() -> Iterator[None]:
+    """Say what to install where the body imports what is not here.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        With the package to install; `host.extras.MissingExtra`, which names its extra, as it is.
+    """
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if type(error) is not ModuleNotFoundError:
+            raise
+        raise ModuleNotFoundError(f"{error.name} is not installed. {_ADVICE}", name=error.name) from None
+
 
 # The trace that a caller is in goes with every request.
 
@@ -142,7 +216,6 @@ class Exchange:
 
 
 def _checked(response: httpx2.Response) -> httpx2.Response:
-    """Return an answer that is what was requested; raises what it says otherwise."""
     if response.status_code in _TRY_AGAIN:
         raise _TryAgain(response)
     if not response.is_success:  # a redirection too: those are for others
@@ -172,7 +245,6 @@ def _retry_after_s(headers: Mapping[str, str]) -> float | None:
 
 
 def _date(text: str) -> datetime | None:
-    """Return a date of HTTP, None for a text that is none."""
     try:
         when = parsedate_to_datetime(text)
     except ValueError:

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypeVar, cast
 
 from lineofaction.client.job_calls import JobCalls, pace_of_known, result_of
-from lineofaction.client.report import Report
 from lineofaction.client.result_calls import ResultCalls
 from lineofaction.client.status import JobState, Result, Watch, outlasting
 from lineofaction.client.steps import Item, Items, Steps
@@ -19,6 +18,7 @@ from lineofaction.gearbox.problems import BadInput, DamagedFile, JobDismissed, J
 if TYPE_CHECKING:
     import xarray
 
+    from lineofaction.client.report import Report
     from lineofaction.gearbox.schemas.figures import Figures
 
 T = TypeVar("T")
@@ -74,8 +74,6 @@ class Followed(Surface):
         return outlasting(fetch, self.session.patience)
 
     def _seen(self, progress: Watch | None) -> Watch:
-        """Return a watch that keeps the state and passes it on."""
-
         def see(state: JobState) -> None:
             self.state = state
             watch = progress or self.session.progress
@@ -94,7 +92,7 @@ class JobSurface(Followed, Generic[T, F]):
     def __init__(
         self, client: Surface, state: JobState, read: Callable[[Path], T], result: Result | None = None
     ) -> None:
-        self.session, self.state = client.session, state
+        self.session, self.driver, self.state = client.session, client.driver, state
         self._read, self._result = read, result
 
     @operation
@@ -152,18 +150,6 @@ class JobSurface(Followed, Generic[T, F]):
 class Job(JobSurface[T, F], Blocking):
     """A job whose calls block."""
 
-    def __init__(
-        self, client: Blocking, state: JobState, read: Callable[[Path], T], result: Result | None = None
-    ) -> None:
-        super().__init__(client, state, read, result)
-        self.driver = client.driver
-
 
 class AsyncJob(JobSurface[T, F], Awaiting):
     """A job whose calls are awaited."""
-
-    def __init__(
-        self, client: Awaiting, state: JobState, read: Callable[[Path], T], result: Result | None = None
-    ) -> None:
-        super().__init__(client, state, read, result)
-        self.driver = client.driver

@@ -9,12 +9,11 @@ import uuid
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import httpx2
 
-from lineofaction.client.answers import stranger
-from lineofaction.client.exchange import Exchange
+from lineofaction.client.exchange import Exchange, stranger
 from lineofaction.client.status import (
     AWAY,
     AWAY_PAUSE_S,
@@ -32,9 +31,6 @@ from lineofaction.client.steps import Item, Items, Pause, Piece, Steps, Stream
 from lineofaction.client.surface import Session, Surface, listing, operation
 from lineofaction.gearbox.problems import BadInput, ServiceError, Unreachable
 from service.version import solver_version
-
-if TYPE_CHECKING:
-    from lineofaction.client.exchange import Exchange
 
 T = TypeVar("T")
 _PAGE = 100
@@ -100,42 +96,6 @@ class EventReader:
                 complete.append(json.loads(b"\n".join(self._data)))
                 self._data.clear()
         return complete
-
-
-def job_events(exchange: Exchange, job: str, patience: float) -> Items[JobState]:
-    """Hand out the state of a job now and whenever it changes, until it has ended.
-
-    A stream that breaks is opened again; a state that did not change meanwhile is not handed out twice.
-
-    Raises
-    ------
-    Unreachable
-        The service was away for longer than `patience` seconds.
-    """
-    last: JobState | None = None
-    answered = time.monotonic()
-    while True:
-        try:
-            stream: Stream = yield from exchange.opened(f"/v1/jobs/{job}/events", EVENT_STREAM)
-            reader = EventReader()
-            while (piece := (yield Piece(stream))) is not None:
-                answered = time.monotonic()
-                for state in map(JobState.from_json, reader.documents(piece)):
-                    if state != last:
-                        last = state
-                        yield Item(state)
-        except (httpx2.TransportError, *AWAY) as error:
-            if last is None or time.monotonic() - answered > patience:
-                raise exchange.away(error) if isinstance(error, httpx2.TransportError) else error from None
-        except STOPS as stop:
-            note_continuing(stop, job)
-            raise
-        else:
-            if last is None:
-                raise stranger(stream.response)
-        if last.ended:
-            return
-        yield Pause(AWAY_PAUSE_S)
 
 
 _LONGEST_PAUSE_S = 2.0
@@ -296,6 +256,8 @@ class JobCalls(Surface):
     def events(self, job: str) -> Items[JobState]:
         """Yield the state of a job now and whenever it changes, until it has ended.
 
+        A stream that breaks is opened again; a state that did not change meanwhile is not handed out twice.
+
         Raises
         ------
         NotFound
@@ -304,7 +266,33 @@ class JobCalls(Surface):
         Unreachable
             The service was away for longer than the client's patience.
         """
-        yield from job_events(self.session.exchange, job, self.session.patience)
+        exchange, patience = self.session.exchange, self.session.patience
+        last: JobState | None = None
+        answered = time.monotonic()
+        while True:
+            try:
+                stream: Stream = yield from exchange.opened(f"/v1/jobs/{job}/events", EVENT_STREAM)
+                reader = EventReader()
+                while (piece := (yield Piece(stream))) is not None:
+                    answered = time.monotonic()
+                    for state in map(JobState.from_json, reader.documents(piece)):
+                        if state != last:
+                            last = state
+                            yield Item(state)
+            except (httpx2.TransportError, *AWAY) as error:
+                if last is None or time.monotonic() - answered > patience:
+                    raise (
+                        exchange.away(error) if isinstance(error, httpx2.TransportError) else error
+                    ) from None
+            except STOPS as stop:
+                note_continuing(stop, job)
+                raise
+            else:
+                if last is None:
+                    raise stranger(stream.response)
+            if last.ended:
+                return
+            yield Pause(AWAY_PAUSE_S)
 
     @operation
     def wait(

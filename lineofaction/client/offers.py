@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
+from importlib import import_module
 from inspect import Parameter, Signature
 from pathlib import Path
 from typing import Any
 
-from lineofaction.client.answers import libraries
+from lineofaction.client.exchange import libraries
 from lineofaction.gearbox.registry import STUDIES, Study
-from lineofaction.gearbox.subjects import case_inputs, inputs_of, scene_inputs, study_inputs
+
+_SUBJECTS: Callable[[], Any] = partial(import_module, "lineofaction.gearbox.subjects")
+"""Loads what declares the fields of a case, with the first call."""
 
 
 @dataclass(frozen=True)
@@ -25,8 +28,8 @@ class Offer:
     description : str
     signature : inspect.Signature
         Of the client's calls.
-    to_inputs : callable
-        What is computed, to JSON.
+    subject : str
+        What is computed: a case, a scene, or either.
     read : callable
         The path of the result's file to the result; imports what it needs.
     """
@@ -34,7 +37,7 @@ class Offer:
     name: str
     description: str
     signature: Signature
-    to_inputs: Callable[[Any], dict[str, Any]]
+    subject: str
     read: Callable[[Path], Any]
 
     @property
@@ -48,9 +51,16 @@ class Offer:
             bound = self.signature.bind(*args, **kwargs).arguments
         except TypeError as error:
             raise TypeError(f"{self.attribute}{self.signature}: {error}") from None
-        subject = self.to_inputs(bound[next(iter(self.signature.parameters))])
-        varied = bound.get("study", bound.get("options", {}))
-        return subject | study_inputs(varied)
+        subject = subject_inputs(self.subject, bound[next(iter(self.signature.parameters))])
+        varied: dict[str, Any] = _SUBJECTS().study_inputs(bound.get("study", bound.get("options", {})))
+        return subject | varied
+
+
+def subject_inputs(kind: str, subject: Any) -> dict[str, Any]:
+    """Return a case, a scene, or what is either of them, as JSON; raises `BadInput`."""
+    name = {"case": "case_inputs", "scene": "scene_inputs", "case or scene": "inputs_of"}[kind]
+    inputs: dict[str, Any] = getattr(_SUBJECTS(), name)(subject)
+    return inputs
 
 
 def _read_database(file: Path) -> Any:
@@ -79,20 +89,17 @@ def _signature(subject: str, *further: Parameter) -> Signature:
 
 
 def _study_offer(study: Study) -> Offer:
-    to_inputs = {"case": case_inputs, "scene": scene_inputs, "case or scene": inputs_of}[study.subject]
     varied = (
         Parameter("study", Parameter.POSITIONAL_OR_KEYWORD, default={} if study.bare else Parameter.empty)
         if study.from_file
         else Parameter("options", Parameter.VAR_KEYWORD)
     )
     signature = _signature(study.argument, varied)
-    return Offer(study.name, study.description, signature, to_inputs, partial(_read_study, study))
+    return Offer(study.name, study.description, signature, study.subject, partial(_read_study, study))
 
 
-ANALYZE = Offer(
-    "analyze", "Compute the STE database of a case.", _signature("case"), case_inputs, _read_database
-)
-SIMULATE = Offer("simulate", "Compute the run of a scene.", _signature("scene"), scene_inputs, _read_run)
+ANALYZE = Offer("analyze", "Compute the STE database of a case.", _signature("case"), "case", _read_database)
+SIMULATE = Offer("simulate", "Compute the run of a scene.", _signature("scene"), "scene", _read_run)
 
 
 @cache

@@ -29,7 +29,6 @@ CONCURRENCY = 8
 
 
 def _at_least_one(concurrency: int) -> int:
-    """Return a number of jobs; raises `BadInput` for one below 1."""
     if concurrency < 1:
         raise BadInput.of("concurrency", concurrency, "at least 1")
     return concurrency

@@ -32,7 +32,6 @@ class Report(ReportBody):
 
 
 def _section(section: Json) -> str:
-    """Return the tables of a section; nothing of one without."""
     tables = [*section["tables"], *section["folded"]]
     rows = "".join(_table(table["head"], table["rows"]) for table in tables if table["rows"])
     return f"<details><summary>{escape(section['title'])}</summary>{rows}</details>" if rows else ""

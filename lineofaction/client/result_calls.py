@@ -7,25 +7,24 @@ from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
-from lineofaction.client.answers import libraries
 from lineofaction.client.cache import FIGURES
+from lineofaction.client.exchange import libraries
 from lineofaction.client.job_calls import pages
 from lineofaction.client.offers import ANALYZE
-from lineofaction.client.report import Report
 from lineofaction.client.steps import Items, Steps
 from lineofaction.client.surface import Session, Surface, listing, operation
 from lineofaction.gearbox import schemas
 from lineofaction.gearbox.problems import DamagedFile, NotFound
 from lineofaction.gearbox.registry import JSON, NETCDF
-from lineofaction.gearbox.schemas.query import QueryInput
 from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX, figures_model
-from service.schemas.answers import DatabaseEntry
 
 if TYPE_CHECKING:
     import xarray
 
     from fe_contact.ste import SteDatabase
+    from lineofaction.client.report import Report
     from lineofaction.gearbox.schemas.figures import Figures
+    from service.schemas.answers import DatabaseEntry
 
 Column = float | Collection[float]
 """One value for all points, or a list or one-dimensional array with one for each."""
@@ -73,6 +72,8 @@ class ResultCalls(Surface):
     @listing
     def databases(self, *, limit: int | None = None) -> Items[DatabaseEntry]:
         """Yield the stored STE databases with their cases, the newest first, at most `limit`."""
+        from service.schemas.answers import DatabaseEntry  # noqa: PLC0415 (start-up time)
+
         yield from pages(
             self.session.exchange, "/v1/databases", "databases", DatabaseEntry.model_validate, {}, limit
         )
@@ -141,6 +142,8 @@ class ResultCalls(Surface):
         against : str, optional
             Another result of the same kind, table or run: the report then compares both.
         """
+        from lineofaction.client.report import Report  # noqa: PLC0415 (start-up time)
+
         parameters = {} if against is None else {"against": against}
         path = f"{RESULTS}/{key}/figures"
         return (yield from self.session.exchange.read(Report.model_validate, "GET", path, params=parameters))
@@ -199,6 +202,8 @@ class ResultCalls(Surface):
             Columns of different lengths, too many points, a value that is not finite or out of bounds.
         NotFound, Unreachable, ServiceError
         """
+        from lineofaction.gearbox.schemas.query import QueryInput  # noqa: PLC0415 (start-up time)
+
         columns = {
             "position": position,
             "deflection_um": deflection_um,
@@ -245,7 +250,6 @@ class ResultCalls(Surface):
 
 
 def _fetched(session: Session, key: str, kinds: Sequence[str], form: str) -> Steps[tuple[Path, str]]:
-    """Return a form of a result, and its kind."""
     suffix = FIGURES if form == JSON else SUFFIX
     for kind in kinds:
         cached = session.cache.get(kind, key, suffix)

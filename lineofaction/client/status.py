@@ -196,8 +196,23 @@ def ended(job: str, look: Callable[[], Steps[JobState]], pace: Pace) -> Steps[Jo
     ServiceError
         What `look` raises; that the service is away, only if it has never answered or not for too long.
     """
+    begin, answered, pause = time.monotonic(), pace.answered, pace.interval
     try:
-        return (yield from _ended(job, look, pace))
+        while True:
+            try:
+                state = yield from look()
+                if state.ended:
+                    return state
+                answered = time.monotonic()
+            except AWAY:
+                if time.monotonic() - answered > pace.patience:
+                    raise
+            left = pace.timeout - (time.monotonic() - begin)
+            if left <= 0.0:
+                text = f"Job {job} did not end within {pace.timeout:g} s. It continues; check again later."
+                raise StillRunning(text)
+            yield Pause(min(pause, left))
+            pause = pace.longer(pause)
     except STOPS as stop:
         note_continuing(stop, job)
         raise
@@ -220,22 +235,3 @@ def outlasting(once: Callable[[], Steps[T]], patience: float) -> Steps[T]:
             if time.monotonic() - begin > patience:
                 raise
         yield Pause(AWAY_PAUSE_S)
-
-
-def _ended(job: str, look: Callable[[], Steps[JobState]], pace: Pace) -> Steps[JobState]:
-    begin, answered, pause = time.monotonic(), pace.answered, pace.interval
-    while True:
-        try:
-            state = yield from look()
-            if state.ended:
-                return state
-            answered = time.monotonic()
-        except AWAY:
-            if time.monotonic() - answered > pace.patience:
-                raise
-        left = pace.timeout - (time.monotonic() - begin)
-        if left <= 0.0:
-            text = f"Job {job} did not end within {pace.timeout:g} s. It continues; check again later."
-            raise StillRunning(text)
-        yield Pause(min(pause, left))
-        pause = pace.longer(pause)

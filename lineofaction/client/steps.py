@@ -6,7 +6,7 @@ raised, and returns its result. It knows no socket and no event loop, so both cl
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
@@ -62,24 +62,3 @@ Steps = Generator[Send | Piece | Pause, Any, T]
 """An operation with one result."""
 Items = Generator[Send | Piece | Pause | Item[T], Any, None]
 """An operation that hands out items. A driver closes what it opened when the iteration ends early."""
-
-
-class Course(Generic[T]):
-    """How far an operation is: a driver takes its next action, performs it and gives back what came of it."""
-
-    def __init__(self, steps: Generator[Any, Any, T]) -> None:
-        self._steps = steps
-        self.answer(None)
-
-    def action(self) -> Any:
-        """Return the next action; raises `StopIteration` with the result, or what the operation raises."""
-        return self._advance(self._given)
-
-    def answer(self, reply: Any) -> None:
-        """Give the answer to an action."""
-        self._advance: Callable[[Any], Any] = self._steps.send
-        self._given = reply
-
-    def fail(self, error: BaseException) -> None:
-        """Give what an action raised; the operation decides what becomes of it."""
-        self._advance, self._given = self._steps.throw, error

@@ -5,7 +5,16 @@ from __future__ import annotations
 import asyncio
 import time
 from collections import deque
-from collections.abc import AsyncGenerator, AsyncIterator, Callable, Coroutine, Iterable, Iterator, Mapping
+from collections.abc import (
+    AsyncGenerator,
+    AsyncIterator,
+    Callable,
+    Coroutine,
+    Generator,
+    Iterable,
+    Iterator,
+    Mapping,
+)
 from contextlib import AsyncExitStack, ExitStack
 from dataclasses import dataclass, field
 from functools import wraps
@@ -17,12 +26,33 @@ import httpx2
 from lineofaction.client.cache import ResultCache
 from lineofaction.client.exchange import Exchange
 from lineofaction.client.status import Watch
-from lineofaction.client.steps import Course, Item, Items, Open, Pause, Piece, Send, Steps, Stream
-
-# The driver that blocks: one thread performs the steps, one action after the other.
-
+from lineofaction.client.steps import Item, Items, Open, Pause, Piece, Send, Steps, Stream
 
 T = TypeVar("T")
+
+
+class _Course(Generic[T]):
+    """How far an operation is: a driver takes its next action, performs it and gives back what came of it."""
+
+    def __init__(self, steps: Generator[Any, Any, T]) -> None:
+        self._steps = steps
+        self.answer(None)
+
+    def action(self) -> Any:
+        """Return the next action; raises `StopIteration` with the result, or what the operation raises."""
+        return self._advance(self._given)
+
+    def answer(self, reply: Any) -> None:
+        """Give the answer to an action."""
+        self._advance: Callable[[Any], Any] = self._steps.send
+        self._given = reply
+
+    def fail(self, error: BaseException) -> None:
+        """Give what an action raised; the operation decides what becomes of it."""
+        self._advance, self._given = self._steps.throw, error
+
+
+# The driver that blocks: one thread performs the steps, one action after the other.
 
 
 class BlockingDriver:
@@ -45,7 +75,7 @@ class BlockingDriver:
 
     def run(self, steps: Steps[T]) -> T:
         """Perform steps to their end; return their result."""
-        course = Course(steps)
+        course = _Course(steps)
         with ExitStack() as streams:
             try:
                 while True:
@@ -56,7 +86,7 @@ class BlockingDriver:
 
     def iterate(self, steps: Items[T]) -> Iterator[T]:
         """Perform steps; yield the items they hand out."""
-        course = Course(steps)
+        course = _Course(steps)
         with ExitStack() as streams:
             while True:
                 try:
@@ -78,7 +108,7 @@ class BlockingDriver:
         source, window = iter(operations), deque[_Begun[T]]()
         with ExitStack() as streams:
             while True:
-                window.extend(_Begun(Course(steps)) for steps in islice(source, concurrency - len(window)))
+                window.extend(_Begun(_Course(steps)) for steps in islice(source, concurrency - len(window)))
                 if not window:
                     return
                 while not window[0].ended:
@@ -98,15 +128,13 @@ class BlockingDriver:
         except Exception as error:  # noqa: BLE001 (raised in its turn)
             begun.ended, begun.error = True, error
 
-    def _go_on(self, course: Course[Any], action: Send | Piece | Pause, streams: ExitStack) -> None:
-        """Perform an action and give back what came of it."""
+    def _go_on(self, course: _Course[Any], action: Send | Piece | Pause, streams: ExitStack) -> None:
         try:
             course.answer(self._perform(action, streams))
         except BaseException as error:  # noqa: BLE001 (whatever it is, the operation decides)
             course.fail(error)
 
     def _perform(self, action: Send | Piece | Pause, streams: ExitStack) -> Any:
-        """Perform an action; return its answer."""
         match action:
             case Open():
                 response = streams.enter_context(
@@ -127,7 +155,7 @@ class BlockingDriver:
 class _Begun(Generic[T]):
     """An operation of `BlockingDriver.map`: how it goes on, and when."""
 
-    course: Course[T]
+    course: _Course[T]
     due: float = 0.0
     ended: bool = False
     value: T | None = None
@@ -159,7 +187,7 @@ class AwaitingDriver:
 
     async def run(self, steps: Steps[T]) -> T:
         """Perform steps to their end; return their result."""
-        course = Course(steps)
+        course = _Course(steps)
         async with AsyncExitStack() as streams:
             try:
                 while True:
@@ -170,7 +198,7 @@ class AwaitingDriver:
 
     async def iterate(self, steps: Items[T]) -> AsyncIterator[T]:
         """Perform steps; yield the items they hand out."""
-        course = Course(steps)
+        course = _Course(steps)
         async with AsyncExitStack() as streams:
             while True:
                 try:
@@ -203,16 +231,14 @@ class AwaitingDriver:
             await asyncio.gather(*window, return_exceptions=True)
 
     async def _go_on(
-        self, course: Course[Any], action: Send | Piece | Pause, streams: AsyncExitStack
+        self, course: _Course[Any], action: Send | Piece | Pause, streams: AsyncExitStack
     ) -> None:
-        """Perform an action and give back what came of it."""
         try:
             course.answer(await self._perform(action, streams))
         except BaseException as error:  # noqa: BLE001 (whatever it is, the operation decides)
             course.fail(error)
 
     async def _perform(self, action: Send | Piece | Pause, streams: AsyncExitStack) -> Any:
-        """Perform an action; return its answer."""
         match action:
             case Open():
                 response = await streams.enter_async_context(
@@ -259,6 +285,7 @@ class Surface:
     """Whatever has operations on a service: a client, a job."""
 
     session: Session
+    driver: Any
 
 
 class Blocking(Surface):
@@ -326,11 +353,5 @@ class Listing(Generic[P, T]):
         return iterate
 
 
-def operation(steps: Callable[Concatenate[Any, P], Steps[T]]) -> Operation[P, T]:
-    """Make an operation of a generator of steps."""
-    return Operation(steps)
-
-
-def listing(steps: Callable[Concatenate[Any, P], Items[T]]) -> Listing[P, T]:
-    """Make a listing of a generator of steps and items."""
-    return Listing(steps)
+operation, listing = Operation, Listing
+"""As decorators of generators of steps, and of steps and items."""

@@ -17,7 +17,7 @@ import httpx2
 import pytest
 
 from lineofaction.client import JobState, LineOfActionClient
-from lineofaction.client.answers import problem_of
+from lineofaction.client.exchange import problem_of
 from lineofaction.gearbox import problems
 from lineofaction.gearbox.problems import (
     BadInput,
