@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 from sqlalchemy import Connection, Engine, inspect, text
 
 from lineofaction.gearbox.problems import BadInput
 from service.store.dialects import RESTORE, dialect_of
-from service.store.migrations import REVISIONS, USABLE_SINCE
+from service.store.migrations import REVISIONS, USABLE_SINCE, migrate
 from service.store.outages import retried, unusable
-
-if TYPE_CHECKING:
-    from alembic.config import Config
 
 NEWEST = "schema_version"
 """The table with the number of the last step that was made."""
@@ -66,13 +61,11 @@ def _schema_numbers(connection: Connection) -> SchemaNumbers:
     return SchemaNumbers(oldest, oldest)
 
 
-def _write_oldest(connection: Connection) -> None:
-    """Write down the oldest schema whose program can use the tables of this one."""
-    connection.execute(text(f"CREATE TABLE IF NOT EXISTS {_OLDEST} (version_num VARCHAR(32) NOT NULL)"))
-    connection.execute(text(f"DELETE FROM {_OLDEST}"))
-    connection.execute(
-        text(f"INSERT INTO {_OLDEST} (version_num) VALUES (:number)"), {"number": USABLE_SINCE}
-    )
+def _write_number(connection: Connection, table: str, number: str) -> None:
+    key = f"CONSTRAINT {table}_pkc PRIMARY KEY (version_num)"
+    connection.execute(text(f"CREATE TABLE IF NOT EXISTS {table} (version_num VARCHAR(32) NOT NULL, {key})"))
+    connection.execute(text(f"DELETE FROM {table}"))
+    connection.execute(text(f"INSERT INTO {table} (version_num) VALUES (:number)"), {"number": number})
 
 
 def _number(connection: Connection, table: str) -> str | None:
@@ -169,23 +162,6 @@ def _refuse_newer(numbers: SchemaNumbers, engine: Engine) -> None:
 
 
 def _migrate(connection: Connection, revision: str | None) -> None:
-    """Run the steps from `revision` to ours in the connection's transaction."""
-    from alembic import command  # noqa: PLC0415 (start-up time: seldom needed)
-
-    config = _config(connection)
-    if revision is not None:
-        command.stamp(config, revision)
-    command.upgrade(config, REVISIONS[-1])
-    _write_oldest(connection)
-
-
-def _config(connection: Connection) -> Config:
-    """Return alembic's configuration."""
-    from alembic.config import Config  # noqa: PLC0415 (start-up time: seldom needed)
-
-    config = Config()
-    folder = str(Path(__file__).with_name("migrations")).replace("%", "%%")
-    config.set_main_option("script_location", folder)
-    config.set_main_option("path_separator", "os")
-    config.attributes["connection"] = connection
-    return config
+    migrate(connection, revision)
+    _write_number(connection, NEWEST, REVISIONS[-1])
+    _write_number(connection, _OLDEST, USABLE_SINCE)

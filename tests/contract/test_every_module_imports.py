@@ -13,7 +13,7 @@ BLOCKED = f"""
 import importlib, pkgutil, sys, types
 sys.path.insert(0, {str(ROOT)!r})
 PACKAGES = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "lineofaction", "service")
-RUN_BY_OTHERS = ("__main__", "migrations.env")
+RUN_BY_OTHERS = ("__main__",)
 
 def import_all(but=()):
     for package in map(importlib.import_module, PACKAGES):

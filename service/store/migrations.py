@@ -1,0 +1,238 @@
+"""Steps from schema to schema of the database, in order. A step behind `USABLE_SINCE` only adds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import sqlalchemy as sa
+
+if TYPE_CHECKING:
+    from alembic.operations import Operations
+
+USABLE_SINCE = "0007"
+"""The oldest schema whose program can use the newest one.
+
+Programs of two versions work on one database during an upgrade. A step that removes or renames moves it up.
+"""
+
+
+def migrate(connection: sa.Connection, revision: str | None) -> None:
+    """Make the steps behind `revision`, None: all, in the transaction of the connection."""
+    from alembic.migration import MigrationContext  # noqa: PLC0415 (start-up time: seldom needed)
+    from alembic.operations import Operations  # noqa: PLC0415 (start-up time: seldom needed)
+
+    op = Operations(MigrationContext.configure(connection))
+    for number, step in STEPS.items():
+        if revision is None or number > revision:
+            step(op)
+
+
+def _column(name: str, default: str = "", kind: Any = sa.String) -> sa.Column[Any]:
+    return sa.Column(name, kind, nullable=False, server_default=default)
+
+
+def _columns(kind: Any, *names: str) -> Iterable[sa.Column[Any]]:
+    return (sa.Column(name, kind, nullable=False) for name in names)
+
+
+def _jobs_and_results(op: Operations) -> None:
+    _computations(op)
+    op.create_table(
+        "job",
+        sa.Column("id", sa.String, primary_key=True),
+        sa.Column("computation_id", sa.String, sa.ForeignKey("computation.id"), nullable=False),
+        sa.Column("created", sa.String, nullable=False),
+        sa.Column("dismissed", sa.String),
+    )
+    op.create_index("job_by_computation", "job", ["computation_id"])
+    op.create_index("job_by_time", "job", ["created"])
+    op.create_table(
+        "result",
+        sa.Column("key", sa.String, primary_key=True),
+        sa.Column("kind", sa.String, primary_key=True),
+        sa.Column("sha256", sa.String, nullable=False),
+        sa.Column("size", sa.BigInteger, nullable=False),
+        sa.Column("created", sa.String, nullable=False),
+    )
+
+
+def _computations(op: Operations) -> None:
+    """Make the table of computations: at most one of a key waits or runs."""
+    op.create_table(
+        "computation",
+        sa.Column("id", sa.String, primary_key=True),
+        *_columns(sa.String, "process", "key"),
+        sa.Column("inputs", sa.Text, nullable=False),
+        *_columns(sa.String, "state", "stage"),
+        *_columns(sa.Float, "stage_fraction", "fraction"),
+        *_columns(sa.Text, "message", "faults"),
+        sa.Column("reference", sa.String, nullable=False),
+        sa.Column("attempts", sa.Integer, nullable=False),
+        sa.Column("created", sa.String, nullable=False),
+        sa.Column("started", sa.String),
+        sa.Column("finished", sa.String),
+        sa.Column("updated", sa.String, nullable=False),
+    )
+    live = sa.text("state IN ('accepted', 'running')")
+    where: dict[str, Any] = {"sqlite_where": live, "postgresql_where": live}
+    op.create_index("computation_in_flight", "computation", ["key"], unique=True, **where)
+    op.create_index("computation_by_state", "computation", ["state", "created"])
+
+
+def _leases(op: Operations) -> None:
+    """Add the owner of a computation and its lease; what runs now is nobody's, and its lease has ended."""
+    op.add_column("computation", _column("owner"))
+    op.add_column("computation", _column("lease"))
+    op.add_column("computation", _column("leased_until", "0", sa.Float))
+    op.create_index("computation_by_lease", "computation", ["lease"])
+
+
+_NAMES = """
+UPDATE result SET used = created, file = kind || '/' || substr("key", 1, 2) || '/' || "key"
+    || CASE WHEN kind IN ('ablation', 'frontier') THEN '.json' ELSE '.nc' END
+"""
+
+
+def _uses_of_results(op: Operations) -> None:
+    """Add names of files and last uses; files had the names of their keys, and were used when made."""
+    op.add_column("result", _column("file"))
+    op.add_column("result", _column("used"))
+    op.execute(_NAMES)
+    op.create_index("result_by_use", "result", ["used"])
+    op.add_column("job", sa.Column("asked", sa.String))
+    op.create_index("job_by_use", "job", ["asked"])
+
+
+def _callers(op: Operations) -> None:
+    """Add the key that a job was entered with; jobs of before are nobody's."""
+    op.add_column("job", _column("caller"))
+    op.create_index("job_by_caller", "job", ["caller"])
+
+
+def _delivery(op: Operations) -> None:
+    """Add the form in which a result is wanted; jobs of before had the one there was."""
+    op.add_column("job", _column("delivery", "document reference"))
+
+
+def _durations(op: Operations) -> None:
+    """Count durations by process, outcome and class; what ended before is not counted."""
+    op.create_table(
+        "duration",
+        *(sa.Column(name, sa.String, primary_key=True) for name in ("process", "outcome", "le")),
+        sa.Column("number", sa.BigInteger, nullable=False),
+        sa.Column("seconds", sa.Float, nullable=False),
+        sa.Column("attempts", sa.BigInteger, nullable=False),
+    )
+
+
+def _deployments(op: Operations) -> None:
+    """Name the deployment when it first opens its place of results; mark lines rebuilt from files."""
+    op.create_table(
+        "deployment",
+        sa.Column("id", sa.String, primary_key=True),
+        sa.Column("created", sa.String, nullable=False),
+        sa.Column("checked", sa.String),
+    )
+    op.add_column("result", sa.Column("reindexed", sa.String))
+
+
+def _terms_of_jobs(op: Operations) -> None:
+    """Add what callers ask beside inputs; jobs of before have no label, no difference and no limit."""
+    for name in ("title", "title_folded"):
+        op.add_column("job", _column(name))
+    for name in ("tags", "differences"):
+        op.add_column("job", _column(name, kind=sa.Text))
+    op.create_index("job_by_caller_and_time", "job", ["caller", "created"])
+    op.add_column("computation", _column("priority", "0", sa.Integer))
+    op.add_column("computation", sa.Column("max_cost_s", sa.Float))
+    op.create_index("computation_by_turn", "computation", ["state", "priority", "created"])
+
+
+def _traces(op: Operations) -> None:
+    """Add the trace of a computation; what was entered before belongs to none."""
+    op.add_column("computation", _column("traceparent"))
+
+
+_FUNCTION = """
+CREATE FUNCTION loa_job_changed() RETURNS trigger LANGUAGE plpgsql
+AS $$ BEGIN NOTIFY loa_jobs; RETURN NULL; END $$
+"""
+
+
+def _changed_jobs(op: Operations) -> None:
+    """Let PostgreSQL notify of each transaction that changes what callers see, whichever program makes it.
+
+    SQLite tells by its data version.
+    """
+    if op.get_bind().dialect.name != "postgresql":
+        return
+    op.execute(_FUNCTION)
+    for table, column in {"computation": "updated", "job": "dismissed"}.items():
+        op.execute(
+            f"CREATE TRIGGER {table}_changed AFTER UPDATE OF {column} ON {table} "
+            "FOR EACH STATEMENT EXECUTE FUNCTION loa_job_changed()"
+        )
+
+
+def _programs(op: Operations) -> None:
+    """Add the program that entered a computation; programs that do not know the column leave it empty."""
+    op.add_column("computation", _column("program"))
+
+
+def _projects(op: Operations) -> None:
+    """Add projects; what was there before, or comes from a former program, is in the common one."""
+    op.add_column("job", _column("project"))
+    op.create_index("job_by_project", "job", ["project", "created"])
+    op.add_column("result", _column("project"))
+    op.create_index("result_by_project", "result", ["project", "kind", "created"])
+
+
+def _batches(op: Operations) -> None:
+    """Add batches, jobs that are parents of others, and calls to other services about jobs."""
+    op.add_column("job", sa.Column("parent", sa.String))
+    for name, kind in (("place", sa.Integer), ("children", sa.Integer), ("weight", sa.Float)):
+        op.add_column("job", _column(name, "0", kind))
+    op.create_index("job_by_parent", "job", ["parent"])
+    op.create_table(
+        "webhook",
+        sa.Column("id", sa.String, primary_key=True),
+        *_columns(sa.String, "job", "event"),
+        sa.Column("uri", sa.Text, nullable=False),
+        sa.Column("origin", sa.String, nullable=False),
+        _column("state", "waiting"),
+        _column("attempts", "0", sa.Integer),
+        _column("due", "0", sa.Float),
+        _column("lease"),
+        _column("leased_until", "0", sa.Float),
+        _column("message", kind=sa.Text),
+        sa.Column("updated", sa.String, nullable=False),
+    )
+    op.create_index("webhook_by_job", "webhook", ["job"])
+    op.create_index("webhook_by_state", "webhook", ["state", "due"])
+    op.create_index("webhook_by_lease", "webhook", ["lease"])
+
+
+def _stated_inputs(op: Operations) -> None:
+    """Add inputs as stated; jobs of before, or of a former program, have those of their computation alone."""
+    op.add_column("job", _column("stated", kind=sa.Text))
+
+
+STEPS: Mapping[str, Callable[[Operations], None]] = {
+    "0001": _jobs_and_results,
+    "0002": _leases,
+    "0003": _uses_of_results,
+    "0004": _callers,
+    "0005": _delivery,
+    "0006": _durations,
+    "0007": _deployments,
+    "0008": _terms_of_jobs,
+    "0009": _traces,
+    "0010": _changed_jobs,
+    "0011": _programs,
+    "0012": _projects,
+    "0013": _batches,
+    "0014": _stated_inputs,
+}
+REVISIONS = tuple(STEPS)
+"""All schemas there have been, the newest last."""
