@@ -8,8 +8,7 @@ from typing import Any
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 from prometheus_client.multiprocess import MultiProcessCollector
 
-from lineofaction.gearbox.problems import ServiceError
-from lineofaction.gearbox.problems.error import last_part
+from lineofaction.gearbox.problems import ServiceError, last_part
 
 _METHODS = frozenset(("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "CONNECT"))
 """Of RFC 9110 and RFC 5789; a caller may send any word."""

@@ -28,8 +28,8 @@ from lineofaction.gearbox.problems import (
     Unauthorised,
     Unexpected,
     UnsupportedMediaType,
+    last_part,
 )
-from lineofaction.gearbox.problems.error import last_part
 from service.routes.access import OPEN_PATHS
 from service.routes.media_types import OF_ALL, OF_STATUS, PROBLEM, described_headers
 from service.routes.middleware import API_PREFIX

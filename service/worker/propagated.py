@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from lineofaction.gearbox.problems import ServiceError
-from lineofaction.gearbox.problems.error import last_part
+from lineofaction.gearbox.problems import ServiceError, last_part
 
 
 class PropagatedError(ServiceError):
