@@ -35,7 +35,7 @@ class _FunctionType(IntEnum):
 
 
 @dataclass(frozen=True)
-class Quantity:
+class _Quantity:
     """An axis of dataset 58.
 
     Attributes
@@ -57,7 +57,7 @@ class Quantity:
 
 
 @dataclass(frozen=True)
-class NodalFunction:
+class _NodalFunction:
     """A function for dataset 58.
 
     Attributes
@@ -80,8 +80,8 @@ class NodalFunction:
     entity: str
     node: int
     direction: int
-    abscissa: Quantity
-    ordinate: Quantity
+    abscissa: _Quantity
+    ordinate: _Quantity
     first: float
     increment: float
     values: FloatArray
@@ -103,7 +103,7 @@ def _nodes_dataset(nodes: Iterable[tuple[int, FloatArray]]) -> str:
     return _dataset(2411, records)
 
 
-def _function_dataset(function: NodalFunction) -> str:
+def _function_dataset(function: _NodalFunction) -> str:
     """Return dataset 58 of one function."""
     lines = [line[:80] for line in (*function.lines, *["NONE"] * 5)][:5]
     entity = f"{function.entity[:10]:<10}"
@@ -122,7 +122,7 @@ def _function_dataset(function: NodalFunction) -> str:
     )
 
 
-def _axis(quantity: Quantity | None) -> str:
+def _axis(quantity: _Quantity | None) -> str:
     code, length, force, label, unit = vars(quantity).values() if quantity else NO_AXIS
     return f"{code:10d}{length:5d}{force:5d}{0:5d} {label[:20]:<20} {unit[:20]:<20}"
 
@@ -144,20 +144,20 @@ FIRST_MESH_NODE = 1001
 """Bearings are nodes 1, 2 ... in the order of the run, meshes 1001, 1002 ..."""
 HIGHEST_ORDER = 20
 ORDINATES = {
-    "bearing_force": Quantity(9, 0, 1, "Force", "N"),
-    "bearing_moment": Quantity(9, 1, 1, "Moment", "N m"),
-    "bearing_acceleration": Quantity(12, 1, 0, "Acceleration", "m/s2"),
-    "mesh_force": Quantity(9, 0, 1, "Mesh force", "N"),
-    "dynamic_transmission_error": Quantity(8, 1, 0, "Transmission error", "m"),
+    "bearing_force": _Quantity(9, 0, 1, "Force", "N"),
+    "bearing_moment": _Quantity(9, 1, 1, "Moment", "N m"),
+    "bearing_acceleration": _Quantity(12, 1, 0, "Acceleration", "m/s2"),
+    "mesh_force": _Quantity(9, 0, 1, "Mesh force", "N"),
+    "dynamic_transmission_error": _Quantity(8, 1, 0, "Transmission error", "m"),
 }
-TACHO = Quantity(19, 0, 0, "Speed", "rpm")
+TACHO = _Quantity(19, 0, 0, "Speed", "rpm")
 ROTATIONS = ("bearing_moment",)
 SPECTRUM = "amplitude (peak), Hann window"
 TEXT = {"time": "time series", "spectrum": SPECTRUM, "orders": f"{SPECTRUM}, power mean of all blocks"}
 ABSCISSAE = {
-    "time": (_FunctionType.TIME_RESPONSE, Quantity(17, 0, 0, "Time", "s")),
-    "spectrum": (_FunctionType.SPECTRUM, Quantity(18, 0, 0, "Frequency", "Hz")),
-    "orders": (_FunctionType.ORDER, Quantity(20, 0, 0, "Mesh order", "1")),
+    "time": (_FunctionType.TIME_RESPONSE, _Quantity(17, 0, 0, "Time", "s")),
+    "spectrum": (_FunctionType.SPECTRUM, _Quantity(18, 0, 0, "Frequency", "Hz")),
+    "orders": (_FunctionType.ORDER, _Quantity(20, 0, 0, "Mesh order", "1")),
 }
 
 
@@ -225,7 +225,7 @@ def _stretch(result: RunResult, start: float, end: float) -> RunResult:
     return replace(result, **{name: getattr(result, name)[..., window] for name in over_time()})
 
 
-def _functions(result: RunResult, function: str) -> Iterator[NodalFunction]:
+def _functions(result: RunResult, function: str) -> Iterator[_NodalFunction]:
     """Yield one function per component of every exported series."""
     kind, abscissa = ABSCISSAE[function]
     for series, ordinate in ORDINATES.items():
@@ -242,12 +242,12 @@ def _functions(result: RunResult, function: str) -> Iterator[NodalFunction]:
             lines = (title, TEXT[function], "NONE", _origin(result))
             node = component_index[0] + (FIRST_MESH_NODE if at_mesh else 1)
             axes = (abscissa, ordinate, first, increment)
-            yield NodalFunction(
+            yield _NodalFunction(
                 kind, lines, names[component_index[0]], node, direction, *axes, values[component_index]
             )
 
 
-def _tachos(result: RunResult, function: str) -> Iterator[NodalFunction]:
+def _tachos(result: RunResult, function: str) -> Iterator[_NodalFunction]:
     """Yield the speed at every mesh, of the mean motion: what orders are tracked by."""
     if function != "time":
         return
@@ -258,7 +258,7 @@ def _tachos(result: RunResult, function: str) -> Iterator[NodalFunction]:
         start = float(result.time[0]), 1.0 / result.sample_rate
         speed = result.mesh_frequency[index] * 60.0 / teeth[driver]
         kind, abscissa = ABSCISSAE[function]
-        yield NodalFunction(
+        yield _NodalFunction(
             kind, lines, mesh["name"], FIRST_MESH_NODE + index, 0, abscissa, TACHO, *start, speed
         )
 

@@ -132,7 +132,7 @@ ORDER_MATCH = 1e-6
 
 
 @dataclass(frozen=True)
-class QuasiStatic:
+class _QuasiStatic:
     """Static transmission error under the forces that balance loads and imposed accelerations.
 
     Mesh and bearing forces do not vibrate: their orders are 0.
@@ -163,7 +163,7 @@ class QuasiStatic:
 
 
 @dataclass(frozen=True)
-class LinearResponse:
+class _LinearResponse:
     """Harmonic response to the static transmission errors, with mean stiffnesses."""
 
     name: str = "harmonic_response"
@@ -215,8 +215,8 @@ def _at(order: FloatArray, amplitude: FloatArray, ratio: float, orders: int) -> 
 NM = 1e-9
 
 FIDELITIES: tuple[Fidelity, ...] = (
-    QuasiStatic(),
-    LinearResponse(),
+    _QuasiStatic(),
+    _LinearResponse(),
     TimeIntegration("torsion", "torsion only", "model", additions=BY_TORSION),
     TimeIntegration("in_plane", "torsion and lateral motion", "model", additions=IN_PLANE),
     TimeIntegration("table_quarter", "every fourth position node", "table", every=4),

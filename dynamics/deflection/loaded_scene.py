@@ -73,7 +73,7 @@ STATIC = 1.0
 
 
 @dataclass(frozen=True)
-class Leader:
+class _Leader:
     """The leading shaft of a scene.
 
     Attributes
@@ -93,14 +93,14 @@ class Leader:
     forward: int
 
 
-def leader_of(scene: Scene) -> Leader:
+def leader_of(scene: Scene) -> _Leader:
     """Return the leading shaft of `scene`."""
     for law, drive in enumerate(scene.drives):
         if drive.speed.extreme != 0.0:
             speed = float(drive.speed.extreme)
-            return Leader(law, drive.shaft, speed, 1 if speed > 0.0 else -1)
+            return _Leader(law, drive.shaft, speed, 1 if speed > 0.0 else -1)
     first = scene.free_rotations[0]
-    return Leader(len(scene.drives), first.shaft, first.initial_speed, first.forward)
+    return _Leader(len(scene.drives), first.shaft, first.initial_speed, first.forward)
 
 
 def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
@@ -160,7 +160,7 @@ def _drives(scene: Scene, scale: float) -> Iterator[ImposedRotation]:
         yield replace(drive, speed=TimeLaw.constant(scale * float(drive.speed.extreme)))
 
 
-def _held_trains(scene: Scene, leader: Leader, scale: float) -> Iterator[ImposedRotation]:
+def _held_trains(scene: Scene, leader: _Leader, scale: float) -> Iterator[ImposedRotation]:
     """Yield a drive for every free train: it takes what its torques do not balance, at rest and in motion."""
     for free in scene.free_rotations:
         speed = free.initial_speed or (free.forward if free.shaft == leader.shaft else 0.0)
@@ -170,7 +170,7 @@ def _held_trains(scene: Scene, leader: Leader, scale: float) -> Iterator[Imposed
         yield ImposedRotation(free.name, free.shaft, TimeLaw.constant(scale * speed))
 
 
-def leading_torque(scene: Scene, leader: Leader, speed: float) -> tuple[float, float]:
+def leading_torque(scene: Scene, leader: _Leader, speed: float) -> tuple[float, float]:
     """Return what loads at t = 0, and all other torques, ask of the leading shaft at a speed, N m.
 
     By virtual power: a load T on a shaft that turns at `ratio` times the leader takes T times that. The
@@ -188,7 +188,7 @@ def leading_torque(scene: Scene, leader: Leader, speed: float) -> tuple[float, f
     return loads, by_speed + sum(_of_moments(scene, kinematics, leader, speed))
 
 
-def _of_moments(scene: Scene, kinematics: Kinematics, leader: Leader, speed: float) -> Iterator[float]:
+def _of_moments(scene: Scene, kinematics: Kinematics, leader: _Leader, speed: float) -> Iterator[float]:
     """Yield what the moments of forces about the axis ask of the leading shaft at a speed, N m."""
     for force in scene.forces:
         if force.moment[2] != 0.0:
@@ -199,7 +199,7 @@ def _of_moments(scene: Scene, kinematics: Kinematics, leader: Leader, speed: flo
             yield resists * _toward(kinematics, shaft, leader)
 
 
-def _toward(kinematics: Kinematics, shaft: int, leader: Leader) -> float:
+def _toward(kinematics: Kinematics, shaft: int, leader: _Leader) -> float:
     """Speed of a shaft over that of the leader, > 0 where what resists it resists the leader."""
     return kinematics.sense[shaft] * leader.forward * float(kinematics.ratio[shaft][leader.law])
 

@@ -172,7 +172,7 @@ def _radial(system: System, index: int) -> list[str]:
 # The twist of gears along their faces, as a deviation of the lead.
 
 
-def twist(rotors: Bodies, index: int, position: FloatArray, motion: FloatArray) -> FloatArray:
+def _twist(rotors: Bodies, index: int, position: FloatArray, motion: FloatArray) -> FloatArray:
     """Return the elastic rotation (P,) of sections at `position` (P,) along a shaft, rad.
 
     Linear between nodes: exact where torques act at nodes alone.
@@ -197,7 +197,7 @@ def lead_torsion(system: System, index: int, motion: FloatArray) -> float:
         shaft = scene.shaft_index(scene.gear(name).shaft)
         rotor = system.rotors[shaft]
         middle = float(line.point[2]) - rotor.shaft.origin[2]
-        ends = twist(system.rotors, shaft, np.array([middle - half, middle + half]), motion)
+        ends = _twist(system.rotors, shaft, np.array([middle - half, middle + half]), motion)
         lever = side * float(line.gradient(rotor.center)[5])
         grown -= towards * lever * float(ends[1] - ends[0])
     return grown

@@ -30,7 +30,7 @@ LOADS = 6
 
 
 @dataclass(frozen=True)
-class OperatingCondition:
+class _OperatingCondition:
     """Speeds under one load.
 
     Attributes
@@ -50,17 +50,17 @@ class OperatingCondition:
     rate: FloatArray
     weight: FloatArray
 
-    def passing(self, speed: FloatArray) -> OperatingCondition:
+    def passing(self, speed: FloatArray) -> _OperatingCondition:
         """Return the condition with those of the speeds (k,) added that it passes, of no weight."""
         inside = speed[(speed > self.speed[0]) & (speed < self.speed[-1])]
         whole = np.concatenate([self.speed, inside])
         order = np.argsort(whole)
         rate = np.concatenate([self.rate, np.interp(inside, self.speed, self.rate)])
         weight = np.concatenate([self.weight, np.zeros(inside.size)])
-        return OperatingCondition(self.time, whole[order], rate[order], weight[order])
+        return _OperatingCondition(self.time, whole[order], rate[order], weight[order])
 
 
-def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[OperatingCondition, ...]:
+def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[_OperatingCondition, ...]:
     """Return what the run of `scene` passes from the part `settled` (0..1) of its duration on.
 
     `law` is the leading law. At rest nothing vibrates: such moments are
@@ -80,10 +80,10 @@ def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[
     return tuple(_condition(time[part], speed[part], rate[part], time.size) for part in parts)
 
 
-def _condition(time: FloatArray, speed: FloatArray, rate: FloatArray, count: int) -> OperatingCondition:
+def _condition(time: FloatArray, speed: FloatArray, rate: FloatArray, count: int) -> _OperatingCondition:
     """Look at some moments of `count` together, their loads taken at the middle one."""
     once, first, times = np.unique(speed, return_index=True, return_counts=True)
-    return OperatingCondition(float(time[time.size // 2]), once, rate[first], times / count)
+    return _OperatingCondition(float(time[time.size // 2]), once, rate[first], times / count)
 
 
 def _loads_vary(scene: Scene, time: FloatArray) -> bool:
@@ -145,7 +145,7 @@ class LinearFigures:
         return np.asarray(np.sqrt(np.sum(self.bearing_orders**2, axis=1) + self.bearing_loads**2))
 
 
-def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> LinearFigures:
+def linear_figures(system: System, conditions: Sequence[_OperatingCondition]) -> LinearFigures:
     """Return the figures of `system` over the operating conditions of its run.
 
     Raises
@@ -162,7 +162,7 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
     orders, loads = np.zeros((meshes, COMPARED)), np.zeros(bearings)
     for some in conditions:
         at = excited(system, some.time, ORDERS, POSITIONS)
-        condition = some.passing(resonances(at)) if some.speed.size > 1 else some
+        condition = some.passing(_resonances(at)) if some.speed.size > 1 else some
         answer = parametric_response(at, condition.speed, condition.rate, ORDERS, rotating)
         harmonics, static = answer.harmonics, [float(np.mean(cycle.static_error)) for cycle in at.cycles]
         rest = np.array(static)[:, None] + answer.mean_shift
@@ -180,7 +180,7 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
     return LinearFigures(mean, high - low, orders, forces, loads, parted, *size, bool(system.flanks.coast))
 
 
-def resonances(at: Excited) -> FloatArray:
+def _resonances(at: Excited) -> FloatArray:
     """Return the speeds of the leading law at which low mesh orders or loads meet modes.
 
     These are the modes of the largest (gradient^2/(stiffness 2 damping ratio)) along any line of action.
@@ -202,7 +202,7 @@ def _load_frequencies(at: Excited) -> FloatArray:
     return np.asarray(multiples / at.period.duration(1.0))
 
 
-def _by_loads(at: Excited, condition: OperatingCondition, response: HarmonicResponse) -> FloatArray:
+def _by_loads(at: Excited, condition: _OperatingCondition, response: HarmonicResponse) -> FloatArray:
     """Return what loads alone excite of every bearing's force, (b,) N."""
     multiples = load_multiples(at.system, at.period, float(condition.speed[-1]), at.time)
     counted = np.arange(1, COMPARED + 1) * at.period.counted

@@ -8,8 +8,7 @@ from dynamics.arrays.arrays import LawArrays, SystemArrays
 from dynamics.forces.elements import FLANK, SPATIAL_FLANK, Elements
 from dynamics.integrators.explicit_step import accelerate, add_drive_work, explicit_step, write_powers
 from dynamics.integrators.implicit_step import implicit_step, solve_stage
-from dynamics.integrators.sample_ring import Sampler, SampleRing
-from dynamics.integrators.sampler import move_sampled_trains, sample_start, sample_step
+from dynamics.integrators.sampler import Sampler, SampleRing, move_sampled_trains, sample_start, sample_step
 from dynamics.integrators.step_control import Control, next_level, slow_enough, step_error
 from dynamics.integrators.tableaus import EXPLICIT_WEIGHTS, IMPLICIT_WEIGHTS
 from dynamics.integrators.workspace import LOSSES, Count, Power, StepEnd, Workspace
@@ -32,7 +31,7 @@ Path = tuple[float, float, float, float]  # value and rate times the step at bot
 
 
 @inner
-def keep_motion(system: SystemArrays, work: Workspace, end: StepEnd) -> None:
+def _keep_motion(system: SystemArrays, work: Workspace, end: StepEnd) -> None:
     """Write the motion in ``work.local``, whose rates are ``work.v_new``, into one end of a step."""
     for m in range(work.local.position.size):
         end.position[m], end.pace[m] = work.local.position[m], work.local.pace[m]
@@ -67,7 +66,7 @@ def add_table_work(system: SystemArrays, work: Workspace, step: float) -> None:
     becomes the start of the next step.
     """
     elements, before, after = system.elements, work.before, work.after
-    keep_motion(system, work, after)
+    _keep_motion(system, work, after)
     for e in range(elements.law.size):
         if elements.law[e] == FLANK:
             table = elements.laws.flank.table
@@ -119,9 +118,9 @@ def _fraction(path: Path, at: float, start: float) -> float:
         return 1.0
     w = (at - path[0]) / way
     for _ in range(2):
-        slope = cubic_slope(path, w)
+        slope = _cubic_slope(path, w)
         if slope * way > 0.0:
-            w -= (cubic(path, w) - at) / slope
+            w -= (_cubic(path, w) - at) / slope
             w = min(max(w, 0.0), 1.0)
     return max(w, start)
 
@@ -144,10 +143,10 @@ def _piece(
                 work.after.coordinate[r],
                 step * work.after.rate[r],
             )
-            local.coordinate[r], local.rate[r] = cubic(along, w), cubic_slope(along, w)
-        local.position[elements.mesh[e]] = cubic(path, w)
+            local.coordinate[r], local.rate[r] = _cubic(along, w), _cubic_slope(along, w)
+        local.position[elements.mesh[e]] = _cubic(path, w)
         position, axes = _rates(elements, local, e)
-        work.work[Power.POSITION] += 0.5 * (end - start) * position * cubic_slope(path, w)
+        work.work[Power.POSITION] += 0.5 * (end - start) * position * _cubic_slope(path, w)
         work.work[Power.AXES] += 0.5 * (end - start) * axes
 
 
@@ -169,15 +168,15 @@ def _rates(elements: Elements, local: LocalState, e: int) -> tuple[float, float]
 
 
 @inner
-def cubic(path: Path, w: float) -> float:
+def _cubic(path: Path, w: float) -> float:
     """Return the cubic through values and rates at both ends at the fraction `w`."""
     end = w * w * (3.0 - 2.0 * w)
     return float(path[0] + end * (path[2] - path[0]) + w * (1.0 - w) * ((1.0 - w) * path[1] - w * path[3]))
 
 
 @inner
-def cubic_slope(path: Path, w: float) -> float:
-    """Differentiate `cubic` in the fraction."""
+def _cubic_slope(path: Path, w: float) -> float:
+    """Differentiate `_cubic` in the fraction."""
     rise = 6.0 * w * (1.0 - w) * (path[2] - path[0])
     return float(rise + (1.0 - w) * (1.0 - 3.0 * w) * path[1] + w * (3.0 * w - 2.0) * path[3])
 
@@ -192,7 +191,7 @@ SMOOTH = 1e-9
 
 
 @inner
-def next_jump(laws: LawArrays, time: float) -> float:
+def _next_jump(laws: LawArrays, time: float) -> float:
     """Return when the next piece of any law begins if the slope jumps there; infinite if none does."""
     nearest = math.inf
     for k in range(laws.first.size - 1):
@@ -208,7 +207,7 @@ def next_jump(laws: LawArrays, time: float) -> float:
 
 
 @inner
-def step_to_jump(system: SystemArrays, work: Workspace, level: int, jump: float) -> int:
+def _step_to_jump(system: SystemArrays, work: Workspace, level: int, jump: float) -> int:
     """Return the landing level, made to end at `jump`, if the step of `level` would pass it; else `level`."""
     step = jump * (1.0 - ROUNDING) - work.time[0]
     if not 0.0 < step <= work.step_sizes[level]:
@@ -269,8 +268,8 @@ def advance(
         if control.adaptive:
             level = slow_enough(system, work, level)
             count[Count.LEVEL] = level
-            jump = next_jump(system.reference.speed, work.time[0])
-            level = step_to_jump(system, work, level, jump)
+            jump = _next_jump(system.reference.speed, work.time[0])
+            level = _step_to_jump(system, work, level, jump)
         landing = level == work.step_sizes.size - 1
         if control.implicit:
             solved = implicit_step(system, work, level, control.force_tolerance, control.audit)
@@ -309,7 +308,7 @@ def _enter(system: SystemArrays, work: Workspace, control: Control) -> None:
         work.a[i] = work.stage_a[0, i]
     if control.audit:
         write_powers(system, work, 0, work.time[0])
-        keep_motion(system, work, work.before)
+        _keep_motion(system, work, work.before)
 
 
 @inner

@@ -14,7 +14,6 @@ from dynamics.arrays.sparse_rows import (
     subtract_resistance,
 )
 from dynamics.forces.elements import evaluate, evaluate_linear, has_unbalance, is_linear
-from dynamics.integrators.equations import invert_equations
 from dynamics.integrators.explicit_step import add_stages, finish_step, set_motion, write_powers
 from dynamics.integrators.tableaus import (
     IMPLICIT_DIAGONAL,
@@ -30,11 +29,30 @@ from dynamics.motion.accelerations import set_acceleration
 from dynamics.motion.motion import add_motion
 from dynamics.types import FloatArray
 
+
+@inner
+def _gauss_jordan(matrix: FloatArray, size: int) -> None:
+    """Turn [A, I] in the first `size` rows into [I, inverse], with row pivoting (Gauss and Jordan)."""
+    for p in range(size):
+        best = p
+        for i in range(p + 1, size):
+            if abs(matrix[i, p]) > abs(matrix[best, p]):
+                best = i
+        pivot = 1.0 / matrix[best, p]
+        for j in range(2 * size):
+            matrix[best, j], matrix[p, j] = matrix[p, j], matrix[best, j] * pivot
+        for i in range(size):
+            factor = matrix[i, p]
+            if i != p and factor != 0.0:
+                for j in range(2 * size):
+                    matrix[i, j] -= factor * matrix[p, j]
+
+
 # Compiled elimination of linear force elements from the implicit stages.
 
 
 @inner
-def eliminate_linear(system: SystemArrays, work: Workspace, level: int, span: float) -> None:
+def _eliminate_linear(system: SystemArrays, work: Workspace, level: int, span: float) -> None:
     """Fill ``held`` of a level, and let linear elements follow in its ``approach``."""
     if work.linear.shape[0] == 0:
         return
@@ -55,7 +73,7 @@ def _invert(work: Workspace, level: int, span: float) -> None:
             unit = 1.0 if a == b else 0.0
             work.jacobian[a, b] = unit + _strain(work, level, span, a, work.linear[b, 0])
             work.jacobian[a, count + b] = unit
-    invert_equations(work.jacobian, count)
+    _gauss_jordan(work.jacobian, count)
 
 
 @inner
@@ -118,7 +136,7 @@ def _is_linear_row(work: Workspace, row: int) -> bool:
 
 
 @inner
-def apply_linear(work: Workspace) -> None:
+def _apply_linear(work: Workspace) -> None:
     """Write the forces of linear elements in the local state at the end of a stage; tangents are constant."""
     local = work.local
     for a in range(work.linear.shape[0]):
@@ -132,7 +150,7 @@ def apply_linear(work: Workspace) -> None:
 
 
 @inner
-def hold_linear(system: SystemArrays, work: Workspace, level: int, span: float) -> None:
+def _hold_linear(system: SystemArrays, work: Workspace, level: int, span: float) -> None:
     """Let linear elements act on the motion without local forces; Newton's method leaves their rows at 0."""
     count = work.linear.shape[0]
     if count == 0:
@@ -171,7 +189,7 @@ SLOW = 0.1
 
 
 @inner
-def solve_local_forces(
+def _solve_local_forces(
     system: SystemArrays, work: Workspace, level: int, span: float, tolerance: float, first: bool
 ) -> int:
     """Find ``work.force`` such that each force is its law's at the motion it causes; return the iterations.
@@ -180,7 +198,7 @@ def solve_local_forces(
     ``work.force`` is a first guess; on exit ``work.local`` holds the motion with them. `first` says whether
     this is the first stage of its step. The change of the positions with the forces is followed but left out
     of the equations: it is of the order of a deflection over a base pitch. Forces of linear elements are
-    part of the motion (`hold_linear`). An update leaves the part of itself that it was of the one before;
+    part of the motion (`_hold_linear`). An update leaves the part of itself that it was of the one before;
     returns -1 if that did not fall to `tolerance` (N).
     """
     fresh, last, left = first, math.inf, 1.0
@@ -267,7 +285,7 @@ def _invert_equations(system: SystemArrays, work: Workspace, level: int, span: f
                     total += _gain(work, span, k, j) * approach[level, first + j, work.solved[a]]
                 work.jacobian[a, b] = total
                 work.jacobian[a, size + b] = 1.0 if a == b else 0.0
-    invert_equations(work.jacobian, size)
+    _gauss_jordan(work.jacobian, size)
 
 
 @inner
@@ -296,7 +314,7 @@ def _update_forces(work: Workspace) -> float:
 
 
 @inner
-def prepare_level(system: SystemArrays, work: Workspace, level: int, diagonal: float) -> None:
+def _prepare_level(system: SystemArrays, work: Workspace, level: int, diagonal: float) -> None:
     """Fill the matrices of `level` for the stage weight `diagonal`."""
     span, size, rows = diagonal * work.step_sizes[level], system.sparse.modal.first, work.force.size
     matrix, along, coupling = work.matrix, system.sparse.direction, system.sparse.coupling
@@ -323,7 +341,7 @@ def prepare_level(system: SystemArrays, work: Workspace, level: int, diagonal: f
             work.approach[level, r, k] = row_product(along, along.weight, k, pushed)
         for m in range(work.free_position.size):
             work.approach[level, r, rows + m] = row_product(turn, turn.weight, m, pushed)
-    eliminate_linear(system, work, level, span)
+    _eliminate_linear(system, work, level, span)
     work.ready[level] = True
 
 
@@ -368,7 +386,7 @@ def implicit_step(system: SystemArrays, work: Workspace, level: int, tolerance: 
     Fills q_new, v_new, a_new, the error estimates and, if `audit`, the powers. `tolerance` in N is Newton's.
     """
     if not work.ready[level]:
-        prepare_level(system, work, level, IMPLICIT_DIAGONAL)
+        _prepare_level(system, work, level, IMPLICIT_DIAGONAL)
     step = work.step_sizes[level]
     for i in range(work.q.size):
         work.stage_v[0, i], work.stage_a[0, i] = work.v[i], work.a[i]
@@ -413,9 +431,9 @@ def solve_stage(system: SystemArrays, work: Workspace, level: int, stage: int, t
     add_motion(system, q, v, work.free_position, work.free, work.free_rate)
     if has_unbalance(system.elements):
         set_acceleration(system, work.motion, linear, work.free_acceleration)
-    hold_linear(system, work, level, span)
-    iterations = solve_local_forces(system, work, level, span, tolerance, stage == 1)
-    apply_linear(work)
+    _hold_linear(system, work, level, span)
+    iterations = _solve_local_forces(system, work, level, span, tolerance, stage == 1)
+    _apply_linear(work)
     subtract_columns(sparse.bodies, work.force, work.external)
     subtract_modal_forces(sparse.modal, work.force, work.external)
     pushed = work.stage_a[stage]

@@ -14,8 +14,14 @@ from dynamics.assembly.assemble import System
 from dynamics.forces.elements import FLANK, SPATIAL_FLANK, Elements, potential
 from dynamics.integrators.advance import advance, prepare_samples, prepare_steps
 from dynamics.integrators.method_choice import choose_method
-from dynamics.integrators.sample_ring import Sampler, SampleRing, make_ring, make_sampler
-from dynamics.integrators.sampler import continue_past_the_end, sample_start
+from dynamics.integrators.sampler import (
+    Sampler,
+    SampleRing,
+    continue_past_the_end,
+    make_ring,
+    make_sampler,
+    sample_start,
+)
 from dynamics.integrators.state_sink import BLOCK, StateSink
 from dynamics.integrators.static import StaticSolution
 from dynamics.integrators.step_control import Control

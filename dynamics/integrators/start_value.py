@@ -9,7 +9,7 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.integrators.march import March
-from dynamics.integrators.sample_ring import SampleRing
+from dynamics.integrators.sampler import SampleRing
 from dynamics.integrators.state_sink import StateSink, blocks
 from dynamics.integrators.workspace import Count
 from dynamics.motion.observation import local_state
@@ -27,7 +27,7 @@ MOST_SAVED = 128
 
 
 @dataclass(frozen=True)
-class SavedState:
+class _SavedState:
     """State of a march between two steps.
 
     Attributes
@@ -63,14 +63,14 @@ class SavedState:
         return int(self.state["counts"][Count.OUTPUT])
 
 
-def _saved_state(march: March) -> SavedState:
+def _saved_state(march: March) -> _SavedState:
     work, ring = march.state
     state = {name: np.array(getattr(work, name)) for name in STATE}
     motion = {name: np.array(getattr(work.before, name)) for name in MOTION}
     rows = (work.force, work.before.coordinate, work.before.rate)
     figures = tuple(part.copy() for part in _figures(ring))
     force, coordinate, rate = (np.array(part) for part in rows)
-    return SavedState(state, motion, force, coordinate, rate, ring.point.copy(), figures)
+    return _SavedState(state, motion, force, coordinate, rate, ring.point.copy(), figures)
 
 
 def _figures(ring: SampleRing) -> tuple[FloatArray, ...]:
@@ -82,7 +82,7 @@ class Trail:
 
     def __init__(self, system: System) -> None:
         self.system = system
-        self._saved: list[SavedState] = []
+        self._saved: list[_SavedState] = []
 
     def watch(self, march: March) -> Callable[[], None]:
         """Return a function that saves the state of `march`."""
@@ -94,7 +94,7 @@ class Trail:
 
         return remember
 
-    def before(self, time: float) -> SavedState | None:
+    def before(self, time: float) -> _SavedState | None:
         """Return the last saved state before `time` (s), if there is one."""
         return next((state for state in reversed(self._saved) if state.time < time), None)
 
@@ -112,7 +112,7 @@ class StartValue:
         Gives the other march's output samples from one to before another.
     """
 
-    at: SavedState
+    at: _SavedState
     rows_of: IntArray
     states: Callable[[int, int], States]
 
@@ -173,7 +173,7 @@ def _rows(system: System) -> list[tuple[int, bytes]]:
     return [(int(kind), row.tobytes()) for kind, row in zip(law, system.arrays.direction, strict=True)]
 
 
-def start_from(march: March, at: SavedState, rows_of: IntArray) -> None:
+def start_from(march: March, at: _SavedState, rows_of: IntArray) -> None:
     """Start `march` from the state of another one of the same freedoms: `rows_of` (R,) are its rows.
 
     Elements that it has beside those of the other one carry no force there.
@@ -195,7 +195,7 @@ def start_from(march: March, at: SavedState, rows_of: IntArray) -> None:
     _fill_ring(march, at, rows_of)
 
 
-def _fill_ring(march: March, at: SavedState, rows_of: IntArray) -> None:
+def _fill_ring(march: March, at: _SavedState, rows_of: IntArray) -> None:
     """Fill the ring; rows beside those of the other march carry no force."""
     ring, rows, to = march.ring, march.ring.local.force.size, _channels(march, rows_of)
     ring.point[...] = 0.0

@@ -1,11 +1,22 @@
-"""The sink of the sampled states of a run: one protocol, in memory or (`StateSpool`) on disk."""
+"""The sink of the sampled states of a run: one protocol, in memory or on disk with checkpoints."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Protocol
+import hashlib
+import os
+import zipfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import TracebackType
+from typing import Any, BinaryIO, Protocol
 
+import numpy as np
+
+from dynamics.errors import InputError, ResultError
+from dynamics.kernels.by_address import by_value
 from dynamics.motion.sampled_states import States, Widths
+from dynamics.types import FloatArray
+from host import lock
 
 BLOCK = 8192
 """Samples that are in memory at once where a run is streamed, and that series are made of at once always, so
@@ -47,3 +58,171 @@ def blocks(samples: int) -> Iterator[tuple[int, int]]:
     """Yield first and last + 1 of the blocks of a run with that many samples."""
     for first in range(0, samples, BLOCK):
         yield first, min(first + BLOCK, samples)
+
+
+# Checkpoints of a run: every array its workspace carries, in one file that appears whole or not at all.
+
+
+VERSION = 1
+Arrays = dict[str, Any]
+
+
+def leaves(state: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the dotted names and values of all that nested (named) tuples hold."""
+    state = by_value(state)
+    if not isinstance(state, tuple):
+        yield name, state
+        return
+    fields = getattr(state, "_fields", range(len(state)))
+    for field, value in zip(fields, state, strict=True):
+        yield from leaves(value, f"{name}.{field}" if name else str(field))
+
+
+def fingerprint(*parts: Any) -> str:
+    """Return the SHA-256 of names, types, shapes and bytes of everything in `parts`."""
+    digest = hashlib.sha256(f"checkpoint {VERSION}".encode())
+    for name, value in leaves(parts):
+        array = np.asarray(value)
+        digest.update(f"{name} {array.dtype.str} {array.shape};".encode())
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()
+
+
+def restore(state: Any, arrays: Arrays, path: Path) -> None:
+    """Write `arrays` into the arrays of `state`, in place.
+
+    Raises
+    ------
+    ResultError
+        If one is missing or of another shape or type: the file is of another version of the program.
+    """
+    for name, target in leaves(state):
+        stored = arrays.get(name)
+        if stored is None or stored.shape != target.shape or stored.dtype != target.dtype:
+            raise ResultError(f"{path}: {name} is not that of this version. Start a new run.")
+        target[...] = stored
+
+
+def write_checkpoint(path: Path, state: Any, **facts: Any) -> None:
+    """Write the arrays of `state`, and `facts`, to a neighbor of `path`; then move it there in one step."""
+    part = path.with_suffix(".part")
+    with part.open("wb") as file:
+        np.savez(file, **dict(leaves(state)), **{f"fact {name}": value for name, value in facts.items()})
+        file.flush()
+        os.fsync(file.fileno())
+    part.replace(path)
+
+
+def read_checkpoint(path: Path) -> tuple[Arrays, Arrays]:
+    """Return the arrays of the state, and the facts.
+
+    Raises
+    ------
+    ResultError
+        If the file is damaged.
+    """
+    try:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            content = {name: file[name] for name in file.files}
+    except (OSError, ValueError, zipfile.BadZipFile, KeyError) as error:
+        raise ResultError(f"{path.name}: not a readable checkpoint. Start a new run.") from error
+    facts = {name.removeprefix("fact "): value for name, value in content.items() if name[:5] == "fact "}
+    return {name: value for name, value in content.items() if name[:5] != "fact "}, facts
+
+
+class StateSpool:
+    """A `StateSink` in two files: `path`.states and `path`.checkpoint.
+
+    A record is one sample of all parts of `States`, 8 bytes each.
+    """
+
+    def __init__(self, path: Path, widths: Widths) -> None:
+        self._checkpoint = path.with_name(f"{path.name}.checkpoint")
+        self.widths, self._room = widths, widths.states(0)
+        states = path.with_name(f"{path.name}.states")
+        states.touch()
+        self._file: BinaryIO = states.open("r+b")
+        try:
+            lock(self._file.fileno())
+        except BlockingIOError:
+            self._file.close()
+            raise InputError("output", path.name, "free: another process runs this") from None
+
+    def __enter__(self) -> StateSpool:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._file.close()
+
+    @property
+    def _record(self) -> int:
+        return sum(part.shape[1] for part in self._room)
+
+    def room(self, first: int, count: int) -> States:
+        """Return rows that are used again for the next room."""
+        if self._room.q.shape[0] < count:
+            self._room = self.widths.states(count)
+        return self._room.rows(0, count)
+
+    def keep(self, first: int, count: int) -> None:
+        """Append."""
+        kept = self._room.rows(0, count)
+        self._file.seek(8 * self._record * first)
+        self._file.write(np.hstack([part.view(np.float64) for part in kept]).tobytes())
+
+    def states(self, first: int, stop: int) -> States:
+        """Read the records back."""
+        return self._read(self.widths, first, stop)
+
+    def _read(self, widths: Widths, first: int, stop: int) -> States:
+        parts = widths.states(0)
+        columns = [part.shape[1] for part in parts]
+        record = sum(columns)
+        self._file.seek(8 * record * first)
+        content = self._file.read(8 * record * (stop - first))
+        table: FloatArray = np.frombuffer(content).reshape(stop - first, record)
+        q, v, moved, *rest = (
+            np.ascontiguousarray(part) for part in np.split(table, np.cumsum(columns)[:-1], axis=1)
+        )
+        return States(q, v, moved.view(np.int64), *rest)
+
+    def rewrite(self, before: Widths, samples: int, convert: Callable[[States], States]) -> None:
+        """Replace `samples` records of the narrower widths `before` by what `convert` makes of them.
+
+        From the last block to the first: a wider record never reaches a narrower one that is still to come.
+        """
+        for first, stop in reversed(list(blocks(samples))):
+            converted = convert(self._read(before, first, stop))
+            for target, values in zip(self.room(first, stop - first), converted, strict=True):
+                target[...] = values
+            self.keep(first, stop - first)
+
+    def save(self, state: Any, **facts: Any) -> None:
+        """Make all that was kept durable, then write a checkpoint that counts on it."""
+        self._file.flush()
+        os.fsync(self._file.fileno())
+        write_checkpoint(self._checkpoint, state, **facts)
+
+    def begin(self) -> None:
+        """Forget whatever is there."""
+        self._checkpoint.unlink(missing_ok=True)
+        self._file.truncate(0)
+
+    def resume(self, samples: int) -> None:
+        """Cut off what came after the checkpoint.
+
+        Raises
+        ------
+        ResultError
+            If there is less than that many samples.
+        """
+        size = 8 * self._record * samples
+        if os.fstat(self._file.fileno()).st_size < size:
+            raise ResultError(f"{self._file.name}: shorter than its checkpoint says. Start a new run.")
+        self._file.truncate(size)
+
+    def checkpoint(self) -> tuple[Arrays, Arrays] | None:
+        """Return arrays and facts of the last checkpoint, if there is one."""
+        return read_checkpoint(self._checkpoint) if self._checkpoint.is_file() else None

@@ -18,7 +18,7 @@ from dynamics.types import ComplexArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True)
-class SpeedMatrices:
+class _SpeedMatrices:
     """P(s, W) = s^2 M + s (C + W G) + K + W S + W^2 T of n freedoms in meters, W the leading law's speed.
 
     Gyroscopic terms grow with the speed, centripetal ones with its square, dampers across frames with it.
@@ -51,14 +51,14 @@ class SpeedMatrices:
         return np.asarray(eigenvalue * self.gyroscopic + self.swept + 2.0 * speed * self.centripetal)
 
 
-def _speed_matrices(system: System, linear: LinearSystem, speed: float) -> SpeedMatrices:
+def _speed_matrices(system: System, linear: LinearSystem, speed: float) -> _SpeedMatrices:
     """Return the matrices, their speed terms from those at `speed` (rad/s, not 0) and at twice that."""
     per_meter = 1.0 / linear.scale
     gyroscopic, once = terms_at(system, law_speeds(system, speed))
     twice = terms_at(system, law_speeds(system, 2.0 * speed))[1]
     swept, centripetal = (4.0 * once - twice) / (2.0 * speed), (twice - 2.0 * once) / (2.0 * speed**2)
     parts = (linear.mass, linear.damping, linear.stiffness, gyroscopic / speed, swept, centripetal)
-    return SpeedMatrices(*(per_meter[:, None] * part * per_meter for part in parts))
+    return _SpeedMatrices(*(per_meter[:, None] * part * per_meter for part in parts))
 
 
 CLOSE = 1e-9  # of the eigenvalue: last step of a crossing, whose error is of the order of its square
@@ -157,7 +157,7 @@ def _between(branches: WhirlBranches, row: int, mode: int, rate: float) -> _Betw
 
 
 def _refined(
-    system: System, linear: LinearSystem, matrices: SpeedMatrices, between: _Between
+    system: System, linear: LinearSystem, matrices: _SpeedMatrices, between: _Between
 ) -> tuple[float, float, float, float]:
     """Return speed, frequency, damping ratio and residual of a crossing.
 
@@ -175,7 +175,7 @@ def _refined(
 
 
 def _newton(
-    linear: LinearSystem, matrices: SpeedMatrices, between: _Between
+    linear: LinearSystem, matrices: _SpeedMatrices, between: _Between
 ) -> tuple[float, float, float, float] | None:
     """Solve P(s, W) x = 0 with Im s = 2 pi rate W for x, Re s and W; None without convergence to it.
 
@@ -214,7 +214,7 @@ def _newton(
 
 
 def _accepted(
-    linear: LinearSystem, matrices: SpeedMatrices, between: _Between, x: ComplexArray, value: complex
+    linear: LinearSystem, matrices: _SpeedMatrices, between: _Between, x: ComplexArray, value: complex
 ) -> tuple[float, float, float, float] | None:
     """Return the crossing if it is between the speeds and of the mode."""
     frequency = value.imag / (2.0 * math.pi)

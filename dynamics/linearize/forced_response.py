@@ -61,7 +61,7 @@ class Absorber:
     damping: FloatArray
 
 
-def absorbers(
+def _absorbers(
     system: System, linear: LinearSystem, cycles: tuple[FlankCycle, ...], time: float
 ) -> tuple[Absorber, ...]:
     """Return all parts with damping about the equilibrium of `linear`, driving flanks by their mean tangents.
@@ -190,7 +190,7 @@ class PowerBalance:
         }
 
 
-def power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalance:
+def _power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalance:
     """Return where the power of a vibration at `speed` (S,) comes from and goes to.
 
     Forces of complex amplitude F on coordinates of amplitude y put in Re(F conj(i w y))/2. Each part is
@@ -229,7 +229,7 @@ def _losses(
     at: Excited, speed: FloatArray, u: ComplexArray, rate: ComplexArray
 ) -> Iterable[tuple[str, str, FloatArray]]:
     """Yield name, kind and power (S, H) of parts; one part may come several times."""
-    for part in absorbers(at.system, at.linear, at.cycles, at.time):
+    for part in _absorbers(at.system, at.linear, at.cycles, at.time):
         yield part.name, part.kind, _lost(part, u, rate)
     if at.turning:
         terms = gyroscopic_terms(at.system, speed)
@@ -359,7 +359,7 @@ def forced_response(
     if not steady.harmonics.size:
         raise InputError("orders", orders, NOTHING_EXCITES, "Give a mesh a table, or let a load vary.")
     response, other = (response_of(at, speeds, each) for each in (steady, blocked))
-    power = power_balance(at, speeds, steady)
+    power = _power_balance(at, speeds, steady)
     seconds["response"] = cpu_seconds() - began
     facts: Json = {
         "leading_shaft": system.scene.references[leading_law(system)].shaft,

@@ -242,7 +242,7 @@ class ParametricResponse:
 
 
 @dataclass(frozen=True)
-class Family:
+class _Family:
     """Meshes that pass equally many base pitches in the common period, on tables of one pitch.
 
     Attributes
@@ -313,7 +313,7 @@ def _all_harmonics(at: Excited, orders: int, speed: float) -> IntArray:
     return np.array(sorted(multiples), dtype=np.int64)
 
 
-def _families(at: Excited, harmonics: IntArray, orders: int) -> list[Family]:
+def _families(at: Excited, harmonics: IntArray, orders: int) -> list[_Family]:
     """Gather the meshes whose stiffness varies, by their frequency."""
     by_pitches: dict[int, list[int]] = {}
     for index, (pitches, mesh) in enumerate(zip(at.period.pitches, at.system.scene.meshes, strict=True)):
@@ -324,7 +324,7 @@ def _families(at: Excited, harmonics: IntArray, orders: int) -> list[Family]:
         count = min(orders, max(LEAST_ORDERS, MOST_UNKNOWNS // (2 * len(meshes))))
         harmonic = np.searchsorted(harmonics, pitches * np.arange(1, count + 1))
         stiffness = np.array([_coefficients(at, mesh, 2 * count) for mesh in meshes])
-        families.append(Family(np.array(meshes), harmonic, stiffness))
+        families.append(_Family(np.array(meshes), harmonic, stiffness))
     return families
 
 
@@ -341,13 +341,13 @@ def _coefficients(at: Excited, mesh: int, highest: int) -> ComplexArray:
     return coefficients
 
 
-def _made(family: Family, row: FloatArray, steady: Steady) -> ComplexArray:
+def _made(family: _Family, row: FloatArray, steady: Steady) -> ComplexArray:
     """Fourier coefficients 1 to H (S, H, f) of what makes force with the mean stiffness, m."""
     response = steady.displacement[:, family.harmonic] @ row[family.meshes].T
     return np.asarray(0.5 * (response - steady.static[family.meshes][:, family.harmonic].T))
 
 
-def _push(family: Family, receptance: ComplexArray, made: ComplexArray) -> ComplexArray:
+def _push(family: _Family, receptance: ComplexArray, made: ComplexArray) -> ComplexArray:
     """Solve the balance at S speeds.
 
     Parameters

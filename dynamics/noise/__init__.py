@@ -1,6 +1,6 @@
 """Sound of housings in a scene: outer hull, resistance, sound power by order and speed, shares, bands."""
 
-from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
+from dynamics.noise.coarse_hull import radiating_hull
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation, kept_radiation
 from dynamics.noise.housing_recordings import (
     pressure_recording,
@@ -23,7 +23,6 @@ __all__ = [
     "LoudPoint",
     "PanelSound",
     "RadiatedSound",
-    "RadiatingHull",
     "Region",
     "Sensitivity",
     "SoundBand",

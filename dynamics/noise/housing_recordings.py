@@ -45,7 +45,7 @@ BLOCK = 4_000_000  # phases that are held at a time
 
 
 @dataclass(frozen=True)
-class SoundPaths:
+class _SoundPaths:
     """Paths from T panels to a microphone.
 
     Attributes
@@ -89,7 +89,7 @@ class SoundPaths:
 
 def sound_paths(
     hull: Hull, shapes: FloatArray, microphone: FloatArray, model: ElementalRadiators, air: Air
-) -> SoundPaths:
+) -> _SoundPaths:
     """Return the paths from a hull that moves in shapes to a microphone.
 
     Parameters
@@ -111,7 +111,7 @@ def sound_paths(
     distance = np.linalg.norm(hull.centers - at, axis=1)
     _require_in_air(hull, at, float(distance.min()))
     volume = air.density / model.solid_angle * hull.areas / distance
-    return SoundPaths(distance / air.sound_speed, volume[:, None] * shapes)
+    return _SoundPaths(distance / air.sound_speed, volume[:, None] * shapes)
 
 
 def _require_in_air(hull: Hull, microphone: FloatArray, distance: float) -> None:
@@ -226,7 +226,7 @@ def sound_limit(housing: ReducedHousing, air: Air | None = None) -> float:
 
 def _paths(
     housing: ReducedHousing, microphone: FloatArray, model: ElementalRadiators, air: Air | None
-) -> SoundPaths:
+) -> _SoundPaths:
     outer = outer_hull(housing)
     return sound_paths(outer.hull, outer.shapes, microphone, model, air or Air())
 

@@ -64,7 +64,7 @@ class SoundModel:
         return replace(self, scene=scene, housings={**self.housings, name: housing})
 
 
-def radiated_power(model: SoundModel, response: BearingHarmonics) -> OrderPower:
+def _radiated_power(model: SoundModel, response: BearingHarmonics) -> OrderPower:
     """Return the sound power of a response by order and speed, the sum over all housings.
 
     Raises
@@ -87,10 +87,10 @@ def forced_power(model: SoundModel, speed: FloatArray, orders: int) -> tuple[Flo
     Raises
     ------
     InputError, SolveError
-        As `harmonic_response` and `radiated_power` do.
+        As `harmonic_response` and `_radiated_power` do.
     """
     response = harmonic_response(assemble(model.scene), speed, orders)
-    return response.order, radiated_power(model, response)
+    return response.order, _radiated_power(model, response)
 
 
 def _velocity(housing: ReducedHousing, response: BearingHarmonics, bearings: tuple[str, ...]) -> ComplexArray:

@@ -8,8 +8,6 @@ from dynamics.orders.resampling import (
     resample_to_position,
 )
 from dynamics.orders.spectrum import (
-    MeshOrder,
-    Peak,
     Sideband,
     Spectrum,
     find_peaks,
@@ -19,10 +17,8 @@ from dynamics.orders.spectrum import (
     window_spectrum,
 )
 from dynamics.orders.third_octaves import (
-    OrderTrack,
     ThirdOctaves,
     Waterfall,
-    band_number,
     band_sums,
     frequency_waterfall,
     nominal_center,
@@ -33,14 +29,10 @@ from dynamics.orders.third_octaves import (
 
 __all__ = [
     "BearingOrders",
-    "MeshOrder",
-    "OrderTrack",
-    "Peak",
     "Sideband",
     "Spectrum",
     "ThirdOctaves",
     "Waterfall",
-    "band_number",
     "band_sums",
     "bearing_orders",
     "bearing_signals",

@@ -120,7 +120,7 @@ SECOND_MOMENT = 1.0 / 12.0 - 0.5 / np.pi**2
 """Of Hann weights about their middle, over the square of the window's length."""
 
 
-def smearing(modes: Json, frequency: FloatArray, sweep: FloatArray) -> FloatArray:
+def _smearing(modes: Json, frequency: FloatArray, sweep: FloatArray) -> FloatArray:
     """Return the leading error of amplitudes under Hann windows, of the amplitude near each mode, (S, H).
 
     An amplitude that passes a mode of frequency f_n and damping ratio z goes with 1/(1 + i x), where
@@ -186,7 +186,7 @@ class BearingOrders:
     sweep : (S,) array
         Change of the mesh frequency within the window, of its mean.
     smearing : (S, H) array
-        Of an amplitude: what the window rounds off a resonance of the scene (`smearing`); NaN if the run
+        Of an amplitude: what the window rounds off a resonance of the scene (`_smearing`); NaN if the run
         states no modes.
     remainder : (b, S) array
         Share of the variance of each bearing's force, from half the first order to half an order above the
@@ -226,7 +226,7 @@ def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | 
     """Return the mesh orders of the forces on the bearings of a run, window by window.
 
     Least squares under Hann weights: an order of constant amplitude is found exactly at any sweep. What
-    changes within the window is averaged: see `smearing`.
+    changes within the window is averaged: see `_smearing`.
 
     Parameters
     ----------
@@ -369,7 +369,7 @@ def _put_together(
         np.stack([row.force for row in rows], axis=-2),
         np.array([row.in_contact for row in rows]),
         sweep,
-        smearing(result.modes, frequency, sweep),
+        _smearing(result.modes, frequency, sweep),
         np.stack([row.remainder for row in rows], axis=-1),
         facts,
     )

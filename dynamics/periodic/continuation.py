@@ -10,9 +10,16 @@ import numpy as np
 
 from dynamics.checks import integer, positive
 from dynamics.errors import InputError
-from dynamics.periodic.floquet import ON_THE_CIRCLE, Instability
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap
-from dynamics.periodic.shooting import RESIDUAL_LIMIT, Orbit, OrbitStatus, find_orbit, make_orbit
+from dynamics.periodic.shooting import (
+    ON_THE_CIRCLE,
+    RESIDUAL_LIMIT,
+    Instability,
+    Orbit,
+    OrbitStatus,
+    find_orbit,
+    make_orbit,
+)
 from dynamics.types import FloatArray
 
 ITERATION_LIMIT = 8

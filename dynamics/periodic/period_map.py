@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,16 +16,106 @@ from dynamics.checks import integer
 from dynamics.errors import InputError, SolveError
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.advance import prepare_steps
+from dynamics.integrators.explicit_step import accelerate, explicit_step
+from dynamics.integrators.implicit_step import implicit_step
 from dynamics.integrators.workspace import Workspace, make_workspace
 from dynamics.kernels.by_address import by_address
+from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.law import Law
 from dynamics.linearize import Modes, natural_modes
 from dynamics.linearize.linear_system import about_running, require_freedoms
 from dynamics.linearize.load_harmonics import load_cycles
 from dynamics.linearize.operating_speeds import CommonPeriod, common_period
 from dynamics.mechanism.additions import ELEMENT_PASSING
-from dynamics.periodic.march import HALVINGS, march
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import BoolArray, FloatArray, IntArray
+
+HALVINGS = 8
+"""A step in which a flank lifts off or lands is halved down to 1/256 around it, so that its kink costs no
+digits and the end of the march depends smoothly on its start."""
+
+
+@compiled
+def _march(
+    system: SystemArrays,
+    work: Workspace,
+    implicit: bool,
+    force_tolerance: float,
+    time: FloatArray,
+    level: IntArray,
+    touching: BoolArray,
+    keep: bool,
+    path: FloatArray,
+) -> bool:
+    """Step from the state in `work` over `time` (N + 1,) by `level` (N,); leave the end in `work`.
+
+    Step `level` halved j times is `step_sizes[(HALVINGS + 1) level + j]`. `touching` (R,) is scratch.
+    With `keep`, q, q' and q'' at all times go into `path` (3, N + 1, n). Returns whether all stages were
+    solved and the end is finite.
+    """
+    for i in range(work.q.size):
+        work.q_new[i], work.v_new[i] = work.q[i], work.v[i]
+    accelerate(system, work, time[0], 0)
+    for i in range(work.q.size):
+        work.a[i] = work.stage_a[0, i]
+    for r in range(touching.size):
+        touching[r] = work.local.elastic[r] > 0.0
+    for step in range(level.size):
+        if keep:
+            _keep(work, step, path)
+        if not _whole_step(
+            system, work, implicit, force_tolerance, time[step], level[step] * (HALVINGS + 1), touching
+        ):
+            return False
+    if keep:
+        _keep(work, level.size, path)
+    total = 0.0
+    for i in range(work.q.size):
+        total += abs(work.q[i]) + abs(work.v[i])
+    return math.isfinite(total)
+
+
+@inner
+def _whole_step(
+    system: SystemArrays,
+    work: Workspace,
+    implicit: bool,
+    force_tolerance: float,
+    start: float,
+    level: int,
+    touching: BoolArray,
+) -> bool:
+    """Advance by the step `level` in one, or in halves of halves around a change of contact."""
+    parts, done, halved = 2**HALVINGS, 0, 0
+    while done < parts:
+        work.time[0] = start + work.step_sizes[level] * (done / parts)
+        solved = True
+        if implicit:
+            solved = implicit_step(system, work, level + halved, force_tolerance, False)
+        else:
+            explicit_step(system, work, level + halved, False)
+        changed = not solved
+        for r in range(touching.size):
+            changed = changed or (work.local.elastic[r] > 0.0) != touching[r]
+        if changed and halved < HALVINGS:
+            halved += 1
+            continue
+        if not solved:
+            return False
+        for i in range(work.q.size):
+            work.q[i], work.v[i], work.a[i] = work.q_new[i], work.v_new[i], work.a_new[i]
+        for r in range(touching.size):
+            touching[r] = work.local.elastic[r] > 0.0
+        done += 2 ** (HALVINGS - halved)
+        while halved > 0 and done % 2 ** (HALVINGS - halved + 1) == 0:
+            halved -= 1
+    return True
+
+
+@inner
+def _keep(work: Workspace, step: int, path: FloatArray) -> None:
+    for i in range(work.q.size):
+        path[0, step, i], path[1, step, i], path[2, step, i] = work.q[i], work.v[i], work.a[i]
+
 
 # Steps over one common period, which end wherever a table has a knot.
 
@@ -152,7 +243,7 @@ def _constant(values: FloatArray) -> LawArrays:
 MOST_GAIN = 100.0
 
 
-def largest_force(system: System, mesh_force: FloatArray) -> float:
+def _largest_force(system: System, mesh_force: FloatArray) -> float:
     """Return the largest force of meshes and loads at the largest speed, N."""
     laws, extreme = system.arrays.elements.laws, [part.speed.extreme for part in system.scene.references]
     speed = float(np.max(np.abs(system.kinematics.float_ratio @ np.array(extreme))))
@@ -161,7 +252,7 @@ def largest_force(system: System, mesh_force: FloatArray) -> float:
     return max(float(np.max(np.abs(force), initial=0.0)) for force in forces)
 
 
-def stiffest(system: System) -> float:
+def _stiffest(system: System) -> float:
     """Return the stiffness of the stiffest mesh; without one that of the stiffest freedom, N/m."""
     arrays, meshes = system.arrays, system.flanks.mean_stiffness
     if meshes.size:
@@ -251,7 +342,7 @@ def periodic_problem(
     pitches = max((abs(count) for count in period.pitches), default=0)
     waves = max(pitches, load_cycles(system, period))
     rest = start.displacement * system.arrays.scale
-    force, stiff = largest_force(system, start.mesh_force), stiffest(system)
+    force, stiff = _largest_force(system, start.mesh_force), _stiffest(system)
     size = max(float(np.max(np.abs(rest))), _resonant_gain(system, modes) * force / stiff)
     if size <= 0.0:
         raise InputError(
@@ -360,7 +451,7 @@ class PeriodMap:
         state = y / problem.scale
         work.q[:], work.v[:] = state[:n], state[n:]
         work.force[:] = 0.0
-        solved = march(
+        solved = _march(
             self.arrays,
             work,
             problem.system.scene.integration.method != "explicit",

@@ -12,10 +12,9 @@ from dynamics.checks import integer
 from dynamics.errors import InputError
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law
 from dynamics.periodic.continuation import Branch, follow_branch
-from dynamics.periodic.floquet import Instability
 from dynamics.periodic.motion import motion
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
-from dynamics.periodic.shooting import Orbit, find_orbit
+from dynamics.periodic.shooting import Instability, Orbit, find_orbit
 from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.results.force_check import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json

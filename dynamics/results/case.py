@@ -83,7 +83,7 @@ def _ledger_entry(
 # The model of flexible shafts: elements, modes, errors, in plain JSON.
 
 
-def flexible_shafts(rotors: Sequence[Rotor]) -> list[Json]:
+def _flexible_shafts(rotors: Sequence[Rotor]) -> list[Json]:
     """Return one entry per flexible shaft, SI."""
     return [_entry(rotor.shaft.name, rotor.elastic) for rotor in rotors if rotor.elastic is not None]
 
@@ -130,7 +130,7 @@ def resolved_case(system: System) -> Json:
             for shaft, row in zip(scene.shafts, system.kinematics.ratio, strict=True)
         },
         "loads": [asdict(load) for load in scene.loads],
-        "flexible_shafts": flexible_shafts(system.rotors),
+        "flexible_shafts": _flexible_shafts(system.rotors),
         "duration": scene.duration,
         "gravity": list(scene.gravity),
         "effects": dict(scene.effects),

@@ -61,7 +61,7 @@ def axis_rows(system: System, axis: int, *, follows: bool) -> dict[int, int]:
     return rows
 
 
-class Signals(NamedTuple):
+class _Signals(NamedTuple):
     """The signals that series are made of at T times: n freedoms, R local coordinates, m meshes.
 
     Attributes
@@ -81,13 +81,13 @@ class Signals(NamedTuple):
     static: FloatArray
 
 
-def unfiltered(system: System, seen: Observed, states: States) -> Signals:
+def unfiltered(system: System, seen: Observed, states: States) -> _Signals:
     """Return the signals of points of the motion."""
     position = seen.position[: len(system.scene.meshes)]
-    return Signals(states.q, states.v, seen.coordinate, seen.force, _static(system, position))
+    return _Signals(states.q, states.v, seen.coordinate, seen.force, _static(system, position))
 
 
-def filtered(system: System, states: States, seen: Observed) -> Signals:
+def filtered(system: System, states: States, seen: Observed) -> _Signals:
     """Return the signals behind the anti-alias filter.
 
     Modal freedoms that the filter has not taken are left out, and the coordinates they move are those of the
@@ -104,11 +104,11 @@ def filtered(system: System, states: States, seen: Observed) -> Signals:
     else:
         coordinate[modal.row] = seen.coordinate[modal.row]
     q, v = (np.concatenate(parts, axis=1) for parts in ((q, displacement), (v, rate)))
-    return Signals(q, v, coordinate, force, static)
+    return _Signals(q, v, coordinate, force, static)
 
 
 def histories(
-    system: System, time: FloatArray, states: States, seen: Observed, signals: Signals
+    system: System, time: FloatArray, states: States, seen: Observed, signals: _Signals
 ) -> dict[str, Any]:
     """Return the series of `RunResult` made of `signals`, for the `states` at `time` (T,) as `seen`.
 
@@ -174,7 +174,7 @@ def _contact(system: System, force: FloatArray) -> FloatArray:
 
 
 def _accelerations(
-    system: System, laws: FloatArray, time: FloatArray, signals: Signals, moved: IntArray
+    system: System, laws: FloatArray, time: FloatArray, signals: _Signals, moved: IntArray
 ) -> dict[str, FloatArray]:
     """Accelerations of the freedoms, and of the shafts at their bearings."""
     none = {"acceleration": np.empty((0, len(moved))), "bearing_acceleration": np.empty((0, 3, len(moved)))}
@@ -191,7 +191,7 @@ def _accelerations(
     return series
 
 
-def _acceleration(system: System, laws: FloatArray, time: FloatArray, signals: Signals) -> FloatArray:
+def _acceleration(system: System, laws: FloatArray, time: FloatArray, signals: _Signals) -> FloatArray:
     """Return q'' (n, T) from the equations of motion: linear in the signals, filtered as they are.
 
     `laws` (k, T) are the accelerations of the laws.

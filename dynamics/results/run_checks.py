@@ -26,7 +26,7 @@ from dynamics.types import FloatArray, Json
 WHAT = ("tilt", "center distance")
 
 
-class AxisChecks:
+class _AxisChecks:
     """Gathers, block by block, how far misalignment and center distance left the tables' axes."""
 
     def __init__(self, system: System) -> None:
@@ -94,7 +94,7 @@ class _Watched:
     gradient: FloatArray
 
 
-class HeldOperatingPointChecks:
+class _HeldOperatingPointChecks:
     """Gathers, block by block, how far bodies moved along axes of tables that did not follow them."""
 
     def __init__(self, system: System) -> None:
@@ -168,7 +168,7 @@ def _gradient(system: System, axis: int, index: int) -> FloatArray:
 # Whether what a run left out about contact would have mattered: flanks that parted without a coast flank.
 
 
-class ContactChecks:
+class _ContactChecks:
     """Gathers, block by block, how far the driving flanks of meshes without backlash parted."""
 
     def __init__(self, system: System) -> None:
@@ -241,7 +241,7 @@ LIGHT = 1e-3
 """Part of the largest bearing force at the start below which a bearing counts as unloaded from the start."""
 
 
-class BearingLoadChecks:
+class _BearingLoadChecks:
     """Gathers, block by block, how long radial forces pointed away from the static load."""
 
     def __init__(self, system: System) -> None:
@@ -316,9 +316,9 @@ class RunChecks:
     """All checks of a run; `further` ones look at its series too."""
 
     def __init__(self, system: System, further: Sequence[_SeriesCheck] = ()) -> None:
-        self._further, self._operating_points = tuple(further), HeldOperatingPointChecks(system)
-        self._contact, self._axes = ContactChecks(system), AxisChecks(system)
-        self._force, self._bearings = ForceChecks(system), BearingLoadChecks(system)
+        self._further, self._operating_points = tuple(further), _HeldOperatingPointChecks(system)
+        self._contact, self._axes = _ContactChecks(system), _AxisChecks(system)
+        self._force, self._bearings = ForceChecks(system), _BearingLoadChecks(system)
 
     def see(self, series: dict[str, Any], states: States) -> None:
         """Take a block of unfiltered series, and the states they are of."""

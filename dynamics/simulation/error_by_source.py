@@ -72,7 +72,7 @@ class Window:
 
 
 @dataclass(frozen=True)
-class Difference:
+class _Difference:
     """The difference of another run of a window.
 
     Attributes
@@ -119,7 +119,7 @@ def _seen(system: System, time: FloatArray, states: States) -> tuple[FloatArray,
     return unwrapped(seen.position[:meshes]), seen.coordinate[system.driving_rows], force[:, :3]
 
 
-def run_again(window: Window, system: System, integration: Integration) -> Difference | None:
+def run_again(window: Window, system: System, integration: Integration) -> _Difference | None:
     """Integrate `window` again as `system`, from the run's state at its start; None if it ends early."""
     first = window.states.rows(0, 1)
     start = StaticSolution(StaticStatus.CONVERGED, first.q[0], np.empty(0), 0.0, 0)
@@ -136,7 +136,7 @@ def run_again(window: Window, system: System, integration: Integration) -> Diffe
         for position, series in zip(window.position, apart, strict=True)
     ]
     by_force = np.linalg.norm(order_amplitudes(window.position[0], pushed, orders), axis=1)
-    return Difference(
+    return _Difference(
         float(np.sqrt(np.mean(apart**2))),
         np.max(by_error, axis=0),
         np.max(by_force, axis=0, initial=0.0),
@@ -155,7 +155,7 @@ def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
     Sources: time steps, table interpolation between positions, neglected effects.
     """
     requested, integration = requested_error(system.scene.integration), system.scene.integration
-    left_out = left_out_effects(system)
+    left_out = _left_out_effects(system)
     began = cpu_seconds()
     full = system.scene.outputs.receipt == "full"
     looked = windows(system, states_of, samples) if full else []
@@ -175,7 +175,7 @@ def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
     }
 
 
-def left_out_effects(system: System) -> Json:
+def _left_out_effects(system: System) -> Json:
     """Return what neglected effects would move the flanks by at rest; bearing forces are not known."""
     off = [entry for entry in system.ledger.entries if not entry.on and entry.influence > 0.0]
     largest = max((entry.influence for entry in off), default=0.0)
@@ -187,7 +187,7 @@ def left_out_effects(system: System) -> Json:
     }
 
 
-def _estimate(differences: Sequence[Difference | None], rest: float, source: str) -> Json:
+def _estimate(differences: Sequence[_Difference | None], rest: float, source: str) -> Json:
     """Put the windows together: rms over all, the worst amplitudes; empty if one of them failed."""
     known = [difference for difference in differences if difference is not None]
     if len(known) < len(differences):

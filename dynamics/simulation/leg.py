@@ -13,7 +13,7 @@ from dynamics.errors import ResultError
 from dynamics.integrators import Cancel, Progress, StaticSolution
 from dynamics.integrators.march import Ending, March, ending, march_on, start_march
 from dynamics.integrators.start_value import StartValue, Trail, start_from, widened
-from dynamics.integrators.state_spool import StateSpool, fingerprint, restore
+from dynamics.integrators.state_sink import StateSpool, fingerprint, restore
 from dynamics.integrators.workspace import Count
 from dynamics.motion.sampled_states import Widths
 from dynamics.scene import Integration

@@ -24,7 +24,7 @@ SOURCES = ("time_step", "table_interpolation")
 
 
 @dataclass(frozen=True)
-class Window:
+class _Window:
     """A run from a time on.
 
     Attributes
@@ -48,7 +48,7 @@ class Window:
     _fits: dict[int, tuple[FloatArray, dict[int, FloatArray]]] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, run: RunResult, start: float, highest_order: int, bearings: tuple[int, ...]) -> Window:
+    def of(cls, run: RunResult, start: float, highest_order: int, bearings: tuple[int, ...]) -> _Window:
         """Look at a run from `start` (s) on.
 
         Raises
@@ -59,7 +59,7 @@ class Window:
         end = float(run.time[-1])
         return cls(run, run.window(within("start", start, 0.0, end), end), highest_order, bearings)
 
-    def along(self, mesh: int) -> Window:
+    def along(self, mesh: int) -> _Window:
         """Return the same with the orders of a mesh."""
         return replace(self, mesh=mesh)
 
@@ -95,7 +95,7 @@ class Window:
         return float(np.sum(known)) if known else float("nan")
 
 
-class Value(NamedTuple):
+class _Value(NamedTuple):
     """The value of a response in SI, and its error where the run states one, else NaN."""
 
     value: float
@@ -123,7 +123,7 @@ class Quantity:
     unit: str
     of: str
     by_order: bool
-    take: Callable[[Window, int, int], Value]
+    take: Callable[[_Window, int, int], _Value]
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ class Response:
             return tuple(range(len(names)))
         return (names.index(one_of(self.kind.of, self.part, names)),)
 
-    def of(self, window: Window) -> Value:
+    def of(self, window: _Window) -> _Value:
         """Return its value in a window of a run; of several parts the largest one."""
         run, rows = window.run, self.rows(window.run)
         mesh = run.mesh.index(one_of("mesh", self.mesh, run.mesh)) if self.mesh else 0
@@ -200,53 +200,53 @@ def responses_of(
     """
     bearings = {row for each in responses if each.kind.of == "bearing" for row in each.rows(run)}
     highest = max((response.order for response in responses), default=0)
-    window = Window.of(run, start, highest, tuple(sorted(bearings)))
+    window = _Window.of(run, start, highest, tuple(sorted(bearings)))
     values = [response.of(window) for response in responses]
     return [value.value for value in values], [value.error for value in values]
 
 
-def _bearing_force(window: Window, row: int, order: int) -> Value:
+def _bearing_force(window: _Window, row: int, order: int) -> _Value:
     """Amplitude of the force vector at an order: root of the sum of squares over x, y, z."""
     amplitude = window.orders[1][row][:, order - 1]
-    return Value(float(np.linalg.norm(amplitude)), window.error("bearing_force_orders", order))
+    return _Value(float(np.linalg.norm(amplitude)), window.error("bearing_force_orders", order))
 
 
-def _dte_order(window: Window, row: int, order: int) -> Value:
+def _dte_order(window: _Window, row: int, order: int) -> _Value:
     """Amplitude of the dynamic transmission error at an order of its mesh."""
     amplitude = window.along(row).orders[0]
-    return Value(float(amplitude[order - 1]), window.error("transmission_error_orders", order))
+    return _Value(float(amplitude[order - 1]), window.error("transmission_error_orders", order))
 
 
-def _dte_rms(window: Window, row: int, _order: int) -> Value:
-    return Value(float(np.std(window.transmission_error(row))), window.error("rms"))
+def _dte_rms(window: _Window, row: int, _order: int) -> _Value:
+    return _Value(float(np.std(window.transmission_error(row))), window.error("rms"))
 
 
-def _dte_peak_to_peak(window: Window, row: int, _order: int) -> Value:
+def _dte_peak_to_peak(window: _Window, row: int, _order: int) -> _Value:
     """Largest less least value."""
-    return Value(float(np.ptp(window.transmission_error(row))))
+    return _Value(float(np.ptp(window.transmission_error(row))))
 
 
-def _peak_mesh_force(window: Window, row: int, _order: int) -> Value:
-    return Value(float(np.max(window.run.largest_mesh_force[row, window.part])))
+def _peak_mesh_force(window: _Window, row: int, _order: int) -> _Value:
+    return _Value(float(np.max(window.run.largest_mesh_force[row, window.part])))
 
 
-def _dynamic_factor(window: Window, row: int, order: int) -> Value:
+def _dynamic_factor(window: _Window, row: int, order: int) -> _Value:
     """K_v of ISO 6336-1: the largest over the nominal force."""
     nominal = float(window.run.nominal_force[row])
-    return Value(_peak_mesh_force(window, row, order).value / nominal if nominal > 0.0 else float("nan"))
+    return _Value(_peak_mesh_force(window, row, order).value / nominal if nominal > 0.0 else float("nan"))
 
 
-def _contact_loss(window: Window, row: int, _order: int) -> Value:
+def _contact_loss(window: _Window, row: int, _order: int) -> _Value:
     """Share of the samples in which no flank touches."""
-    return Value(float(np.mean(window.run.contact[row, window.part] == ContactState.OFF)))
+    return _Value(float(np.mean(window.run.contact[row, window.part] == ContactState.OFF)))
 
 
-def _mesh_load_factor(window: Window, _row: int, _order: int) -> Value:
+def _mesh_load_factor(window: _Window, _row: int, _order: int) -> _Value:
     """K_gamma of ISO 6336-1 at the central gear where planets share worst, over the whole run."""
     shared = planet_load_sharing(window.run)
     if not shared:
         raise InputError("quantity", "mesh_load_factor", "of a scene with planets")
-    return Value(max(sharing.mesh_load_factor for sharing in shared))
+    return _Value(max(sharing.mesh_load_factor for sharing in shared))
 
 
 QUANTITIES: dict[str, Quantity] = {

@@ -194,7 +194,7 @@ class Workers(Protocol):
         ...
 
 
-class OneByOne:
+class _OneByOne:
     """One task after the other, here."""
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
@@ -260,7 +260,7 @@ class PointResult:
     seconds: list[float]
 
 
-def batches(design: Design, scenes: Scenes) -> Iterator[tuple[tuple[int, ...], Batch]]:
+def _batches(design: Design, scenes: Scenes) -> Iterator[tuple[tuple[int, ...], Batch]]:
     """Yield indices and values of the points of each batch.
 
     Points that share what is expensive are in a row, so that it is made once for all of them.
@@ -303,7 +303,7 @@ def _as_studied(scene: Scene, receipt: str) -> Scene:
     return replace(scene, outputs=outputs)
 
 
-def stated(receipt: str) -> tuple[str, ...]:
+def _stated(receipt: str) -> tuple[str, ...]:
     """Return what the runs of a study do without, in words."""
     windows = () if receipt == "full" else ("errors of steps and tables measured in windows of the run",)
     return ("energy audit", *windows, *(() if receipt == "full" else ("estimated influence of effects",)))
@@ -312,7 +312,7 @@ def stated(receipt: str) -> tuple[str, ...]:
 def study(
     task: StudyTask,
     design: Design,
-    workers: Workers = OneByOne(),  # noqa: B008 (no state)
+    workers: Workers = _OneByOne(),  # noqa: B008 (no state)
     progress: Progress = silent,
     *,
     confidence: float = 0.95,
@@ -348,7 +348,7 @@ def study(
     count = len(design.points)
     integer("keep_worst", keep_worst, 0, count)
     results: list[PointResult | None] = [None] * count
-    parts = list(batches(design, task.scenes))
+    parts = list(_batches(design, task.scenes))
     done, batch_results = 0, workers.run(run_batch, task, [values for _, values in parts])
     for (indices, _), points in zip(parts, batch_results, strict=True):
         for index, point in zip(indices, points, strict=True):
@@ -397,7 +397,7 @@ def _result(
             "seed": design.seed,
             "start": task.start,
             "receipt": task.receipt,
-            "neglected": stated(task.receipt),
+            "neglected": _stated(task.receipt),
         },
     )
 

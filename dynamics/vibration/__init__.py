@@ -1,12 +1,10 @@
 """Vibration of housings under the forces of their bearings."""
 
-from dynamics.vibration.housing_motion import HousingPower, housing_motion, housing_power
+from dynamics.vibration.housing_motion import housing_motion, housing_power
 from dynamics.vibration.housing_vibration import (
-    HousingVibration,
     MotionQuantity,
     housing_vibration,
     mean_square,
-    named_points,
     overall,
     surface_weight,
     vibration_level,
@@ -20,7 +18,6 @@ from dynamics.vibration.seat_forces import (
 )
 from dynamics.vibration.time_signal import motion_pieces, motion_signal, point_signal
 from dynamics.vibration.vibration_analysis import (
-    Parts,
     SurfaceShape,
     VibrationAnalysis,
     analyze_vibration,
@@ -34,10 +31,7 @@ from dynamics.vibration.vibration_analysis import (
 
 __all__ = [
     "BearingHarmonics",
-    "HousingPower",
-    "HousingVibration",
     "MotionQuantity",
-    "Parts",
     "ReportedHarmonics",
     "SurfaceShape",
     "VibrationAnalysis",
@@ -53,7 +47,6 @@ __all__ = [
     "mode_shape",
     "motion_pieces",
     "motion_signal",
-    "named_points",
     "operating_deflection",
     "overall",
     "point_signal",

@@ -27,7 +27,7 @@ CUBIC = 4
 
 
 @dataclass(frozen=True)
-class Propagator:
+class _Propagator:
     """Advances the modes of a housing by one sample, exactly under forces that are cubic in time.
 
     Attributes
@@ -172,7 +172,7 @@ def _at_rest(natural: FloatArray, pushed: FloatArray) -> FloatArray:
     return np.divide(pushed, natural**2, out=np.zeros(natural.size), where=held)
 
 
-def _propagator(natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> Propagator:
+def _propagator(natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _Propagator:
     """Integrate p'' + damping p' + natural^2 p = push f over a step, for forces 1, t, t^2/2, t^3/6.
 
     By the exponential of the system that the derivatives of the force extend (C. F. van Loan, IEEE
@@ -191,7 +191,7 @@ def _propagator(natural: FloatArray, damping: FloatArray, push: FloatArray, step
     whole[2 * modes : -forces, 2 * modes + forces :] = np.eye((CUBIC - 1) * forces)
     exponential = expm(whole)[: 2 * modes]
     gain = exponential[:, 2 * modes :].reshape(2 * modes, CUBIC, forces)
-    return Propagator(exponential[:, : 2 * modes], np.ascontiguousarray(np.moveaxis(gain, 1, 0)), scale)
+    return _Propagator(exponential[:, : 2 * modes], np.ascontiguousarray(np.moveaxis(gain, 1, 0)), scale)
 
 
 def _derivatives(force: FloatArray, first: int) -> FloatArray:
@@ -205,7 +205,7 @@ def _derivatives(force: FloatArray, first: int) -> FloatArray:
 
 
 def _advance(
-    propagator: Propagator, derivatives: FloatArray, state: FloatArray
+    propagator: _Propagator, derivatives: FloatArray, state: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the states of samples, the first one `state`, and that of the sample after them."""
     increments = sum(part @ gain.T for part, gain in zip(derivatives, propagator.gain, strict=True))

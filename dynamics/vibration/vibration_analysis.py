@@ -351,7 +351,7 @@ def analyze_vibration(
     return VibrationAnalysis(
         name,
         vibration,
-        mobilities(housing, float(vibration.frequency.max()), points),
+        _mobilities(housing, float(vibration.frequency.max()), points),
         *at,
         _shares(housing, bearing_parts(housing, hertz, force), points),
         _shares(housing, mode_parts(housing, hertz, force), points),
@@ -360,7 +360,7 @@ def analyze_vibration(
     )
 
 
-def mobilities(housing: ReducedHousing, highest: float, points: Sequence[str] | None = None) -> Mobilities:
+def _mobilities(housing: ReducedHousing, highest: float, points: Sequence[str] | None = None) -> Mobilities:
     """Return the transfer functions of a housing up to a frequency in Hz, its resonances among them."""
     even = np.linspace(highest / FREQUENCIES, highest, FREQUENCIES)
     own = housing.frequency[(housing.frequency > even[0]) & (housing.frequency < highest)]

@@ -185,7 +185,7 @@ def _compile_library(folder: Path, sources: Sequence[str], library: str) -> None
 TABLE_FILE = "mesh_force_table.bin"
 
 
-def header(element: MeshElement, chosen: Sequence[Variable], guid: str, identity: str) -> str:
+def _header(element: MeshElement, chosen: Sequence[Variable], guid: str, identity: str) -> str:
     """Return variables.h; numbers are written as hexadecimal floats, which C99 reads without rounding."""
     parts = [_kind(of_kind(chosen, kind), kind.upper()) for kind in (REAL, INTEGER, BOOLEAN)]
     names = ", ".join(f'"{variable.name}"' for variable in of_kind(chosen, REAL))
@@ -250,14 +250,14 @@ def _table_content(table: MeshTable) -> bytes:
     return b"".join([sizes.tobytes(), *(axis.tobytes() for axis in flat), nodes.tobytes()])
 
 
-def identity_of(content: bytes) -> str:
+def _identity_of(content: bytes) -> str:
     """Return 32 hexadecimal digits by which the unit knows its table."""
     return hashlib.sha256(content).hexdigest()[:32]
 
 
 def _table_file(content: bytes) -> bytes:
     """Return the file: magic, identity, content."""
-    return MAGIC + identity_of(content).encode("ascii") + content
+    return MAGIC + _identity_of(content).encode("ascii") + content
 
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)
@@ -324,7 +324,7 @@ def _content(element: MeshElement, name: str) -> dict[str, bytes]:
     def described(guid: str) -> dict[str, bytes]:
         return {
             "modelDescription.xml": _model_description(name, chosen, guid, compiled),
-            "sources/variables.h": header(element, chosen, guid, identity_of(table)).encode("ascii"),
+            "sources/variables.h": _header(element, chosen, guid, _identity_of(table)).encode("ascii"),
         }
 
     content = {

@@ -21,8 +21,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError, ResultError, SolveError
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.march import start_march
-from dynamics.integrators.state_sink import BLOCK
-from dynamics.integrators.state_spool import leaves, read_checkpoint, restore, write_checkpoint
+from dynamics.integrators.state_sink import BLOCK, leaves, read_checkpoint, restore, write_checkpoint
 from dynamics.loads import TimeLaw
 from dynamics.meshes import CoastFlank
 from dynamics.results import RunResult
