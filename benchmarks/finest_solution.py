@@ -14,8 +14,13 @@ from fe_contact.analysis.pairs.pair_contact import PairContact, operating_points
 from fe_contact.analysis.request.request import Checked
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
-from fe_contact.planning import FaceDiscretization, Plan, PlaneDiscretization, make_plan
-from fe_contact.planning.discretization import FINER_SLICES, Discretization
+from fe_contact.planning.discretization import (
+    FINER_SLICES,
+    Discretization,
+    FaceDiscretization,
+    PlaneDiscretization,
+)
+from fe_contact.planning.plan import Plan, make_plan
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray
 

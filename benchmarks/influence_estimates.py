@@ -30,7 +30,7 @@ from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.studies.ablation import EffectAblation, ablate
 from fe_contact.effects.face_load_distribution import FaceLoadDistribution
 from fe_contact.effects.finite_width import FiniteWidth
-from fe_contact.effects.influence import EstimatedInfluence, estimate_influences
+from fe_contact.effects.influence.estimate import EstimatedInfluence, estimate_influences
 from fe_contact.options import Run
 
 PAGE = Path(__file__).parents[1] / "docs" / "lab" / "influence.md"

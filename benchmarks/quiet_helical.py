@@ -21,8 +21,7 @@ from fe_contact.analysis.checks.effect_ledger import toggled
 from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked, estimated_influences
-from fe_contact.effects.influence import Influence
-from fe_contact.effects.influence.estimate import RIPPLE_FLOOR, signed
+from fe_contact.effects.influence.estimate import RIPPLE_FLOOR, Influence, signed
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 
 SECTION = "quiet helical"

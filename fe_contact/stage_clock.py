@@ -14,7 +14,7 @@ from model_studies.progress import Progress, silent
 
 
 @dataclass(frozen=True)
-class Stage:
+class _Stage:
     """Time of one stage: CPU seconds of all who worked on it, and wall seconds."""
 
     name: str
@@ -34,7 +34,7 @@ class StageClock:
     """
 
     def __init__(self, remote: RunCost | None = None, progress: Progress = silent) -> None:
-        self.stages: list[Stage] = []
+        self.stages: list[_Stage] = []
         self.progress = progress
         self._remote = remote or RunCost()
         self._last = self._reading()
@@ -77,7 +77,7 @@ class StageClock:
     def _book(self, name: str, begun: tuple[float, float]) -> None:
         """Add a stage that ends now."""
         self._last = self._reading()
-        self.stages.append(Stage(name, self._last[0] - begun[0], self._last[1] - begun[1]))
+        self.stages.append(_Stage(name, self._last[0] - begun[0], self._last[1] - begun[1]))
 
     def _reading(self) -> tuple[float, float]:
         """CPU seconds of this process, its finished children and others' tasks, and wall seconds."""

@@ -13,16 +13,9 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import positive
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import LEVELS, AnalysisOptions, TableAxes
-from fe_contact.planning import (
-    ExpectedCurves,
-    ExpectedError,
-    MeshChoice,
-    Plan,
-    Prediction,
-    expected_error,
-    make_plan,
-    predict_run,
-)
+from fe_contact.planning.cost_model import Prediction, predict_run
+from fe_contact.planning.plan import Plan, make_plan
+from fe_contact.planning.planned import ExpectedCurves, ExpectedError, MeshChoice, expected_error
 from fe_contact.types import Json
 
 

@@ -31,8 +31,9 @@ from fe_contact.compliance.remote_condensation import condense_remotely, condens
 from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run
-from fe_contact.planning import MOST_ROWS, FaceDiscretization, NodeRule, Plan, Prediction, predict_run
-from fe_contact.planning.cost_model import expected_tries
+from fe_contact.planning.cost_model import Prediction, expected_tries, predict_run
+from fe_contact.planning.discretization import FaceDiscretization
+from fe_contact.planning.plan import MOST_ROWS, NodeRule, Plan
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.interpolation import Axis, interpolate
@@ -79,7 +80,7 @@ def unmeasured_nodes(count: int, columns: int) -> PositionNodes:
     return PositionNodes(np.arange(count) / count, unknown, unknown, unknown)
 
 
-def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
+def _adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
     """Bisect the intervals in which the interpolant misses a probe.
 
     Parameters
@@ -171,7 +172,7 @@ def _table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreporte
     """
     if plan.positions is not None:
         return unmeasured_nodes(plan.positions, len(points.assessed) * plan.load.size)
-    windows = assessed_windows(points.places[0].model, plan.nodes.assessed_pitches)
+    windows = _assessed_windows(points.places[0].model, plan.nodes.assessed_pitches)
     tried, expected = 0, expected_tries(plan)
 
     def solve(position: FloatArray) -> FloatArray:
@@ -184,10 +185,10 @@ def _table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreporte
 
     rows = points.period * len(points.places)
     most = max(min(plan.nodes.most, MOST_ROWS // rows), plan.nodes.start)
-    return adaptive_nodes(replace(plan.nodes, most=most), solve)
+    return _adaptive_nodes(replace(plan.nodes, most=most), solve)
 
 
-def assessed_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
+def _assessed_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
     """Return base pitches to assess, each with its neighbors.
 
     Where all teeth are alike, the one pitch there is: ``([0],)``. Else ``[m - 1, m, m + 1]`` of pitches m, at

@@ -15,7 +15,7 @@ from fe_contact.types import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
-class PitchGap:
+class _PitchGap:
     """Gap of every tooth along the line of action, m, in the order of meshing.
 
     Attributes
@@ -69,7 +69,7 @@ class PitchError(Effect):
             tuple((-gear.pitch_deviation.on_line_of_action(gear.transverse_pressure_angle)).tolist())
             for gear in gears
         )
-        return replace(model, tooth_gaps=(*model.tooth_gaps, PitchGap(first, second, _period(scene))))
+        return replace(model, tooth_gaps=(*model.tooth_gaps, _PitchGap(first, second, _period(scene))))
 
     def without(self, scene: ContactScene) -> ContactScene:
         """Return the scene with all teeth in their places."""

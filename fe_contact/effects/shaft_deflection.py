@@ -22,7 +22,7 @@ from fe_contact.types import FloatArray
 
 
 @dataclass(frozen=True)
-class SeatCompliance:
+class _SeatCompliance:
     """Displacement of a gear by a unit load on its seat, in any plane through the axis.
 
     Attributes
@@ -40,7 +40,7 @@ class SeatCompliance:
     tilt: float
 
     @classmethod
-    def of_shaft(cls, shaft: Shaft) -> SeatCompliance:
+    def of_shaft(cls, shaft: Shaft) -> _SeatCompliance:
         """Return the compliance of a shaft and its bearings at the gear's mid-face."""
         modulus, ratio = shaft.material.youngs_modulus, shaft.material.poissons_ratio
         bending = modulus * math.pi * shaft.diameter**4 / 64.0
@@ -79,7 +79,7 @@ def _section(shaft: Shaft, low: float, high: float, bending: float, shear: float
 
 
 @dataclass(frozen=True)
-class ShaftCompliance:
+class _ShaftCompliance:
     """The compliance term of both shafts; None is a rigid one.
 
     Notes
@@ -90,8 +90,8 @@ class ShaftCompliance:
     r_b sin beta_b of its axial part. Torsion is no part of it: transmission error is that of the seats.
     """
 
-    pinion: SeatCompliance | None
-    wheel: SeatCompliance | None
+    pinion: _SeatCompliance | None
+    wheel: _SeatCompliance | None
 
     def __call__(
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
@@ -147,9 +147,9 @@ class ShaftDeflection(Effect):
         return replace(scene, pair=replace(scene.pair, shafts=(None, None)))
 
 
-def _term(scene: ContactScene) -> ShaftCompliance:
-    seats = (None if shaft is None else SeatCompliance.of_shaft(shaft) for shaft in scene.pair.shafts)
-    return ShaftCompliance(*seats)
+def _term(scene: ContactScene) -> _ShaftCompliance:
+    seats = (None if shaft is None else _SeatCompliance.of_shaft(shaft) for shaft in scene.pair.shafts)
+    return _ShaftCompliance(*seats)
 
 
 def _skew(scene: ContactScene) -> float:

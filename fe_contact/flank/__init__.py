@@ -1,1 +1,1 @@
-"""The flank of a gear: the involute, the edge of its tip, and its modifications, one a file."""
+"""The flank of a gear: the involute, and its modifications by what they act along."""

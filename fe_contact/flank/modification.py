@@ -6,60 +6,51 @@ action).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import Field, dataclass, field, fields
 from functools import cached_property, reduce
 from operator import or_
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import Direction, Kind, declarations, described
-from fe_contact.flank.cut_tip import CutTip
-from fe_contact.flank.end_relief import (
-    EndRelief,
-    EndReliefDatumFace,
-    EndReliefNonDatumFace,
-    HelixCrowningDatumFace,
-    HelixCrowningNonDatumFace,
-)
-from fe_contact.flank.free_form import FreeForm
+from fe_contact.flank.along_face import ALONG_FACE
+from fe_contact.flank.along_profile import ALONG_PROFILE
+from fe_contact.flank.over_flank import OVER_FLANK
 from fe_contact.flank.part import FlankPart, ReliefStart, Tooth, involute
-from fe_contact.flank.polynomial import FlankTwist, HelixCrowning, HelixSlope, ProfileCrowning, ProfileSlope
-from fe_contact.flank.tip_relief import ProfileCrowningRoot, ProfileCrowningTip, RootRelief, TipRelief
-from fe_contact.flank.triangular_relief import TriangularRootRelief, TriangularTipRelief
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+PARTS = (*ALONG_PROFILE, *ALONG_FACE, *OVER_FLANK)
+"""The modifications that there are, each a line of these lists, in the order of their figures."""
+Flank = TypeVar("Flank")
+
+
+def _of_all_parts(kind: type[Flank]) -> type[Flank]:
+    """Make a dataclass with the fields of all parts, which declare them."""
+    for entry in (entry for part in PARTS for entry in fields(part)):
+        kind.__annotations__[entry.name] = entry.type
+        setattr(kind, entry.name, field(default=entry.default, metadata=entry.metadata))
+    return dataclass(frozen=True, kw_only=True)(kind)
+
 
 @described
-@dataclass(frozen=True, kw_only=True)
-class FlankModification(  # the last comes first: dataclasses take the fields of their bases from the end
-    FreeForm,
-    TriangularRootRelief,
-    TriangularTipRelief,
-    FlankTwist,
-    EndReliefNonDatumFace,
-    EndReliefDatumFace,
-    EndRelief,
-    HelixSlope,
-    HelixCrowningNonDatumFace,
-    HelixCrowningDatumFace,
-    HelixCrowning,
-    CutTip,
-    RootRelief,
-    TipRelief,
-    ProfileSlope,
-    ProfileCrowningRoot,
-    ProfileCrowningTip,
-    ProfileCrowning,
-):
-    """Intended departures of one gear's flanks from the involute helicoid: the sum of all its bases.
+@_of_all_parts
+class FlankModification:
+    """Intended departures of one gear's flanks from the involute helicoid: the sum of all its parts.
 
-    Every base declares its fields, in m and rad, with their bounds; all are 0 by default and then neutral.
+    Every part declares its fields, in m and rad, with their bounds; all are 0 by default and then neutral.
     """
+
+    if TYPE_CHECKING:  # figures of the parts, by name
+        __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+        def __init__(self, **figures: Any) -> None: ...
+
+        def __getattr__(self, name: str) -> Any: ...
 
     def __post_init__(self) -> None:
         _ = self.parts  # each checks its own fields
@@ -67,7 +58,7 @@ class FlankModification(  # the last comes first: dataclasses take the fields of
     @cached_property
     def parts(self) -> tuple[FlankPart, ...]:
         """The modifications one by one."""
-        return tuple(kind(**_own_fields(self, kind)) for kind in reversed(FlankModification.__bases__))
+        return tuple(kind(**_own_fields(self, kind)) for kind in PARTS)
 
     @cached_property
     def varies(self) -> Direction:
@@ -165,7 +156,7 @@ def fields_of(*kinds: Kind) -> tuple[str, ...]:
     return tuple(name for name, fact in FLANK_FIELDS.items() if fact.kind in kinds)
 
 
-def _own_fields(modification: FlankPart, kind: type[Any]) -> dict[str, Any]:
+def _own_fields(modification: FlankPart | FlankModification, kind: type[Any]) -> dict[str, Any]:
     return {entry.name: getattr(modification, entry.name) for entry in fields(kind)}
 
 

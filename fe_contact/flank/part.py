@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from operator import or_
-from typing import Protocol
+from typing import ClassVar, Protocol
+
+import numpy as np
 
 from bounds import Direction, Kind, SiNote, above, declarations
 from fe_contact.errors import InputError, declared_fields
@@ -147,3 +149,26 @@ def involute(gear: Tooth) -> tuple[float, float]:
     """Least and largest roll length of the involute, m."""
     ends = gear.form_roll_length, gear.tip_roll_length
     return min(ends), max(ends)
+
+
+class Polynomial(FlankPart):
+    """A depth times u^m v^n, u and v running from -1 to 1 over the roll length and over the face.
+
+    Attributes
+    ----------
+    powers : tuple of int
+        m and n.
+    weight : float
+        Of the depth: one half where it is the difference between two ends.
+    """
+
+    powers: ClassVar[tuple[int, int]]
+    weight: ClassVar[float] = 1.0
+
+    def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
+        """See `FlankPart.removed`."""
+        (depth,) = (getattr(self, field) for field in declarations(type(self)))
+        form, tip = gear.form_roll_length, gear.tip_roll_length
+        u = (2.0 * roll_length - form - tip) / (tip - form)
+        v = 2.0 * face_position / gear.face_width
+        return np.asarray(self.weight * depth * u ** self.powers[0] * v ** self.powers[1])

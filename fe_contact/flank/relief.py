@@ -24,7 +24,7 @@ _GROWTH = math.e - 1.0
 
 
 @dataclass(frozen=True)
-class ReliefShape:
+class _ReliefShape:
     """The depth of a relief over the fraction of its length, both 0 where it starts and 1 at its end.
 
     Attributes
@@ -53,12 +53,12 @@ def _arc(fraction: FloatArray, ratio: float) -> FloatArray:
     return np.asarray(2.0 * fraction**2 / (diameter + rise))
 
 
-SHAPES: dict[Shape, ReliefShape] = {
-    "linear": ReliefShape(lambda u, _: u, 1.0, lambda _: 0.0),
-    "parabolic": ReliefShape(lambda u, _: u**2, 0.0, lambda _: 2.0),
-    "circular": ReliefShape(_arc, 0.0, lambda ratio: 2.0 / (1.0 + ratio**2)),
-    "exponential": ReliefShape(lambda u, _: np.expm1(u) / _GROWTH, 1.0 / _GROWTH, lambda _: 1.0 / _GROWTH),
-    "logarithmic": ReliefShape(lambda u, _: np.log1p(_GROWTH * u), _GROWTH, lambda _: -(_GROWTH**2)),
+SHAPES: dict[Shape, _ReliefShape] = {
+    "linear": _ReliefShape(lambda u, _: u, 1.0, lambda _: 0.0),
+    "parabolic": _ReliefShape(lambda u, _: u**2, 0.0, lambda _: 2.0),
+    "circular": _ReliefShape(_arc, 0.0, lambda ratio: 2.0 / (1.0 + ratio**2)),
+    "exponential": _ReliefShape(lambda u, _: np.expm1(u) / _GROWTH, 1.0 / _GROWTH, lambda _: 1.0 / _GROWTH),
+    "logarithmic": _ReliefShape(lambda u, _: np.log1p(_GROWTH * u), _GROWTH, lambda _: -(_GROWTH**2)),
 }
 """The shapes by their names.
 
@@ -101,7 +101,7 @@ _LENGTHS = SiNote("Lengths are in m: 1 mm is 0.001.")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Relief(FlankPart):
+class _Relief(FlankPart):
     """Amount, length and shape, declared in this order; a crowning has no shape and is a parabola.
 
     Raises
@@ -129,7 +129,7 @@ class Relief(FlankPart):
         return float(getattr(self, f"{self._name}_length"))
 
     @property
-    def _shape(self) -> ReliefShape:
+    def _shape(self) -> _ReliefShape:
         return SHAPES[getattr(self, f"{self._name}_shape", "parabolic")]
 
     def _check_length(self, room: float) -> None:
@@ -141,7 +141,7 @@ class Relief(FlankPart):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ProfileRelief(Relief):
+class ProfileRelief(_Relief):
     """A relief from a radius to one end of the involute."""
 
     _at_tip: ClassVar[bool]
@@ -180,7 +180,7 @@ class ProfileRelief(Relief):
 
 
 @dataclass(frozen=True, kw_only=True)
-class FaceRelief(Relief):
+class FaceRelief(_Relief):
     """A relief over a part of the face, to one end or both."""
 
     def _outwards(self, face_position: FloatArray) -> FloatArray:

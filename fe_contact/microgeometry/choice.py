@@ -39,7 +39,7 @@ Figures = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class DesignMemory:
+class _DesignMemory:
     """Objective in m and violation of designs of one problem, by their values and the positions.
 
     Attributes
@@ -53,7 +53,7 @@ class DesignMemory:
     known: dict[bytes, Figures] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, directory: Path, request: OptimizationRequest, evaluator: Evaluator) -> DesignMemory:
+    def of(cls, directory: Path, request: OptimizationRequest, evaluator: Evaluator) -> _DesignMemory:
         """Open the file of a problem; one that is damaged counts up to the damage."""
         content = {
             "pair": written(request.pair),
@@ -172,7 +172,7 @@ def posed(study: DesignStudy, request: OptimizationRequest, memory: Path | None)
     """
     problem = DesignProblem(study.evaluator, request.variables, request.objective, request.limits, 1.0)
     if memory is not None:
-        problem = replace(problem, memory=DesignMemory.of(memory, request, study.evaluator))
+        problem = replace(problem, memory=_DesignMemory.of(memory, request, study.evaluator))
     assessed = problem.assess(problem.place(request.own))
     if not np.isfinite(assessed.objective) or assessed.objective <= 0.0:
         raise SolveError("the contact of the start design cannot be solved at every position and load")

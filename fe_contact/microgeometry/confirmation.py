@@ -86,14 +86,14 @@ class DesignLoads:
         return everything, np.flatnonzero(order < self.torque.size)
 
 
-def misalignment_axis(misalignment: FloatArray, deviation: FloatArray) -> FloatArray:
+def _misalignment_axis(misalignment: FloatArray, deviation: FloatArray) -> FloatArray:
     """Return the axis of a table that holds misalignments (L,) with none and with each deviation (S,), m."""
     own = np.concatenate([misalignment, np.add.outer(deviation, misalignment).ravel()])
     rising = np.unique(own)
     return np.asarray(rising[np.append(True, np.diff(rising) > SAME)])
 
 
-def on_axis(axis: FloatArray, misalignment: FloatArray) -> FloatArray:
+def _on_axis(axis: FloatArray, misalignment: FloatArray) -> FloatArray:
     """Return misalignments, those of the axis (M,) to its last bit, m."""
     nearest = axis[np.abs(axis - misalignment[..., None]).argmin(axis=-1)]
     return np.where(np.abs(nearest - misalignment) <= SAME, nearest, misalignment)
@@ -183,7 +183,7 @@ class DesignSpace:
         scattered = self.scatter.modification
         present = {name: figure(self.pair, name) for name in scattered} | dict(self.varied)
         acting = {name: present[name] + scattered.get(name, 0.0) for name in present}
-        skews = misalignment_axis(loads.misalignment, self.scatter.nodes().misalignment)
+        skews = _misalignment_axis(loads.misalignment, self.scatter.nodes().misalignment)
         checked = check_request(
             modified(self.pair, acting),
             TableAxes(np.union1d(loads.torque, further_torques), misalignments=skews),
@@ -409,7 +409,7 @@ def full_table(
 ) -> SteDatabase:
     """Compute the table of a design over torques and the misalignments of all nodes and of none."""
     request = decided.checked.request
-    skews = misalignment_axis(search.misalignment, search.nodes.misalignment)
+    skews = _misalignment_axis(search.misalignment, search.nodes.misalignment)
     full = replace(
         request,
         pair=modified(request.pair, values),
@@ -429,7 +429,7 @@ def ripple_errors(table: SteDatabase, fine: Evaluator) -> FloatArray:
     def error(load: float, skew: float) -> float:
         return table.peak_to_peak(force=load, misalignment=skew).error
 
-    rows = on_axis(table.misalignment, fine.misalignments).tolist()
+    rows = _on_axis(table.misalignment, fine.misalignments).tolist()
     return np.array([[error(*point) for point in zip(fine.load.tolist(), row, strict=True)] for row in rows])
 
 

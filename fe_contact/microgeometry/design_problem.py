@@ -32,7 +32,7 @@ class Assessed:
         return self.violation, self.objective
 
 
-class Memory(Protocol):
+class _Memory(Protocol):
     """Objective in m and violation of designs (d,) at positions (P,)."""
 
     def find(self, values: FloatArray, position: FloatArray) -> tuple[float, float] | None:
@@ -65,7 +65,7 @@ class DesignProblem:
     objective: Objective
     limits: Limits
     scale: float
-    memory: Memory | None = None
+    memory: _Memory | None = None
 
     @property
     def names(self) -> tuple[str, ...]:

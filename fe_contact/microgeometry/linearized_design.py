@@ -250,7 +250,7 @@ _POINT = 1e-9
 
 
 @dataclass(frozen=True)
-class LinearizedDesign:
+class _LinearizedDesign:
     """One design at S nodes of the scatter and L loads, to first order in d variables.
 
     Attributes
@@ -305,7 +305,7 @@ class _Solved:
 
 def linearized(
     evaluator: Evaluator, values: Mapping[str, float], names: Sequence[str], limits: Limits
-) -> LinearizedDesign:
+) -> _LinearizedDesign:
     """Solve a design, ``gear.quantity`` to m, and differentiate it by the variables named."""
     parts = [_differentiated(*solved, tuple(names)) for solved in evaluator.solved(values)]
     rows = [_limit_rows(part, limits) for part in parts]
@@ -314,7 +314,7 @@ def linearized(
         for each in zip(*rows, strict=True)
     )
     curves = np.ascontiguousarray(np.moveaxis(evaluator.gathered([part.ste for part in parts]), 1, -1))
-    return LinearizedDesign(evaluator.evaluation(part.figures for part in parts), curves, joined)
+    return _LinearizedDesign(evaluator.evaluation(part.figures for part in parts), curves, joined)
 
 
 def _differentiated(

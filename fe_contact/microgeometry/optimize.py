@@ -29,7 +29,7 @@ AT_BOUND = 1e-3
 """A variable this near to a bound, in parts of its range, lies on it."""
 
 
-def conclusion(choice: Choice, request: OptimizationRequest) -> tuple[Outcome, str]:
+def _conclusion(choice: Choice, request: OptimizationRequest) -> tuple[Outcome, str]:
     """Return the outcome and the reason for it."""
     start, optimum, ended = choice.start, choice.optimum, _ended(choice, request)
     gain = start.objective.value - optimum.objective.value
@@ -85,7 +85,7 @@ def _why_not(choice: Choice, request: OptimizationRequest, error: float) -> str:
     return ""
 
 
-def not_tried(choice: Choice, request: OptimizationRequest, study: DesignStudy) -> tuple[str, ...]:
+def _not_tried(choice: Choice, request: OptimizationRequest, study: DesignStudy) -> tuple[str, ...]:
     """Say what the design is the best without: what did not vary, what did not scatter, what was left out."""
     free = {variable.name for variable in request.variables}
     kept = [f"{gear}.{name}" for gear in GEARS for name in QUANTITIES if f"{gear}.{name}" not in free]
@@ -118,7 +118,7 @@ def _on_bounds(choice: Choice, request: OptimizationRequest) -> list[str]:
 # Searches from several starts, here or by workers; cancelled, what they found so far is kept.
 
 
-def search_all(
+def _search_all(
     problem: DesignProblem,
     search: Search,
     own: tuple[float, ...],
@@ -170,7 +170,7 @@ def _remotely(
     runs: list[SearchRun] = []
     try:
         bare = replace(problem, memory=None)  # a file of this machine, for one writer
-        for result in run.workers.run(search_one, (bare, search), begins):
+        for result in run.workers.run(_search_one, (bare, search), begins):
             runs.append(result)
             run.progress("search", len(runs) / search.starts)
             if cancel():
@@ -181,7 +181,7 @@ def _remotely(
     return runs
 
 
-def search_one(shared: tuple[DesignProblem, Search], begin: tuple[int, FloatArray]) -> SearchRun:
+def _search_one(shared: tuple[DesignProblem, Search], begin: tuple[int, FloatArray]) -> SearchRun:
     """Search from one start: one task; an interrupted worker gives what it has."""
     return search_from(*shared, begin[1], begin[0], ending=(Cancelled, KeyboardInterrupt))
 
@@ -223,7 +223,7 @@ def optimize(
     study = design_study(request.space, request.torques, request.further_torques, clock, run)
     with clock.stage("search"):
         problem = posed(study, request, memory)
-        runs = search_all(problem, request.search, request.own, run, cancel)
+        runs = _search_all(problem, request.search, request.own, run, cancel)
     choice = choose(problem, runs, request, study, clock, run.cache, cancel)
     run.progress("confirmation", 1.0)
     with clock.stage("sensitivity"):
@@ -239,7 +239,7 @@ def _result(
     clock: StageClock,
 ) -> Optimization:
     """Put the result together."""
-    outcome, reason = conclusion(choice, request)
+    outcome, reason = _conclusion(choice, request)
     return Optimization(
         outcome=outcome,
         reason=reason,
@@ -252,7 +252,7 @@ def _result(
         runs=choice.runs,
         best_run=choice.best,
         sensitivity=aside,
-        not_tried=not_tried(choice, request, study),
+        not_tried=_not_tried(choice, request, study),
         cost=clock.to_json() | {"evaluations": sum(run.evaluations for run in choice.runs)},
         asked=request.to_json(study),
     )

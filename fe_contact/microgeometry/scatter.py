@@ -20,14 +20,14 @@ MISALIGNMENT = "misalignment"
 MOST_NODES = 1024
 
 
-class ScatterRule(Protocol):
+class _ScatterRule(Protocol):
     """Nodes and weights for the expectation over independent standard normal deviates."""
 
     def nodes(self, dimensions: int) -> tuple[FloatArray, FloatArray]:
         """Return nodes (S, d) in standard deviations and weights (S,) that sum to 1."""
         ...
 
-    def finer(self, dimensions: int) -> ScatterRule:
+    def finer(self, dimensions: int) -> _ScatterRule:
         """Return a rule by which the error of this one is estimated."""
         ...
 
@@ -61,7 +61,7 @@ class GaussHermite:
         weights = np.meshgrid(*[weight / weight.sum()] * dimensions, indexing="ij")
         return np.stack([axis.ravel() for axis in grid], axis=1), np.prod(weights, axis=0).ravel()
 
-    def finer(self, dimensions: int) -> ScatterRule:
+    def finer(self, dimensions: int) -> _ScatterRule:
         """Return a rule of one and a half times as many points, or the nearest one that is not too large.
 
         That may be a rougher one, which overstates the error, or for a single point a sample.
@@ -127,7 +127,7 @@ class Scatter:
 
     misalignment: float = 0.0
     modification: Mapping[str, float] = field(default_factory=dict)
-    rule: ScatterRule = GaussHermite()
+    rule: _ScatterRule = GaussHermite()
 
     def __post_init__(self) -> None:
         if finite("scatter.misalignment", self.misalignment, SiNote("In m: 10 um is 1e-5.")) < 0.0:
@@ -151,7 +151,7 @@ class Scatter:
 
     @staticmethod
     def _of(
-        spread: Mapping[str, float], rule: ScatterRule, finer: ScatterNodes | None = None
+        spread: Mapping[str, float], rule: _ScatterRule, finer: ScatterNodes | None = None
     ) -> ScatterNodes:
         point, weight = rule.nodes(len(spread))
         return ScatterNodes(tuple(spread), point * np.array(list(spread.values())), weight, finer)

@@ -256,7 +256,7 @@ def sweep(request: SweepRequest, run: Run = Run()) -> Sweep:  # noqa: B008 (froz
         No acceptable mesh.
     """
     clock = StageClock(run.workers.cost)
-    swept = SweptPair(request, None if run.cache is None else str(run.cache))
+    swept = _SweptPair(request, None if run.cache is None else str(run.cache))
     request.check()
     run.progress("compliance", 0.0)
     with clock.stage("compliance"):
@@ -283,7 +283,7 @@ def sweep(request: SweepRequest, run: Run = Run()) -> Sweep:  # noqa: B008 (froz
 
 
 @dataclass(frozen=True)
-class SweptPair:
+class _SweptPair:
     """What the designs of a sweep share: a request, and the folder of compliances.
 
     The condensed bodies are made when first needed; they are no field, and no part of what identifies a task.
@@ -299,7 +299,7 @@ class SweptPair:
         return condense(self.request.pair, self.request.check(), cache)
 
 
-def _swept_design(shared: SweptPair, design: tuple[tuple[str, float], ...]) -> FloatArray:
+def _swept_design(shared: _SweptPair, design: tuple[tuple[str, float], ...]) -> FloatArray:
     """Return values and errors (2, L, Q) in SI of all quantities at all torques of a design: one task."""
     request, bodies, values = shared.request, shared.bodies, dict(design)
     question = request.flanks(values), request.torques, *request.alignment(values)

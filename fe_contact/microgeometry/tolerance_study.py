@@ -51,7 +51,7 @@ class Quantile:
         }
 
 
-def quantile(sample: FloatArray, fraction: float, confidence: float) -> Quantile:
+def _quantile(sample: FloatArray, fraction: float, confidence: float) -> Quantile:
     """Estimate a quantile of samples (N, L) of lengths with distribution-free bounds."""
     value, low, high = quantile_bounds(sample, fraction, confidence)
     return Quantile(fraction, value, np.maximum(low, 0.0), high)
@@ -220,7 +220,7 @@ def _sampled(
     deviation = tolerances.sample(sampling.samples, sampling.seed)
     names, nominal = tuple(tolerances.widths), replace(study.evaluator, nodes=ONE_NODE)
     with clock.stage("first order"):
-        at_once = first_order(nominal, names, deviation)
+        at_once = _first_order(nominal, names, deviation)
     with clock.stage("samples"):
         ripple = _evaluated(study.evaluator, names, deviation, run)
     with clock.stage("confirmation"):
@@ -234,7 +234,7 @@ def _sampled(
         ripple,
         nominal.evaluate({}).peak_to_peak[0],
         error,
-        tuple(quantile(ripple, fraction, sampling.confidence) for fraction in sampling.fractions),
+        tuple(_quantile(ripple, fraction, sampling.confidence) for fraction in sampling.fractions),
         at_once,
         sampling.confidence,
         clock.to_json(),
@@ -263,7 +263,7 @@ def _evaluated(evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArr
     """Evaluate all samples (N, L), task by task."""
     tasks = [deviation[k : k + IN_A_TASK] for k in range(0, deviation.shape[0], IN_A_TASK)]
     parts = []
-    for count, part in enumerate(run.workers.run(ripple_of_samples, (evaluator, names), tasks)):
+    for count, part in enumerate(run.workers.run(_ripple_of_samples, (evaluator, names), tasks)):
         parts.append(part)
         run.progress("samples", (count + 1) / len(tasks))
     ripple: FloatArray = np.concatenate(parts)
@@ -273,7 +273,7 @@ def _evaluated(evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArr
     return ripple
 
 
-def first_order(nominal: Evaluator, names: tuple[str, ...], deviation: FloatArray) -> FloatArray:
+def _first_order(nominal: Evaluator, names: tuple[str, ...], deviation: FloatArray) -> FloatArray:
     """Peak-to-peak (N, L) in m of pairs that deviate by (N, d), from curves that are linear in it.
 
     Nothing is removed below zero by a deviation.
@@ -287,7 +287,7 @@ def first_order(nominal: Evaluator, names: tuple[str, ...], deviation: FloatArra
     return np.stack([np.ptp(each, axis=1) for each in curves], axis=1)
 
 
-def ripple_of_samples(shared: tuple[Evaluator, tuple[str, ...]], deviation: FloatArray) -> FloatArray:
+def _ripple_of_samples(shared: tuple[Evaluator, tuple[str, ...]], deviation: FloatArray) -> FloatArray:
     """Peak-to-peak (n, L) in m of some samples (n, d): one task."""
     evaluator, names = shared
     weight = np.full(deviation.shape[0], 1.0 / deviation.shape[0])

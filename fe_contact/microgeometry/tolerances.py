@@ -114,26 +114,26 @@ def iso1328_tolerances(
     for name in GEARS:
         gear: Toothing = getattr(pair, name)
         _check_scope(name, gear)
-        widths[f"{name}.profile_slope"] = profile_slope_tolerance(gear, tolerance_class)
+        widths[f"{name}.profile_slope"] = _profile_slope_tolerance(gear, tolerance_class)
         if across_face:
-            widths[f"{name}.helix_slope"] = helix_slope_tolerance(gear, tolerance_class)
+            widths[f"{name}.helix_slope"] = _helix_slope_tolerance(gear, tolerance_class)
     return Tolerances(misalignment, widths, distribution)
 
 
-def profile_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
+def _profile_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
     """f_HalphaT in m: formula (7) of 5.3.3.1, 0.4 m_n + 0.001 d + 4 um of class 5, m_n and d in mm."""
     module, diameter = 1e3 * gear.normal_module, 2e3 * gear.reference_radius
-    return 1e-6 * rounded((0.4 * module + 0.001 * diameter + 4.0) * _step(tolerance_class))
+    return 1e-6 * _rounded((0.4 * module + 0.001 * diameter + 4.0) * _step(tolerance_class))
 
 
-def helix_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
+def _helix_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
     """f_HbetaT in m: formula (10) of 5.3.4.1, 0.05 sqrt d + 0.35 sqrt b + 4 um of class 5, d and b in mm."""
     diameter, width = 2e3 * gear.reference_radius, 1e3 * gear.face_width
     own = 0.05 * math.sqrt(diameter) + 0.35 * math.sqrt(width) + 4.0
-    return 1e-6 * rounded(own * _step(tolerance_class))
+    return 1e-6 * _rounded(own * _step(tolerance_class))
 
 
-def rounded(tolerance: float) -> float:
+def _rounded(tolerance: float) -> float:
     """Round a tolerance in um: above 10 to whole ones, from 5 to halves, below to tenths (5.2.3)."""
     parts = 1 if tolerance > 10.0 else 2 if tolerance >= 5.0 else 10
     return math.floor(tolerance * parts + 0.5) / parts

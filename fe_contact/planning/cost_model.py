@@ -58,7 +58,7 @@ _POINT_NUMBERS = 25
 """Numbers that are kept of a touching point."""
 
 
-class Work(NamedTuple):
+class _Work(NamedTuple):
     """CPU seconds to assemble one position, and to solve one load at it."""
 
     position: float
@@ -78,7 +78,7 @@ def contact_seconds(
     with_errors: bool = True,
 ) -> tuple[float, float, float]:
     """CPU seconds of the search of positions, of the table, and of the solutions that measure its errors."""
-    kept, loads = expected_positions(plan), plan.load.size
+    kept, loads = _expected_positions(plan), plan.load.size
     points, distances = alignments[0] * alignments[1], alignments[1]
     assessed, rows = min(points, _JUDGED), model.period * points
     tried = expected_tries(plan)
@@ -90,7 +90,7 @@ def contact_seconds(
 
 def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
     """CPU seconds of rougher solutions of some of the table, middles, and held-out points of its axes."""
-    made, kept, loads = plan.discretization, expected_positions(plan), plan.load.size
+    made, kept, loads = plan.discretization, _expected_positions(plan), plan.load.size
     work = unit_work(pair, plan, made.slices)
     rougher = [work, *([work] if made.corrected else [])]
     if made.slices > 1:
@@ -112,27 +112,27 @@ def _held_out_loads(loads: int) -> int:
     return (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
 
 
-def contact_bytes(pair: ParallelAxes, plan: Plan) -> float:
+def _contact_bytes(pair: ParallelAxes, plan: Plan) -> float:
     """Return the bytes of compliance and touching points that are held at once."""
     held = _HELD_POSITIONS if plan.positions is None else _HELD_PART * plan.positions
-    count = candidates(pair, plan.discretization.slices)
+    count = _candidates(pair, plan.discretization.slices)
     points = count * (POINTS if plan.discretization.slices > 1 else 1)
     return 8.0 * held * (count**2 + _POINT_NUMBERS * points)
 
 
-def candidates(pair: ParallelAxes, slices: int) -> float:
+def _candidates(pair: ParallelAxes, slices: int) -> float:
     """Return about how many slices of tooth pairs a position has."""
     return float((pair.transverse_contact_ratio + pair.overlap_ratio + 1.0) * slices)
 
 
-def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> Work:
+def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> _Work:
     """Return what one position and one point of it cost in so many slices."""
     made = plan.discretization
-    count = candidates(pair, slices)
+    count = _candidates(pair, slices)
     if not isinstance(made, FaceDiscretization):
-        return Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count)
+        return _Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
-    return Work(_FACE_POSITION * elements**2 * count, _FACE_CANDIDATE * count + _FACE_SQUARE * count**2)
+    return _Work(_FACE_POSITION * elements**2 * count, _FACE_CANDIDATE * count + _FACE_SQUARE * count**2)
 
 
 def expected_tries(plan: Plan) -> int:
@@ -140,10 +140,10 @@ def expected_tries(plan: Plan) -> int:
     if plan.positions is not None:
         return 0
     begun = plan.nodes.start
-    return _TRIED_PER_START * begun + _TRIED_PER_NODE * max(expected_positions(plan) - begun, 0)
+    return _TRIED_PER_START * begun + _TRIED_PER_NODE * max(_expected_positions(plan) - begun, 0)
 
 
-def expected_positions(plan: Plan) -> int:
+def _expected_positions(plan: Plan) -> int:
     """Return the positions in a base pitch: requested, or those that the search usually ends with."""
     if plan.positions is not None:
         return plan.positions
@@ -169,7 +169,7 @@ _SECTOR_BYTES, _HUB_BYTES = 9_000, 12_000
 _HUB_FREEDOMS, _FILL = 20_000, 0.33
 
 
-class Cost(NamedTuple):
+class _Cost(NamedTuple):
     """CPU seconds of a compliance, bytes of the largest working set, and bytes that stay.
 
     What is computed afresh holds little beside its working set, and is counted there.
@@ -180,7 +180,7 @@ class Cost(NamedTuple):
     held: float
 
     @classmethod
-    def of(cls, each: Iterable[Cost]) -> Cost:
+    def of(cls, each: Iterable[_Cost]) -> _Cost:
         """One after the other."""
         costs = list(each)
         working = max((cost.working for cost in costs), default=0.0)
@@ -270,7 +270,7 @@ def predict_run(
     made = plan.discretization
     kind = "face" if isinstance(made, FaceDiscretization) else "plane"
     fine = _compliance(pair, plan, cache, coarse=False)
-    coarse = _compliance(pair, plan, cache, coarse=True) if with_errors else Cost(0.0, 0.0, 0.0)
+    coarse = _compliance(pair, plan, cache, coarse=True) if with_errors else _Cost(0.0, 0.0, 0.0)
     search, solve, check = contact_seconds(pair, plan, model, alignments, with_errors=with_errors)
     slowness = host_slowness(cache)
     # dense algebra has its own measurement of the host in it
@@ -282,12 +282,12 @@ def predict_run(
     }
     known = corrections(cache)
     correction = {stage: known.get(log_name(kind, stage), 1.0) for stage in STAGES}
-    memory = PROCESS_BYTES + contact_bytes(pair, plan) + fine.held + coarse.held
+    memory = PROCESS_BYTES + _contact_bytes(pair, plan) + fine.held + coarse.held
     memory += max(fine.working, coarse.working)
-    return Prediction(parts, correction, int(memory), expected_positions(plan), kind)
+    return Prediction(parts, correction, int(memory), _expected_positions(plan), kind)
 
 
-def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: bool) -> Cost:
+def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: bool) -> _Cost:
     """Cost of both gears' compliance; gears alike are computed once."""
     made = plan.discretization
     bodies = plan.bodies(pair)
@@ -295,22 +295,22 @@ def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: b
     gears = list(dict.fromkeys(zip((body.right_handed() for body in bodies), recipes, strict=True)))
     if isinstance(made, FaceDiscretization):
         solids = [(gear, recipe) for gear, recipe in gears if isinstance(recipe, SectorRecipe)]
-        return Cost.of(_solid(*solid, cache) for solid in solids)
+        return _Cost.of(_solid(*solid, cache) for solid in solids)
     hypothesis = made.hypothesis
     costs = [
         _section(pair, gear, recipe, hypothesis, cache)
         for gear, recipe in gears
         if isinstance(recipe, MeshRecipe)
     ]
-    return Cost.of(costs if coarse else [*costs, *_free_ends(pair, bodies, made, cache)])
+    return _Cost.of(costs if coarse else [*costs, *_free_ends(pair, bodies, made, cache)])
 
 
-def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> Cost:
+def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> _Cost:
     """One gear over the face."""
     if kept := solid_kept(gear, recipe, cache):
-        return Cost(_READ_SOLID[gear.helix_angle != 0.0], 0.0, kept)
+        return _Cost(_READ_SOLID[gear.helix_angle != 0.0], 0.0, kept)
     predicted = predict_cost(gear, recipe, cache=cache)
-    return Cost(predicted.seconds, _WORKING * predicted.bytes, 0.0)
+    return _Cost(predicted.seconds, _WORKING * predicted.bytes, 0.0)
 
 
 def _free_ends(
@@ -318,25 +318,25 @@ def _free_ends(
     bodies: tuple[Toothing, Toothing],
     made: PlaneDiscretization,
     cache: Path | None,
-) -> Iterator[Cost]:
+) -> Iterator[_Cost]:
     """Yield the cost of the solids that correct the plane: free at their ends, and held along the axis."""
     if made.finite_width is None:
         return
     teeth = condensed_teeth(pair)
     for gear, recipe in dict.fromkeys(zip(bodies, made.finite_width, strict=True)):
         if kept := free_ends_kept(gear, recipe, teeth, cache):
-            yield Cost(_READ_PLANE, 0.0, kept)
+            yield _Cost(_READ_PLANE, 0.0, kept)
         else:
             predicted = predict_cost(gear, recipe, cache=cache)
-            yield Cost(2.0 * predicted.seconds, _WORKING * predicted.bytes, 0.0)
+            yield _Cost(2.0 * predicted.seconds, _WORKING * predicted.bytes, 0.0)
 
 
 def _section(
     pair: ParallelAxes, gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, cache: Path | None
-) -> Cost:
+) -> _Cost:
     if kept := section_kept(gear, recipe, hypothesis, condensed_teeth(pair), cache):
-        return Cost(_READ_PLANE, 0.0, kept)
-    return Cost(*section_cost(gear, recipe), 0.0)
+        return _Cost(_READ_PLANE, 0.0, kept)
+    return _Cost(*section_cost(gear, recipe), 0.0)
 
 
 def section_cost(gear: Toothing, recipe: MeshRecipe) -> tuple[float, float]:

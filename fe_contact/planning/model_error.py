@@ -3,7 +3,7 @@
 The floor is what full contact has proved of ordinary pairs. To it comes the larger of two that have unlike
 signs. Displacements are small: large ones turn bodies and flanks, in proportion to STE over the module.
 Contacts stay in the places of rigid flanks: as teeth tilt they move, most where a soft gear runs on a stiff
-one (`flank_tilt`). Of peak-to-peak and harmonics the parts are of what teeth bend, which reliefs hide and do
+one (`_flank_tilt`). Of peak-to-peak and harmonics the parts are of what teeth bend, which reliefs hide and do
 not make more exact.
 """
 
@@ -29,7 +29,7 @@ Of 12 pairs in plane strain, 17 to 90 teeth, external and internal, steel and 9 
 """
 
 
-def flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
+def _flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
     """Return the part of the mean transmission error that the tilt of the flanks takes off.
 
     The approach falls by 3 R tau^2/2 on a pair of teeth, R the relative radius of curvature, and the tilt tau
@@ -91,7 +91,7 @@ def in_small_displacements(pair: ParallelAxes, force: FloatArray, own: FloatArra
 
     Parameters are those of `model_errors`.
     """
-    tilted = flank_tilt(pair, force).reshape(-1, *[1] * (own.ndim - 2))
+    tilted = _flank_tilt(pair, force).reshape(-1, *[1] * (own.ndim - 2))
     floor = _by_quantity(FLOOR, own).reshape(-1, *[1] * tilted.ndim)
     tilt = np.multiply.outer(_by_quantity(TILT, own), tilted)
     return np.asarray((floor + tilt) * of_bending(pair, own))

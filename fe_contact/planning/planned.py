@@ -67,7 +67,7 @@ class ExpectedCurves:
         return self.allowed.scale(np.stack([self.mean, self.peak_to_peak]))
 
 
-def usual_curves(pair: ParallelAxes, plan: Plan) -> ExpectedCurves:
+def _usual_curves(pair: ParallelAxes, plan: Plan) -> ExpectedCurves:
     """Return those of usual pairs, whose mean is 1."""
     unity = np.ones(plan.load.size)
     across_face = isinstance(plan.discretization, FaceDiscretization)
@@ -158,7 +158,7 @@ def expected_error(pair: ParallelAxes, plan: Plan, curves: ExpectedCurves | None
     curves : ExpectedCurves, optional
         What is known of mean and peak-to-peak before the run; default: those of usual pairs.
     """
-    known = curves or usual_curves(pair, plan)
+    known = curves or _usual_curves(pair, plan)
     parts = _parts(pair, plan, known)
     absolute = np.sqrt(sum(np.square(part) for part in parts.values()))
     relative = absolute / known.scale
@@ -276,7 +276,7 @@ class MeshChoice:
         return {"level": self.level, "slices": self.slices, "met": self.met, "reason": self.reason}
 
 
-def mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -> MeshChoice:
+def _mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -> MeshChoice:
     """Return the option of least effort whose error is expected to be within the tolerance.
 
     Expected errors are parts of the size of each quantity that the tolerance counts by.
@@ -295,7 +295,7 @@ def mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -
     return MeshChoice(best, False, f"no mesh is expected within {tolerance.words} ({parts})")
 
 
-def mesh_for_time(
+def _mesh_for_time(
     budget: float, options: Sequence[MeshOption], seconds: Callable[[MeshOption], float]
 ) -> MeshChoice:
     """Return the most exact option that is predicted to fit into `budget` CPU seconds, else the cheapest."""
@@ -377,8 +377,8 @@ def chosen_mesh(
     if isinstance(usual, FaceDiscretization):
         meshes += [option(level, n) for level in LEVELS for n in FINER_SLICES]
     if options.tolerance is not None:
-        return mesh_for_tolerance(options.tolerance, meshes)
-    return mesh_for_time(options.time_budget or 0.0, meshes, seconds)
+        return _mesh_for_tolerance(options.tolerance, meshes)
+    return _mesh_for_time(options.time_budget or 0.0, meshes, seconds)
 
 
 # Meshes for the stress of the tooth roots, and coarser ones that tell its error.
@@ -427,7 +427,7 @@ def root_meshes(made: PlaneDiscretization | FaceDiscretization) -> PlaneRootMesh
     """Choose the meshes of the root stress for a contact discretized as `made`."""
     if isinstance(made, PlaneDiscretization):
         return PlaneRootMeshes(made.hypothesis, made.recipes, made.coarse_recipes)
-    first, second = (finer_root(recipe) for recipe in made.recipes)
+    first, second = (_finer_root(recipe) for recipe in made.recipes)
     coarse = tuple(
         replace(recipe, layers=coarser.layers)
         for recipe, coarser in zip(made.recipes, made.coarse_recipes, strict=True)
@@ -435,7 +435,7 @@ def root_meshes(made: PlaneDiscretization | FaceDiscretization) -> PlaneRootMesh
     return FaceRootMeshes((first, second), (coarse[0], coarse[1]))
 
 
-def finer_root(recipe: SectorRecipe) -> SectorRecipe:
+def _finer_root(recipe: SectorRecipe) -> SectorRecipe:
     """Return the recipe with a root fine enough for its stress; the flank stays as it is."""
     return replace(
         recipe,

@@ -40,24 +40,24 @@ def _sharing_pairs(pair: ParallelAxes) -> float:
     return (1.0 - overlap) * max(1.0, math.floor(ratio)) + overlap * max(1.0, ratio)
 
 
-def line_load(pair: ParallelAxes, normal_force: float) -> float:
+def _line_load(pair: ParallelAxes, normal_force: float) -> float:
     """Return the load per length of contact, N/m."""
     return normal_force * math.cos(pair.base_helix_angle) / (pair.face_width * _sharing_pairs(pair))
 
 
-def pitch_point_pressure(pair: ParallelAxes, normal_force: float) -> float:
+def _pitch_point_pressure(pair: ParallelAxes, normal_force: float) -> float:
     """Return the Hertz pressure with contact at the pitch point, Pa [1]_."""
     curvature = float(pair.relative_curvature(pair.path_of_contact.pitch_point))
     radius = 1.0 / (curvature * math.cos(pair.base_helix_angle))
     modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
-    return float(peak_pressure(line_load(pair, normal_force), radius, modulus))
+    return float(peak_pressure(_line_load(pair, normal_force), radius, modulus))
 
 
-def nominal_deflection(pair: ParallelAxes, normal_force: float) -> float:
+def _nominal_deflection(pair: ParallelAxes, normal_force: float) -> float:
     """Return the deflection of the teeth along the line of action, m [3]_."""
     moduli = [gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel)]
     mean = 2.0 * moduli[0] * moduli[1] / sum(moduli)
-    return line_load(pair, normal_force) / (SINGLE_STIFFNESS * mean / STEEL.youngs_modulus)
+    return _line_load(pair, normal_force) / (SINGLE_STIFFNESS * mean / STEEL.youngs_modulus)
 
 
 def nominal_root_stresses(pair: ParallelAxes, normal_force: float) -> tuple[float, float]:
@@ -66,7 +66,7 @@ def nominal_root_stresses(pair: ParallelAxes, normal_force: float) -> tuple[floa
     Of spur gears that is method B without its load factors; of helical gears the transverse section stands in
     for the virtual spur gear.
     """
-    path, load = pair.path_of_contact, line_load(pair, normal_force)
+    path, load = pair.path_of_contact, _line_load(pair, normal_force)
     high = min(path.start + path.base_pitch, path.end)
     low = max(path.end - path.base_pitch, path.start)
     rolls = (high, float(pair.mating_roll_length(low)))
@@ -230,8 +230,8 @@ def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Find
     force, module = float(load[-1]), pair.pinion.normal_module
     value, unit = (float(pair.torque(force)), "N m") if loads_as == "torques" else (force, "N")
     intensity = float(pair.transverse_force(force)) / (pair.face_width * module)
-    pressure, stress = pitch_point_pressure(pair, force), max(nominal_root_stresses(pair, force))
-    deflection = nominal_deflection(pair, force) / module
+    pressure, stress = _pitch_point_pressure(pair, force), max(nominal_root_stresses(pair, force))
+    deflection = _nominal_deflection(pair, force) / module
     words = f"{intensity / 1e6:.3g} N/mm^2 of load over face width and module"
     lightest, heaviest = CHECKS["light_load"].low or 0.0, CHECKS["line_load"].high or math.inf
     field = f"{loads_as}[{load.size - 1}]"

@@ -2,7 +2,7 @@
 
 from fe_contact.ste.curve import Curve
 from fe_contact.ste.curve_quantities import Spectrum
-from fe_contact.ste.database import HeldOutError, SteDatabase, held_out_error
+from fe_contact.ste.database import SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.mesh_force import ForceSample, MeshForce, Validity
@@ -13,7 +13,6 @@ __all__ = [
     "Curve",
     "ForceSample",
     "ForceTable",
-    "HeldOutError",
     "MeshForce",
     "Metadata",
     "PairFacts",
@@ -21,5 +20,4 @@ __all__ = [
     "Spectrum",
     "SteDatabase",
     "Validity",
-    "held_out_error",
 ]

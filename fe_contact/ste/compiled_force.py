@@ -22,7 +22,7 @@ from fe_contact.types import FloatArray, IntArray
 LIFTED_OFF, ABOVE_TABLE, OUTSIDE_MISALIGNMENT, OUTSIDE_CENTER_DISTANCE = 1, 2, 4, 8
 
 
-class KernelTable(NamedTuple):
+class _KernelTable(NamedTuple):
     """The arrays that the kernel reads.
 
     Attributes
@@ -176,7 +176,7 @@ def _at_deflection(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _sample_forces(
-    table: KernelTable,
+    table: _KernelTable,
     points: FloatArray,
     force: FloatArray,
     stiffness: FloatArray,
@@ -213,7 +213,7 @@ def _sample_forces(
         validity[i] = flags + known
 
 
-class Forces(NamedTuple):
+class _Forces(NamedTuple):
     """Transverse mesh force F_bt (N), stiffness dF/d(deflection) (N/m), sums of `Validity` flags, (n,)."""
 
     force: FloatArray
@@ -225,7 +225,7 @@ class Forces(NamedTuple):
 class CompiledForce:
     """`SteDatabase.force_at` without the position slope, compiled: the same numbers to the last bit."""
 
-    table: KernelTable
+    table: _KernelTable
 
     @classmethod
     def of(cls, database: SteFields) -> CompiledForce:
@@ -236,7 +236,7 @@ class CompiledForce:
             for order in law.levels.nodal
         ]
         size = np.array([axis.knots.size for axis in law.axes])
-        table = KernelTable(
+        table = _KernelTable(
             knots=np.concatenate([axis.knots for axis in law.axes]),
             spacing=np.concatenate([_widths(axis) for axis in law.axes]),
             first=np.cumsum(size) - size,
@@ -249,14 +249,14 @@ class CompiledForce:
         )
         return cls(table)
 
-    def force_at(self, points: FloatArray) -> Forces:
+    def force_at(self, points: FloatArray) -> _Forces:
         """Evaluate at `points` (4, n): position, misalignment, change of center distance, deflection.
 
         Positions in base pitches, lengths in m, all finite, which the caller has checked. The GIL is free
         meanwhile.
         """
         size = points.shape[1]
-        forces = Forces(np.empty(size), np.empty(size), np.empty(size, np.int8))
+        forces = _Forces(np.empty(size), np.empty(size), np.empty(size, np.int8))
         _sample_forces(self.table, points, *forces)
         return forces
 

@@ -33,7 +33,7 @@ def _pairs_seen(database: SteFields, position: FloatArray) -> NDArray[np.int64]:
     return np.arange(database.pair[0] - int(turns.max()), database.pair[-1] - int(turns.min()) + 1)
 
 
-def load_share(database: SteFields, position: FloatArray, point: OperatingPoint) -> FloatArray:
+def _load_share(database: SteFields, position: FloatArray, point: OperatingPoint) -> FloatArray:
     """Share of each of `_pairs_seen` at (Q,) positions: (Q, pairs), >= 0, each row sums to 1.
 
     The share of a pair of teeth is one curve over its own phase, zero beyond the stored pairs; C1 and
@@ -55,7 +55,7 @@ def load_share(database: SteFields, position: FloatArray, point: OperatingPoint)
     return np.asarray(share / share.sum(axis=1, keepdims=True))
 
 
-def error_band(database: SteFields, position: FloatArray, point: OperatingPoint) -> FloatArray:
+def _error_band(database: SteFields, position: FloatArray, point: OperatingPoint) -> FloatArray:
     """Interpolate the stored error estimate, (Q,) in m between the stored points."""
     stored = _at_operating_point(database, database.error_estimate, point)
     return interpolate(Axis(database.position, float(database.period)), stored, position)
@@ -126,7 +126,7 @@ class Curve:
     error : (Q,) array
         Half-width of its error band, m.
     pair : (N,) array
-        Pair index of each column of `load_share`; the stored pairs if all positions lie in [0, 1) or the
+        Pair index of each column of `_load_share`; the stored pairs if all positions lie in [0, 1) or the
         period is longer than a pitch.
     load_share : (Q, N) array
         Part of the load on each pair.
@@ -188,7 +188,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         ste=values,
         error=sum(error_parts, np.zeros(position.size)),
         pair=_pairs_seen(database, position),
-        load_share=load_share(database, position, point),
+        load_share=_load_share(database, position, point),
         mean=Estimate(float(np.mean(ste[: even.size])), mean_error, "m"),
         peak_to_peak=Estimate(float(ste[highest] - ste[lowest]), ripple_error, "m"),
         harmonics=tuple(
@@ -208,7 +208,7 @@ def _evaluate(
     alignment = (point.misalignment, point.center_distance_change)
     transverse = math.cos(database.facts.base_helix_angle)
     ste, _ = force.deflection_at(position, point.force * transverse, *alignment)
-    error = error_band(database, position, point)
+    error = _error_band(database, position, point)
     smallest_load = min([database.force[0], *database.support_force[:1]])
     if point.force >= smallest_load:
         return ste, error, np.zeros_like(ste)

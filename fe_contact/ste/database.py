@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, Unpack
@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bounds import from_to
-from fe_contact.errors import InputError
 from fe_contact.ste import curve as curves
 from fe_contact.ste import extraction, netcdf, repair
 from fe_contact.ste.curve import Curve
@@ -56,7 +54,7 @@ def _by_order(grid: LevelGrid) -> FloatArray:
     return numbers
 
 
-class StoredPoint(TypedDict, total=False):
+class _StoredPoint(TypedDict, total=False):
     """The arguments of `SteDatabase.curve` by which a curve is chosen."""
 
     torque: float | None
@@ -143,19 +141,19 @@ class SteDatabase(SteFields):
         point = operating_point(table, torque, force, misalignment, center_distance_change)
         return curves.curve(table, table._mesh_force, point, at)
 
-    def mean(self, **point: Unpack[StoredPoint]) -> Estimate:
+    def mean(self, **point: Unpack[_StoredPoint]) -> Estimate:
         """Mean transmission error over one period, m; raises as `curve`."""
         return self.curve(**point).mean
 
-    def peak_to_peak(self, **point: Unpack[StoredPoint]) -> Estimate:
+    def peak_to_peak(self, **point: Unpack[_StoredPoint]) -> Estimate:
         """Peak-to-peak transmission error over one period, m; raises as `curve`."""
         return self.curve(**point).peak_to_peak
 
-    def harmonics(self, **point: Unpack[StoredPoint]) -> tuple[Estimate, ...]:
+    def harmonics(self, **point: Unpack[_StoredPoint]) -> tuple[Estimate, ...]:
         """Amplitudes of the mesh harmonics, first one first, m; raises as `curve`."""
         return self.curve(**point).harmonics
 
-    def spectrum(self, **point: Unpack[StoredPoint]) -> Spectrum:
+    def spectrum(self, **point: Unpack[_StoredPoint]) -> Spectrum:
         """All orders over the table's period, m; raises as `curve`."""
         return self.curve(**point).spectrum
 
@@ -204,82 +202,6 @@ class SteDatabase(SteFields):
             if center_distance_change is None
             else center_distance_change,
         )
-
-
-# Error of a table's interpolation, measured at points it does not hold.
-
-
-@dataclass(frozen=True)
-class HeldOutError:
-    """Difference between a table's interpolant and solves at other points.
-
-    Attributes
-    ----------
-    maximum, rms : float
-        m, over all held-out points.
-    relative_maximum, relative_rms : float
-        The largest over the loads and alignments, each by its own held-out peak-to-peak.
-    position, force, misalignment, center_distance_change : float
-        Where the maximum is (base pitches, N, m, m).
-    """
-
-    maximum: float
-    rms: float
-    relative_maximum: float
-    relative_rms: float
-    position: float
-    force: float
-    misalignment: float
-    center_distance_change: float
-
-
-def held_out_error(database: SteDatabase, other: SteDatabase) -> HeldOutError:
-    """Compare the interpolant of `database` with what `other` stores at its own positions and loads.
-
-    Raises
-    ------
-    InputError
-        If `other` reaches beyond the loads or alignments of `database`, or holds too few positions for a
-        peak-to-peak.
-    SolveError
-        If either table has failed points.
-    """
-    other.require_complete()
-    _require_inside(database, other)
-    grid = np.meshgrid(
-        other.position, other.force, other.misalignment, other.center_distance_change, indexing="ij"
-    )
-    truth = other.static_transmission_error
-    error = np.abs(database.ste(*grid) - truth)
-    swing = np.ptp(truth, axis=0)
-    worst = np.unravel_index(int(np.argmax(error)), error.shape)
-    return HeldOutError(
-        float(error.max()),
-        _rms(error.ravel()),
-        _relative(error.max(axis=0), swing),
-        _relative(np.sqrt(np.mean(error**2, axis=0)), swing),
-        *(float(axis[worst]) for axis in grid),
-    )
-
-
-def _require_inside(database: SteDatabase, other: SteDatabase) -> None:
-    """Refuse held-out points that the table does not answer for."""
-    for name in ("force", "misalignment", "center_distance_change"):
-        inner, outer = getattr(other, name), getattr(database, name)
-        if inner[0] < outer[0] or inner[-1] > outer[-1]:
-            raise InputError(f"other.{name}", inner.tolist(), from_to(float(outer[0]), float(outer[-1])))
-    if other.position.size < 2:
-        raise InputError("other.position", other.position.tolist(), "two or more positions")
-
-
-def _rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values**2)))
-
-
-def _relative(error: FloatArray, swing: FloatArray) -> float:
-    """Largest ratio; no error is zero also of a curve without ripple."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return float(np.max(np.where(error == 0.0, 0.0, error / swing)))
 
 
 # Tables of single misalignments as one table over all of them.

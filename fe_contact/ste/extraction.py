@@ -34,7 +34,7 @@ Pair = tuple[FloatArray, FloatArray]  # deflection in m and stiffness in N/m
 
 
 @dataclass(frozen=True)
-class LoadLevels:
+class _LoadLevels:
     """A stack of levels: force (L,) N, deflection m and stiffness N/m (P, M, D, L)."""
 
     force: FloatArray
@@ -42,7 +42,7 @@ class LoadLevels:
     stiffness: FloatArray
 
 
-def refined(levels: LoadLevels, pairs: IntArray) -> LoadLevels:
+def _refined(levels: _LoadLevels, pairs: IntArray) -> _LoadLevels:
     """Insert levels into every step in which a pair comes into contact at some position.
 
     `pairs` (P, M, D, L) counts the pairs in contact; level 0 is lift-off. At positions without a kink in the
@@ -61,11 +61,11 @@ def refined(levels: LoadLevels, pairs: IntArray) -> LoadLevels:
         chosen = (
             np.where(kinked[..., k, None], kink, cubic) for kink, cubic in zip(branches, smooth, strict=True)
         )
-        pieces.append(LoadLevels(force, *chosen))
+        pieces.append(_LoadLevels(force, *chosen))
     return _load_refinement_merged(pieces)
 
 
-def _kinked(levels: LoadLevels, pairs: IntArray) -> BoolArray:
+def _kinked(levels: _LoadLevels, pairs: IntArray) -> BoolArray:
     """Find the steps (P, M, D, L - 1) in which a pair is added and the two tangents meet."""
     secant = np.diff(levels.force) / np.diff(levels.deflection, axis=-1)
     below, above = levels.stiffness[..., :-1], levels.stiffness[..., 1:]
@@ -73,7 +73,7 @@ def _kinked(levels: LoadLevels, pairs: IntArray) -> BoolArray:
 
 
 def _on_branches(
-    levels: LoadLevels, pairs: IntArray, k: int, force: FloatArray
+    levels: _LoadLevels, pairs: IntArray, k: int, force: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Deflection and stiffness at `force` on the softer of the branches from both ends of step k.
 
@@ -90,7 +90,7 @@ def _on_branches(
 
 
 def _branch(
-    levels: LoadLevels, k: int, exponent: FloatArray, force: FloatArray
+    levels: _LoadLevels, k: int, exponent: FloatArray, force: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     ratio, stiffness = force / levels.force[k], levels.stiffness[..., k, None]
     power = 1.0 - exponent
@@ -98,7 +98,7 @@ def _branch(
     return levels.deflection[..., k, None] + rise, stiffness * ratio**exponent
 
 
-def _exponent(levels: LoadLevels, pairs: IntArray, k: int) -> FloatArray:
+def _exponent(levels: _LoadLevels, pairs: IntArray, k: int) -> FloatArray:
     """Exponent (P, M, D, 1) of stiffness over force in step k; 0 where it is not one branch of a curve."""
     if k == levels.force.size - 1:
         return np.zeros((*levels.deflection.shape[:-1], 1))
@@ -112,7 +112,7 @@ def _exponent(levels: LoadLevels, pairs: IntArray, k: int) -> FloatArray:
     return np.asarray(np.clip(growth / np.log(force[1] / force[0]), 0.0, _LARGEST_EXPONENT))
 
 
-def _on_cubic(levels: LoadLevels, k: int, force: FloatArray) -> Pair:
+def _on_cubic(levels: _LoadLevels, k: int, force: FloatArray) -> Pair:
     shape = (*levels.deflection.shape[:-1], force.size)
     deflection, stiffness = (
         np.repeat(entry[..., k : k + 2].reshape(-1, 2), force.size, axis=0)
@@ -127,13 +127,13 @@ def _on_cubic(levels: LoadLevels, k: int, force: FloatArray) -> Pair:
     return at_force.reshape(shape), cubic.sample(at_force, nowhere, nowhere)[1].reshape(shape)
 
 
-def _load_refinement_merged(pieces: list[LoadLevels]) -> LoadLevels:
+def _load_refinement_merged(pieces: list[_LoadLevels]) -> _LoadLevels:
     """All levels in the order of their forces."""
     force = np.concatenate([piece.force for piece in pieces])
     order = np.argsort(force)
     deflection = np.concatenate([piece.deflection for piece in pieces], axis=-1)
     stiffness = np.concatenate([piece.stiffness for piece in pieces], axis=-1)
-    return LoadLevels(force[order], deflection[..., order], stiffness[..., order])
+    return _LoadLevels(force[order], deflection[..., order], stiffness[..., order])
 
 
 # Sliding along the path of contact: the position of the load and the sense in which it slides.
@@ -143,7 +143,7 @@ SMOOTHING = 0.01
 """Half width of the smoothed change of direction at the pitch point, base pitches."""
 
 
-def sliding(database: SteFields) -> tuple[FloatArray, FloatArray]:
+def _sliding(database: SteFields) -> tuple[FloatArray, FloatArray]:
     """Return sum of share sign(y) and sum of share |y| (m) over the pairs, both (P, F, M, D).
 
     The sign is y/sqrt(y^2 + h^2), h `SMOOTHING` base pitches. On helical teeth the load of a pair lies
@@ -185,13 +185,13 @@ def force_table(database: SteFields) -> ForceTable:
         If the transmission error does not increase with load everywhere.
     """
     database.require_complete()
-    levels = refined(_stored_levels(database), _pairs_in_contact(database))
+    levels = _refined(_stored_levels(database), _pairs_in_contact(database))
     axis = Axis(database.position, float(database.period))
     deflection = deflection_grid((axis,), levels.deflection, (ordered_slopes(axis, levels.deflection),))
     unlimited = stiffness_grid((axis,), levels.stiffness, (monotone_slopes(axis, levels.stiffness),))
     stiffness = monotone_stiffness(unlimited, deflection, levels.force)
     flat = np.zeros_like(levels.deflection)  # the slopes of a table of one position
-    slides, arm = sliding(database)
+    slides, arm = _sliding(database)
     return ForceTable(
         position=database.position,
         level=levels.force,
@@ -223,7 +223,7 @@ def _at_levels(database: SteFields, stored: FloatArray, level: FloatArray) -> Fl
     return np.asarray((1.0 - share) * values[..., above - 1] + share * values[..., above])
 
 
-def _stored_levels(database: SteFields) -> LoadLevels:
+def _stored_levels(database: SteFields) -> _LoadLevels:
     """Lift-off, the stored and the support loads, with stiffness limited at the knots."""
     to_transverse = math.cos(database.facts.base_helix_angle)
     force, order = _all_loads(database)
@@ -233,7 +233,7 @@ def _stored_levels(database: SteFields) -> LoadLevels:
     _require_increasing(database, force, deflection)
     stiffness = np.concatenate([np.zeros_like(tangent[..., :1]), to_transverse / tangent], axis=-1)
     level = np.concatenate([[0.0], force * to_transverse])
-    return LoadLevels(level, deflection, np.minimum(stiffness, _knot_limit(deflection, level)))
+    return _LoadLevels(level, deflection, np.minimum(stiffness, _knot_limit(deflection, level)))
 
 
 def _all_loads(database: SteFields) -> tuple[FloatArray, IntArray]:

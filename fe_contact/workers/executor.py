@@ -57,7 +57,7 @@ class Packed:
         return known[self.digest]
 
 
-class PassedFiles:
+class _PassedFiles:
     """A folder for what goes to other processes of this machine; it ends with the last reference to it."""
 
     @cached_property
@@ -101,7 +101,7 @@ class RunCost:
         cpu_seconds = self.cpu_seconds - before.cpu_seconds
         return RunCost(self.tasks - before.tasks, cpu_seconds, self.peak_memory_bytes, self.lost)
 
-    def add(self, done: Done[R]) -> R:
+    def add(self, done: _Done[R]) -> R:
         """Count a task, and return its result."""
         self.tasks += 1
         self.cpu_seconds += done.cpu_seconds
@@ -110,7 +110,7 @@ class RunCost:
 
 
 @dataclass(frozen=True)
-class Done(Generic[R]):
+class _Done(Generic[R]):
     """The result of one task, and what it cost its worker."""
 
     result: R
@@ -118,11 +118,11 @@ class Done(Generic[R]):
     peak_memory_bytes: int
 
 
-def do_task(function: Callable[[Any, Any], R], packed: Packed, item: Any) -> Done[R]:
+def do_task(function: Callable[[Any, Any], R], packed: Packed, item: Any) -> _Done[R]:
     """Do one task, on a worker."""
     begun = _cpu_seconds()
     result = function(packed.unpacked(), item)
-    return Done(result, _cpu_seconds() - begun, peak_memory())
+    return _Done(result, _cpu_seconds() - begun, peak_memory())
 
 
 def _cpu_seconds() -> float:
@@ -151,7 +151,7 @@ class ByExecutor:
 
     executor: Executor
     cost: RunCost = field(default_factory=RunCost, compare=False)
-    _folder: PassedFiles = field(default_factory=PassedFiles, compare=False, repr=False)
+    _folder: _PassedFiles = field(default_factory=_PassedFiles, compare=False, repr=False)
     _packed: dict[int, tuple[object, Packed]] = field(default_factory=dict, compare=False, repr=False)
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:

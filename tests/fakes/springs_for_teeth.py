@@ -14,7 +14,7 @@ from fe_contact.compliance import FlankCompliance
 from fe_contact.compliance.flank import ComplianceChecks
 from fe_contact.contact import teeth_in_reach
 from fe_contact.geometry import Gear, GearPair, tooth_profile
-from fe_contact.planning import Plan
+from fe_contact.planning.plan import Plan
 
 NODES = 81
 

@@ -21,7 +21,7 @@ from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation
 from fe_contact.material import Material
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning import make_plan
+from fe_contact.planning.plan import make_plan
 
 LAWS = settings(suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
 POSITIONS = np.arange(24) / 24

@@ -5,14 +5,9 @@ from __future__ import annotations
 import math
 
 import pytest
+from hertz_laws import two_cylinder_approach
 
-from fe_contact.hertz import (
-    contact_modulus,
-    half_width,
-    peak_pressure,
-    relative_radius,
-    two_cylinder_approach,
-)
+from fe_contact.hertz import contact_modulus, half_width, peak_pressure, relative_radius
 from fe_contact.material import Material
 
 STEEL_206 = Material(youngs_modulus=206e9, poissons_ratio=0.3)

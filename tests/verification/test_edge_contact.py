@@ -18,15 +18,10 @@ import math
 
 import numpy as np
 import pytest
+from hertz_laws import edge_contact_length, edge_half_width, local_approach
 from numpy.polynomial import chebyshev
 
-from fe_contact.hertz import (
-    contact_modulus,
-    edge_contact_length,
-    edge_half_width,
-    half_width,
-    local_approach,
-)
+from fe_contact.hertz import contact_modulus, half_width
 from fe_contact.material import STEEL
 
 MODULUS = contact_modulus(STEEL, STEEL)

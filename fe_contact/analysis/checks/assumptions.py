@@ -17,12 +17,13 @@ from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution
 from fe_contact.effects.across_face import across_face
-from fe_contact.effects.influence import EstimatedInfluence, estimate_influence
+from fe_contact.effects.influence.estimate import EstimatedInfluence, estimate_influence
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.printed_data import backlash_rounding
-from fe_contact.planning import Plan, left_out
+from fe_contact.planning.plan import Plan
+from fe_contact.planning.planned import left_out
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json
 
@@ -47,12 +48,12 @@ def _deepest_edge(
     At the positions solved, and where pairs come into contact and leave it: there the gap of an edge is
     least, and solved positions may pass it by. The contact is solved for these too.
     """
-    position = handovers(point.contact.pair)
+    position = _handovers(point.contact.pair)
     meant = point.solve_pitches(position, load, np.arange(point.model.period))
     return np.maximum(_edge_depth(point, problem, solution), _edge_depth(point, *meant))
 
 
-def handovers(pair: ParallelAxes) -> FloatArray:
+def _handovers(pair: ParallelAxes) -> FloatArray:
     """Return the positions (2,) in [0, 1), rising, just before a pair meets at A and after it leaves at E."""
     path = pair.path_of_contact
     start, end = (float(pair.position(roll)) for roll in (path.start, path.end))
@@ -174,7 +175,7 @@ def check_cheaply(run: SolvedRun) -> tuple[Assumption, ...]:
     return (*_plane(run), *_coast_flanks(run), *_printed_data(run), _load_patches(run))
 
 
-def allowed(run: SolvedRun) -> AllowedError:
+def _allowed(run: SolvedRun) -> AllowedError:
     """Return what an assumption may change mean or peak-to-peak by."""
     return run.checked.request.options.allowed
 
@@ -192,12 +193,12 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     _put_edges(run.places, run.solved)
     pairs = zip(run.places.places, run.solved, strict=True)
     depth = np.stack([_deepest_edge(point, run.plan.load, *solved) for point, solved in pairs], axis=1)
-    change = float(np.max(depth / np.maximum(allowed(run).scale(size), 1e-12 * np.abs(_means(run)))))
+    change = float(np.max(depth / np.maximum(_allowed(run).scale(size), 1e-12 * np.abs(_means(run)))))
     deepest = 1e6 * float(depth.max())
     reason = "the gaps at the tip edges stay open"
     if deepest > 0.0:
         reason = f"teeth bend {engineering(deepest, 2)} um beyond the gap at a tip edge"
-    yield Assumption(effect, "tip edges stay clear", change <= allowed(run).relative, change, reason)
+    yield Assumption(effect, "tip edges stay clear", change <= _allowed(run).relative, change, reason)
 
 
 def _neglected(run: SolvedTable) -> Iterator[Assumption]:
@@ -207,15 +208,15 @@ def _neglected(run: SolvedTable) -> Iterator[Assumption]:
         influence = estimate_influence(*run.checked.assessing(name), name)
         if influence is not None:
             change = _relative(influence, run)
-            reason = f"estimated at {allowed(run).part_words(change)} of what was computed"
-            holds = change <= allowed(run).relative
+            reason = f"estimated at {_allowed(run).part_words(change)} of what was computed"
+            holds = change <= _allowed(run).relative
             yield Assumption(name, "neglected effects are negligible", holds, change, reason)
 
 
 def _relative(influence: EstimatedInfluence, run: SolvedTable) -> float:
     """Return the larger of both estimated changes over the computed values, at the worst load and place."""
-    mean = np.abs(influence.mean)[:, None] / allowed(run).scale(_means(run))
-    ripple = np.abs(influence.peak_to_peak)[:, None] / allowed(run).scale(_ripples(run))
+    mean = np.abs(influence.mean)[:, None] / _allowed(run).scale(_means(run))
+    ripple = np.abs(influence.peak_to_peak)[:, None] / _allowed(run).scale(_ripples(run))
     return float(np.max(np.maximum(mean, ripple)))
 
 
@@ -231,7 +232,7 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
     missing = left_out(run.places.places[0].contact.pair, run.plan.discretization)
     if missing:
         reason = f"the finite width changes about {engineering(100 * missing, 2)} % of the mean"
-        holds = missing <= allowed(run).relative
+        holds = missing <= _allowed(run).relative
         yield Assumption(width, "plane strain over the whole face", holds, missing, reason)
 
 
@@ -303,7 +304,7 @@ def _over_nodes(run: SolvedRun, figure: Callable[..., Any]) -> FloatArray:
     return np.array(figures).T
 
 
-def violated(assumptions: Sequence[Assumption]) -> tuple[Assumption, ...]:
+def _violated(assumptions: Sequence[Assumption]) -> tuple[Assumption, ...]:
     """Return those that do not hold."""
     return tuple(assumption for assumption in assumptions if assumption.holds is False)
 
@@ -342,7 +343,7 @@ def settled(
     while True:
         with clock.stage("assumptions"):
             assumptions = check(run)
-        wrong = violated(assumptions)
+        wrong = _violated(assumptions)
         request = run.checked.request
         if wrong and request.options.on_violation == "fail":
             reasons = "; ".join(f"{flaw.what}: {flaw.reason}" for flaw in wrong)

@@ -12,9 +12,11 @@ from fe_contact.analysis.request.request import Checked, Influences, estimated_i
 from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.effects import LedgerEntry
 from fe_contact.effects.composer import flipped
-from fe_contact.effects.influence import Influence
+from fe_contact.effects.influence.estimate import Influence
 from fe_contact.errors import InputError
-from fe_contact.planning import Plan, make_plan, planned, predict_run
+from fe_contact.planning.cost_model import predict_run
+from fe_contact.planning.plan import Plan, make_plan
+from fe_contact.planning.planned import planned
 from fe_contact.types import Json
 
 NOT_CHECKED = "no; toggling it measures it (ablation)"

@@ -146,7 +146,7 @@ PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 
 @dataclass(frozen=True)
-class Computed:
+class _Computed:
     """A table, and what it was computed with: effects that turned out to be needed included."""
 
     table: SteDatabase
@@ -164,7 +164,7 @@ def compute_pass(
     run: Run,
     decided: Decided | None = None,
     clock: StageClock | None = None,
-) -> Computed:
+) -> _Computed:
     """Compute the table of a checked request once.
 
     Parameters
@@ -216,7 +216,7 @@ def compute_pass(
         kept = _tolerance_receipt(table, tolerance)
         metadata.receipt["tolerance"] = kept
         metadata.receipt["choice"]["met"] = kept["met"]
-    return Computed(table, made.decided)
+    return _Computed(table, made.decided)
 
 
 def _started_influences(planned: SolvedTable, run: Run, before: RunCost) -> Iterator[Influences]:

@@ -15,9 +15,14 @@ from fe_contact.analysis.request.model_choice import Decided, decide, model_name
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import FeContactError
 from fe_contact.options import LEVELS, Run
-from fe_contact.planning import FaceDiscretization, NodeRule
-from fe_contact.planning.discretization import FINER_SLICES, SLICE_ORDER, SLICES, face_discretization
-from fe_contact.planning.plan import CLOSEST
+from fe_contact.planning.discretization import (
+    FINER_SLICES,
+    SLICE_ORDER,
+    SLICES,
+    FaceDiscretization,
+    face_discretization,
+)
+from fe_contact.planning.plan import CLOSEST, NodeRule
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES, all_sources
@@ -43,7 +48,7 @@ _MESH, _SLICES, _SOLVER, _WIDTH, _POSITION, _METHOD = range(len(AT_NODES))
 
 
 @dataclass(frozen=True)
-class Refinement:
+class _Refinement:
     """The next pass.
 
     Attributes
@@ -157,7 +162,7 @@ class _Resolution:
         return replace(self, shares=shares, steps=(*self.steps, step))
 
 
-def next_pass(decided: Decided, shares: FloatArray) -> Refinement | str:
+def _next_pass(decided: Decided, shares: FloatArray) -> _Refinement | str:
     """Choose what to refine: of the sources that dominate as much as is predicted to keep the tolerance.
 
     A pass goes up one mesh level at most, since the level between costs a third of the finer one.
@@ -194,7 +199,7 @@ def next_pass(decided: Decided, shares: FloatArray) -> Refinement | str:
     finer = _settled(replace(begun, level_left=1))
     reason = f"{AT_NODES[source]} takes {engineering(begun.sources[source], 2)} of the tolerance"
     refined = decided.refined(finer.level, finer.slices, finer.nodes, reason)
-    return Refinement(refined, AT_NODES[source], finer.steps, finer.used)
+    return _Refinement(refined, AT_NODES[source], finer.steps, finer.used)
 
 
 def _settled(resolution: _Resolution) -> _Resolution:
@@ -224,12 +229,12 @@ def _by_source(values: FloatArray, shares: FloatArray) -> FloatArray:
     return values.reshape(-1, *[1] * (shares.ndim - 1))
 
 
-def _of_model(model: Decided, begun: _Resolution) -> Refinement:
+def _of_model(model: Decided, begun: _Resolution) -> _Refinement:
     """Return the pass of a more exact model; what lies between positions stays, the rest is expected."""
     step = f"model {model_name(begun.decided.checked)} -> {model_name(model.checked)}"
     tolerance = model.checked.request.options.allowed.relative
     expected = float(np.hypot(model.mesh.option.error.total / tolerance, begun.shares[_POSITION].max()))
-    return Refinement(model, AT_NODES[_WIDTH], (step,), expected)
+    return _Refinement(model, AT_NODES[_WIDTH], (step,), expected)
 
 
 def _no_way(finest: _Resolution, source: int) -> str:
@@ -251,7 +256,7 @@ def _no_way(finest: _Resolution, source: int) -> str:
 
 
 @dataclass(frozen=True)
-class Pass:
+class _Pass:
     """One run of the table on one discretization.
 
     Attributes
@@ -271,7 +276,7 @@ class Pass:
     decided: Decided
     cost: Json
     table: SteDatabase | None
-    refinement: Refinement | None = None
+    refinement: _Refinement | None = None
     failure: str = ""
 
     @property
@@ -302,7 +307,7 @@ class Pass:
         }
 
 
-def _of_all_passes(passes: Sequence[Pass], kept: SteDatabase, reason: str) -> SteDatabase:
+def _of_all_passes(passes: Sequence[_Pass], kept: SteDatabase, reason: str) -> SteDatabase:
     """Return the table of one pass with the receipt of all of them.
 
     Parameters
@@ -351,24 +356,24 @@ class _Passes:
     run: Run
     on_draft: OnDraft
 
-    def first(self, checked: Checked) -> Pass:
+    def first(self, checked: Checked) -> _Pass:
         """Run what the accuracy is expected to ask for."""
         clock = StageClock(self.run.workers.cost)
         with clock.stage("planning"):
             decided = decide(checked, self.run.cache, tried=True)
         done = compute_pass(decided.checked, self.case, self.run, decided, clock)
-        return Pass(done.decided, done.table.metadata.receipt, done.table)
+        return _Pass(done.decided, done.table.metadata.receipt, done.table)
 
-    def refined(self, made: Refinement, clock: StageClock) -> Pass:
+    def refined(self, made: _Refinement, clock: StageClock) -> _Pass:
         """Run a refinement; one that fails or is interrupted says so."""
         decided = made.decided
         try:
             done = compute_pass(decided.checked, self.case, self.run, decided, clock)
         except KeyboardInterrupt:
-            return Pass(decided, clock.to_json(), None, made, "interrupted")
+            return _Pass(decided, clock.to_json(), None, made, "interrupted")
         except (FeContactError, MemoryError) as error:
-            return Pass(decided, clock.to_json(), None, made, str(error) or "out of memory")
-        return Pass(done.decided, done.table.metadata.receipt, done.table, made)
+            return _Pass(decided, clock.to_json(), None, made, str(error) or "out of memory")
+        return _Pass(done.decided, done.table.metadata.receipt, done.table, made)
 
 
 def kept_tolerance(checked: Checked, case: Json, run: Run, on_draft: OnDraft) -> SteDatabase:
@@ -426,17 +431,17 @@ def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
         best, table = last, last.table
 
 
-def _following(table: SteDatabase, last: Pass) -> Refinement | str:
+def _following(table: SteDatabase, last: _Pass) -> _Refinement | str:
     """Return what to refine after a pass, or why nothing."""
     tolerance = last.decided.checked.request.options.allowed
     if table.metadata.receipt["tolerance"]["met"]:
         return "met"
     if table.n_failed:
         return f"{table.n_failed} points failed"
-    return next_pass(last.decided, error_shares(table, tolerance))
+    return _next_pass(last.decided, error_shares(table, tolerance))
 
 
-def _ended(made: Refinement, passes: Sequence[Pass], cache: Path | None) -> str:
+def _ended(made: _Refinement, passes: Sequence[_Pass], cache: Path | None) -> str:
     """Say why a refinement does not begin, of passes or of time; empty if it may."""
     if len(passes) == MOST_PASSES:
         return f"the limit is {MOST_PASSES} passes"

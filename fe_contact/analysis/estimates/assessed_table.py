@@ -21,8 +21,10 @@ from fe_contact.analysis.pairs.solved_operating_points import Solved
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.tables import PositionNodes
 from fe_contact.contact import ContactSolution
-from fe_contact.planning import LEFT_OUT, FaceDiscretization, Plan, left_out
+from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.model_error import model_errors, of_bending
+from fe_contact.planning.plan import Plan
+from fe_contact.planning.planned import LEFT_OUT, left_out
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES, BETWEEN_NODES, SOURCES
 from fe_contact.ste.curve_quantities import (
@@ -160,7 +162,7 @@ def _unestimated(points: OperatingPoints, plan: Plan) -> FloatArray:
     return np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
 
 
-def summary(errors: FloatArray) -> Json:
+def _summary(errors: FloatArray) -> Json:
     """Return the largest over the alignments of each source by load, m, and what was not estimated.
 
     A source is not estimated if it is unknown anywhere.
@@ -195,7 +197,7 @@ class AssessedTable:
     def to_json(self) -> Json:
         """Return what the receipt says of the errors."""
         sources = {"error_by_source": self.by_source, "held_out": self.held_out}
-        return sources | summary(self.curve_error)
+        return sources | _summary(self.curve_error)
 
 
 def assessed_table(

@@ -19,8 +19,9 @@ from fe_contact.analysis.estimates.position_errors import PositionErrors
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
 from fe_contact.analysis.pairs.solved_operating_points import deflected_operating_points
 from fe_contact.contact import Candidates, ContactSolution
-from fe_contact.planning import LEFT_OUT, Plan, left_out
 from fe_contact.planning.model_error import point_error
+from fe_contact.planning.plan import Plan
+from fe_contact.planning.planned import LEFT_OUT, left_out
 from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of, some_positions, spread, spread_around
 from fe_contact.types import FloatArray, IntArray, Json, Status
 
@@ -135,7 +136,7 @@ peak-to-peak and harmonics on its pairs (docs/accuracy.md, "Constants") is 0.033
 
 
 @dataclass(frozen=True)
-class ErrorSources:
+class _ErrorSources:
     """Error of STE in m by source; arrays (P, F, M, D).
 
     Attributes
@@ -215,7 +216,7 @@ def estimate_errors(
     nested: Nested,
     positions: PositionErrors,
     plan: Plan,
-) -> ErrorSources:
+) -> _ErrorSources:
     """Combine the measured differences.
 
     Parameters
@@ -239,7 +240,7 @@ def estimate_errors(
     if missing:
         curves = [LEFT_OUT * missing * np.nan_to_num(np.abs(solution.deflection)) for solution in solutions]
         free_ends = points.gathered(curves)
-    return ErrorSources(
+    return _ErrorSources(
         left(nested.plane, nested.coarse, made.remaining),
         left(nested.table, nested.sliced, made.remaining_slices),
         np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *points.shape)),

@@ -16,7 +16,7 @@ from fe_contact.analysis.pairs.pair_contact import OperatingPoints
 from fe_contact.analysis.pairs.solved_operating_points import deflected_operating_points
 from fe_contact.analysis.tables import PositionNodes
 from fe_contact.contact import ContactSolution
-from fe_contact.planning import NodeRule, Plan
+from fe_contact.planning.plan import NodeRule, Plan
 from fe_contact.sampled import LOADS, sample_of, spread
 from fe_contact.ste.curve_quantities import (
     PEAK_TO_PEAK,
@@ -86,7 +86,7 @@ def _measured(
     plan: Plan,
     some: IntArray,
 ) -> tuple[PositionNodes, FloatArray]:
-    """Solve the middles of intervals at some loads, in all base pitches; see `measured_nodes`."""
+    """Solve the middles of intervals at some loads, in all base pitches; see `_measured_nodes`."""
     assessed, pitches = points.assessed_indices, np.arange(points.period)
     value = np.concatenate([solutions[k].deflection[:, some] for k in assessed], axis=1)
 
@@ -96,10 +96,10 @@ def _measured(
         )
         return np.concatenate(curves, axis=1)
 
-    return measured_nodes(position, value, solve, points.period, plan.nodes)
+    return _measured_nodes(position, value, solve, points.period, plan.nodes)
 
 
-def measured_nodes(
+def _measured_nodes(
     position: FloatArray,
     value: FloatArray,
     solve: Callable[[FloatArray], FloatArray],
@@ -132,7 +132,7 @@ def measured_nodes(
     axis = Axis((np.arange(period)[:, None] + position).ravel(), float(period))
     middle = axis.knots + 0.5 * axis.spacing
     between = interpolate(axis, value, middle)
-    failed = NEXT_SPACING * predicted_failure(axis, value)
+    failed = NEXT_SPACING * _predicted_failure(axis, value)
     error = np.maximum(failed, np.roll(failed, -1, axis=0))
     left = error.copy()
     worst = np.nan_to_num(error / rule.ripple(value)).max(axis=1).reshape(period, count).max(axis=0)
@@ -146,7 +146,7 @@ def measured_nodes(
     return PositionNodes(position, error, value, between), left
 
 
-def predicted_failure(axis: Axis, value: FloatArray) -> FloatArray:
+def _predicted_failure(axis: Axis, value: FloatArray) -> FloatArray:
     """Return by how much values (K, C) at the knots of a closed axis differ from what the others predict, m.
 
     Every second knot is predicted from the rest, then the rest from those.
@@ -224,7 +224,7 @@ def errors_by_halves(knots: FloatArray, values: FloatArray, period: int) -> Posi
     change = np.maximum(*(_changed(knots, values, slice(first, None, 2), period) for first in (0, 1)))
     curves = LEFT_BY_HALF * change
     curves[PEAK_TO_PEAK] = np.maximum(curves[PEAK_TO_PEAK], PASSED_BY * missed_peaks(knots, values, period))
-    missed = NEXT_SPACING * predicted_failure(Axis(knots, float(period)), values)
+    missed = NEXT_SPACING * _predicted_failure(Axis(knots, float(period)), values)
     beside = np.maximum(missed, np.maximum(np.roll(missed, 1, axis=0), np.roll(missed, -1, axis=0)))
     return PositionErrors(beside, curves)
 

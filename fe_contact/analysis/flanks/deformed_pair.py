@@ -22,7 +22,7 @@ from fe_contact.errors import integer
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.mesh.export import write_cells
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
-from fe_contact.planning import FaceDiscretization
+from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
 
@@ -117,7 +117,7 @@ def deformed_pairs(
     checked = check_point(pair, point, options)
     integer("beside", beside, 0, 100)
     solved = solve_operating_point(checked, checked_positions(at), StageClock(run.workers.cost), run)
-    gears = deformed_gears(solved, beside)
+    gears = _deformed_gears(solved, beside)
     run.progress("deformation", 1.0)
     position, deflection = solved.problem.candidates.position, solved.solution.deflection[:, 0]
     here = solved.contact.pair
@@ -127,7 +127,7 @@ def deformed_pairs(
     )
 
 
-def deformed_gears(solved: SolvedOperatingPoint, beside: int = 1) -> tuple[Both, ...]:
+def _deformed_gears(solved: SolvedOperatingPoint, beside: int = 1) -> tuple[Both, ...]:
     """Expand a solution at all its positions; each gear in its own frame."""
     contact, candidates = solved.contact, solved.problem.candidates
     force, made = solved.solution.force[:, 0], contact.plan.discretization

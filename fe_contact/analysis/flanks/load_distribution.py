@@ -71,7 +71,7 @@ class FlankScene:
             raise DatabaseError("the scene of the flank results is not readable") from error
 
 
-def flank_scene(
+def _flank_scene(
     pair: ParallelAxes, normal_force: float, misalignment: float = 0.0, center_distance_change: float = 0.0
 ) -> FlankScene:
     """Describe a pair that stands at its changed center distance, under a normal force in N."""
@@ -286,7 +286,7 @@ def load_distribution(
         gap=gap.reshape(shape),
         slice_width=candidates.point_width,
         base_helix_angle=candidates.base_helix_angle,
-        scene=flank_scene(pair, solution.load[load], misalignment, center_distance_change),
+        scene=_flank_scene(pair, solution.load[load], misalignment, center_distance_change),
         metadata=metadata or Metadata(),
     )
 

@@ -17,7 +17,7 @@ from fe_contact.contact.patch import Patches
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.geometry.flank_profile import critical_section
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
-from fe_contact.planning import FaceRootMeshes, PlaneRootMeshes, root_meshes
+from fe_contact.planning.planned import FaceRootMeshes, PlaneRootMeshes, root_meshes
 from fe_contact.plausibility import root_findings, unexpected
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import BoolArray, Estimate, FloatArray, IntArray, Json
@@ -146,7 +146,7 @@ class RootStressHistory:
             values = -self.principal(root)
         else:
             values = np.where(self.near_load, -np.inf, self.principal(root))
-        return crests(self.flank_coordinate, np.moveaxis(values, 2, -1))
+        return _crest_values(self.flank_coordinate, np.moveaxis(values, 2, -1))
 
     def passage(self) -> RootPassage:
         """Return what one tooth meets, all its pairs' positions in a row.
@@ -168,7 +168,7 @@ class RootStressHistory:
         return RootPassage(position[order], extremes[0], extremes[1], fixed[0], fixed[1])
 
 
-def crests(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _crest_values(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the largest value along the last axis and its place, by a parabola through its neighbors.
 
     Parameters
@@ -275,7 +275,7 @@ def _histories(
 ) -> list[RootStressHistory]:
     """Return the histories of both gears, with the error that coarser meshes show."""
     fine, rough = (
-        pair_histories(solved, _unit_stresses(solved, meshes, coarse, cache)) for coarse in (False, True)
+        _pair_histories(solved, _unit_stresses(solved, meshes, coarse, cache)) for coarse in (False, True)
     )
     histories = []
     for history, other in zip(fine, rough, strict=True):
@@ -302,7 +302,7 @@ def _unit_stresses(
     return first, second
 
 
-def pair_histories(
+def _pair_histories(
     solved: SolvedOperatingPoint, units: UnitStresses
 ) -> tuple[RootStressHistory, RootStressHistory]:
     """Return the stress of both gears under the solved contact.

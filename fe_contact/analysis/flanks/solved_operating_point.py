@@ -22,7 +22,8 @@ from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.errors import InputError, SolveError, finite
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
-from fe_contact.planning import Plan, planned
+from fe_contact.planning.plan import Plan
+from fe_contact.planning.planned import planned
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json, Status
 

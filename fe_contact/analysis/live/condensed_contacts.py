@@ -16,8 +16,7 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.tables import PositionNodes
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning import Plan
-from fe_contact.planning.plan import LARGEST_SUPPORT, wanted_patch
+from fe_contact.planning.plan import LARGEST_SUPPORT, Plan, wanted_patch
 from fe_contact.types import FloatArray
 
 # The error of load patches wider than the contact strips, because the mesh asks for it.
@@ -33,7 +32,7 @@ SEEN = 0.7
 point. With it stated errors cover 95 % of the first harmonics of live answers (docs/accuracy.md)."""
 
 
-def left_by_patches(pair: ParallelAxes, plan: Plan) -> float:
+def _left_by_patches(pair: ParallelAxes, plan: Plan) -> float:
     """Return the error left over the change to patches `WIDER` times as wide.
 
     Against patches as wide as the strips of the largest load ask for; 0 where the run has those.
@@ -75,7 +74,7 @@ class CondensedContacts:
     def of(cls, own: PairContact, coarse: PairContact | None) -> CondensedContacts:
         """Take the rougher discretizations that need no other bodies from the pair itself."""
         made = own.plan.discretization
-        part = left_by_patches(own.pair, own.plan)
+        part = _left_by_patches(own.pair, own.plan)
         return cls(
             own,
             own.in_plane_strain if made.corrected else None,

@@ -29,9 +29,9 @@ from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, ParallelAxes
 from fe_contact.options import TableAxes
-from fe_contact.planning import Plan, usual_mesh_error
 from fe_contact.planning.cost_model import condensed_teeth
-from fe_contact.planning.plan import LARGEST_SUPPORT
+from fe_contact.planning.plan import LARGEST_SUPPORT, Plan
+from fe_contact.planning.planned import usual_mesh_error
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES, BETWEEN_NODES
@@ -128,7 +128,7 @@ def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[Flo
 
 
 @dataclass(frozen=True)
-class CondensedRun:
+class _CondensedRun:
     """A table of a condensed pair as its checks see it, after `SolvedRun`."""
 
     checked: Checked
@@ -294,7 +294,7 @@ class CondensedPair:
             table = assembled_table(checked.request, points, nodes, pairs, [])
         with clock.stage("error estimate"):
             assessed = _condensed_errors(table, points, solved.solution, contacts, sample, plan)
-        assumptions = _check_condensed(CondensedRun(checked, plan, points, pairs), self.neglected)
+        assumptions = _check_condensed(_CondensedRun(checked, plan, points, pairs), self.neglected)
         receipt = _condensed_receipt(plan, solved.solution, assessed, assumptions, clock)
         receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]

@@ -17,7 +17,7 @@ from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.effects import EFFECTS
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions
-from fe_contact.planning import Plan, make_plan
+from fe_contact.planning.plan import Plan, make_plan
 from fe_contact.ste import SteDatabase
 
 # The condensed bodies of a stored table, from the cache of compliances.

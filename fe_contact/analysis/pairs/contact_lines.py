@@ -27,8 +27,8 @@ from fe_contact.contact import (
 )
 from fe_contact.contact.problem import condition_numbers
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning import Plan
 from fe_contact.planning.cost_model import unit_work
+from fe_contact.planning.plan import Plan
 from fe_contact.types import FloatArray, IntArray
 from fe_contact.workers import Workers
 from model_studies.progress import Report, unreported
@@ -37,7 +37,7 @@ from model_studies.progress import Report, unreported
 
 
 @dataclass(frozen=True)
-class ContactBlock:
+class _ContactBlock:
     """One block.
 
     Attributes
@@ -82,7 +82,7 @@ class ContactBlock:
 
 
 @dataclass(frozen=True)
-class SolvedBlock:
+class _SolvedBlock:
     """The solution at the positions of a block.
 
     Attributes
@@ -100,7 +100,7 @@ class SolvedBlock:
     condition: FloatArray | None
 
 
-def solve_block(bodies: Bodies, block: ContactBlock) -> SolvedBlock:
+def _solve_block(bodies: Bodies, block: _ContactBlock) -> _SolvedBlock:
     """Assemble and solve a block: one task."""
     contact = PairContact.of_bodies(block.pair, block.plan, bodies)
     if block.assembled is None:
@@ -114,12 +114,12 @@ def solve_block(bodies: Bodies, block: ContactBlock) -> SolvedBlock:
         for k, problem in enumerate(problems)
     )
     condition = condition_numbers(problems[0].compliance) if block.conditioned else None
-    return SolvedBlock(problems, solutions, condition)
+    return _SolvedBlock(problems, solutions, condition)
 
 
-def _deflect_block(bodies: Bodies, block: ContactBlock) -> tuple[tuple[FloatArray, ...], ...]:
+def _deflect_block(bodies: Bodies, block: _ContactBlock) -> tuple[tuple[FloatArray, ...], ...]:
     """Return the STE (rows, L) in m of each model for each set of loads alone: one task."""
-    solved = solve_block(bodies, block).solutions
+    solved = _solve_block(bodies, block).solutions
     return tuple(tuple(solution.deflection for solution in each) for each in solved)
 
 
@@ -148,9 +148,9 @@ class Line:
     loads : tuple of ndarray
         Sets of normal forces in N.
     starts : tuple of ndarray, shape (P, L, n), optional
-        As those of `ContactBlock`, at all positions of the line; without pitches.
+        As those of `_ContactBlock`, at all positions of the line; without pitches.
     assembled : ContactProblem, optional
-        As that of `ContactBlock`.
+        As that of `_ContactBlock`.
     """
 
     contact: PairContact
@@ -168,10 +168,10 @@ class Line:
         pitches = 1 if self.pitches is None else self.pitches.size
         return work.of(1, len(self.models) * pitches * sum(load.size for load in self.loads))
 
-    def blocks(self, *, conditioned: bool) -> Iterator[ContactBlock]:
+    def blocks(self, *, conditioned: bool) -> Iterator[_ContactBlock]:
         """Cut it."""
         pair, plan = self.contact.pair, self.contact.plan
-        whole = ContactBlock(pair, plan, self.candidates, self.models, self.pitches, self.loads, conditioned)
+        whole = _ContactBlock(pair, plan, self.candidates, self.models, self.pitches, self.loads, conditioned)
         count = self.candidates.position.size
         parts = min(math.ceil(count * self.seconds_a_position / TASK_SECONDS), count // FEWEST_ROWS)
         for rows in np.array_split(np.arange(count), max(parts, 1)):
@@ -190,7 +190,7 @@ class Line:
 
 @dataclass(frozen=True)
 class SolvedLine:
-    """A line put together; attributes as those of `SolvedBlock`."""
+    """A line put together; attributes as those of `_SolvedBlock`."""
 
     problems: tuple[ContactProblem, ...]
     solutions: tuple[tuple[ContactSolution, ...], ...]
@@ -202,7 +202,7 @@ def solved_lines(
 ) -> list[SolvedLine]:
     """Solve lines; their contacts keep what was assembled for them. `report` is called after each line."""
     solved: list[SolvedLine] = []
-    for line, blocks in zip(lines, _by_line(lines, workers, solve_block, conditioned), strict=True):
+    for line, blocks in zip(lines, _by_line(lines, workers, _solve_block, conditioned), strict=True):
         whole = _joined(line, blocks)
         plain = replace(whole.problems[0], candidates=line.candidates)
         line.contact.take(line.models[0], plain)
@@ -222,7 +222,7 @@ def deflections(lines: Sequence[Line], workers: Workers) -> list[list[FloatArray
 def _by_line(
     lines: Sequence[Line],
     workers: Workers,
-    function: Callable[[Bodies, ContactBlock], R],
+    function: Callable[[Bodies, _ContactBlock], R],
     conditioned: bool,
 ) -> Iterator[list[R]]:
     """Yield the results of the blocks of every line; lines of the same bodies go out together."""
@@ -260,7 +260,7 @@ def _alike(part: Any, whole: Any) -> Any:
     return np.ascontiguousarray(part) if whole.flags.c_contiguous else np.asfortranarray(part)
 
 
-def _joined(line: Line, blocks: list[SolvedBlock]) -> SolvedLine:
+def _joined(line: Line, blocks: list[_SolvedBlock]) -> SolvedLine:
     """Put the blocks of a line together; all models share one compliance."""
     compliance = np.concatenate([block.problems[0].compliance for block in blocks])
     problems, solutions = [], []

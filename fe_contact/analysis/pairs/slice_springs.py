@@ -112,11 +112,11 @@ class SpringContact(PairContact):
         problem = ContactProblem(touching, np.zeros((position.size, 0, 0)), modulus, 0.0, 0.0)
         if pitch is not None or seen.tooth_gaps:
             problem = in_pitches(problem, seen, np.zeros_like(position, int) if pitch is None else pitch)
-        stiffness = slice_stiffness(self.pair, problem.candidates, self.law)
+        stiffness = _slice_stiffness(self.pair, problem.candidates, self.law)
         return problem, _solve_springs(problem.candidates, stiffness, load)
 
 
-def slice_stiffness(pair: ParallelAxes, candidates: Candidates, law: SliceLaw) -> FloatArray:
+def _slice_stiffness(pair: ParallelAxes, candidates: Candidates, law: SliceLaw) -> FloatArray:
     """Return the normal force per normal approach (P, n) of each slice, N/m.
 
     c b_slice relates forces and approaches in the transverse plane; both are 1/cos(beta_b) and cos(beta_b)

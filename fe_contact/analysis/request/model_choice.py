@@ -18,22 +18,13 @@ from fe_contact.analysis.pairs.pair_contact import operating_points
 from fe_contact.analysis.pairs.slice_springs import SliceLaw, SpringContact, parabolic_stiffness
 from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.request.request_check import check_asked
-from fe_contact.effects.influence import estimate_influence
+from fe_contact.effects.influence.estimate import estimate_influence
 from fe_contact.options import LEVELS, AnalysisOptions
-from fe_contact.planning import (
-    ExpectedCurves,
-    FaceDiscretization,
-    MeshChoice,
-    MeshOption,
-    NodeRule,
-    Plan,
-    Prediction,
-    chosen_mesh,
-    expected_error,
-    make_plan,
-    predict_run,
-)
+from fe_contact.planning.cost_model import Prediction, predict_run
+from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.effort import effort
+from fe_contact.planning.plan import NodeRule, Plan, make_plan
+from fe_contact.planning.planned import ExpectedCurves, MeshChoice, MeshOption, chosen_mesh, expected_error
 from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of
 from fe_contact.types import FloatArray, Json
 
@@ -180,7 +171,7 @@ def decide(
     options = checked.request.options
     if options.tolerance is not None and options.time_budget is not None:
         return _within_time(checked, cache, keep_model=keep_model, tried=tried)
-    models = [checked] if keep_model else alternatives(checked)
+    models = [checked] if keep_model else _alternatives(checked)
     curves = expected_curves(checked) if _wishes(checked) or checked.model.across_face else None
     chosen = _best(_meshes(models, curves, cache, 1.0))
     if tried and options.tolerance is not None:
@@ -242,7 +233,7 @@ def _wishes(checked: Checked) -> bool:
     return options.tolerance is not None or options.time_budget is not None
 
 
-def alternatives(checked: Checked) -> list[Checked]:
+def _alternatives(checked: Checked) -> list[Checked]:
     """Return the request with every model that may stand in for its own; itself where it is bound."""
     request = checked.request
     face, width = request.model_effects

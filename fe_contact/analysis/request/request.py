@@ -16,7 +16,7 @@ from fe_contact.effects import (
     compose,
     named,
 )
-from fe_contact.effects.influence import (
+from fe_contact.effects.influence.estimate import (
     EstimatedInfluence,
     Influence,
     estimate_influence,
@@ -24,7 +24,7 @@ from fe_contact.effects.influence import (
 )
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning import CycleCost
+from fe_contact.planning.plan import CycleCost
 from fe_contact.plausibility import pair_findings
 from fe_contact.types import FloatArray, Json
 from fe_contact.workers import InProcess, Workers
@@ -208,10 +208,10 @@ def started_influences(checked: Checked, workers: Workers, shared: object) -> It
     half a second, those of a plane hundredths. `shared` is what the workers have already.
     """
     by = workers if checked.model.across_face else InProcess()
-    return by.run(influences_of_request, shared, [checked])
+    return by.run(_influences_of_request, shared, [checked])
 
 
-def influences_of_request(_shared: object, checked: Checked) -> Influences:
+def _influences_of_request(_shared: object, checked: Checked) -> Influences:
     """Estimate every effect of a request: one task."""
     return estimated_influences(checked)
 

@@ -13,13 +13,13 @@ from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.compliance.flank import LARGEST_ROUNDING, least_face_width
 from fe_contact.contact import ContactModel
 from fe_contact.effects import ContactScene, LedgerEntry, compose
-from fe_contact.effects.influence import EstimatedInfluence, estimate_influences
+from fe_contact.effects.influence.estimate import EstimatedInfluence, estimate_influences
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import fields_of
 from fe_contact.geometry import FlankModification, ParallelAxes
 from fe_contact.mesh import SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
-from fe_contact.planning import CycleCost, cycle_cost, make_plan, refuse_long_cycle
+from fe_contact.planning.plan import CycleCost, cycle_cost, make_plan, refuse_long_cycle
 
 # Automatic effects that a requested tolerance does not need.
 
@@ -29,7 +29,7 @@ SHARE = 0.1
 within a factor of two in most cases (docs/effects/influence.md): what is neglected stays below it."""
 
 
-def neglected_effects(
+def _neglected_effects(
     scene: ContactScene, ledger: Sequence[LedgerEntry], tolerance: AllowedError | None
 ) -> dict[str, str]:
     """Return the automatic effects whose estimated influence is below the tolerance's share, and why.
@@ -162,7 +162,7 @@ def check_asked(request: Request, *, whole_table: bool = True, spare: bool = Tru
     _refuse_beyond_plane(request.scene, composed, ledger)
     if spare and not (request.neglected or request.turned_on):
         request = replace(
-            request, neglected=neglected_effects(request.scene, ledger, request.options.tolerance)
+            request, neglected=_neglected_effects(request.scene, ledger, request.options.tolerance)
         )
         composed, ledger = _composed(request) if request.neglected else (composed, ledger)
     if composed.across_face:

@@ -15,11 +15,12 @@ from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked, estimated_influences
 from fe_contact.analysis.request.request_check import check_asked, check_request
 from fe_contact.effects import EFFECTS, LedgerEntry
-from fe_contact.effects.influence import Influence
+from fe_contact.effects.influence.estimate import Influence
 from fe_contact.errors import InputError, MeshError, SolveError, chosen
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
-from fe_contact.planning import planned, predict_run
+from fe_contact.planning.cost_model import predict_run
+from fe_contact.planning.planned import planned
 from fe_contact.types import FloatArray, Json
 from model_studies import LeftOut, in_unit, run_variants
 

@@ -23,8 +23,8 @@ from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.contact import ContactSolution
 from fe_contact.errors import InputError
 from fe_contact.options import Run
-from fe_contact.planning import Plan, make_plan
 from fe_contact.planning.discretization import PLANE_REFINEMENT
+from fe_contact.planning.plan import Plan, make_plan
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
@@ -78,7 +78,7 @@ ISO_ERROR, SLICE_ERROR = 0.45, 0.6
 
 
 @dataclass(frozen=True)
-class ClosedFormFidelity:
+class _ClosedFormFidelity:
     """A fidelity of uncoupled slices.
 
     Attributes
@@ -156,10 +156,10 @@ class ClosedFormFidelity:
         return self.relative_error * np.abs(solution.deflection - solution.no_load[:, None])
 
 
-ISO6336 = ClosedFormFidelity(
+ISO6336 = _ClosedFormFidelity(
     "iso6336", "ISO 6336 stiffness over contact lines", SliceLaw(mean_stiffness, with_gaps=False), ISO_ERROR
 )
-THIN_SLICES = ClosedFormFidelity(
+THIN_SLICES = _ClosedFormFidelity(
     "thin_slices", "thin slices", SliceLaw(parabolic_stiffness, with_gaps=True), SLICE_ERROR
 )
 
@@ -171,7 +171,7 @@ SECTOR_FLANK_SIZE = {"draft": 0.2, "standard": 0.15, "fine": 0.1}
 
 
 @dataclass(frozen=True)
-class FiniteElementFidelity:
+class _FiniteElementFidelity:
     """A model and a mesh of `analyze`.
 
     Attributes
@@ -232,11 +232,11 @@ class FiniteElementFidelity:
 FIDELITIES: tuple[Fidelity, ...] = (
     ISO6336,
     THIN_SLICES,
-    FiniteElementFidelity("plane_strain", "2-D plane strain", "plane_strain", "standard"),
-    FiniteElementFidelity("corrected_draft", "2-D corrected for the width, draft", "auto", "draft"),
-    FiniteElementFidelity("corrected", "2-D corrected for the width, standard", "auto", "standard"),
-    FiniteElementFidelity("corrected_fine", "2-D corrected for the width, fine", "auto", "fine"),
-    FiniteElementFidelity("3d_draft", "3-D, draft", "3d", "draft"),
-    FiniteElementFidelity("3d_standard", "3-D, standard", "3d", "standard"),
-    FiniteElementFidelity("3d_fine", "3-D, fine, 23 slices", "3d", "fine", 23),
+    _FiniteElementFidelity("plane_strain", "2-D plane strain", "plane_strain", "standard"),
+    _FiniteElementFidelity("corrected_draft", "2-D corrected for the width, draft", "auto", "draft"),
+    _FiniteElementFidelity("corrected", "2-D corrected for the width, standard", "auto", "standard"),
+    _FiniteElementFidelity("corrected_fine", "2-D corrected for the width, fine", "auto", "fine"),
+    _FiniteElementFidelity("3d_draft", "3-D, draft", "3d", "draft"),
+    _FiniteElementFidelity("3d_standard", "3-D, standard", "3d", "standard"),
+    _FiniteElementFidelity("3d_fine", "3-D, fine, 23 slices", "3d", "fine", 23),
 )

@@ -213,7 +213,7 @@ class MeasuredFullContact:
         }
 
 
-def over_face(checked: Checked) -> bool:
+def _over_face(checked: Checked) -> bool:
     """Say whether a request needs the face: it is in three dimensions, or gears or flanks are inclined."""
     request = checked.request
     gears = (request.pair.pinion, request.pair.wheel)
@@ -224,7 +224,7 @@ def over_face(checked: Checked) -> bool:
 def full_contact_refusal(checked: Checked) -> str | None:
     """Say why the full contact cannot be run on a request; None if it can."""
     request = checked.request
-    if (reason := (refusal_over_face if over_face(checked) else refusal)(request.pair)) is not None:
+    if (reason := (refusal_over_face if _over_face(checked) else refusal)(request.pair)) is not None:
         return reason
     if request.center_distance_change.size > 1 or request.center_distance_change[0] != 0.0:
         return "changes of the center distance: it runs at the nominal one"
@@ -253,7 +253,7 @@ def measure_full_contact(
     request, fractions = checked.request, [count / positions for count in range(positions)]
     torques = [float(torque) for torque in request.torque]
     misalignments = tuple(float(misalignment) for misalignment in request.misalignment)
-    inclined = over_face(checked)
+    inclined = _over_face(checked)
     predicted = _predicted(len(torques) * len(misalignments), inclined=inclined)
     stage = f"full contact ({positions} x {predicted:.0f} CPU s)"
 

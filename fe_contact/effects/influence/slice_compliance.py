@@ -1,6 +1,6 @@
 """Compliance between loaded slices without finite elements: springs that know of each other.
 
-A slice bends its own tooth (`tooth_bending`) and, less and less, the slices beside it: exponentially over a
+A slice bends its own tooth (`_tooth_bending`) and, less and less, the slices beside it: exponentially over a
 decay length, as a beam on an elastic foundation, reflected at the free ends of the face, so that an even load
 is met evenly. All teeth of a gear twist and shift its body, and the surface of the body sinks with the
 logarithm of the distance, as that of a half plane:
@@ -117,7 +117,7 @@ _SAMPLES = 101
 
 
 @dataclass(frozen=True)
-class ToothBending:
+class _ToothBending:
     """Compliance of one tooth in the transverse section, by flank coordinate.
 
     Attributes
@@ -141,7 +141,7 @@ class ToothBending:
 
 
 @lru_cache(maxsize=64)
-def tooth_bending(gear: Toothing) -> ToothBending:
+def _tooth_bending(gear: Toothing) -> _ToothBending:
     """Integrate over the tooth of `gear`, plane strain.
 
     A helical tooth bends in its normal section: there it is thinner, and longer by the same factor.
@@ -161,7 +161,7 @@ def tooth_bending(gear: Toothing) -> ToothBending:
     root = 2.0 * half[0]
     foundation = 5.2 * (lever / root) ** 2 + lever / root + 1.4 * (1.0 + 0.294 * slope**2)
     tooth = _energy(height, 2.0 * half, lever, slope, gear.material.poissons_ratio)
-    return ToothBending(s, per_modulus * tooth, per_modulus * foundation, half / cosine)
+    return _ToothBending(s, per_modulus * tooth, per_modulus * foundation, half / cosine)
 
 
 def _energy(
@@ -196,7 +196,7 @@ WEB_EXCESS = 2.1
 """Compliance that a web adds over its own twist: 1.9 to 2.3 measured (docs/effects/thin_rim.md)."""
 
 
-class GearCompliance(NamedTuple):
+class _GearCompliance(NamedTuple):
     """Normal approach (P, n, n) in m of each slice per N on each other, of one gear.
 
     Attributes
@@ -224,7 +224,7 @@ def slice_compliance(pair: ParallelAxes, slices: LoadedSlices, model: ContactMod
 
 def slice_compliances(
     pair: ParallelAxes, slices: LoadedSlices, model: ContactModel
-) -> tuple[GearCompliance, GearCompliance]:
+) -> tuple[_GearCompliance, _GearCompliance]:
     """Return the compliance between slices of the driving and of the driven gear by what yields.
 
     Parameters
@@ -247,7 +247,7 @@ def slice_compliances(
     )
     first, second = (
         # off the line of action the gear with the edge moves less, as in `contact_problem`
-        GearCompliance(
+        _GearCompliance(
             *(
                 (1.0 + wider) * lever[:, :, None] * lever[:, None, :] * part
                 for part in _of_gear(gear, slices, model, s, patch)
@@ -260,8 +260,8 @@ def slice_compliances(
 
 def _of_gear(
     gear: Toothing, slices: LoadedSlices, model: ContactModel, s: FloatArray, patch: FloatArray
-) -> GearCompliance:
-    bending = tooth_bending(gear)
+) -> _GearCompliance:
+    bending = _tooth_bending(gear)
     blank = blank_factor(gear.with_parts(model.parts))
     root = np.sqrt(bending.at(bending.tooth, s) + bending.at(bending.foundation, s) / blank)
     apart = np.abs(slices.pair[:, None] - slices.pair)
@@ -276,7 +276,7 @@ def _of_gear(
     local = np.maximum(local, np.log(slices.law_length / patch))
     local *= math.cos(gear.helix_angle) * half_plane(gear) / slices.slice_width
     body = _body(gear, slices, model)
-    return GearCompliance(
+    return _GearCompliance(
         tooth, local[:, :, None] * np.eye(face.size), body if model.couple_teeth else (apart == 0) * body
     )
 

@@ -12,7 +12,7 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning import Plan, make_plan
+from fe_contact.planning.plan import Plan, make_plan
 from fe_contact.types import FloatArray, IntArray
 from lineofaction.hardcases.contact.interior_point import GapAbout, Problem, solve
 from lineofaction.hardcases.scene import Measured

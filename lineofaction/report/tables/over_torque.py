@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_contact.effects import EFFECTS, ContactScene
-from fe_contact.effects.influence import DeflectionBudget, deflection_budget
+from fe_contact.effects.influence.deflection_budget import DeflectionBudget, deflection_budget
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import BoolArray, Json
 from lineofaction.report.drawing import palette

@@ -10,11 +10,10 @@ import pytest
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis import check_request
 from fe_contact.analysis.request.model_choice import decide
-from fe_contact.analysis.tables import adaptive_nodes
+from fe_contact.analysis.tables import _adaptive_nodes
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning import NodeRule
-from fe_contact.planning.plan import FLOOR_SHARE
+from fe_contact.planning.plan import FLOOR_SHARE, NodeRule
 
 NM = 1e-9
 VALUES = np.array([0.0, 30.0, -1999.0, 2001.0, 5000.0]) * NM
@@ -82,8 +81,8 @@ def test_positions_are_placed_by_the_floor():
         return lambda x: (height * np.abs((x[:, None] + 0.3) % 1.0 - 0.5))[None]
 
     rule = NodeRule(32, 0.002, 768, least_ripple=1e-6)
-    large, small = (adaptive_nodes(rule, kinked(height)).position.size for height in (1e-4, 1e-8))
-    assert adaptive_nodes(NodeRule(32, 0.002, 768), kinked(1e-8)).position.size == large
+    large, small = (_adaptive_nodes(rule, kinked(height)).position.size for height in (1e-4, 1e-8))
+    assert _adaptive_nodes(NodeRule(32, 0.002, 768), kinked(1e-8)).position.size == large
     assert large > small == 32
 
 

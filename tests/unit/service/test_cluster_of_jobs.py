@@ -89,10 +89,10 @@ class Recording:
 @pytest.mark.parametrize(
     ("process", "further", "task"),
     [
-        (ANALYZE, {}, "solve_block"),
-        (default_registry()["sensitivity"], DEVIATIONS, "solve_block"),
-        (default_registry()["optimize"], STUDY, "search_one"),
-        (default_registry()["scatter"], {"samples": 30}, "ripple_of_samples"),
+        (ANALYZE, {}, "_solve_block"),
+        (default_registry()["sensitivity"], DEVIATIONS, "_solve_block"),
+        (default_registry()["optimize"], STUDY, "_search_one"),
+        (default_registry()["scatter"], {"samples": 30}, "_ripple_of_samples"),
     ],
     ids=lambda given: given.id if isinstance(given, Process) else "",
 )

@@ -9,7 +9,7 @@ from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis import check_request
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.options import TableAxes
-from fe_contact.planning import make_plan
+from fe_contact.planning.plan import make_plan
 
 TORQUES = np.geomspace(10.0, 400.0, 12)
 

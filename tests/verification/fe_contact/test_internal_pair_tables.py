@@ -23,7 +23,8 @@ from fe_contact.geometry import (
 )
 from fe_contact.mesh import SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint
-from fe_contact.planning import FaceDiscretization, make_plan
+from fe_contact.planning.discretization import FaceDiscretization
+from fe_contact.planning.plan import make_plan
 from fe_contact.ste import SteDatabase
 
 MODULE, WIDTH = 2e-3, 20e-3

@@ -18,7 +18,7 @@ from fe_contact.contact import (
     solve_contact,
     with_compliances,
 )
-from fe_contact.effects.shaft_deflection import SeatCompliance, ShaftCompliance
+from fe_contact.effects.shaft_deflection import _SeatCompliance, _ShaftCompliance
 from fe_contact.geometry import Shaft
 
 SOURCE = "thin slices on a beam, closed form"
@@ -33,7 +33,7 @@ PAIR = GearPair(GEAR, GEAR, 80e-3)
 
 
 def loaded(
-    seats: tuple[SeatCompliance | None, SeatCompliance | None], force: np.ndarray, rigid: float = RIGID
+    seats: tuple[_SeatCompliance | None, _SeatCompliance | None], force: np.ndarray, rigid: float = RIGID
 ):
     """Deflection and line load of one pair at the pitch point, at each normal force."""
     slices = Slices.of_pair(PAIR, COUNT, 1)
@@ -45,13 +45,13 @@ def loaded(
     candidates = candidates.touching(dataclasses.replace(candidates.touch, gap=gap))
     springs = np.eye(only.size)[None] / (STIFFNESS * WIDTH / COUNT)
     problem = ContactProblem(candidates, springs, 1.0 / (math.pi * rigid), rigid, rigid)
-    model = ContactModel(compliances=(ShaftCompliance(*seats),))
+    model = ContactModel(compliances=(_ShaftCompliance(*seats),))
     solution = solve_contact(with_compliances(PAIR, problem, model), force)
     assert solution.converged
     return solution.deflection[0], solution.force[0][:, only] / (WIDTH / COUNT)
 
 
-def closed_form(seats: tuple[SeatCompliance, ...]) -> tuple[float, float]:
+def closed_form(seats: tuple[_SeatCompliance, ...]) -> tuple[float, float]:
     """Deflection per force and K_Hbeta where the whole face carries.
 
     With the line load q = c (d - u - v z), force c b (d - u), moment -c v b^3/12, and u, v from the seats.
@@ -70,8 +70,8 @@ def test_tilting_shafts_load_one_end_in_proportion_to_the_load(position, record_
     """K_Hbeta above 1, the same at every load: misalignment grows with it."""
     shaft = Shaft(length=0.2, diameter=0.045, position=position, bearing_stiffness=5e8)
     seats = (
-        SeatCompliance.of_shaft(shaft),
-        SeatCompliance.of_shaft(dataclasses.replace(shaft, diameter=0.06)),
+        _SeatCompliance.of_shaft(shaft),
+        _SeatCompliance.of_shaft(dataclasses.replace(shaft, diameter=0.06)),
     )
     force = np.array([300.0, 3000.0, 30000.0])
     deflection, load = loaded(seats, force)
@@ -91,7 +91,7 @@ def test_tilting_shafts_load_one_end_in_proportion_to_the_load(position, record_
 def test_load_grows_uneven_the_further_the_gear_stands_from_the_middle():
     uneven = []
     for position in (0.1, 0.08, 0.06, 0.05):
-        seat = SeatCompliance.of_shaft(Shaft(length=0.2, diameter=0.04, position=position))
+        seat = _SeatCompliance.of_shaft(Shaft(length=0.2, diameter=0.04, position=position))
         _, load = loaded((seat, None), np.array([3000.0]))
         uneven.append(load.max() / load.mean())
     assert uneven[0] == pytest.approx(1.0, abs=1e-9)
@@ -100,7 +100,7 @@ def test_load_grows_uneven_the_further_the_gear_stands_from_the_middle():
 
 def test_partial_contact_satisfies_its_own_tilt():
     """Where the tilt lifts part of the face off, the load that is left bends the shaft to that tilt."""
-    seat = SeatCompliance(translation=1e-8, coupling=1e-6, tilt=1e-5)
+    seat = _SeatCompliance(translation=1e-8, coupling=1e-6, tilt=1e-5)
     deflection, load = loaded((seat, None), np.array([2000.0]), rigid=0.05 * RIGID)
     z = Slices.of_pair(PAIR, COUNT).center
     slice_force = load[0] * WIDTH / COUNT

@@ -12,7 +12,7 @@ from fe_contact import Gear, GearPair
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.options import AnalysisOptions
-from fe_contact.planning import make_plan
+from fe_contact.planning.plan import make_plan
 
 LOAD = np.array([100.0, 400.0]) / 37.588e-3  # N, 100 and 400 N m
 

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 import pytest
+from hertz_laws import edge_contact_length
 from scipy.special import j1
 
 from fe_contact.contact import PatchRule
 from fe_contact.contact.patch import Patches, load_vector, tip_patches
-from fe_contact.hertz import edge_contact_length
 
 
 def flank(ends: np.ndarray) -> np.ndarray:

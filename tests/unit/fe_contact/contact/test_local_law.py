@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from hertz_laws import edge_contact_length, edge_half_width, line_load_at_half_width, local_approach
 
 from fe_contact.contact.point_problem import (
     LARGEST_STRIP,
@@ -18,14 +19,7 @@ from fe_contact.contact.point_problem import (
     plain_strip,
 )
 from fe_contact.contact.strip import Gap, strip_load
-from fe_contact.hertz import (
-    contact_modulus,
-    edge_contact_length,
-    edge_half_width,
-    half_width,
-    line_load_at_half_width,
-    local_approach,
-)
+from fe_contact.hertz import contact_modulus, half_width
 from fe_contact.material import STEEL, Material
 
 SOFT = Material(2.8e9, 0.4)

@@ -14,7 +14,7 @@ from fe_contact.effects import EFFECTS, ContactScene
 from fe_contact.effects.bore_seat import BoreSeatElasticity
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning import make_plan
+from fe_contact.planning.plan import make_plan
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 SEATED = replace(GEAR, seat=BoreSeat(tangential_foundation=1e13))

@@ -11,9 +11,8 @@ import pytest
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.body import Shaft, Shafts
 from fe_contact.effects import EFFECTS, ContactScene, compose
-from fe_contact.effects.influence import DeflectionBudget, deflection_budget
-from fe_contact.effects.influence.deflection_budget import Springs
-from fe_contact.effects.influence.slice_compliance import half_plane, tooth_bending
+from fe_contact.effects.influence.deflection_budget import DeflectionBudget, Springs, deflection_budget
+from fe_contact.effects.influence.slice_compliance import _tooth_bending, half_plane
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
 
 PLANE = {"face_load_distribution": "off", "finite_width": "off", "corner_contact": "off"}
@@ -61,7 +60,7 @@ def test_hertz_is_what_two_half_planes_approach_down_to_the_middles_of_the_teeth
     width = float(half_width(line_load, relative_radius(*rolls), modulus))
     expected = 0.0
     for gear, length in zip((pair.pinion, pair.wheel), rolls, strict=True):
-        bending, ratio = tooth_bending(gear), gear.material.poissons_ratio
+        bending, ratio = _tooth_bending(gear), gear.material.poissons_ratio
         depth = float(bending.at(bending.depth, np.array(length**2 / (2.0 * gear.base_radius))))
         expected += (
             half_plane(gear) * line_load * (math.log(2.0 * depth / width) - 0.5 * ratio / (1.0 - ratio))

@@ -15,7 +15,7 @@ from fe_contact.effects.face_load_distribution import FaceLoadDistribution
 from fe_contact.effects.finite_width import FiniteWidth
 from fe_contact.geometry.web_compliance import finite_width_excess
 from fe_contact.material import Material
-from fe_contact.planning import make_plan
+from fe_contact.planning.plan import make_plan
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 PAIR = GearPair(GEAR, GEAR, 80e-3)

@@ -14,11 +14,11 @@ from fe_contact.analysis import check_request
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.compliance import flank_compliance
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, contact_problem
-from fe_contact.effects.influence import EstimatedInfluence, estimate_influence
 from fe_contact.effects.influence.deflection_budget import Springs
+from fe_contact.effects.influence.estimate import EstimatedInfluence, estimate_influence
 from fe_contact.effects.influence.slice_compliance import _bent, slice_compliance
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning import make_plan
+from fe_contact.planning.plan import make_plan
 from fe_contact.types import FloatArray
 
 M = 3e-3

@@ -13,10 +13,10 @@ from fe_contact.analysis.pairs.pair_contact import operating_points, pair_contac
 from fe_contact.contact import ContactProblem, PatchRule, Slices, contact_candidates, in_pitches
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, compose
-from fe_contact.effects.pitch_error import PitchError, PitchGap
+from fe_contact.effects.pitch_error import PitchError, _PitchGap
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, PitchDeviation, RingGear
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning import make_plan
+from fe_contact.planning.plan import make_plan
 
 Z1, Z2 = 20, 23
 COSINE = math.cos(math.radians(20.0))
@@ -258,6 +258,6 @@ def test_the_verdict_gives_the_figures_of_the_standard():
 
 
 def test_periods_of_several_terms_multiply():
-    terms = (PitchGap((1e-6, 0.0), (0.0,), 2), PitchGap((0.0,), (2e-6, 0.0, 0.0), 3))
+    terms = (_PitchGap((1e-6, 0.0), (0.0,), 2), _PitchGap((0.0,), (2e-6, 0.0, 0.0), 3))
     model = ContactModel(tooth_gaps=terms)
     assert model.period == 6

@@ -13,7 +13,7 @@ from fe_contact.contact import ContactModel, ContactProblem, PatchRule, Slices, 
 from fe_contact.contact import with_compliances as with_added
 from fe_contact.contact.touch import rolls_at
 from fe_contact.effects import EFFECTS, ContactScene, compose
-from fe_contact.effects.shaft_deflection import SeatCompliance, ShaftCompliance, ShaftDeflection
+from fe_contact.effects.shaft_deflection import ShaftDeflection, _SeatCompliance, _ShaftCompliance
 from fe_contact.errors import InputError
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, ParallelAxes, RingGear, Shaft
 
@@ -21,11 +21,11 @@ SHAFT = Shaft(length=0.2, diameter=0.04, position=0.06, bearing_stiffness=4e8)
 E, NU = SHAFT.material.youngs_modulus, SHAFT.material.poissons_ratio
 
 
-def seat(**changes: Any) -> SeatCompliance:
-    return SeatCompliance.of_shaft(replace(SHAFT, **changes))
+def seat(**changes: Any) -> _SeatCompliance:
+    return _SeatCompliance.of_shaft(replace(SHAFT, **changes))
 
 
-def figures(found: SeatCompliance) -> tuple[float, float, float]:
+def figures(found: _SeatCompliance) -> tuple[float, float, float]:
     return found.translation, found.coupling, found.tilt
 
 
@@ -160,7 +160,7 @@ def test_the_term_is_the_work_of_wrenches_on_the_seats(make, helix):
     pair = make(helix, offset=3e-3)
     seats = seat(), seat(length=0.15, position=0.1, diameter=0.05)
     roll_1, roll_2, face = places(pair)
-    found = ShaftCompliance(*seats)(pair, roll_1, roll_2, face)
+    found = _ShaftCompliance(*seats)(pair, roll_1, roll_2, face)
     for p in range(3):
         expected = moved_by_wrenches(pair, seats, roll_1[p], roll_2[p], face)
         assert found[p] == pytest.approx(expected, rel=1e-10, abs=0.0)
@@ -169,7 +169,7 @@ def test_the_term_is_the_work_of_wrenches_on_the_seats(make, helix):
 @pytest.mark.parametrize("helix", [0.0, 0.35])
 def test_the_term_is_symmetric_and_never_gives_work_away(helix):
     pair = make_pair(helix)
-    found = ShaftCompliance(seat(), seat(position=0.15))(pair, *places(pair))
+    found = _ShaftCompliance(seat(), seat(position=0.15))(pair, *places(pair))
     assert np.array_equal(found, found.transpose(0, 2, 1))
     values = np.linalg.eigvalsh(found)
     assert values.min() > -1e-13 * values.max()
@@ -180,8 +180,8 @@ def test_the_term_is_symmetric_and_never_gives_work_away(helix):
 def test_opposite_hand_on_mirrored_shafts_is_the_mirror_image():
     right, left = make_pair(0.35), make_pair(-0.35)
     roll_1, roll_2, face = places(right)
-    first = ShaftCompliance(seat(), seat(position=0.15))(right, roll_1, roll_2, face)
-    second = ShaftCompliance(seat(position=0.14), seat(position=0.05))(left, roll_1, roll_2, -face)
+    first = _ShaftCompliance(seat(), seat(position=0.15))(right, roll_1, roll_2, face)
+    second = _ShaftCompliance(seat(position=0.14), seat(position=0.05))(left, roll_1, roll_2, -face)
     assert second == pytest.approx(first, rel=1e-12, abs=0.0)
 
 

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 import pytest
+from hertz_laws import edge_contact_length, edge_half_width
 
-from fe_contact.hertz import edge_contact_length, edge_half_width, half_width, wedge_softness
+from fe_contact.hertz import half_width, wedge_softness
 
 MODULUS, RADIUS = 115e9, 6e-3
 LOADS = np.geomspace(1e2, 1e7, 21)

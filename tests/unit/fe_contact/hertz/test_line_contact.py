@@ -6,16 +6,10 @@ import math
 
 import numpy as np
 import pytest
+from hertz_laws import line_load_at_half_width, local_approach
 from scipy.integrate import quad
 
-from fe_contact.hertz import (
-    contact_modulus,
-    half_width,
-    line_load_at_half_width,
-    local_approach,
-    peak_pressure,
-    relative_radius,
-)
+from fe_contact.hertz import contact_modulus, half_width, peak_pressure, relative_radius
 from fe_contact.material import STEEL, Material
 
 MODULUS = contact_modulus(STEEL, STEEL)

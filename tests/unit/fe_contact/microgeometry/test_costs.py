@@ -21,7 +21,7 @@ from fe_contact.microgeometry import (
 )
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.workers import RunCost
-from fe_contact.workers.executor import Done
+from fe_contact.workers.executor import _Done
 
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
 DEAR = 1000.0
@@ -35,7 +35,7 @@ class DearWorkers:
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
         for item in items:
-            yield self.cost.add(Done(function(shared, item), DEAR, 0))
+            yield self.cost.add(_Done(function(shared, item), DEAR, 0))
 
 
 def test_searches_by_workers_are_in_the_cost_of_an_optimization(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import InputError
-from fe_contact.microgeometry.confirmation import DesignLoads, misalignment_axis, on_axis
+from fe_contact.microgeometry.confirmation import DesignLoads, _misalignment_axis, _on_axis
 
 TORQUES = [100.0, 200.0, 200.0, 400.0]
 SKEWS = [4e-6, 8e-6, -2e-6, 20e-6]
@@ -34,10 +34,10 @@ def test_a_table_has_every_misalignment_once() -> None:
     """A sum and the number it should be differ in the last bit: an axis through both would have no slope."""
     skews, away = np.array([4.1e-6, 12.3e-6]), np.array([8.2e-6, -8.2e-6])
     assert skews[0] + away[0] != skews[1]
-    axis = misalignment_axis(skews, away)
+    axis = _misalignment_axis(skews, away)
     np.testing.assert_allclose(axis, [-4.1e-6, 4.1e-6, 12.3e-6, 20.5e-6], rtol=1e-12)
-    assert set(on_axis(axis, skews + away[:, None]).ravel()) <= set(axis)
-    assert on_axis(axis, np.array([[5e-6]])) == 5e-6  # between two of them
+    assert set(_on_axis(axis, skews + away[:, None]).ravel()) <= set(axis)
+    assert _on_axis(axis, np.array([[5e-6]])) == 5e-6  # between two of them
 
 
 @pytest.mark.parametrize(

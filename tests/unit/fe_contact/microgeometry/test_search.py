@@ -18,7 +18,7 @@ from fe_contact.microgeometry import (
     SequentialLinearProgramming,
 )
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
-from fe_contact.microgeometry.optimize import search_all, search_one
+from fe_contact.microgeometry.optimize import _search_all, _search_one
 from fe_contact.microgeometry.search import EXPLORED, search_from
 from fe_contact.options import Run
 from fe_contact.types import FloatArray
@@ -133,7 +133,7 @@ def test_interrupted_in_a_worker_it_gives_what_it_has() -> None:
     """A Ctrl-C reaches the processes of a pool too."""
     search = Search(NelderMead(), evaluations=500)
     bowl = Bowl(interrupt_at=30)
-    run = search_one((cast(DesignProblem, bowl), search), (0, START))
+    run = _search_one((cast(DesignProblem, bowl), search), (0, START))
     assert run.ended is Ended.CANCELLED and run.evaluations == 30
     assert run.assessed.objective == min(Bowl().assess(place).objective for place in bowl.seen[:29])
     with pytest.raises(KeyboardInterrupt):  # here it is the caller's
@@ -155,7 +155,7 @@ class Failing:
 
 def test_starts_that_have_ended_survive_an_interruption() -> None:
     search = Search(NelderMead(), starts=4, evaluations=60)
-    every = search_all(
+    every = _search_all(
         cast(DesignProblem, Bowl()), search, tuple(START), Run(workers=InProcess()), lambda: False
     )
     assert len(every) == 4
@@ -167,19 +167,19 @@ def test_starts_that_have_ended_survive_an_interruption() -> None:
 
     for workers in (Failing(9), Failing(2)):  # cancelled between two, and by a dead worker
         asked[0] = 0
-        kept = search_all(
+        kept = _search_all(
             cast(DesignProblem, Bowl()), search, tuple(START), Run(workers=workers), once_one_ended
         )
         assert len(kept) == 2
         for one, whole in zip(kept, every, strict=False):
             assert one.assessed == whole.assessed
     with pytest.raises(RuntimeError):
-        search_all(cast(DesignProblem, Bowl()), search, tuple(START), Run(workers=Failing(2)), lambda: False)
+        _search_all(cast(DesignProblem, Bowl()), search, tuple(START), Run(workers=Failing(2)), lambda: False)
 
 
 @pytest.mark.parametrize("workers", [InProcess(), Failing(0)])
 def test_cancelled_before_the_first_design_the_start_is_left(workers: Any) -> None:
-    (run,) = search_all(
+    (run,) = _search_all(
         cast(DesignProblem, Bowl()), Search(), tuple(START), Run(workers=workers), lambda: True
     )
     np.testing.assert_array_equal(run.place, START)

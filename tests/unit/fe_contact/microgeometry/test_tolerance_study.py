@@ -12,7 +12,7 @@ from scipy.special import ndtr
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
 from fe_contact.microgeometry import Sampling, Tolerances, ToleranceStudy, scatter
-from fe_contact.microgeometry.tolerance_study import quantile
+from fe_contact.microgeometry.tolerance_study import _quantile
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, Run
 from model_studies.spread import rank_correlation
@@ -94,13 +94,13 @@ def test_bounds_enclose_their_quantiles(found: ToleranceStudy) -> None:
 def test_bounds_cover_the_true_quantile_as_often_as_they_say() -> None:
     samples = np.random.default_rng(5).exponential(size=(80, 4000))
     true = -np.log(1.0 - 0.9)
-    bounds = quantile(samples, 0.9, 0.95)
+    bounds = _quantile(samples, 0.9, 0.95)
     covered = np.mean((bounds.low <= true) & (true <= bounds.high))
     assert 0.94 < covered < 0.99  # order statistics are discrete: at least the asked confidence
 
 
 def test_a_sample_too_small_has_no_bound() -> None:
-    small = quantile(np.arange(1.0, 6.0)[:, None], 0.95, 0.95)
+    small = _quantile(np.arange(1.0, 6.0)[:, None], 0.95, 0.95)
     assert np.isinf(small.high).all() and small.to_json()["high_m"] is None
 
 

@@ -12,7 +12,7 @@ from fe_contact.microgeometry import Search, SearchRun
 from fe_contact.microgeometry.confirmation import HarrisMap, rising
 from fe_contact.microgeometry.design_problem import Assessed
 from fe_contact.microgeometry.optimization import Outcome
-from fe_contact.microgeometry.optimize import conclusion
+from fe_contact.microgeometry.optimize import _conclusion
 from fe_contact.microgeometry.search import Ended
 from fe_contact.types import Estimate
 
@@ -39,7 +39,7 @@ def concluded(after: HarrisMap, objective: float = 0.2, violation: float = 0.0) 
     designs = {"start": design(BEFORE, 0.3), "optimum": design(after, objective, violation)}
     choice = SimpleNamespace(runs=(run,), run=run, **designs)
     request = SimpleNamespace(search=Search(), outside=())
-    return conclusion(cast(Any, choice), cast(Any, request))
+    return _conclusion(cast(Any, choice), cast(Any, request))
 
 
 BEFORE = harris(0.042, 0.2, 0.3)

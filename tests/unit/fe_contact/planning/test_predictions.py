@@ -16,9 +16,9 @@ from fe_contact.analysis.run_plan import plan_run
 from fe_contact.compliance.cache import kept_size
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning import cost_model, predict_run
-from fe_contact.planning.cost_model import contact_bytes, contact_seconds, expected_positions
-from fe_contact.planning.planned import ExpectedError, MeshOption, mesh_for_time, mesh_for_tolerance
+from fe_contact.planning import cost_model
+from fe_contact.planning.cost_model import _contact_bytes, _expected_positions, contact_seconds, predict_run
+from fe_contact.planning.planned import ExpectedError, MeshOption, _mesh_for_time, _mesh_for_tolerance
 from model_studies.run_log import FILE as LOG
 
 LEVELS = ("draft", "standard", "fine")
@@ -50,7 +50,7 @@ def options(model: float = 0.0, **meshes: float) -> list[MeshOption]:
 def test_a_tolerance_takes_the_cheapest_mesh_that_meets_it():
     known = options(draft=0.02, standard=0.005, fine=0.001)
     for turned in (known, known[::-1]):
-        chosen = [mesh_for_tolerance(AllowedError(t), turned) for t in (0.1, 0.01, 0.002)]
+        chosen = [_mesh_for_tolerance(AllowedError(t), turned) for t in (0.1, 0.01, 0.002)]
         assert [choice.level for choice in chosen] == list(LEVELS)
         assert all(choice.met for choice in chosen)
 
@@ -59,14 +59,14 @@ def test_slices_are_taken_instead_of_a_mesh_where_they_are_cheaper():
     few = MeshOption("draft", 15, ExpectedError(2e-3, 0.05, 0.0), 1.0)
     many = MeshOption("draft", 61, ExpectedError(2e-3, 0.005, 0.0), 2.0)
     fine = MeshOption("fine", 31, ExpectedError(1e-3, 0.007, 0.0), 20.0)
-    assert mesh_for_tolerance(AllowedError(0.01), [few, many, fine]).option is many
-    assert mesh_for_tolerance(AllowedError(0.1), [few, many, fine]).option is few
+    assert _mesh_for_tolerance(AllowedError(0.01), [few, many, fine]).option is many
+    assert _mesh_for_tolerance(AllowedError(0.1), [few, many, fine]).option is few
 
 
 def test_a_tolerance_that_no_mesh_meets_is_said():
-    beyond = mesh_for_tolerance(AllowedError(1e-4), options(draft=3e-3, standard=2e-3, fine=1e-3))
+    beyond = _mesh_for_tolerance(AllowedError(1e-4), options(draft=3e-3, standard=2e-3, fine=1e-3))
     assert (beyond.level, beyond.met) == ("fine", False)
-    flat = mesh_for_tolerance(AllowedError(1e-2), options(3e-2, draft=2e-2, standard=5e-3, fine=1e-3))
+    flat = _mesh_for_tolerance(AllowedError(1e-2), options(3e-2, draft=2e-2, standard=5e-3, fine=1e-3))
     assert (flat.level, flat.met) == ("standard", False)
     assert "model 3 %" in flat.reason
 
@@ -74,9 +74,9 @@ def test_a_tolerance_that_no_mesh_meets_is_said():
 def test_a_time_takes_the_most_exact_mesh_that_fits():
     known = options(draft=0.02, standard=0.005, fine=0.001)
     seconds = {"draft": 1.0, "standard": 3.0, "fine": 10.0}
-    found = [mesh_for_time(t, known, lambda o: seconds[o.level]).level for t in (1.5, 5.0, 50.0)]
+    found = [_mesh_for_time(t, known, lambda o: seconds[o.level]).level for t in (1.5, 5.0, 50.0)]
     assert found == list(LEVELS)
-    late = mesh_for_time(0.1, known, lambda o: seconds[o.level])
+    late = _mesh_for_time(0.1, known, lambda o: seconds[o.level])
     assert (late.level, late.met) == ("draft", False)
 
 
@@ -126,7 +126,7 @@ def test_slices_change_no_positions_but_their_cost():
     wide = pair(helix=0.4, width=40e-3)
     asked = check_request(wide, TableAxes(normal_forces=[500.0]), AnalysisOptions(level="fine"))
     few, many = (decide(asked).in_slices(count).plan for count in (15, 31))
-    assert expected_positions(few) == expected_positions(many)
+    assert _expected_positions(few) == _expected_positions(many)
     costs = [sum(contact_seconds(wide, plan, asked.model, (1, 1), with_errors=False)) for plan in (few, many)]
     assert 2.0 < costs[1] / costs[0] < 4.0
 
@@ -205,7 +205,7 @@ def test_memory_grows_with_meshes_positions_and_slices():
     plan = decide(check_request(face, TableAxes(normal_forces=[1000.0]), AnalysisOptions(level="draft"))).plan
     finer = replace(plan, discretization=replace(plan.discretization, slices=61))
     ratio = 61 / plan.discretization.slices
-    assert ratio < contact_bytes(face, finer) / contact_bytes(face, plan) < ratio**2
+    assert ratio < _contact_bytes(face, finer) / _contact_bytes(face, plan) < ratio**2
 
 
 def test_kept_compliances_take_the_memory_of_their_files(tmp_path, monkeypatch):
@@ -218,7 +218,7 @@ def test_kept_compliances_take_the_memory_of_their_files(tmp_path, monkeypatch):
         check_request(gears, TableAxes(normal_forces=[1000.0]), AnalysisOptions(level="draft"))
     ).plan
     alike = 2 * 3_000_000  # gears alike but for the hand are read once, the mesh and the coarse one
-    assert kept == int(cost_model.PROCESS_BYTES + contact_bytes(gears, plan) + alike)
+    assert kept == int(cost_model.PROCESS_BYTES + _contact_bytes(gears, plan) + alike)
     assert kept < fresh
 
 

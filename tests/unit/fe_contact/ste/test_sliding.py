@@ -9,20 +9,20 @@ import numpy as np
 import pytest
 from sliced_face import sliced_database
 
-from fe_contact.ste.extraction import SMOOTHING, sliding
+from fe_contact.ste.extraction import SMOOTHING, _sliding
 
 
 def test_a_single_pair_slides_by_its_distance_from_the_pitch_point():
     """It approaches before x = 0 (pair -1 just before the next whole pitch) and recedes after."""
     database = sliced_database((0.0,), (0.0,), positions=40)
     for pair, sign in ((0, 1.0), (-1, -1.0)):
-        direction, arm = (a[:, 0, 0, 0] for a in sliding(replace(database, pair=np.array([pair]))))
+        direction, arm = (a[:, 0, 0, 0] for a in _sliding(replace(database, pair=np.array([pair]))))
         y = (database.position + pair) * database.facts.base_pitch
         far = np.abs(y) > 0.1 * database.facts.base_pitch
         np.testing.assert_allclose(direction[far], sign, atol=0.5 * (SMOOTHING / 0.1) ** 2)
         np.testing.assert_allclose(arm[far], np.abs(y[far]), rtol=0.5 * (SMOOTHING / 0.1) ** 2)
         assert np.all(arm >= 0.0)
-    assert sliding(replace(database, pair=np.array([0])))[0][0, 0, 0, 0] == 0.0  # at the pitch point
+    assert _sliding(replace(database, pair=np.array([0])))[0][0, 0, 0, 0] == 0.0  # at the pitch point
 
 
 @pytest.mark.parametrize("angle", [1e-4, 0.2, 0.5])
@@ -30,7 +30,7 @@ def test_helical_teeth_have_the_mean_over_their_line_of_contact(angle):
     database = sliced_database((0.0,), (0.0,), positions=8)
     facts = replace(database.facts, base_helix_angle=angle, helix_hand=1)
     torque = database.torque * math.cos(angle)
-    found = sliding(replace(database, facts=facts, torque=torque, pair=np.array([0])))
+    found = _sliding(replace(database, facts=facts, torque=torque, pair=np.array([0])))
     along = np.linspace(-0.5, 0.5, 20001) * facts.face_width * math.tan(angle)
     y = database.position[:, None] * facts.base_pitch + along
     sign = y / np.sqrt(y**2 + (SMOOTHING * facts.base_pitch) ** 2)

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from held_out import held_out_error
 
 from fe_contact.errors import InputError, SolveError
-from fe_contact.ste import held_out_error
 from fe_contact.types import Status
 
 OFFSET = (np.arange(64) + 0.5) / 64

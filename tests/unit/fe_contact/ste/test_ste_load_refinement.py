@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-from fe_contact.ste import held_out_error
+from held_out import held_out_error
 
 COARSE = (266.0, 1330.0, 2660.0, 5320.0, 10640.0)
 BETWEEN = (900.0, 2000.0, 4000.0, 8000.0)

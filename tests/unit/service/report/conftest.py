@@ -13,8 +13,8 @@ import pytest
 from dynamics.results import EnergyAudit, RunResult, StepStatistics
 from dynamics.types import RunStatus
 from fe_contact.analysis import LoadDistribution
-from fe_contact.analysis.flanks.load_distribution import flank_scene
-from fe_contact.effects.influence import Influence
+from fe_contact.analysis.flanks.load_distribution import _flank_scene
+from fe_contact.effects.influence.estimate import Influence
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
@@ -141,7 +141,7 @@ def closed_form_flanks(slices: int = 5, positions: int = 16) -> LoadDistribution
         gap=gap,
         slice_width=width,
         base_helix_angle=pair.base_helix_angle,
-        scene=flank_scene(pair, 1000.0, misalignment=30e-6),
+        scene=_flank_scene(pair, 1000.0, misalignment=30e-6),
         metadata=Metadata(receipt={"cpu_seconds": 0.5}, content_hash="1" * 64, case={"load": 1.0}),
     )
 

@@ -12,7 +12,7 @@ from analysis_requests import point_request
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis import check_request, flank_results, root_stress
-from fe_contact.analysis.checks.assumptions import OUTSIDE, handovers
+from fe_contact.analysis.checks.assumptions import OUTSIDE, _handovers
 from fe_contact.errors import SolveError
 from fe_contact.options import Run, TableAxes
 from fe_contact.types import Json
@@ -24,7 +24,7 @@ GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 RELIEVED = replace(GEAR, modification=FlankModification(tip_relief=12e-6, tip_relief_length=0.3e-3))
 CLEAR = GearPair(RELIEVED, RELIEVED)
 SKEWED = {"normal_force": 1500.0, "misalignment": 150e-6, "level": "draft"}
-AT = [0.1, *handovers(CLEAR)]
+AT = [0.1, *_handovers(CLEAR)]
 
 
 @pytest.fixture(scope="module")
@@ -89,6 +89,6 @@ def test_positions_that_pass_a_handover_by_miss_no_edge(cache: Path) -> None:
 def test_handovers_are_just_outside_the_path_of_contact() -> None:
     pair = check_request(GearPair(GEAR, GEAR), TableAxes(torques=[1.0])).request.pair
     path = pair.path_of_contact
-    rolls = [path.pitch_point + (x + j) * path.base_pitch for x in handovers(pair) for j in (-2, -1, 0, 1)]
+    rolls = [path.pitch_point + (x + j) * path.base_pitch for x in _handovers(pair) for j in (-2, -1, 0, 1)]
     assert min(abs(path.start - roll - OUTSIDE * path.base_pitch) for roll in rolls) < 1e-12
     assert min(abs(roll - path.end - OUTSIDE * path.base_pitch) for roll in rolls) < 1e-12

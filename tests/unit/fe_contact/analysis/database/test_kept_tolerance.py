@@ -14,7 +14,7 @@ from analysis_requests import table_request
 from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis import check_request
 from fe_contact.analysis.database import kept_tolerance
-from fe_contact.analysis.database.compute_database import Computed, compute_database, compute_pass
+from fe_contact.analysis.database.compute_database import _Computed, compute_database, compute_pass
 from fe_contact.analysis.estimates import assessed_table as curve_error_estimate
 from fe_contact.analysis.estimates import error_estimate
 from fe_contact.analysis.request.model_choice import Decided, decide
@@ -179,7 +179,7 @@ def test_passes_share_condensed_bodies(from_draft, monkeypatch):
     """Positions that are searched more closely need no new bodies, without a cache either."""
     computed: list[list[str]] = []
 
-    def counted(checked, case, run, decided, clock) -> Computed:
+    def counted(checked, case, run, decided, clock) -> _Computed:
         done = compute_pass(checked, case, run, decided, clock)
         computed.append(sorted(file.name for file in run.cache.glob("compliance-*")))
         return done
@@ -197,9 +197,9 @@ def refine_positions(monkeypatch) -> None:
     def closer(decided, _shares):
         plan = decided.plan
         finer = decided.refined("draft", 1, dataclasses.replace(plan.nodes, tolerance=1e-4), "closer")
-        return kept_tolerance.Refinement(finer, "position", ("positions",), 0.5)
+        return kept_tolerance._Refinement(finer, "position", ("positions",), 0.5)
 
-    monkeypatch.setattr(kept_tolerance, "next_pass", closer)
+    monkeypatch.setattr(kept_tolerance, "_next_pass", closer)
 
 
 @pytest.mark.parametrize(
@@ -229,7 +229,7 @@ def fail_from(monkeypatch, number: int, error: BaseException) -> None:
     """Let a pass and those after it fail."""
     begun: list[int] = []
 
-    def failing(*arguments, **more) -> Computed:
+    def failing(*arguments, **more) -> _Computed:
         begun.append(1)
         if len(begun) >= number:
             raise error

@@ -10,12 +10,12 @@ from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
 from fe_contact.analysis import check_request
-from fe_contact.analysis.estimates.position_errors import measured_nodes
-from fe_contact.analysis.tables import adaptive_nodes, assessed_windows
+from fe_contact.analysis.estimates.position_errors import _measured_nodes
+from fe_contact.analysis.tables import _adaptive_nodes, _assessed_windows
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
-from fe_contact.planning import NodeRule
+from fe_contact.planning.plan import NodeRule
 
 TORQUES = (30.0, 100.0)
 RNG = np.random.default_rng(21)
@@ -137,14 +137,14 @@ def test_a_misalignment_axis_shortens_the_longest_period():
 def test_the_assessed_pitches_span_the_differences_between_neighbors():
     error = np.where(np.arange(20) == 7, 9e-6, 0.0) + np.where(np.arange(20) > 12, 1e-6, 0.0)
     scene = ContactScene(GearPair(gear(20, error), gear(23)), np.array([100.0]), EFFECTS)
-    windows = assessed_windows(compose(scene, {})[0], 3)
+    windows = _assessed_windows(compose(scene, {})[0], 3)
     assert all(np.array_equal(np.diff(window), [1, 1]) for window in windows)
     smooth, _, rough = (int(window[1]) for window in windows)
     assert smooth not in (0, 6, 7, 8, 12, 13, 19)
     assert rough in (6, 7, 8)
-    assert len(assessed_windows(compose(scene, {})[0], 100)) == 20
+    assert len(_assessed_windows(compose(scene, {})[0], 100)) == 20
     plain = replace(scene, pair=GearPair(gear(20), gear(23)))
-    assert [window.tolist() for window in assessed_windows(compose(plain, {})[0], 3)] == [[0]]
+    assert [window.tolist() for window in _assessed_windows(compose(plain, {})[0], 3)] == [[0]]
 
 
 def steps(position):
@@ -155,14 +155,14 @@ def steps(position):
 
 def test_nodes_of_one_pitch_among_others_join_its_neighbors():
     """A pitch that ends higher than it starts is no jump, for the next one goes on from there."""
-    nodes = adaptive_nodes(NodeRule(16, 0.002, 768), steps)
+    nodes = _adaptive_nodes(NodeRule(16, 0.002, 768), steps)
     assert nodes.position.size < 200
     assert nodes.error.max() <= 0.002
     spacing = np.diff(nodes.position, append=1.0)
     kinks = np.abs(nodes.position[:, None] - [0.213, 0.741]).min(axis=1)
     assert spacing[kinks < 0.05].min() < 0.15 * spacing[kinks > 0.15].min()
     even = np.arange(64) / 64
-    fixed, _ = measured_nodes(
+    fixed, _ = _measured_nodes(
         even, steps(even).reshape(192, 1), lambda x: steps(x).reshape(-1, 1), 3, NodeRule(16, 0.002, 768)
     )
     assert fixed.error[[64, 127]].max() < 1e-12

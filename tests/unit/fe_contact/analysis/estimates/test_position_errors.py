@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fe_contact.analysis.estimates.position_errors import measured_nodes, predicted_failure
-from fe_contact.analysis.tables import adaptive_nodes
-from fe_contact.planning import NodeRule
+from fe_contact.analysis.estimates.position_errors import _measured_nodes, _predicted_failure
+from fe_contact.analysis.tables import _adaptive_nodes
+from fe_contact.planning.plan import NodeRule
 from fe_contact.ste.interpolation import Axis, interpolate
 
 TOLERANCE = 0.002
@@ -34,7 +34,7 @@ def assessed(curves, count):
         return curves(position)
 
     nodes = np.arange(count) / count
-    found, left = measured_nodes(nodes, curves(nodes), solve, 1, NodeRule(count, TOLERANCE, 768))
+    found, left = _measured_nodes(nodes, curves(nodes), solve, 1, NodeRule(count, TOLERANCE, 768))
     return found, left, sum(position.size for position in asked)
 
 
@@ -71,14 +71,14 @@ def test_smooth_curves_are_assessed_without_a_solution(count):
 
 def test_the_prediction_fails_with_the_square_of_the_spacing_or_faster():
     few, many = (
-        predicted_failure(Axis(nodes, 1.0), waves(nodes)).max(axis=0)
+        _predicted_failure(Axis(nodes, 1.0), waves(nodes)).max(axis=0)
         for nodes in (np.arange(n) / n for n in (32, 64))
     )
     assert np.all(many < 0.3 * few)
     even = np.arange(7) / 7  # an odd number closes with two neighbors of the same set
-    assert predicted_failure(Axis(even, 1.0), np.ones((7, 2))).max() < 1e-15
+    assert _predicted_failure(Axis(even, 1.0), np.ones((7, 2))).max() < 1e-15
 
 
 def test_fixed_positions_state_a_larger_error_than_placed_ones():
-    placed = adaptive_nodes(NodeRule(32, TOLERANCE, 768), lambda position: trapezoids(position)[None])
+    placed = _adaptive_nodes(NodeRule(32, TOLERANCE, 768), lambda position: trapezoids(position)[None])
     assert np.all(assessed(trapezoids, 32)[0].error.max(axis=0) > placed.error.max(axis=0))

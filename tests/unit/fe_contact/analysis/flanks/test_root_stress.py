@@ -12,7 +12,7 @@ from analysis_requests import point_request
 from numpy.typing import ArrayLike
 
 from fe_contact import Gear, GearPair, RootStress, root_stress
-from fe_contact.analysis.flanks.root_stress import crests, pair_histories
+from fe_contact.analysis.flanks.root_stress import _crest_values, _pair_histories
 from fe_contact.analysis.flanks.solved_operating_point import SolvedOperatingPoint, solve_operating_point
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import unit_root_stress, unit_root_stress_3d
@@ -20,7 +20,7 @@ from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, RingGear
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
-from fe_contact.planning.planned import finer_root
+from fe_contact.planning.planned import _finer_root
 from fe_contact.stage_clock import StageClock
 
 FORCE = 2000.0
@@ -61,16 +61,16 @@ def with_forces(found: SolvedOperatingPoint, keep: np.ndarray, factor: float = 1
 def test_stress_is_linear_in_the_forces(cache: Path, model: str) -> None:
     found = place(SPUR, cache, model)
     if model == "3d":
-        unit = unit_root_stress_3d(GEAR, finer_root(SectorRecipe.draft(GEAR)), cache=cache)
+        unit = unit_root_stress_3d(GEAR, _finer_root(SectorRecipe.draft(GEAR)), cache=cache)
     else:
         unit = unit_root_stress(GEAR, MeshRecipe.standard(GEAR).refined(0.6), cache=cache)
-    whole = pair_histories(found, (unit, unit))[0].stress
+    whole = _pair_histories(found, (unit, unit))[0].stress
     first = found.problem.candidates.pair < 0
-    parts = [pair_histories(with_forces(found, keep), (unit, unit))[0].stress for keep in (first, ~first)]
+    parts = [_pair_histories(with_forces(found, keep), (unit, unit))[0].stress for keep in (first, ~first)]
     scale = np.abs(whole).max()
     assert min(np.abs(part).max() for part in parts) > 0.1 * scale
     assert np.abs(sum(parts) - whole).max() < 1e-12 * scale
-    double = pair_histories(with_forces(found, np.ones_like(first), 2.0), (unit, unit))[0].stress
+    double = _pair_histories(with_forces(found, np.ones_like(first), 2.0), (unit, unit))[0].stress
     assert np.array_equal(double, 2.0 * whole)
 
 
@@ -159,17 +159,19 @@ def test_peak_and_passage_say_the_same(cache: Path) -> None:
 def test_crests_of_parabolas_and_of_slopes() -> None:
     s = np.array([0.0, 1.0, 1.5, 3.0, 3.5])
     values = np.stack([5.0 - 2.0 * (s - at) ** 2 for at in (1.2, 2.1, 3.2)])
-    value, at = crests(s, values)
+    value, at = _crest_values(s, values)
     assert value == pytest.approx([5.0, 5.0, 5.0], rel=1e-12)
     assert at == pytest.approx([1.2, 2.1, 3.2], rel=1e-12)
-    value, at = crests(s, np.stack([s, -s, np.full(5, 2.0)]))
+    value, at = _crest_values(s, np.stack([s, -s, np.full(5, 2.0)]))
     assert value == pytest.approx([3.5, 0.0, 2.0])
     assert at[:2] == pytest.approx([3.5, 0.0])
 
 
 def test_crests_do_not_lean_on_what_does_not_count() -> None:
     s = np.arange(5.0)
-    value, at = crests(s, np.array([[1.0, 4.0, 5.0, -np.inf, -np.inf], [-np.inf, 3.0, 4.0, 3.0, -np.inf]]))
+    value, at = _crest_values(
+        s, np.array([[1.0, 4.0, 5.0, -np.inf, -np.inf], [-np.inf, 3.0, 4.0, 3.0, -np.inf]])
+    )
     assert value == pytest.approx([5.0, 4.0])
     assert at == pytest.approx([2.0, 2.0])
 

@@ -10,11 +10,11 @@ import pytest
 
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis import CondensedPair, condensed_pair
-from fe_contact.analysis.live.condensed_contacts import left_by_patches
+from fe_contact.analysis.live.condensed_contacts import _left_by_patches
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.geometry import FlankModification
 from fe_contact.geometry.web_compliance import finite_width_excess
-from fe_contact.planning import LEFT_OUT
+from fe_contact.planning.planned import LEFT_OUT
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES, SOURCES
 from fe_contact.types import FloatArray
@@ -93,7 +93,7 @@ def test_wide_load_patches_count_where_they_show(cache: Path, pair: CondensedPai
 
 def test_patches_as_narrow_as_the_strips_leave_nothing(pair: CondensedPair) -> None:
     plan = pair.contact.plan
-    light, heavy = (left_by_patches(PAIR, replace(plan, load=k * plan.load)) for k in (1.0, 1000.0))
+    light, heavy = (_left_by_patches(PAIR, replace(plan, load=k * plan.load)) for k in (1.0, 1000.0))
     assert light > 0.0 and heavy == 0.0
 
 

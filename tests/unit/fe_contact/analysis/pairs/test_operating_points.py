@@ -9,7 +9,7 @@ from analysis_requests import table_request
 from fe_contact import Gear, GearPair
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact, operating_points
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.planning import make_plan
+from fe_contact.planning.plan import make_plan
 
 MISALIGNMENTS, CHANGES = (-2e-5, 0.0, 2e-5), (0.0, 1e-4)
 

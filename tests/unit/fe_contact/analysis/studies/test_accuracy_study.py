@@ -9,16 +9,16 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
-from fe_contact.analysis.pairs.slice_springs import SpringContact, slice_stiffness
+from fe_contact.analysis.pairs.slice_springs import SpringContact, _slice_stiffness
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies.accuracy_study import FIDELITIES, ISO6336, THIN_SLICES
-from fe_contact.analysis.studies.frontier import chosen_fidelity, frontier
+from fe_contact.analysis.studies.frontier import _chosen_fidelity, frontier
 from fe_contact.contact import solve_contact
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.errors import InputError
 from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning import make_plan
+from fe_contact.planning.plan import make_plan
 
 
 def pair_of(helix: float = 0.0, width: float = 8e-3, **modification: float) -> GearPair:
@@ -87,7 +87,7 @@ def test_thin_slices_are_the_contact_solver_with_uncoupled_slices(helix, misalig
     plan = make_plan(pair, checked.request.load, checked.request.options, checked.model)
     springs = SpringContact(pair, plan, law=THIN_SLICES.law)
     problem, found = springs.solve(checked.model, np.linspace(0.0, 0.9, 7), plan.load)
-    stiffness = slice_stiffness(pair, problem.candidates, THIN_SLICES.law)
+    stiffness = _slice_stiffness(pair, problem.candidates, THIN_SLICES.law)
     diagonal = np.eye(stiffness.shape[1]) / stiffness[:, None, :]
     # bodies a million times stiffer than steel: no local approach; each slice has its own point
     candidates = replace(problem.candidates, blend=np.eye(len(problem.candidates.blend)))
@@ -165,7 +165,7 @@ def test_the_chosen_fidelity_is_the_model_and_the_mesh_asked_for(model, level):
     checked = check_request(
         pair_of(), TableAxes(normal_forces=[500.0]), AnalysisOptions(model=model, level=level)
     )
-    fidelity = next(fidelity for fidelity in FIDELITIES if fidelity.name == chosen_fidelity(checked))
+    fidelity = next(fidelity for fidelity in FIDELITIES if fidelity.name == _chosen_fidelity(checked))
     made = fidelity.as_computed(checked)
     assert made.model == checked.model
     assert made.request.options.level == (level if model != "plane_strain" else "standard")

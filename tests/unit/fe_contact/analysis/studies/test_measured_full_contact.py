@@ -17,9 +17,9 @@ from fe_contact.analysis.studies import measured_full_contact as measuring
 from fe_contact.analysis.studies.accuracy_study import THIN_SLICES
 from fe_contact.analysis.studies.frontier import frontier
 from fe_contact.analysis.studies.measured_full_contact import (
+    _over_face,
     full_contact_refusal,
     measure_full_contact,
-    over_face,
 )
 from fe_contact.errors import InputError, SolveError
 from fe_contact.full_contact import FullContactPoint, FullContactTable
@@ -133,9 +133,9 @@ def test_what_needs_the_face_is_solved_over_it(table: SteDatabase, monkeypatch: 
         check_request(PAIR, *table_request(misalignments=[0.0, 1e-5], **aligned)),
         check_request(dataclasses.replace(PAIR, wheel=crowned), *table_request(**aligned)),
     ]
-    assert not over_face(check_request(PAIR, *table_request(**aligned)))
+    assert not _over_face(check_request(PAIR, *table_request(**aligned)))
     for checked in needing:
-        assert over_face(checked)
+        assert _over_face(checked)
         assert full_contact_refusal(checked) is None
     asked = fake_over_face(table, monkeypatch)
     found = measure_full_contact(needing[1], 2, lambda *_: None)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fe_contact.analysis.tables import adaptive_nodes
-from fe_contact.planning import NodeRule
+from fe_contact.analysis.tables import _adaptive_nodes
+from fe_contact.planning.plan import NodeRule
 from fe_contact.ste.interpolation import Axis, interpolate
 
 
@@ -27,14 +27,14 @@ def held_out(nodes: np.ndarray) -> np.ndarray:
 
 
 def test_adaptive_nodes_meet_their_tolerance_at_held_out_positions():
-    nodes = adaptive_nodes(NodeRule(32, 0.002, 768), repeating(trapezoid_wave))
+    nodes = _adaptive_nodes(NodeRule(32, 0.002, 768), repeating(trapezoid_wave))
     assert np.all(nodes.error <= 0.002 * np.array([1e-6, 3e-6]))
     # the middles of the intervals are not the worst places, so some slack over the stated error
     assert np.all(held_out(nodes.position) <= 2.0 * 0.002 * np.array([1e-6, 3e-6]))
 
 
 def test_nodes_gather_at_the_kinks():
-    nodes = adaptive_nodes(NodeRule(32, 0.002, 768), repeating(trapezoid_wave)).position
+    nodes = _adaptive_nodes(NodeRule(32, 0.002, 768), repeating(trapezoid_wave)).position
     spacing = np.diff(nodes, append=nodes[0] + 1.0)
     near = np.abs((nodes + 0.5) % 1.0 - 0.5)
     assert spacing[(near > 0.2) & (near < 0.25)].min() < spacing[near < 0.15].min() / 8.0
@@ -44,13 +44,13 @@ def test_a_jump_ends_at_the_node_limit_with_a_finite_error():
     def jump(position):
         return np.where(position < 0.3, 0.0, 1.0)[:, None] + 0.01 * np.sin(2 * np.pi * position)[:, None]
 
-    nodes = adaptive_nodes(NodeRule(16, 1e-9, 768), repeating(jump))
+    nodes = _adaptive_nodes(NodeRule(16, 1e-9, 768), repeating(jump))
     assert nodes.position.size <= 768
     assert np.all(np.isfinite(nodes.error))
     assert nodes.error.max() > 0.1
 
 
 def test_constant_curves_need_no_nodes():
-    nodes = adaptive_nodes(NodeRule(16, 0.002, 768), lambda x: np.ones((1, x.size, 1)))
+    nodes = _adaptive_nodes(NodeRule(16, 0.002, 768), lambda x: np.ones((1, x.size, 1)))
     assert nodes.position.size == 16
     assert nodes.error == pytest.approx(0.0, abs=1e-12)

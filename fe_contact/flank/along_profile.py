@@ -1,18 +1,100 @@
-"""A rounded or chamfered tip as a modification: it ends the usable flank at the tip form circle."""
+"""Modifications along the profile (ISO 21771-1): crowning, slope, reliefs and the edge of the tip."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from bounds import Declared, Direction, Kind, SiNote, Text, Words, between, declared
 from fe_contact.errors import InputError, within
 from fe_contact.flank.involute import involute_normal, involute_point
-from fe_contact.flank.part import FlankPart, ReliefStart, Tooth
+from fe_contact.flank.part import FlankPart, Polynomial, ReliefStart, Tooth
+from fe_contact.flank.relief import ProfileRelief, Shape, amount, length, shape, slope
 from fe_contact.types import FloatArray
+
+_PROFILE = Direction.PROFILE
+
+
+@dataclass(frozen=True, kw_only=True)
+class _ProfileCrowning(Polynomial):
+    """Crowning over the roll length."""
+
+    profile_crowning: float = amount(_PROFILE, "Profile crowning at both ends of the profile", 5e-6)
+    powers: ClassVar[tuple[int, int]] = (2, 0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _ProfileCrowningTip(ProfileRelief):
+    """Parabola from the highest point of the profile to the tip circle."""
+
+    _at_tip: ClassVar[bool] = True
+
+    profile_crowning_tip: float = amount(
+        _PROFILE, "Profile crowning at the tip alone, besides that at both ends", 5e-6, later=True
+    )
+    profile_crowning_tip_length: float = length(
+        _PROFILE,
+        "Length of the crowning to the tip along the radius, from its highest point",
+        4e-3,
+        later=True,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class _ProfileCrowningRoot(ProfileRelief):
+    """Parabola from the highest point of the profile to the form circle."""
+
+    _at_tip: ClassVar[bool] = False
+
+    profile_crowning_root: float = amount(
+        _PROFILE, "Profile crowning at the root alone, besides that at both ends", 5e-6, later=True
+    )
+    profile_crowning_root_length: float = length(
+        _PROFILE,
+        "Length of the crowning to the root along the radius, from its highest point",
+        3e-3,
+        later=True,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class _ProfileSlope(Polynomial):
+    """Slope over the roll length."""
+
+    profile_slope: float = slope(
+        _PROFILE,
+        "Profile slope, linear over the roll length; > 0 removes half at the tip, adds half at the root",
+        5e-6,
+    )
+    powers: ClassVar[tuple[int, int]] = (1, 0)
+    weight: ClassVar[float] = 0.5
+
+
+@dataclass(frozen=True, kw_only=True)
+class _TipRelief(ProfileRelief):
+    """Relief from a radius to the tip circle."""
+
+    _at_tip: ClassVar[bool] = True
+
+    tip_relief: float = amount(_PROFILE, "Tip relief at the tip diameter", 20e-6)
+    tip_relief_length: float = length(_PROFILE, "Length of the tip relief along the radius", 1.5e-3)
+    tip_relief_shape: Shape = shape(_PROFILE, "Tip relief over its length")
+
+
+@dataclass(frozen=True, kw_only=True)
+class _RootRelief(ProfileRelief):
+    """Relief from a radius to the form circle."""
+
+    _at_tip: ClassVar[bool] = False
+
+    root_relief: float = amount(_PROFILE, "Root relief at the start of the involute", 10e-6)
+    root_relief_length: float = length(_PROFILE, "Length of the root relief along the radius", 1e-3)
+    root_relief_shape: Shape = shape(_PROFILE, "Root relief over its length")
+
 
 # The tip edge of a gear: sharp, rounded or chamfered (tip corner of ISO 21771-1).
 #
@@ -110,7 +192,7 @@ def _chamfer_reaches(gear: Tooth, roll: float, angle: float) -> bool:
 
 def _edge(description: str, example: float) -> Declared:
     """Return the declaration of the size of an edge, m."""
-    return Declared(Kind.EDGE, "m", between(0.0, 0.1), description, example, Direction.PROFILE)
+    return Declared(Kind.EDGE, "m", between(0.0, 0.1), description, example, _PROFILE)
 
 
 _ROUNDING = "Radius of the rounded tip edge in the transverse plane, tangent to flank and tip circle"
@@ -119,16 +201,14 @@ _ANGLE = "Angle between flank and tip chamfer at the tip form point in the trans
 
 
 @dataclass(frozen=True, kw_only=True)
-class CutTip(FlankPart):
+class _CutTip(FlankPart):
     """A rounding or a chamfer, or a sharp tip edge; amounts at the tip stay those at the tip circle."""
 
     tip_rounding: float = declared(0.0, _edge(_ROUNDING, 0.3e-3))
     tip_chamfer: float = declared(0.0, _edge(_CHAMFER, 0.4e-3))
     tip_chamfer_angle: float = declared(
         math.radians(30.0),
-        Declared(
-            Kind.ANGLE, "rad", between(FLATTEST, STEEPEST), _ANGLE, math.radians(30.0), Direction.PROFILE
-        ),
+        Declared(Kind.ANGLE, "rad", between(FLATTEST, STEEPEST), _ANGLE, math.radians(30.0), _PROFILE),
     )
 
     def __post_init__(self) -> None:
@@ -162,3 +242,15 @@ class CutTip(FlankPart):
             return (ReliefStart(start, True, 0.0, 1.0 / self.tip_rounding - gear.sign / start, True),)
         start = _chamfer_start(gear, self.tip_chamfer)
         return (ReliefStart(start, True, math.tan(self.tip_chamfer_angle), -gear.sign / start, True),)
+
+
+ALONG_PROFILE: tuple[type[FlankPart], ...] = (
+    _ProfileCrowning,
+    _ProfileCrowningTip,
+    _ProfileCrowningRoot,
+    _ProfileSlope,
+    _TipRelief,
+    _RootRelief,
+    _CutTip,
+)
+"""In the order of their figures."""

@@ -1,0 +1,169 @@
+"""Modifications over the whole flank: twist, triangular relief (ISO 21771-1), a free form.
+
+A triangular relief removes material from the corners where lines of contact begin and end. It is a tip or
+root relief whose start is a line of contact instead of a circle: deepest at that corner of the flank which
+lines of contact reach first or last, and the same along every line of contact. Lines of contact are those of
+equal l + z tan(beta_b), roll length l and face position z.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from bounds import Declared, Direction, Kind, Quantity, Text, declared
+from fe_contact.errors import InputError
+from fe_contact.flank.part import FlankPart, Polynomial, ReliefStart, Tooth, involute
+from fe_contact.flank.relief import ProfileRelief, Shape, amount, length, shape, slope
+from fe_contact.types import FloatArray
+
+if TYPE_CHECKING:
+    from fe_contact.flank.flank_grid import FlankGrid
+
+_FLANK = Direction.PROFILE | Direction.FACE
+
+
+@dataclass(frozen=True, kw_only=True)
+class _FlankTwist(Polynomial):
+    """Twist; the profile slope grows by four times the amount from one end of the face to the other."""
+
+    flank_twist: float = slope(
+        _FLANK,
+        "Twist at the corners of the flank; > 0 removes at the tip where z is positive and at the opposite "
+        "corner, adds at the other two",
+        5e-6,
+    )
+    powers: ClassVar[tuple[int, int]] = (1, 1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _CornerRelief(ProfileRelief):
+    """A relief over the profile as it is at the end of the face that holds the corner."""
+
+    def check_fits(self, gear: Tooth) -> None:
+        """Raise `InputError` if it is longer than the involute, or no line of contact crosses the flank."""
+        super().check_fits(gear)
+        if self._amount and not gear.base_helix_angle:
+            advice = "Lines of contact of a spur gear run along the face: give it a tip or root relief."
+            raise InputError(f"modification.{self._name}", self._amount, "0 for a spur gear", advice)
+
+    def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
+        """See `FlankPart.removed`."""
+        return super().removed(gear, roll_length - self._inset(gear, face_position), face_position)
+
+    def relief_starts(self, gear: Tooth, face_position: FloatArray | float = 0.0) -> tuple[ReliefStart, ...]:
+        """See `FlankPart.relief_starts`; nothing begins where the triangle has ended."""
+        start, end = self._span(gear)
+        inset = self._inset(gear, np.asarray(face_position))
+        reached = np.abs(inset) < abs(end - start)
+        here = self._begins(gear, np.clip(start + inset, *involute(gear)), end - start)
+        jump, bend = (np.where(reached, value, 0.0) for value in (here.jump, here.bend))
+        return (ReliefStart(here.roll_length, here.towards_tip, jump, bend),)
+
+    def _inset(self, gear: Tooth, face_position: FloatArray) -> FloatArray:
+        """Return how much later than at the corner's end of the face it starts, m of roll length."""
+        start, end = self._span(gear)
+        lead = math.tan(gear.base_helix_angle)
+        corner = math.copysign(0.5 * gear.face_width, lead * (end - start))
+        return np.asarray((corner - face_position) * lead)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _TriangularTipRelief(_CornerRelief):
+    """Relief of the corner at the tip."""
+
+    _at_tip: ClassVar[bool] = True
+
+    triangular_tip_relief: float = amount(
+        _FLANK,
+        "Triangular tip relief at the corner of the tip which lines of contact reach first or last",
+        15e-6,
+        later=True,
+    )
+    triangular_tip_relief_length: float = length(
+        _FLANK,
+        "Length of the triangular tip relief along the radius at its end of the face",
+        1e-3,
+        later=True,
+    )
+    triangular_tip_relief_shape: Shape = shape(_FLANK, "Triangular tip relief over its length", later=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _TriangularRootRelief(_CornerRelief):
+    """Relief of the corner at the form circle."""
+
+    _at_tip: ClassVar[bool] = False
+
+    triangular_root_relief: float = amount(
+        _FLANK,
+        "Triangular root relief at the corner of the root which lines of contact reach first or last",
+        15e-6,
+        later=True,
+    )
+    triangular_root_relief_length: float = length(
+        _FLANK,
+        "Length of the triangular root relief along the radius at its end of the face",
+        1e-3,
+        later=True,
+    )
+    triangular_root_relief_shape: Shape = shape(_FLANK, "Triangular root relief over its length", later=True)
+
+
+_SURFACE = Declared(
+    Kind.SURFACE,
+    "",
+    None,
+    "Free-form flank, removed besides the amounts",
+    along=_FLANK,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _FreeForm(FlankPart):
+    """A free-form flank, if there is one."""
+
+    flank_grid: FlankGrid | None = declared(None, _SURFACE)
+
+    @cached_property
+    def varies(self) -> Direction:
+        """Along the profile if anything is removed, along the face if any row differs along it."""
+        if self.flank_grid is None or self.flank_grid.neutral:
+            return Direction.NONE
+        across = Direction.FACE if self.flank_grid.varies_along_face else Direction.NONE
+        return Direction.PROFILE | across
+
+    def check_fits(self, gear: Tooth) -> None:
+        """Raise `InputError` if the grid lies beside the flank."""
+        if self.flank_grid is None:
+            return
+        half = 0.5 * gear.face_width
+        _check_reach("roll_length", self.flank_grid.roll_length, *involute(gear))
+        _check_reach("face_position", self.flank_grid.face_position, -half, half)
+
+    def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
+        """See `FlankPart.removed`."""
+        assert self.flank_grid is not None
+        return self.flank_grid.material_removed(roll_length, face_position)
+
+
+def _check_reach(axis: str, nodes: tuple[float, ...], low: float, high: float) -> None:
+    """Refuse an axis of a grid that lies beside the flank: a wrong unit or origin."""
+    if nodes[-1] <= low or nodes[0] >= high:
+        ends = Quantity(low, "m", digits=6), " to ", Quantity(high, "m", digits=6)
+        bound = Text.of("a range that reaches into the flank, which spans ", *ends)
+        advice = "Is the unit or the origin another one?"
+        raise InputError(f"modification.flank_grid.{axis}", [nodes[0], nodes[-1]], bound, advice)
+
+
+OVER_FLANK: tuple[type[FlankPart], ...] = (
+    _FlankTwist,
+    _TriangularTipRelief,
+    _TriangularRootRelief,
+    _FreeForm,
+)
+"""In the order of their figures."""
