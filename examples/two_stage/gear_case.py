@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lineofaction.gearbox.rexs import read_rexs
+from lineofaction.gearbox.rexs.files import read_rexs
 
 REXS = Path(__file__).parent / "two_stage.rexs"
 RING_WIDTH = {"6206": 16.0, "30207": 15.0, "30212": 19.0}

@@ -30,7 +30,8 @@ from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import Study
-from lineofaction.gearbox.rexs import Attribute, Document, read_rexs, serialized
+from lineofaction.gearbox.rexs.files import read_rexs, serialized
+from lineofaction.gearbox.rexs.model import Attribute, Document
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.flank import FlankPoint
 from lineofaction.gearbox.schemas.warning import left_out_warnings

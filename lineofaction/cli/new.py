@@ -28,7 +28,7 @@ from lineofaction.gearbox.from_rexs.account import FATES, Assumption
 from lineofaction.gearbox.from_rexs.loads import LoadCase
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit, headline, opened, report_lines, unit_files
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import read_rexs
+from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml_table import toml_table

@@ -24,7 +24,7 @@ from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.mesh_tables import MeshTables, finished
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.rexs import read_rexs
+from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.named_files import beside
 from lineofaction.gearbox.schemas.reading import READERS, written_out

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from lineofaction.gearbox.rexs import serialized
+from lineofaction.gearbox.rexs.files import serialized
 from tests.fakes.rexs_unit import place, two_stages
 
 ROOT = Path(__file__).parents[2]

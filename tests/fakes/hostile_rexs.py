@@ -10,7 +10,8 @@ from collections.abc import Iterator
 
 from small_rexs import small_model
 
-from lineofaction.gearbox.rexs import Document, serialized
+from lineofaction.gearbox.rexs.files import serialized
+from lineofaction.gearbox.rexs.model import Document
 
 XML = serialized(Document(small_model()), "a.rexs")
 JSON = serialized(Document(small_model()), "a.rexsj")

@@ -8,7 +8,7 @@ from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.convert.topology import facts_of
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
-from lineofaction.gearbox.rexs import Document
+from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas.scene import SceneInput
 
 

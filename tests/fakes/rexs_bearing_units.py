@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from lineofaction.gearbox.rexs import Document
+from lineofaction.gearbox.rexs.model import Document
 from tests.fakes.rexs_stage import relation
 from tests.fakes.rexs_unit import MOTOR, place, two_stages
 

@@ -12,5 +12,5 @@ from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, loaded_flank, me
 
 def loaded(unit: GearUnit, gear: int, torque: float) -> LoadedFlank:
     """Return the loaded flank of a gear under a torque on the driver."""
-    meshing = meshing_of(unit, unit.part(STAGE), torques=(torque,))
-    return loaded_flank(unit, meshing, unit.part(gear))
+    meshing = meshing_of(unit.part(STAGE), torques=(torque,))
+    return loaded_flank(meshing, unit.part(gear))

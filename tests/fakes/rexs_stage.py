@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.rexs import Attribute, Component, Model, Reference, Relation
+from lineofaction.gearbox.rexs.model import Attribute, Component, Model, Reference, Relation
 
 PINION, WHEEL, STAGE = 11, 12, 20
 PINION_LEFT, PINION_RIGHT, WHEEL_LEFT, WHEEL_RIGHT = 31, 32, 33, 34

@@ -12,7 +12,15 @@ from typing import Any
 import numpy as np
 
 from bounds.types import FloatArray
-from lineofaction.gearbox.rexs import Attribute, Component, Document, LoadCase, LoadSpectrum, Model, Relation
+from lineofaction.gearbox.rexs.model import (
+    Attribute,
+    Component,
+    Document,
+    LoadCase,
+    LoadSpectrum,
+    Model,
+    Relation,
+)
 from tests.fakes.rexs_stage import relation
 
 Values = Mapping[int, Mapping[str, Any]]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from lineofaction.gearbox.rexs import (
+from lineofaction.gearbox.rexs.model import (
     Attribute,
     Component,
     Document,

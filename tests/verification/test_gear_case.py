@@ -24,7 +24,7 @@ from dynamics.housings import (
 )
 from lineofaction.gearbox.convert.toml import toml_text
 from lineofaction.gearbox.from_rexs.opened import opened
-from lineofaction.gearbox.rexs import read_rexs
+from lineofaction.gearbox.rexs.files import read_rexs
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "two_stage"
 ELEMENT_SIZE = 0.03

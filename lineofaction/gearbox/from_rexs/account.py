@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Attribute, Component, Model, listed_unit
-from lineofaction.gearbox.rexs.kinds import entry_kind, kind_of, texts_of
-from lineofaction.gearbox.rexs.values import scalar_of
+from lineofaction.gearbox.rexs.model import Attribute, Component, Model
+from lineofaction.gearbox.rexs.values import entry_kind, kind_of, scalar_of, texts_of
+from lineofaction.gearbox.rexs.vocabulary import listed_unit
 
 # Assumptions: values of attributes that a caller sets over those of the file before it is opened.
 

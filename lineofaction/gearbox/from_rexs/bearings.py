@@ -11,11 +11,8 @@ from bounds.types import FloatArray
 from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
 from dynamics.bearings.row import CLEARANCE
 from dynamics.errors import DynamicsError, InputError
-from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part, bounded_number
+from lineofaction.gearbox.from_rexs.gear_unit import Part
 from lineofaction.gearbox.rexs.vocabulary import words
-
-# Rolling bearings of a REXS model by their internal geometry, or by their line in a catalog.
-
 
 # The clearance of a rolling bearing: in operation, as mounted, or before mounting.
 
@@ -28,7 +25,7 @@ _STAGES = (
 _OPERATING = "operating_radial_bearing_clearance"
 
 
-def radial_clearance(part: Part) -> float:
+def _radial_clearance(part: Part) -> float:
     """Return the play across the axis between both extremes, m; negative: preload.
 
     That in operation counts first, then that as mounted, then that before mounting, stated or the mean of
@@ -47,10 +44,10 @@ def radial_clearance(part: Part) -> float:
     return 0.0
 
 
-def axial_clearance(part: Part, contact_angle: float) -> float:
+def _axial_clearance(part: Part, contact_angle: float) -> float:
     """Return the way along the axis to contact of a row with a contact angle, m; negative: preload.
 
-    At each stage, as of `radial_clearance`, a stated axial clearance counts first, then half of the radial
+    At each stage, as of `_radial_clearance`, a stated axial clearance counts first, then half of the radial
     one times the cotangent of the contact angle. A preload distance is taken off, unless a preload force
     follows.
     """
@@ -64,15 +61,14 @@ def axial_clearance(part: Part, contact_angle: float) -> float:
 
 
 def _way_to_contact(part: Part, contact_angle: float) -> float:
-    """Return the way along the axis to contact as stated, m; 0 where the file gives none."""
     for stage, meaning in _STAGES:
-        along = _stated(part, f"{stage}axial_bearing_clearance", meaning)
+        item = f"{stage}axial_bearing_clearance"
+        along = _stated(part, item, meaning)
         if along is not None:
             return along
         across = _stated(part, f"{stage}radial_bearing_clearance", meaning)
         if across is not None:
             way = 0.5 * across / math.tan(contact_angle)
-            item = f"{stage}axial_bearing_clearance"
             part.say(item, "derived", f"{1e6 * way:.3g} um: half of the radial clearance over tan(alpha)")
             return way
     part.say("operating_axial_bearing_clearance", "defaulted", "0 um: the file gives none")
@@ -80,8 +76,10 @@ def _way_to_contact(part: Part, contact_angle: float) -> float:
 
 
 def _stated(part: Part, item: str, words: str) -> float | None:
-    """Return a stated clearance, m; None where there is none or none that a bearing can have."""
-    return bounded_number(part, item, f"clearance {words}", CLEARANCE)
+    return part.bounded(item, f"clearance {words}", CLEARANCE)
+
+
+# Rolling bearings of a REXS model by their internal geometry, or by their line in a catalog.
 
 
 Row = BallBearing | RollerBearing
@@ -112,16 +110,16 @@ class BearingGeometry:
     line: CatalogLine | None = None
 
 
-def bearing_geometry(unit: GearUnit, part: Part) -> BearingGeometry | str:
+def bearing_geometry(part: Part) -> BearingGeometry | str:
     """Return the geometry of a bearing, or the reason why it is not known."""
     if part.type == "rolling_bearing_with_catalog_geometry":
         return _catalog_bearing(part)
     if part.type == "rolling_bearing_with_detailed_geometry":
-        return _detailed_bearing(unit, part)
+        return _detailed_bearing(part)
     return f"a {part.type} has no geometry"
 
 
-def bearing_type(part: Part) -> str:
+def _bearing_type(part: Part) -> str:
     """Return the type of a rolling bearing; the account refuses one that REXS does not have."""
     kind = part.text("bearing_type", "type of the bearing") or ""
     if kind and kind not in words("bearing_types"):
@@ -134,7 +132,7 @@ def _catalog_bearing(part: Part) -> BearingGeometry | str:
     names = ("inner_diameter", "outer_diameter", _RATING)
     words = ("bore, mm", "outside diameter, mm", "static load rating, kN")
     bore, outside, rating = (part.number(name, word) for name, word in zip(names, words, strict=True))
-    kind = bearing_type(part)
+    kind = _bearing_type(part)
     if kind != DEEP_GROOVE:
         return f"no geometry follows from the catalog line of a {kind or 'bearing without bearing_type'}"
     if bore is None or outside is None or rating is None:
@@ -142,7 +140,7 @@ def _catalog_bearing(part: Part) -> BearingGeometry | str:
     from dynamics.bearings.catalog import BAND, from_catalog  # noqa: PLC0415 (start-up time)
 
     try:
-        line = CatalogLine(bore, outside, rating, radial_clearance(part))
+        line = CatalogLine(bore, outside, rating, _radial_clearance(part))
         row = from_catalog(line.bore, line.outside_diameter, line.static_rating, line.clearance)
     except InputError as error:
         part.say(_RATING, "refused", f"no deep groove ball bearing has this line: {error}")
@@ -154,35 +152,34 @@ def _catalog_bearing(part: Part) -> BearingGeometry | str:
     return BearingGeometry(row, rating, line)
 
 
-def _detailed_bearing(unit: GearUnit, part: Part) -> BearingGeometry | str:
-    kind, rows = bearing_type(part), unit.children(part, "rolling_bearing_row")
+def _detailed_bearing(part: Part) -> BearingGeometry | str:
+    kind, rows = _bearing_type(part), part.children("rolling_bearing_row")
     rating = part.number(_RATING, "static load rating, kN")
     if kind not in (*BALLS, *ROLLERS):
         return f"{kind or 'a bearing without bearing_type'} is not computed"
     if len(rows) != 1 or rating is None:
         return f"{len(rows)} rows; one is computed" if len(rows) != 1 else "no static load rating"
-    elements = unit.children(rows[0], "rolling_element")
-    count = rows[0].attribute("number_of_rolling_elements")
+    elements = rows[0].children("rolling_element")
+    count = rows[0].value("number_of_rolling_elements")
     pitch = rows[0].number("reference_diameter_rolling_bearing", "pitch diameter, mm")
     diameter = (
         elements[0].number("diameter_of_rolling_element", "diameter of the element, mm") if elements else None
     )
-    if count is None or not isinstance(count.value, int) or pitch is None or diameter is None:
+    if not isinstance(count, int) or pitch is None or diameter is None:
         return "number or diameter of the elements, or their pitch diameter, are missing"
     rows[0].say("number_of_rolling_elements", "taken", "number of elements")
     try:
-        return BearingGeometry(_row(part, rows[0], elements[0], count.value, (diameter, pitch)), rating)
+        return BearingGeometry(_row(part, rows[0], elements[0], count, (diameter, pitch)), rating)
     except InputError as error:
         part.say("bearing_type", "refused", f"no such bearing: {error}")
         return "its geometry is that of no bearing"
 
 
 def _row(part: Part, row: Part, element: Part, count: int, sizes: tuple[float, float]) -> Row:
-    """Return a row of balls or rollers."""
     diameter, pitch = sizes
     angle = abs(row.number("pressure_angle", "contact angle, deg") or 0.0)
-    clearance = axial_clearance(part, angle) if angle else radial_clearance(part)
-    if bearing_type(part) in ROLLERS:
+    clearance = _axial_clearance(part, angle) if angle else _radial_clearance(part)
+    if _bearing_type(part) in ROLLERS:
         length = row.number("significant_contact_length_inner_ring", "effective length of the roller, mm")
         length = length or element.number("length_of_rolling_element", "length of the roller, mm")
         if length is None:
@@ -253,7 +250,7 @@ class BearingStiffness:
     matrix: FloatArray | None = None
 
 
-def bearing_stiffness(unit: GearUnit, part: Part) -> BearingStiffness:
+def bearing_stiffness(part: Part) -> BearingStiffness:
     """Return the stiffness of a bearing; the account says where each value comes from.
 
     The stiffness at an operating point counts first, then finite stated values, then the tangent of the
@@ -262,30 +259,27 @@ def bearing_stiffness(unit: GearUnit, part: Part) -> BearingStiffness:
     matrix = operating_point(part)
     if matrix is not None:
         return BearingStiffness(0.0, 0.0, 0.0, matrix)
-    tangent = _by_geometry(unit, part)
+    tangent = _by_geometry(part)
     radial = _radial(part, tangent)
     return BearingStiffness(radial, _axial(part, tangent, radial), _tilt(part, tangent))
 
 
 def _radial(part: Part, tangent: FloatArray | None) -> float:
     item = "radial_stiffness"
-    absorbs = part.attribute("radial_force_absorption")
-    if absorbs is not None and absorbs.value is False:
+    if part.value("radial_force_absorption") is False:
         part.say("radial_force_absorption", "taken", "no radial stiffness")
         return 0.0
     derived = None if tangent is None else 0.5 * (tangent[0, 0] + tangent[1, 1])
     value = _own_stiffness(part, item, derived)
     if value:
         return value
-    word = part.attribute("bearing_type")
-    kind = "roller" if word is not None and "roller" in str(word.value) else "ball"
+    kind = "roller" if "roller" in str(part.value("bearing_type")) else "ball"
     reason = "neither stiffness nor geometry is stated"
     part.say(item, "defaulted", f"{USUAL[kind]:g} N/m, as of {kind} bearings of about 50 mm bore: {reason}")
     return USUAL[kind]
 
 
 def _axial(part: Part, tangent: FloatArray | None, radial: float) -> float:
-    """Return the axial stiffness; 0 of a floating bearing."""
     item = "axial_stiffness"
     absorption = part.text("axial_force_absorption", "fixed or floating bearing")
     if absorption == "no_direction":
@@ -301,7 +295,6 @@ def _axial(part: Part, tangent: FloatArray | None, radial: float) -> float:
 
 
 def _tilt(part: Part, tangent: FloatArray | None) -> float:
-    """Return the tilt stiffness; 0 where the bearing is free to tilt."""
     derived = None if tangent is None else 0.5 * (tangent[3, 3] + tangent[4, 4])
     return _own_stiffness(part, "bending_stiffness", derived) or 0.0
 
@@ -333,9 +326,9 @@ def _own_stiffness(part: Part, item: str, derived: float | None) -> float | None
     return None
 
 
-def _by_geometry(unit: GearUnit, part: Part) -> FloatArray | None:
+def _by_geometry(part: Part) -> FloatArray | None:
     """Return the tangent (5, 5) in x, y, z, tilts of a bearing whose geometry is known, at the usual load."""
-    geometry = bearing_geometry(unit, part)
+    geometry = bearing_geometry(part)
     if isinstance(geometry, str):
         return None
     from dynamics.bearings.loaded_bearing import LoadedBearing  # noqa: PLC0415 (start-up time)

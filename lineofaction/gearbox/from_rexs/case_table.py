@@ -10,7 +10,7 @@ from typing import Any
 from fe_contact.errors import FeContactError
 from fe_contact.geometry import Gear
 from lineofaction.gearbox.convert.checks import check_plain_case
-from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
+from lineofaction.gearbox.from_rexs.gear_unit import Part
 from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, Meshing
 from lineofaction.gearbox.from_rexs.micro_geometry import micro_geometry
 from lineofaction.gearbox.from_rexs.placement import u_on_shaft
@@ -49,7 +49,7 @@ def root_diameter(gear: ToothingData, depth: ToothDepth, shift: float) -> float:
     return gear.reference_diameter - 2.0 * gear.sign * gear.normal_module * height
 
 
-def _held_diameter(unit: GearUnit, gear: ToothingData, root: float) -> float:
+def _held_diameter(gear: ToothingData, root: float) -> float:
     """Return the bore of an external gear, the outside of a ring gear's rim, m.
 
     Parameters
@@ -57,11 +57,11 @@ def _held_diameter(unit: GearUnit, gear: ToothingData, root: float) -> float:
     root : float
         Root diameter, m.
     """
-    return _rim_diameter(unit, gear, root) if gear.sign < 0 else _bore(unit, gear, root)
+    return _rim_diameter(gear, root) if gear.sign < 0 else _bore(gear, root)
 
 
-def _rim_diameter(unit: GearUnit, gear: ToothingData, root: float) -> float:
-    for part in (gear.part, *bodies(unit, gear.part)):
+def _rim_diameter(gear: ToothingData, root: float) -> float:
+    for part in (gear.part, *bodies(gear.part)):
         value = part.number("outer_diameter", "rim_diameter_mm")
         if value is not None and value > root:
             return value
@@ -71,14 +71,14 @@ def _rim_diameter(unit: GearUnit, gear: ToothingData, root: float) -> float:
     return rim
 
 
-def _bore(unit: GearUnit, gear: ToothingData, root: float) -> float:
+def _bore(gear: ToothingData, root: float) -> float:
     """Return the bore: the gear's or its body's own, else the shaft's outside, else half the root circle."""
     largest = root - 2.0 * _THINNEST * gear.normal_module
-    for part in (gear.part, *bodies(unit, gear.part)):
+    for part in (gear.part, *bodies(gear.part)):
         value = part.number("inner_diameter", "bore_diameter_mm")
         if value is not None and 0.0 < value < root:
             return value
-    shaft = _shaft_diameter(unit, gear.part)
+    shaft = _shaft_diameter(gear.part)
     if shaft is not None and shaft <= largest:
         words = f"bore_diameter_mm {shaft / MM:.7g}: the shaft's outer diameter there"
         gear.part.say("inner_diameter", "derived", words)
@@ -90,13 +90,13 @@ def _bore(unit: GearUnit, gear: ToothingData, root: float) -> float:
     return bore
 
 
-def _shaft_diameter(unit: GearUnit, gear: Part) -> float | None:
+def _shaft_diameter(gear: Part) -> float | None:
     """Return the outer diameter of the shaft's section at the gear's middle, m."""
-    shaft, place = unit.owner(gear, "shaft"), u_on_shaft(unit, gear)
+    shaft, place = gear.shaft, u_on_shaft(gear)
     if shaft is None or place is None:
         return None
     start = 0.0
-    for section in unit.children(shaft, "shaft_section"):
+    for section in shaft.children("shaft_section"):
         length = section.number("length", "length of the section") or 0.0
         begin = section.number("u_coordinate_on_shaft", "begin of the section")
         start = start if begin is None else begin
@@ -115,14 +115,14 @@ def _section_diameter(section: Part, fraction: float) -> float | None:
     return begin + fraction * (end - begin)
 
 
-def bodies(unit: GearUnit, gear: Part) -> tuple[Part, ...]:
+def bodies(gear: Part) -> tuple[Part, ...]:
     """Return the bodies of a gear."""
-    return unit.children(gear, "gear_body")
+    return gear.children("gear_body")
 
 
-def _blank_of(unit: GearUnit, gear: Part) -> Blank | None:
+def _blank_of(gear: Part) -> Blank | None:
     """Return rim and web of a gear's body, None for a solid one."""
-    for body in bodies(unit, gear):
+    for body in bodies(gear):
         rim = body.number("gear_body_rim_thickness", "blank.rim_thickness_mm")
         web = body.number("gear_body_web_thickness", "blank.web_thickness_mm")
         if rim and web:
@@ -132,12 +132,12 @@ def _blank_of(unit: GearUnit, gear: Part) -> Blank | None:
     return None
 
 
-def elasticity(unit: GearUnit, gear: Part) -> tuple[float, float]:
+def elasticity(gear: Part) -> tuple[float, float]:
     """Return Young's modulus in Pa and Poisson's ratio: the gear's, its body's, its shaft's, else steel's."""
-    shaft = unit.owner(gear, "shaft")
-    owners = (gear, *bodies(unit, gear), *(() if shaft is None else (shaft,)))
+    shaft = gear.shaft
+    owners = (gear, *bodies(gear), *(() if shaft is None else (shaft,)))
     for owner in owners:
-        for material in unit.related(owner, "reference", "origin", "referenced"):
+        for material in owner.referenced:
             young = material.number("elastic_modulus", "youngs_modulus_gpa")
             if young is None:
                 continue
@@ -275,7 +275,7 @@ class PairData:
         return (self.toothed.pinion, self.loaded[0]), (self.toothed.wheel, self.loaded[1])
 
 
-def case_of(unit: GearUnit, pair: PairData, pairs: Sequence[PairData], shifts: Mapping[int, float]) -> Case:
+def case_of(pair: PairData, pairs: Sequence[PairData], shifts: Mapping[int, float]) -> Case:
     """Return the case of a pair that can be computed.
 
     Parameters
@@ -291,14 +291,13 @@ def case_of(unit: GearUnit, pair: PairData, pairs: Sequence[PairData], shifts: M
         A shift that cannot be derived, gears that do not mate, a value out of its bounds.
     """
     _refuse_strangers(pair)
-    depths = [_depth(unit, gear, loaded, pairs, shifts) for gear, loaded in pair.gears]
+    depths = [_depth(gear, loaded, pairs, shifts) for gear, loaded in pair.gears]
     if pair.meshing.internal and not depths[1].tip_given:
         depths[1] = _clearing_tip(pair.toothed, depths, shifts)
     first, second = (
-        _gear(unit, gear, depth, shifts[gear.part.id])
-        for (gear, _), depth in zip(pair.gears, depths, strict=True)
+        _gear(gear, depth, shifts[gear.part.id]) for (gear, _), depth in zip(pair.gears, depths, strict=True)
     )
-    stiff = tuple(elasticity(unit, gear.part) for gear, _ in pair.gears)
+    stiff = tuple(elasticity(gear.part) for gear, _ in pair.gears)
     if stiff[0] != stiff[1]:
         second["material"] = _material(stiff[1])
     pinion = pair.toothed.pinion
@@ -318,8 +317,8 @@ def case_of(unit: GearUnit, pair: PairData, pairs: Sequence[PairData], shifts: M
     }
     _say_axial_offset(pair)
     plain = check_plain_case(validated(Case, table))
-    first.update(micro_geometry(unit, plain.pinion, pair.loaded[0]))
-    second.update(micro_geometry(unit, plain.wheel, pair.loaded[1]))
+    first.update(micro_geometry(plain.pinion, pair.loaded[0]))
+    second.update(micro_geometry(plain.wheel, pair.loaded[1]))
     case = validated(Case, table)
     check_plain_case(case)
     return case
@@ -376,7 +375,6 @@ def _strangers(pair: PairData, facts: Sequence[str], bound: str, item: str = "",
 
 
 def _depth(
-    unit: GearUnit,
     gear: ToothingData,
     loaded: LoadedFlank,
     pairs: Sequence[PairData],
@@ -387,10 +385,10 @@ def _depth(
     if shift is None:
         field = f"{gear.part.place}, addendum_modification_coefficient"
         raise BadInput.of(field, None, "given for this gear or for its mate")
-    return tooth_depth(unit, gear, loaded, shift, _tip_alteration(gear, pairs, shifts))
+    return tooth_depth(gear, loaded, shift, _tip_alteration(gear, pairs, shifts))
 
 
-def _gear(unit: GearUnit, gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
+def _gear(gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
     held = "rim_diameter_mm" if gear.sign < 0 else "bore_diameter_mm"
     return {
         "teeth": gear.teeth,
@@ -400,9 +398,9 @@ def _gear(unit: GearUnit, gear: ToothingData, depth: ToothDepth, shift: float) -
         "dedendum_coefficient": rounded(depth.dedendum_coefficient),
         "root_radius_coefficient": rounded(depth.root_radius_coefficient),
         "thickness_allowance_um": rounded(thickness_allowance(gear) / UM),
-        held: rounded(_held_diameter(unit, gear, root_diameter(gear, depth, shift)) / MM),
+        held: rounded(_held_diameter(gear, root_diameter(gear, depth, shift)) / MM),
         **_cutter(depth),
-        **_blank(unit, gear),
+        **_blank(gear),
     }
 
 
@@ -439,9 +437,9 @@ def _cutter(depth: ToothDepth) -> Table:
     return fields
 
 
-def _blank(unit: GearUnit, gear: ToothingData) -> Table:
+def _blank(gear: ToothingData) -> Table:
     """Return rim and web of an external gear."""
-    blank = None if gear.sign < 0 else _blank_of(unit, gear.part)
+    blank = None if gear.sign < 0 else _blank_of(gear.part)
     if blank is None:
         return {}
     sizes = {"rim_thickness_mm": blank.rim_thickness, "web_thickness_mm": blank.web_thickness}

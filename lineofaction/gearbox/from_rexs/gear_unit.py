@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import overload
 
 from bounds import Bound, Declared
 from lineofaction.gearbox.from_rexs.account import Account, Fate
-from lineofaction.gearbox.rexs import Attribute, Component, Model, Relation, quantities, quantity
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs.model import Attribute, Component, Model, Relation, Value
+from lineofaction.gearbox.rexs.vocabulary import quantities, quantity
 
-# A component as an import reads it: each value that is asked for is entered as taken.
 
-
-@dataclass(frozen=True)
 class Part:
-    """A component with the account of the import.
+    """A component as an import reads it, with its account and the parts that it is related to.
 
     A value read is taken, in the words of the reader; `say` corrects the entry afterwards: derived,
-    defaulted, ignored or refused.
+    defaulted, ignored or refused. Numbers are in SI; None stands for what the file does not give. Whatever
+    reads raises `BadInput` where a value is no number, is given twice, or has a unit of another quantity.
     """
 
-    component: Component
-    account: Account
+    def __init__(self, component: Component, unit: GearUnit) -> None:
+        self.component = component
+        self.unit = unit
 
     @property
     def id(self) -> int:
@@ -36,77 +38,139 @@ class Part:
     @property
     def place(self) -> str:
         """Where the component stands in the file."""
-        return self.account.place(self.component)
+        return self.unit.account.place(self.component)
 
     @property
     def name(self) -> str:
         """Name in the file, or type and id."""
         return self.component.name or f"{self.type} {self.id}"
 
-    def number(self, item: str, words: str) -> float | None:
-        """Return a number in SI, None where the file gives none.
+    @overload
+    def number(self, item: str, words: str) -> float | None: ...
 
-        Raises
-        ------
-        BadInput
-            It is no number, is given twice, or its unit belongs to another quantity.
-        """
+    @overload
+    def number(self, item: str, words: str, default: float, why: str) -> float: ...
+
+    def number(self, item: str, words: str, default: float | None = None, why: str = "") -> float | None:
+        """Return a number; the default, which the account states, where the file gives none."""
         value = quantity(self.component, item, self.place)
         if value is not None:
             self.say(item, "taken", words)
+        elif default is not None:
+            self.say(item, "defaulted", why)
+        return default if value is None else value
+
+    def required(self, item: str, words: str) -> float:
+        """Return a number that the component must have."""
+        value = self.number(item, words)
+        if value is None:
+            raise BadInput.of(f"{self.place}, {item}", None, "given", f"{self.name} needs it.")
         return value
 
-    def numbers(self, item: str, words: str) -> tuple[float, ...] | None:
-        """Return an array of numbers in SI, None where the file gives none.
+    def positive(self, item: str, words: str) -> float:
+        """Return a number above zero that the component must have."""
+        value = self.required(item, words)
+        if not value > 0.0:
+            raise BadInput.of(f"{self.place}, {item}", value, "above 0")
+        return value
 
-        Raises
-        ------
-        BadInput
-            As of `number`.
-        """
+    def bounded(self, item: str, words: str, field: Declared) -> float | None:
+        """Return a number; None, and refused, where it is out of the bounds of a field of the scene."""
+        value, attribute, limits = self.number(item, words), self.attribute(item), field.limits
+        if value is None or attribute is None or not isinstance(limits, Bound) or limits.holds(value):
+            return value
+        self.say(item, "refused", f"{attribute.value} {attribute.unit} is not {limits} {field.unit}")
+        return None
+
+    def numbers(self, item: str, words: str) -> tuple[float, ...] | None:
+        """Return an array of numbers."""
         values = quantities(self.component, item, self.place)
         if values is not None:
             self.say(item, "taken", words)
         return values
 
     def vector(self, item: str, words: str) -> tuple[float, ...] | None:
-        """Return an array of numbers in SI, None where the file gives none, or no array.
+        """Return an array of numbers, None also where the file gives no array.
 
         One writer's JSON has ``false`` in place of vectors: such a value is refused in the account.
-
-        Raises
-        ------
-        BadInput
-            As of `number`.
         """
-        attribute = self.component.attribute(item)
-        if attribute is not None and attribute.value is not None and not isinstance(attribute.value, tuple):
-            self.say(item, "refused", f"{attribute.value} is no vector")
+        value = self.value(item)
+        if value is not None and not isinstance(value, tuple):
+            self.say(item, "refused", f"{value} is no vector")
             return None
         return self.numbers(item, words)
 
     def text(self, item: str, words: str) -> str | None:
-        """Return a word or a name, None where the file gives none."""
-        attribute = self.component.attribute(item)
-        if attribute is None or attribute.value is None:
+        """Return a word or a name."""
+        value = self.value(item)
+        if value is None:
             return None
         self.say(item, "taken", words)
-        return str(attribute.value)
+        return str(value)
 
     def attribute(self, item: str) -> Attribute | None:
         """Return an attribute as it stands, without an entry in the account."""
         return self.component.attribute(item)
 
+    def value(self, item: str) -> Value:
+        """Return the value of an attribute as it stands, without an entry in the account."""
+        attribute = self.component.attribute(item)
+        return None if attribute is None else attribute.value
+
     def say(self, item: str, fate: Fate, words: str) -> None:
         """State what becomes of an attribute that the component has or lacks; "" is the component."""
-        self.account.say(self.component, item, fate, words)
+        self.unit.account.say(self.component, item, fate, words)
 
+    def related(self, relation: str, own: str, other: str) -> tuple[Part, ...]:
+        """Return the components in role `other` of the relations in which this one has the role `own`.
 
-# The components of a model by their relations.
+        Relations with an order come in it, others in the order of the file.
+        """
+        entries = [entry for entry in self.unit.relations(relation) if entry.of_role(own) == self.id]
+        entries.sort(key=lambda entry: entry.order or 0)
+        return tuple(self.unit.part(ref.id) for entry in entries for ref in entry.refs if ref.role == other)
+
+    @property
+    def referenced(self) -> tuple[Part, ...]:
+        """The components that this one refers to."""
+        return self.related("reference", "origin", "referenced")
+
+    def children(self, *types: str) -> tuple[Part, ...]:
+        """Return the parts of an assembly, an ordered one's in its order; all types if none is named."""
+        parts = (
+            *self.related("ordered_assembly", "assembly", "part"),
+            *self.related("assembly", "assembly", "part"),
+        )
+        unique = {child.id: child for child in parts}
+        return tuple(child for child in unique.values() if not types or child.type in types)
+
+    @property
+    def shaft(self) -> Part | None:
+        """The first shaft that has the component, None if there is none."""
+        for relation in self.unit.relations("assembly", "ordered_assembly"):
+            number = relation.of_role("assembly")
+            if relation.of_role("part") == self.id and number is not None:
+                owner = self.unit.part(number)
+                if owner.type == "shaft":
+                    return owner
+        return None
+
+    @property
+    def teeth(self) -> int | None:
+        """Number of teeth, negative of some ring gears."""
+        value = self.value("number_of_teeth")
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, (int, float))
+            or value == 0
+            or value != value // 1
+        ):
+            return None
+        return int(value)
 
 
 class GearUnit:
-    """A model's components, found by type and by their roles in relations.
+    """A model's components, by type and by their roles in relations.
 
     Parameters
     ----------
@@ -122,7 +186,7 @@ class GearUnit:
     def __init__(self, model: Model) -> None:
         self.model = model
         self.account = Account(model)
-        self._parts = {component.id: Part(component, self.account) for component in model.components}
+        self._parts = {component.id: Part(component, self) for component in model.components}
 
     def part(self, number: int) -> Part:
         """Return the component of an id."""
@@ -132,45 +196,31 @@ class GearUnit:
         """Return the components of these types, in the order of the file."""
         return tuple(part for part in self._parts.values() if part.type in types)
 
-    def related(self, part: Part, relation: str, own: str, other: str) -> tuple[Part, ...]:
-        """Return the components in role `other` of the relations in which `part` has the role `own`.
-
-        Relations with an order come in it, others in the order of the file.
-        """
-        entries = [entry for entry in self.relations(relation) if entry.of_role(own) == part.id]
-        entries.sort(key=lambda entry: entry.order or 0)
-        numbers = (ref.id for entry in entries for ref in entry.refs if ref.role == other)
-        return tuple(self._parts[number] for number in numbers)
-
     def relations(self, *types: str) -> Iterator[Relation]:
         """Yield the relations of these types, in the order of the file."""
         return (relation for relation in self.model.relations if relation.type in types)
 
-    def children(self, part: Part, *types: str) -> tuple[Part, ...]:
-        """Return the parts of an assembly, an ordered one's in its order; all types if none is named."""
-        parts = (
-            *self.related(part, "ordered_assembly", "assembly", "part"),
-            *self.related(part, "assembly", "assembly", "part"),
-        )
-        unique = {child.id: child for child in parts}
-        return tuple(child for child in unique.values() if not types or child.type in types)
-
-    def owner(self, part: Part, *types: str) -> Part | None:
-        """Return the first assembly of these types that has `part`, None if there is none."""
-        for relation in self.relations("assembly", "ordered_assembly"):
-            number = relation.of_role("assembly")
-            if relation.of_role("part") == part.id and number is not None:
-                owner = self._parts[number]
-                if not types or owner.type in types:
-                    return owner
-        return None
-
     def load_cases(self) -> tuple[tuple[Part, ...], ...]:
         """Return what each load case of the first spectrum sets, empty without a spectrum."""
-        if not self.model.spectra:
-            return ()
-        cases = self.model.spectra[0].cases
-        return tuple(tuple(Part(part, self.account) for part in case.components) for case in cases)
+        spectra = self.model.spectra[:1]
+        return tuple(
+            tuple(Part(part, self) for part in case.components) for each in spectra for case in each.cases
+        )
+
+    @property
+    def bearings(self) -> tuple[Connection, ...]:
+        """The bearings, in the order of the file."""
+        return tuple(_connections(self, BEARINGS))
+
+    @property
+    def couplings(self) -> tuple[Connection, ...]:
+        """The couplings that are engaged, in the order of the file."""
+        return tuple(entry for entry in _connections(self, COUPLINGS) if _engaged(entry.part))
+
+    def say(self, item: str, fate: Fate, words: str) -> None:
+        """State something of the whole unit."""
+        for part in self.of_type("gear_unit")[:1]:
+            part.say(item, fate, words)
 
 
 # Names of a scene's parts: those of the file, made unlike each other.
@@ -199,25 +249,6 @@ class Names:
             name = name[: LONGEST - len(ending)].rstrip() + ending
         self._names[part.id if not suffix else -len(self._names) - 1] = name
         return name
-
-
-# A number of a component that a field of the scene takes, or that the account refuses.
-
-
-def bounded_number(part: Part, item: str, words: str, field: Declared) -> float | None:
-    """Return a number in SI; None where the file gives none, or one out of the bounds of `field`.
-
-    Raises
-    ------
-    BadInput
-        As of `Part.number`.
-    """
-    value, attribute = part.number(item, words), part.attribute(item)
-    limits = field.limits
-    if value is None or attribute is None or not isinstance(limits, Bound) or limits.holds(value):
-        return value
-    part.say(item, "refused", f"{attribute.value} {attribute.unit} is not {limits} {field.unit}")
-    return None
 
 
 # What joins two components: couplings and bearings with an inner and an outer side.
@@ -263,33 +294,23 @@ class Connection:
         return self.outer if side.id == self.inner.id else self.inner
 
 
-def bearings(unit: GearUnit) -> tuple[Connection, ...]:
-    """Return the bearings, in the order of the file."""
-    return tuple(_connections(unit, BEARINGS))
-
-
-def couplings(unit: GearUnit) -> tuple[Connection, ...]:
-    """Return the couplings that are engaged, in the order of the file."""
-    return tuple(entry for entry in _connections(unit, COUPLINGS) if _engaged(unit, entry.part))
-
-
 def _connections(unit: GearUnit, types: tuple[str, ...]) -> Iterator[Connection]:
     """Yield components of these types that have both sides."""
     for part in unit.of_type(*types):
-        inner = unit.related(part, "side", "assembly", "inner_part")
-        outer = unit.related(part, "side", "assembly", "outer_part")
+        inner = part.related("side", "assembly", "inner_part")
+        outer = part.related("side", "assembly", "outer_part")
         if inner and outer and inner[0].id != outer[0].id:
             yield Connection(part, inner[0], outer[0])
         else:
             part.say("", "refused", "no relation `side` says what its inner and outer side hold")
 
 
-def _engaged(unit: GearUnit, part: Part) -> bool:
-    attribute = part.attribute("is_engaged")
-    if attribute is None or attribute.value is None:
+def _engaged(part: Part) -> bool:
+    stated = part.value("is_engaged")
+    if stated is None:
         return True
-    values = attribute.value if isinstance(attribute.value, tuple) else (attribute.value,)
-    index = _shift_index(unit)
+    values = stated if isinstance(stated, tuple) else (stated,)
+    index = _shift_index(part.unit)
     if not 0 <= index < len(values):
         part.say("is_engaged", "refused", f"no value for gear {index + 1}; taken as engaged")
         return True
@@ -302,10 +323,10 @@ def _engaged(unit: GearUnit, part: Part) -> bool:
 def _shift_index(unit: GearUnit) -> int:
     """Return which of its gears the unit runs in, counted from 0."""
     for part in unit.of_type("gear_unit"):
-        attribute = part.attribute("gear_shift_index")
-        if attribute is not None and isinstance(attribute.value, int) and attribute.value > 0:
+        value = part.value("gear_shift_index")
+        if isinstance(value, int) and value > 0:
             part.say("gear_shift_index", "taken", "gear that is engaged")
-            return attribute.value - 1
+            return value - 1
     return 0
 
 
@@ -344,13 +365,8 @@ class GearStage:
         return self.stage.type == "cylindrical_stage"
 
 
-def gear_stages(unit: GearUnit) -> tuple[GearStage, ...]:
-    """Return the stages of the model, in the order of their relations."""
-    return tuple(_stages(unit))
-
-
-def _stages(unit: GearUnit) -> Iterator[GearStage]:
-    """Yield the stages whose gears, teeth and shafts the file states."""
+def gear_stages(unit: GearUnit) -> Iterator[GearStage]:
+    """Yield the stages whose gears, teeth and shafts the file states, in the order of their relations."""
     for relation in unit.relations("stage"):
         number = relation.of_role("stage")
         ends = [relation.of_role(role) for role in _GEARS]
@@ -358,23 +374,14 @@ def _stages(unit: GearUnit) -> Iterator[GearStage]:
             continue
         stage = unit.part(number)
         gears = [unit.part(end) for end in ends if end is not None]
-        shafts = [owner for gear in gears if (owner := unit.owner(gear, "shaft")) is not None]
-        signed = [teeth for gear in gears if (teeth := teeth_of(gear)) is not None]
+        shafts = [shaft for gear in gears if (shaft := gear.shaft) is not None]
+        signed = [teeth for gear in gears if (teeth := gear.teeth) is not None]
         if len(gears) != 2 or len(shafts) != 2 or len(signed) != 2 or shafts[0].id == shafts[1].id:
             stage.say("", "refused", NO_STAGE)
             continue
         internal = any(gear.type == "ring_gear" for gear in gears)
         first, second = (abs(teeth) for teeth in signed)
         yield GearStage(stage, (gears[0], gears[1]), (shafts[0], shafts[1]), (first, second), internal)
-
-
-def teeth_of(gear: Part) -> int | None:
-    """Return the number of teeth, negative of some ring gears, None where the file gives none."""
-    attribute = gear.attribute("number_of_teeth")
-    value = None if attribute is None else attribute.value
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or value == 0 or value != value // 1:
-        return None
-    return int(value)
 
 
 # Planetary sets of a REXS model: carrier, planets, central shafts.
@@ -408,9 +415,9 @@ def planetary_sets(unit: GearUnit) -> tuple[PlanetarySet, ...]:
     for stage in unit.of_type("planetary_stage"):
         planetary = PlanetarySet(
             stage,
-            unit.related(stage, "planet_shaft", "planetary_stage", "shaft"),
-            unit.related(stage, "central_shaft", "planetary_stage", "shaft"),
-            _unique(_carrier(unit, stage)),
+            stage.related("planet_shaft", "planetary_stage", "shaft"),
+            stage.related("central_shaft", "planetary_stage", "shaft"),
+            tuple({part.id: part for part in _carrier(stage)}.values()),
         )
         if planetary.planets and planetary.carrier:
             sets.append(planetary)
@@ -420,13 +427,9 @@ def planetary_sets(unit: GearUnit) -> tuple[PlanetarySet, ...]:
     return tuple(sets)
 
 
-def _carrier(unit: GearUnit, stage: Part) -> Iterable[Part]:
+def _carrier(stage: Part) -> Iterator[Part]:
     """Yield the parts that the file calls the carrier's, pins included."""
     for relation in ("planet_carrier_shaft", "planet_pin"):
-        yield from unit.related(stage, relation, "planetary_stage", "shaft")
-    for carrier in unit.children(stage, "planet_carrier"):
-        yield from unit.children(carrier, "shaft", "side_plate")
-
-
-def _unique(parts: Iterable[Part]) -> tuple[Part, ...]:
-    return tuple({part.id: part for part in parts}.values())
+        yield from stage.related(relation, "planetary_stage", "shaft")
+    for carrier in stage.children("planet_carrier"):
+        yield from carrier.children("shaft", "side_plate")

@@ -15,7 +15,7 @@ import numpy as np
 from dynamics.shafts import Inertia, hollow_cylinder
 from lineofaction.gearbox.from_rexs.account import mend
 from lineofaction.gearbox.from_rexs.case_table import PairData, case_of
-from lineofaction.gearbox.from_rexs.gear_unit import GearStage, GearUnit, Names, Part, teeth_of
+from lineofaction.gearbox.from_rexs.gear_unit import GearStage, GearUnit, Names, Part
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.meshing import OTHER_STAGES, STAGES, Meshing, loaded_flank, meshing_of
 from lineofaction.gearbox.from_rexs.placement import frame_of
@@ -31,7 +31,7 @@ from lineofaction.gearbox.units import MM
 # Center distance and axial offset of a stage.
 
 
-def _center_distance_of(unit: GearUnit, stage: Part, meshing: Meshing) -> float:
+def _center_distance_of(stage: Part, meshing: Meshing) -> float:
     """Return the center distance in m: the stage's own, else the distance of the gears' axes.
 
     Raises
@@ -42,7 +42,7 @@ def _center_distance_of(unit: GearUnit, stage: Part, meshing: Meshing) -> float:
     value = stage.number("center_distance", "center_distance_mm")
     if value:
         return abs(value)
-    apart = _apart(unit, meshing)
+    apart = _apart(meshing)
     distance = float(np.linalg.norm(apart - (apart @ meshing.z) * meshing.z))
     if not distance > 0.0:
         raise BadInput.of(f"{stage.place}, center_distance", value, "given, or gears on axes apart")
@@ -50,13 +50,13 @@ def _center_distance_of(unit: GearUnit, stage: Part, meshing: Meshing) -> float:
     return distance
 
 
-def _axial_offset_of(unit: GearUnit, meshing: Meshing) -> float:
-    return float(_apart(unit, meshing) @ meshing.z)
+def _axial_offset_of(meshing: Meshing) -> float:
+    return float(_apart(meshing) @ meshing.z)
 
 
-def _apart(unit: GearUnit, meshing: Meshing) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+def _apart(meshing: Meshing) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     """Return the way from the pinion's middle to the wheel's, m."""
-    return frame_of(unit, meshing.wheel).origin - frame_of(unit, meshing.pinion).origin
+    return frame_of(meshing.wheel).origin - frame_of(meshing.pinion).origin
 
 
 T = TypeVar("T")
@@ -118,7 +118,7 @@ def stage_cases(
     shifts = derived_shifts([pair.toothed for pair in pairs])
     cases: list[StageCase] = []
     for pair in pairs:
-        case = _attempt(pair.toothed.stage, partial(case_of, unit, pair, pairs, shifts))
+        case = _attempt(pair.toothed.stage, partial(case_of, pair, pairs, shifts))
         if case is not None:
             _enter(cases, pair, case)
     return tuple(cases)
@@ -129,7 +129,7 @@ def _pairs(
 ) -> Iterator[PairData]:
     """Yield the pairs of the cylindrical stages that are not refused."""
     for stage in unit.of_type(*STAGES):
-        make = partial(_pair, unit, stage, torques.get(stage.id, ()), drivers.get(stage.id))
+        make = partial(_pair, stage, torques.get(stage.id, ()), drivers.get(stage.id))
         pair = _attempt(stage, make)
         if pair is not None:
             yield pair
@@ -144,14 +144,14 @@ def _attempt(stage: Part, make: Callable[[], T]) -> T | None:
         return None
 
 
-def _pair(unit: GearUnit, stage: Part, torques: tuple[float, ...], driver: int | None) -> PairData:
+def _pair(stage: Part, torques: tuple[float, ...], driver: int | None) -> PairData:
     """Return what the file says of a stage's gears; raises `BadInput`."""
-    meshing = meshing_of(unit, stage, driver, torques)
-    loaded = (loaded_flank(unit, meshing, meshing.pinion), loaded_flank(unit, meshing, meshing.wheel))
+    meshing = meshing_of(stage, driver, torques)
+    loaded = (loaded_flank(meshing, meshing.pinion), loaded_flank(meshing, meshing.wheel))
     gears = (toothing_of(meshing.pinion, loaded[0]), toothing_of(meshing.wheel, loaded[1]))
-    toothed = ToothedPair(stage, *gears, _center_distance_of(unit, stage, meshing))
+    toothed = ToothedPair(stage, *gears, _center_distance_of(stage, meshing))
     _ = toothed.working_pressure_angle  # raises if there is none
-    return PairData(meshing, toothed, loaded, _axial_offset_of(unit, meshing), torques)
+    return PairData(meshing, toothed, loaded, _axial_offset_of(meshing), torques)
 
 
 def _enter(cases: list[StageCase], pair: PairData, case: Case) -> None:
@@ -279,7 +279,7 @@ def _body(gear: Part, shaft_diameter: float, *, is_shaft_massless: bool) -> dict
     """Return the bore of a gear's cylinder, or its inertia where its body is the shaft's section."""
     module = gear.number("normal_module", "pitch cylinder, from which the inertia follows, mm")
     helix = gear.number("helix_angle_reference_diameter", "pitch cylinder, deg") or 0.0
-    count = teeth_of(gear) or 0
+    count = gear.teeth or 0
     pitch = abs(count) * (module or 0.0) / math.cos(helix)
     if gear.type == "ring_gear":
         return {"inertia": inertia_table(_ring(gear, pitch, module or 0.0, is_shaft_massless))}
@@ -305,7 +305,7 @@ def scene_discs(layout: Layout, shafts: SceneShafts) -> list[dict[str, Any]]:
     """Return the additional masses on the shafts of the scene as discs."""
     discs, names = [], Names()
     for part in layout.unit.of_type("additional_mass"):
-        owner = layout.unit.owner(part, "shaft")
+        owner = part.shaft
         on = None if owner is None else shafts.by_rotor.get(layout.rotor(owner.id))
         if owner is None or on is None or owner.id not in layout.shafts:
             part.say("", "refused", "on no shaft of the scene")
@@ -326,10 +326,9 @@ def _disc(part: Part, on: SceneShaft, z: float, names: Names) -> dict[str, Any] 
     moments = []
     for axis in "uvw":
         item = f"moment_of_inertia_{axis}_axis"
-        value = part.number(item, "moment of inertia of a disc, kg m^2")
-        if value is None:
-            part.say(item, "defaulted", "0 kg m^2: a point mass on the axis")
-        moments.append(max(0.0, value or 0.0))
+        words = "moment of inertia of a disc, kg m^2"
+        value = part.number(item, words, 0.0, "0 kg m^2: a point mass on the axis")
+        moments.append(max(0.0, value))
     if moments[1] != moments[2]:
         part.say("moment_of_inertia_w_axis", "derived", "mean of v and w: a disc is a body of revolution")
     inertia = Inertia(mass, moments[0], 0.5 * (moments[1] + moments[2]))

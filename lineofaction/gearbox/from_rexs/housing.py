@@ -24,19 +24,11 @@ def scene_housings(layout: Layout, seats: dict[int, str]) -> list[dict[str, Any]
 
     The matrix of the file has six rows a point, motions along and rotations about u, v, w of its assembly
     group, in N, mm, rad, and the order of the points. Points that carry no bearing of the scene follow free
-    of force (static condensation).
-
-    Parameters
-    ----------
-    layout : Layout
-    seats : dict of int to str
-        Names of the bushings by component.
+    of force (static condensation). `seats` has the names of the bushings by component.
     """
-    names, tables = Names(), []
-    for group in _groups(layout):
-        table = _housing(layout, group, seats, names)
-        tables += [] if table is None else [table]
-    return tables
+    names = Names()
+    tables = (_housing(layout, group, seats, names) for group in _groups(layout))
+    return [table for table in tables if table is not None]
 
 
 def loosely_housed(layout: Layout) -> set[int]:
@@ -46,27 +38,26 @@ def loosely_housed(layout: Layout) -> set[int]:
     """
     loose: set[int] = set()
     for group in _groups(layout):
-        points = layout.unit.children(group, "reduction_point")
+        points = group.children("reduction_point")
         matrix = _stiffness(group, len(points))
         if matrix is not None and least_share(matrix) <= DEFINITE:
-            seats = (layout.unit.related(point, "reference", "origin", "referenced") for point in points)
+            seats = (point.referenced for point in points)
             loose |= {part.id for parts in seats for part in parts}
     return loose
 
 
 def _groups(layout: Layout) -> list[Part]:
-    """Return the assembly groups of the casings."""
     return [
         group
         for casing in layout.unit.of_type("gear_casing")
-        for group in layout.unit.related(casing, "reference", "origin", "referenced")
+        for group in casing.referenced
         if group.type == "assembly_group"
     ]
 
 
 def _housing(layout: Layout, group: Part, seats: dict[int, str], names: Names) -> dict[str, Any] | None:
     """Return a housing, None if the account says why there is none."""
-    points = layout.unit.children(group, "reduction_point")
+    points = group.children("reduction_point")
     bearings = [_bushing(layout, point, seats) for point in points]
     matrix = _stiffness(group, len(points))
     if matrix is None:
@@ -74,7 +65,7 @@ def _housing(layout: Layout, group: Part, seats: dict[int, str], names: Names) -
     if not any(bearings):
         group.say("", "refused", "no reduction point refers to a bearing of the scene")
         return None
-    place = placement(layout.unit, group) or FIXED
+    place = placement(group) or FIXED
     turn = np.kron(np.eye(2 * len(points)), layout.axes.turn(place))
     turned = turn @ matrix @ turn.T
     kept = [index for index, name in enumerate(bearings) if name]
@@ -88,7 +79,7 @@ def _housing(layout: Layout, group: Part, seats: dict[int, str], names: Names) -
 
 
 def _bushing(layout: Layout, point: Part, seats: dict[int, str]) -> str | None:
-    for part in layout.unit.related(point, "reference", "origin", "referenced"):
+    for part in point.referenced:
         if part.id in seats:
             point.say("", "taken", f"seat of {seats[part.id]}")
             return seats[part.id]
@@ -98,13 +89,16 @@ def _bushing(layout: Layout, point: Part, seats: dict[int, str]) -> str | None:
 
 def _stiffness(group: Part, points: int) -> FloatArray | None:
     """Return the matrix in N, m, rad, None if the account says why there is none."""
-    attribute = group.attribute(_MATRIX)
-    if attribute is None or attribute.value is None:
+    rows = group.value(_MATRIX)
+    if rows is None:
         group.say("", "refused", f"no {_MATRIX}: files of finite-element programs are not read")
         return None
-    rows = attribute.value
     size = _PER_POINT * points
-    if not isinstance(rows, tuple) or len(rows) != size or any(_length(row) != size for row in rows):
+    if (
+        not isinstance(rows, tuple)
+        or len(rows) != size
+        or any(not isinstance(row, tuple) or len(row) != size for row in rows)
+    ):
         group.say(
             _MATRIX, "refused", f"{size} rows of {size} numbers are needed: six for each reduction point"
         )
@@ -121,11 +115,6 @@ def _stiffness(group: Part, points: int) -> FloatArray | None:
         group.say(_MATRIX, "refused", "not symmetric, or not finite")
         return None
     return np.asarray(0.5 * (matrix + matrix.T))
-
-
-def _length(row: object) -> int:
-    """Return the length of a row, 0 of what is none."""
-    return len(row) if isinstance(row, tuple) else 0
 
 
 def _condensed(matrix: FloatArray, kept: list[int]) -> FloatArray:

@@ -15,8 +15,6 @@ from lineofaction.gearbox.from_rexs.gear_unit import (
     GearUnit,
     Part,
     PlanetarySet,
-    bearings,
-    couplings,
     gear_stages,
     planetary_sets,
 )
@@ -75,7 +73,7 @@ class Rotors:
 def _rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
     """Return the rotors: the parts of a carrier are one, with what is rigidly coupled to them."""
     of = {part.id: part.id for part in unit.of_type("shaft", "side_plate")}
-    joined = [entry for entry in couplings(unit) if entry.on_ground is None and _turn(entry, of)]
+    joined = [entry for entry in unit.couplings if entry.on_ground is None and _turn(entry, of)]
     for planets in sets:
         _merge(of, [part.id for part in planets.carrier])
     carriers = {of[planets.carrier[0].id] for planets in sets}
@@ -87,7 +85,7 @@ def _rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
             if ends[0] != ends[1] and carriers & set(ends) and _rigid(entry):
                 carriers.add(_merge(of, list(ends)))
                 changed = True
-    grounded = [entry for entry in couplings(unit) if entry.on_ground is not None]
+    grounded = [entry for entry in unit.couplings if entry.on_ground is not None]
     held = frozenset(of[entry.held.id] for entry in grounded if entry.held.id in of and _rotation(entry))
     between = tuple(entry for entry in joined if of[entry.inner.id] != of[entry.outer.id])
     for entry in joined:
@@ -117,11 +115,8 @@ def _rigid(entry: Connection) -> bool:
 
 def _rotation(entry: Connection) -> float:
     """Return the torsional stiffness of a coupling, N m/rad; rigid where the file says none."""
-    value = entry.part.number("rotational_stiffness", "torsional stiffness, N mm/rad")
-    if value is None:
-        entry.part.say("rotational_stiffness", "defaulted", "rigid: the file gives none")
-        return RIGID_ROTATION
-    return value
+    item, words = "rotational_stiffness", "torsional stiffness, N mm/rad"
+    return entry.part.number(item, words, RIGID_ROTATION, "rigid: the file gives none")
 
 
 # The layout of a gear unit: its shafts along the axes of the scene, its stages, what turns together.
@@ -147,14 +142,14 @@ def _shaft_places(unit: GearUnit, stages: Sequence[GearStage]) -> dict[int, Plac
         As `placement`.
     """
     shafts = unit.of_type("shaft")
-    places = {shaft.id: place for shaft in shafts if (place := placement(unit, shaft)) is not None}
+    places = {shaft.id: place for shaft in shafts if (place := placement(shaft)) is not None}
     if not places and stages:
         first = stages[0].shafts[0]
         places[first.id] = FIXED
         first.say("support_vector", "defaulted", "no shaft has a place; the first is the origin")
     _spread(unit, stages, places)
     for planets in planetary_sets(unit):
-        pins = {pin.id for pin in unit.related(planets.stage, "planet_pin", "planetary_stage", "shaft")}
+        pins = {pin.id for pin in planets.stage.related("planet_pin", "planetary_stage", "shaft")}
         for shaft in planets.carrier:
             _by_set(shaft, pins, planets.central, places)
     _spread(unit, stages, places)
@@ -166,7 +161,7 @@ def _shaft_places(unit: GearUnit, stages: Sequence[GearStage]) -> dict[int, Plac
 
 def _spread(unit: GearUnit, stages: Sequence[GearStage], places: dict[int, Placement]) -> None:
     """Place what stages, couplings and bearings join to placed shafts."""
-    joined = (*couplings(unit), *bearings(unit))
+    joined = (*unit.couplings, *unit.bearings)
     while True:
         before = len(places)
         for stage in stages:
@@ -191,10 +186,7 @@ def _by_stage(stage: GearStage, places: dict[int, Placement]) -> None:
     center_distance = stage.stage.number("center_distance", "center distance of the stage, mm")
     if center_distance is None:
         return
-    angle = stage.stage.number(_ANGLE, "direction from gear 1 to gear 2, deg")
-    if angle is None:
-        angle = 0.0
-        stage.stage.say(_ANGLE, "defaulted", "0 deg")
+    angle = stage.stage.number(_ANGLE, "direction from gear 1 to gear 2, deg", 0.0, "0 deg")
     way = 1.0 if known[0] else -1.0
     base, new = (stage.shafts[index] for index in ((0, 1) if known[0] else (1, 0)))
     place = places[base.id]
@@ -259,6 +251,10 @@ class Layout:
         """Return +1 or -1 for u along z or against it; +1 of shafts that are not parallel."""
         return self.shafts[shaft].sense if shaft in self.shafts else 1
 
+    def turn(self, part: Part, held: Part) -> FloatArray:
+        """Return the matrix that takes u, v, w of a part on a shaft to x, y, z."""
+        return self.axes.turn(placement(part) or self.shafts[held.id].place)
+
     def rotor(self, shaft: int) -> int:
         """Return the rotor of a shaft."""
         return self.rotors.of[shaft]
@@ -273,7 +269,7 @@ class Layout:
 
     def u_on(self, shaft: PlacedShaft, part: Part, item: str = "u_coordinate_on_shaft") -> float:
         """Return u of a part on a shaft, m: by its place, else by its coordinate, else 0."""
-        place = placement(self.unit, part)
+        place = placement(part)
         stated = part.number(item, "place along the shaft, mm")
         if place is None:
             if stated is None:
@@ -306,7 +302,7 @@ def layout_of(unit: GearUnit) -> Layout:
     BadInput
         Places or sections of shafts are no such thing.
     """
-    stages = gear_stages(unit)
+    stages = tuple(gear_stages(unit))
     places = _shaft_places(unit, stages)
     axes = scene_axes(_root(unit), _by_stages(stages, places))
     shafts = {}
@@ -317,7 +313,7 @@ def layout_of(unit: GearUnit) -> Layout:
         if axes.sense(place) == 0:
             part.say("", "refused", "not parallel to the shafts of the first stage: left out of the scene")
             continue
-        shafts[part.id] = placed_shaft(unit, part, place, axes)
+        shafts[part.id] = placed_shaft(part, place, axes)
     rotors = _rotors_of(unit, planetary_sets(unit))
     turning = tuple(s for s in stages if len({rotors.of[shaft.id] for shaft in s.shafts}) == 2)
     return Layout(unit, axes, shafts, rotors, turning)
@@ -325,7 +321,7 @@ def layout_of(unit: GearUnit) -> Layout:
 
 def _root(unit: GearUnit) -> Placement | None:
     units = unit.of_type("gear_unit")
-    return placement(unit, units[0]) if units else None
+    return placement(units[0]) if units else None
 
 
 def _by_stages(stages: tuple[GearStage, ...], places: Mapping[int, Placement]) -> list[Placement]:

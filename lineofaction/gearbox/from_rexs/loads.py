@@ -55,7 +55,7 @@ def _external(layout: Layout, flow: PowerFlow, shafts: SceneShafts) -> Iterator[
     """Yield the external loads that pass torque on, and what balances them at an end without one."""
     for load, torque in flow.loads.items():
         part = layout.unit.part(load)
-        shaft = part if part.type == "shaft" else layout.unit.owner(part, "shaft")
+        shaft = part if part.type == "shaft" else part.shaft
         if shaft is None or layout.rotor(shaft.id) not in shafts.by_rotor or shaft.id not in layout.shafts:
             part.say("", "refused", "acts on a shaft that the scene has not; its torque enters by the ratios")
             continue

@@ -13,61 +13,47 @@ from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
 from lineofaction.gearbox.from_rexs.placement import frame_of
 from lineofaction.gearbox.problems import BadInput
 
-# The cylindrical stages of a gear unit: which gears mesh, which drives, and which flanks carry.
+STAGES = ("cylindrical_stage",)
+OTHER_STAGES = ("bevel_stage", "worm_stage", "hypoid_stage", "beveloid_stage")
+_DATA = ("cylindrical_stage_gear_data", "stage_gear_data")
+
+_Sense = tuple[float, str]
+"""Sense of a gear or shaft about its own u axis, 1 or -1, and the shaft whose speed it follows from."""
 
 
-# In which sense the gears of a unit turn, from the speeds of shafts that the file gives.
-
-
-@dataclass(frozen=True)
-class Rotation:
-    """Sense of a gear or shaft about its own u axis, 1 or -1, and the shaft whose speed it follows from."""
-
-    sense: float
-    source: str
-
-
-def _stage_gears(unit: GearUnit, stage: Part) -> tuple[Part, Part] | None:
+def _stage_gears(stage: Part) -> tuple[Part, Part] | None:
     """Return gear 1 and gear 2 of a stage, None if the file does not relate them."""
-    for relation in unit.relations("stage"):
+    for relation in stage.unit.relations("stage"):
         first, second = relation.of_role("gear_1"), relation.of_role("gear_2")
         if relation.of_role("stage") == stage.id and first is not None and second is not None:
-            return unit.part(first), unit.part(second)
+            return stage.unit.part(first), stage.unit.part(second)
     return None
 
 
-def rotations(unit: GearUnit) -> dict[int, Rotation]:
-    """Return the rotations by component that follow from given speeds, shaft by shaft and stage by stage.
+def _senses(unit: GearUnit) -> dict[int, _Sense]:
+    """Return the senses by component that follow from given speeds, shaft by shaft and stage by stage.
 
     Mating external gears turn in opposite senses, a ring gear as its mate. In a planetary stage these are
     the senses relative to the carrier, if the sun turns faster than it.
     """
-    known = {
-        shaft.id: Rotation(speed, shaft.name)
-        for shaft in unit.of_type("shaft")
-        if (speed := _speed(unit, shaft))
-    }
+    shafts = unit.of_type("shaft")
+    known = {shaft.id: (sense, shaft.name) for shaft in shafts if (sense := _sense_of_speed(shaft))}
     links = [*_on_shafts(unit), *_in_mesh(unit)]
     while True:
         count = len(known)
         for first, second, ratio in links:
-            _pass_on(known, first, second, ratio)
-            _pass_on(known, second, first, ratio)
+            for source, target in ((first, second), (second, first)):
+                if source.id in known and target.id not in known:
+                    sense, shaft_name = known[source.id]
+                    known[target.id] = ratio * sense, shaft_name
         if len(known) == count:
             return known
 
 
-def _pass_on(known: dict[int, Rotation], source: Part, target: Part, ratio: float) -> None:
-    """Enter the rotation of a component that turns with another."""
-    if source.id in known and target.id not in known:
-        rotation = known[source.id]
-        known[target.id] = Rotation(ratio * rotation.sense, rotation.source)
-
-
-def _speed(unit: GearUnit, shaft: Part) -> float | None:
+def _sense_of_speed(shaft: Part) -> float | None:
     """Return the sign of a shaft's speed: its own, else that of a load case; None without one."""
-    parts = (shaft, *(part for case in unit.load_cases() for part in case if part.id == shaft.id))
-    for part in parts:
+    cases = shaft.unit.load_cases()
+    for part in (shaft, *(part for case in cases for part in case if part.id == shaft.id)):
         speed = part.number("rotational_speed", "sense in which the gears turn")
         if speed:
             return math.copysign(1.0, speed)
@@ -77,29 +63,23 @@ def _speed(unit: GearUnit, shaft: Part) -> float | None:
 def _on_shafts(unit: GearUnit) -> list[tuple[Part, Part, float]]:
     """Return shafts and their gears, -1 where a gear's u axis is against the shaft's."""
     gears = unit.of_type("cylindrical_gear", "ring_gear")
-    pairs = [(unit.owner(gear, "shaft"), gear) for gear in gears]
-    return [(shaft, gear, _aligned(unit, shaft, gear)) for shaft, gear in pairs if shaft is not None]
+    return [(shaft, gear, _aligned(shaft, gear)) for gear in gears if (shaft := gear.shaft) is not None]
 
 
 def _in_mesh(unit: GearUnit) -> list[tuple[Part, Part, float]]:
     """Return mating gears with the ratio of their senses."""
     links = []
-    for stage in unit.of_type("cylindrical_stage"):
-        gears = _stage_gears(unit, stage)
+    for stage in unit.of_type(*STAGES):
+        gears = _stage_gears(stage)
         if gears is not None:
             same = "ring_gear" in (gears[0].type, gears[1].type)
-            links.append((*gears, _aligned(unit, *gears) * (1.0 if same else -1.0)))
+            links.append((*gears, _aligned(*gears) * (1.0 if same else -1.0)))
     return links
 
 
-def _aligned(unit: GearUnit, first: Part, second: Part) -> float:
+def _aligned(first: Part, second: Part) -> float:
     """Return 1 if two u axes point the same way, else -1."""
-    return math.copysign(1.0, float(np.dot(frame_of(unit, first).u, frame_of(unit, second).u)))
-
-
-STAGES = ("cylindrical_stage",)
-OTHER_STAGES = ("bevel_stage", "worm_stage", "hypoid_stage", "beveloid_stage")
-_DATA = ("cylindrical_stage_gear_data", "stage_gear_data")
+    return math.copysign(1.0, float(np.dot(frame_of(first).u, frame_of(second).u)))
 
 
 @dataclass(frozen=True)
@@ -139,9 +119,7 @@ class Meshing:
         return self.pinion if self.wheel_drives else self.wheel
 
 
-def meshing_of(
-    unit: GearUnit, stage: Part, driver: int | None = None, torques: tuple[float, ...] = ()
-) -> Meshing:
+def meshing_of(stage: Part, driver: int | None = None, torques: tuple[float, ...] = ()) -> Meshing:
     """Return the meshing gears of a stage.
 
     Parameters
@@ -156,16 +134,16 @@ def meshing_of(
     BadInput
         No two gears, two ring gears, a driver that is none of them, or torques of both signs.
     """
-    gears = _stage_gears(unit, stage)
+    gears = _stage_gears(stage)
     if gears is None or all(gear.type == "ring_gear" for gear in gears):
         raise BadInput.of(f"{stage.place}, stage", None, "a relation to two gears, one of them external")
-    driving = _driver(unit, stage, gears, driver)
-    sense = _sense(unit, stage, driving, torques)
+    driving = _driver(stage, gears, driver)
+    sense = _sense(stage, driving, torques)
     ring = next((gear for gear in gears if gear.type == "ring_gear"), None)
     pinion = driving if ring is None else _other(gears, ring)
     wheel_drives = driving is ring
     # The driver turns with the torque of its shaft, the pinion of a driving ring gear against it.
-    z = sense * frame_of(unit, driving).u * (1.0 if wheel_drives else -1.0)
+    z = sense * frame_of(driving).u * (1.0 if wheel_drives else -1.0)
     return Meshing(stage, pinion, _other(gears, pinion), wheel_drives, z)
 
 
@@ -173,31 +151,31 @@ def _other(gears: tuple[Part, Part], gear: Part) -> Part:
     return gears[1] if gear is gears[0] else gears[0]
 
 
-def _driver(unit: GearUnit, stage: Part, gears: tuple[Part, Part], driver: int | None) -> Part:
+def _driver(stage: Part, gears: tuple[Part, Part], driver: int | None) -> Part:
     if driver is not None:
         chosen = next((gear for gear in gears if gear.id == driver), None)
         if chosen is None:
             raise BadInput.of(f"{stage.place}, driver", driver, f"one of {[gear.id for gear in gears]}")
         return chosen
-    marked = [gear for gear in gears if _is_marked(unit, stage, gear)]
+    marked = [gear for gear in gears if _is_marked(stage, gear)]
     if len(marked) == 1:
         return marked[0]
     stage.say("driving_gear", "defaulted", f"gear_1, {gears[0].name}: the file marks no driving gear")
     return gears[0]
 
 
-def _is_marked(unit: GearUnit, stage: Part, gear: Part) -> bool:
+def _is_marked(stage: Part, gear: Part) -> bool:
     """Return whether the stage's data of a gear mark it as driving."""
-    for relation in unit.relations("stage_gear_data"):
+    for relation in stage.unit.relations("stage_gear_data"):
         if relation.of_role("stage") == stage.id and relation.of_role("gear") == gear.id:
             number = relation.of_role("stage_gear_data")
-            data = None if number is None else unit.part(number)
+            data = None if number is None else stage.unit.part(number)
             if data is not None and data.type in _DATA:
                 return data.text("is_driving_gear", "the driver of the case") == "True"
     return False
 
 
-def _sense(unit: GearUnit, stage: Part, driver: Part, torques: tuple[float, ...]) -> float:
+def _sense(stage: Part, driver: Part, torques: tuple[float, ...]) -> float:
     """Return the sense in which the driver turns about its u axis: by its torque, else by the speeds."""
     signs = {math.copysign(1.0, torque) for torque in torques if torque}
     if len(signs) > 1:
@@ -205,10 +183,9 @@ def _sense(unit: GearUnit, stage: Part, driver: Part, torques: tuple[float, ...]
         raise BadInput.of(f"{stage.place}, torque", list(torques), "of one sign", advice)
     if signs:
         return signs.pop()
-    rotation = rotations(unit).get(driver.id)
-    if rotation is not None:
-        stage.say("sense_of_rotation", "derived", f"from the speed of {rotation.source}")
-        return rotation.sense
+    if (known := _senses(stage.unit).get(driver.id)) is not None:
+        stage.say("sense_of_rotation", "derived", f"from the speed of {known[1]}")
+        return known[0]
     stage.say("sense_of_rotation", "defaulted", f"{driver.name} turns about +u: the file gives no speed")
     return 1.0
 
@@ -246,7 +223,7 @@ class LoadedFlank:
         return (flank for flank in (self.flank, self.other) if flank is not None)
 
 
-def loaded_flank(unit: GearUnit, meshing: Meshing, gear: Part) -> LoadedFlank:
+def loaded_flank(meshing: Meshing, gear: Part) -> LoadedFlank:
     """Return the flank of a gear that carries in a stage.
 
     Raises
@@ -254,10 +231,10 @@ def loaded_flank(unit: GearUnit, meshing: Meshing, gear: Part) -> LoadedFlank:
     BadInput
         Axes of the gear that are no directions.
     """
-    u_along_z = 1.0 if float(np.dot(frame_of(unit, gear).u, meshing.z)) > 0.0 else -1.0
+    u_along_z = 1.0 if float(np.dot(frame_of(gear).u, meshing.z)) > 0.0 else -1.0
     datum = u_along_z * _datum_along_u(gear)
     sides = ("right", "left") if datum > 0.0 else ("left", "right")
-    flank, other = (_flank(unit, gear, side) for side in sides)
+    flank, other = (next(iter(gear.related("flank", "gear", side)), None) for side in sides)
     return LoadedFlank(gear, sides[0], flank, other, datum)
 
 
@@ -269,11 +246,3 @@ def _datum_along_u(gear: Part) -> float:
     default = "negative: coordinates of the face count along +u"
     gear.say("datum_face_orientation", "defaulted" if word is None else "refused", default)
     return -1.0
-
-
-def _flank(unit: GearUnit, gear: Part, side: str) -> Part | None:
-    for relation in unit.relations("flank"):
-        number = relation.of_role(side)
-        if relation.of_role("gear") == gear.id and number is not None:
-            return unit.part(number)
-    return None

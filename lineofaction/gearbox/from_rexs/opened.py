@@ -14,14 +14,16 @@ from typing import Any
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.convert.toml import toml_text
 from lineofaction.gearbox.from_rexs.account import Assumption, Line, assumed
-from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
 from lineofaction.gearbox.from_rexs.layout import Layout, layout_of, train_of
 from lineofaction.gearbox.from_rexs.loads import AppliedTorque, LoadCase, load_case
 from lineofaction.gearbox.from_rexs.power_flow import REPLACED, PowerFlow, operating_points, power_flow
 from lineofaction.gearbox.from_rexs.scene import SceneParts, SceneTable, scene_table
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Change, Document, parsed, upgrade
+from lineofaction.gearbox.rexs.files import parsed
+from lineofaction.gearbox.rexs.model import Document
+from lineofaction.gearbox.rexs.upgrade import Change, upgrade
 from lineofaction.gearbox.rexs.vocabulary import words
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -45,8 +47,7 @@ def _say_left_out(unit: GearUnit) -> None:
     descriptive = words("descriptive_components")
     for component in unit.model.components:
         if component.type not in descriptive and not unit.account.is_stated(component):
-            reason = _OF_TYPE.get(component.type, _NO_REASON)
-            Part(component, unit.account).say("", "refused", reason)
+            unit.part(component.id).say("", "refused", _OF_TYPE.get(component.type, _NO_REASON))
 
 
 def headline(lines: Iterable[Line]) -> str:
@@ -179,10 +180,10 @@ def _flows(layout: Layout) -> list[PowerFlow]:
     for point in points:
         flow = power_flow(point, layout, train)
         if isinstance(flow, str):
-            _say(layout, point.name, "refused", flow)
+            layout.unit.say(point.name, "refused", flow)
             continue
         for remark in flow.remarks:
-            _say(layout, "torque", "derived", remark)
+            layout.unit.say("torque", "derived", remark)
         for load in flow.replaced:
             layout.unit.part(load).say("torque_around_u_axis", "refused", REPLACED)
         flows.append(flow)
@@ -219,7 +220,7 @@ def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
     try:
         return validated(SceneInput, table.table | ({"left_out": list(left_out)} if left_out else {}))
     except BadInput as error:
-        _say(layout, "scene", "refused", str(error))
+        layout.unit.say("scene", "refused", str(error))
         return None
 
 
@@ -249,15 +250,9 @@ def _torque(flow: PowerFlow, leader: AppliedTorque) -> float:
 def _say_missing(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> None:
     """State why there is no scene."""
     if not flows:
-        _say(layout, "scene", "refused", "no load case fits the train")
+        layout.unit.say("scene", "refused", "no load case fits the train")
     elif not cases:
-        _say(layout, "scene", "refused", "no stage has a case")
-
-
-def _say(layout: Layout, item: str, fate: str, words: str) -> None:
-    """State something of the whole unit."""
-    for part in layout.unit.of_type("gear_unit")[:1]:
-        part.say(item, fate, words)  # type: ignore[arg-type]
+        layout.unit.say("scene", "refused", "no stage has a case")
 
 
 # An opened gear unit as files: a case a stage, the scene, its load cases, and the account.

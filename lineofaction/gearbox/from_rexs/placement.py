@@ -11,7 +11,7 @@ import numpy as np
 
 from bounds.types import FloatArray
 from dynamics.shafts import BeamSection
-from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
+from lineofaction.gearbox.from_rexs.gear_unit import Part
 from lineofaction.gearbox.problems import BadInput
 
 # Where components stand: points and axes u, v, w, composed over the components they refer to.
@@ -55,7 +55,7 @@ class Placement:
 FIXED = Placement(np.zeros(3), np.eye(3))
 
 
-def placement(unit: GearUnit, part: Part) -> Placement | None:
+def placement(part: Part) -> Placement | None:
     """Return where a component stands, None where the file does not say.
 
     Raises
@@ -63,10 +63,10 @@ def placement(unit: GearUnit, part: Part) -> Placement | None:
     BadInput
         A vector has not three numbers, an axis has no direction, or places refer to each other in a ring.
     """
-    return _stated(unit, part, ())
+    return _stated(part, ())
 
 
-def frame_of(unit: GearUnit, part: Part, inner: tuple[int, ...] = ()) -> Placement:
+def frame_of(part: Part, inner: tuple[int, ...] = ()) -> Placement:
     """Return where a component stands: as the file says, else by what carries it.
 
     On a shaft it stands at its u coordinate, along the shaft's axes; without one it has the origin of the
@@ -87,47 +87,47 @@ def frame_of(unit: GearUnit, part: Part, inner: tuple[int, ...] = ()) -> Placeme
     if part.id in inner or len(inner) > _MOST_REFERENCES:
         bound = "a component that is not placed by this one itself"
         raise BadInput.of(f"{part.place}, {_REFERENCE}", inner[-1], bound, "Refer to the gear unit.")
-    stated, shaft = _stated(unit, part, inner), unit.owner(part, "shaft")
+    stated, shaft = _stated(part, inner), part.shaft
     if stated is not None:
         return stated
     if shaft is None or shaft.id == part.id:
-        return _in_reference(unit, part, np.zeros(3), inner)
-    base = frame_of(unit, shaft, (*inner, part.id))
+        return _in_reference(part, np.zeros(3), inner)
+    base = frame_of(shaft, (*inner, part.id))
     along = part.number("u_coordinate_on_shaft", "place along the shaft") or 0.0
     return Placement(base.origin + along * base.u, base.axes)
 
 
-def u_on_shaft(unit: GearUnit, part: Part) -> float | None:
+def u_on_shaft(part: Part) -> float | None:
     """Return u of a component on its shaft, m: by the places of both, else by its coordinate.
 
     One writer gives the begin of a gear as its coordinate: its place, that of its middle, counts.
     """
-    shaft, place = unit.owner(part, "shaft"), placement(unit, part)
-    base = None if shaft is None else placement(unit, shaft)
+    shaft, place = part.shaft, placement(part)
+    base = None if shaft is None else placement(shaft)
     stated = part.number("u_coordinate_on_shaft", "place along the shaft")
     return stated if place is None or base is None else base.along(place.origin)
 
 
-def _stated(unit: GearUnit, part: Part, inner: tuple[int, ...]) -> Placement | None:
+def _stated(part: Part, inner: tuple[int, ...]) -> Placement | None:
     """Return a place as stated, None for none."""
     origin = _vector(part, "support_vector", "place")
-    return None if origin is None else _in_reference(unit, part, origin, inner)
+    return None if origin is None else _in_reference(part, origin, inner)
 
 
-def _in_reference(unit: GearUnit, part: Part, origin: FloatArray, inner: tuple[int, ...]) -> Placement:
+def _in_reference(part: Part, origin: FloatArray, inner: tuple[int, ...]) -> Placement:
     u = _unit(part, "u_axis_vector", np.array([1.0, 0.0, 0.0]))
     w = _across(part, u)
-    own, outer = Placement(origin, np.array([u, np.cross(w, u), w])), _reference(unit, part)
-    return own if outer is None else own.within(frame_of(unit, outer, (*inner, part.id)))
+    own, outer = Placement(origin, np.array([u, np.cross(w, u), w])), _reference(part)
+    return own if outer is None else own.within(frame_of(outer, (*inner, part.id)))
 
 
-def _reference(unit: GearUnit, part: Part) -> Part | None:
+def _reference(part: Part) -> Part | None:
     """Return the component that a place refers to, None for one that is placed by itself: the root."""
     attribute = part.attribute(_REFERENCE)
     if attribute is None or attribute.kind != "reference_component" or not isinstance(attribute.value, int):
         return None
     part.say(_REFERENCE, "taken", f"its place refers to component {attribute.value}")
-    return None if attribute.value == part.id else unit.part(attribute.value)
+    return None if attribute.value == part.id else part.unit.part(attribute.value)
 
 
 def _across(part: Part, u: FloatArray) -> FloatArray:
@@ -282,7 +282,7 @@ class PlacedShaft:
         return 0.0
 
 
-def placed_shaft(unit: GearUnit, part: Part, place: Placement, axes: SceneAxes) -> PlacedShaft:
+def placed_shaft(part: Part, place: Placement, axes: SceneAxes) -> PlacedShaft:
     """Return a shaft with its sections.
 
     Raises
@@ -290,7 +290,7 @@ def placed_shaft(unit: GearUnit, part: Part, place: Placement, axes: SceneAxes) 
     BadInput
         A section lacks its length or its diameter, or has no such size.
     """
-    rows = tuple(_rows(unit, part))
+    rows = tuple(_rows(part))
     sense = axes.sense(place)
     begin = rows[0][0] if rows else 0.0
     sections = tuple(section if sense > 0 else _turned(section) for _, section in rows)
@@ -300,16 +300,16 @@ def placed_shaft(unit: GearUnit, part: Part, place: Placement, axes: SceneAxes) 
     )
 
 
-def _rows(unit: GearUnit, shaft: Part) -> Iterator[tuple[float, BeamSection]]:
+def _rows(shaft: Part) -> Iterator[tuple[float, BeamSection]]:
     """Yield u of the left end and the section of each piece, one after the other."""
     pieces = [
         (part.number("u_coordinate_on_shaft", "left end of the section, mm"), part)
-        for part in unit.children(shaft, "shaft_section")
+        for part in shaft.children("shaft_section")
     ]
     if all(u is not None for u, _ in pieces):
         pieces.sort(key=lambda piece: piece[0] or 0.0)
     first = (pieces[0][0] or 0.0) if pieces else 0.0
-    sections = [_section(unit, shaft, part) for _, part in pieces]
+    sections = [_section(shaft, part) for _, part in pieces]
     summed = list(accumulate((section.length for section in sections), initial=first))[:-1]
     for (_, part), at, section in zip(pieces, summed, sections, strict=True):
         _say_place(part, at)
@@ -327,7 +327,7 @@ def _say_place(part: Part, at: float) -> None:
         part.say(item, "refused", f"{stated * 1e3:.6g} mm leaves a gap or overlaps; taken: {derived}")
 
 
-def _section(unit: GearUnit, shaft: Part, part: Part) -> BeamSection:
+def _section(shaft: Part, part: Part) -> BeamSection:
     """Return a section in the order of u."""
     length, begin, end = (_size(part, name) for name in _LENGTHS)
     bore = part.number("inner_diameter_begin", "bore of the section, mm") or 0.0
@@ -340,7 +340,7 @@ def _section(unit: GearUnit, shaft: Part, part: Part) -> BeamSection:
         length,
         begin,
         bore,
-        **_material(unit, shaft),
+        **_material(shaft),
         end_outer_diameter=end if tapers else None,
         end_bore_diameter=(bore if end_bore is None else end_bore) if tapers else None,
     )
@@ -358,14 +358,14 @@ def _size(part: Part, item: str) -> float:
     return value
 
 
-def _material(unit: GearUnit, shaft: Part) -> dict[str, float]:
+def _material(shaft: Part) -> dict[str, float]:
     """Return what the file says of the shaft's material."""
     names = {
         "elastic_modulus": "youngs_modulus",
         "poisson_ratio": "poissons_ratio",
         "density": "density",
     }
-    for part in unit.related(shaft, "reference", "origin", "referenced"):
+    for part in shaft.referenced:
         if part.type == "material":
             values = {own: part.number(item, f"{own} of the shaft") for item, own in names.items()}
             return {own: value for own, value in values.items() if value}

@@ -79,15 +79,10 @@ def operating_points(unit: GearUnit) -> tuple[OperatingPoint, ...]:
         parts = [(share or 0.0) / whole for share in shares]
     else:
         parts = [1.0 / len(cases)] * len(cases)
-        _say_equal(unit)
+        for part in unit.of_type("gear_unit"):
+            part.say(_SHARES[0], "defaulted", "equal shares: not every load case states one")
     rows = enumerate(zip(cases, parts, strict=True), 1)
     return tuple(_point(f"load case {number}", (number, share), own, case) for number, (case, share) in rows)
-
-
-def _say_equal(unit: GearUnit) -> None:
-    """State that the load cases have equal shares."""
-    for part in unit.of_type("gear_unit"):
-        part.say(_SHARES[0], "defaulted", "equal shares: not every load case states one")
 
 
 def _share(case: tuple[Part, ...]) -> float | None:
@@ -149,17 +144,15 @@ def _enter_torque(part: Part, torques: dict[int, float | None], powers: dict[int
     elif power is not None:
         torques[part.id] = None
         powers[part.id] = power
-    elif part.id not in torques and _is(part, "transmits_torque"):
+    elif part.id not in torques and _transmits(part):
         torques[part.id] = None
 
 
-def _is(part: Part, item: str) -> bool:
-    """Return whether a boolean is true."""
-    attribute = part.attribute(item)
-    if attribute is None or attribute.value is None:
-        return False
-    part.say(item, "taken", "whether the load passes torque on")
-    return attribute.value is True
+def _transmits(part: Part) -> bool:
+    value = part.value("transmits_torque")
+    if value is not None:
+        part.say("transmits_torque", "taken", "whether the load passes torque on")
+    return value is True
 
 
 # The flow of power through a gear unit at an operating point: speeds, torques, and which gear drives.
@@ -272,7 +265,7 @@ class _Problem:
 
     def __init__(self, point: OperatingPoint, layout: Layout, train: Train) -> None:
         self._point, self._layout, self._train = point, layout, train
-        owners = {load: layout.unit.owner(layout.unit.part(load), "shaft") for load in point.torques}
+        owners = {load: layout.unit.part(load).shaft for load in point.torques}
         self.owner = {load: owner.id for load, owner in owners.items() if owner is not None}
         self.speeds_stated = {
             layout.rotor(shaft): speed * layout.sense(shaft) for shaft, speed in point.speeds.items()
@@ -333,7 +326,7 @@ class _Problem:
         """Return the external load of a rotor that states no torque, else the rotor's shaft."""
         unit = self._layout.unit
         for load in unit.of_type("external_load"):
-            owner = unit.owner(load, "shaft")
+            owner = load.shaft
             if owner is not None and self._layout.rotor(owner.id) == rotor and load.id not in self.owner:
                 return load.id
         return next(part.id for part in unit.of_type("shaft") if self._layout.rotor(part.id) == rotor)

@@ -16,8 +16,6 @@ from lineofaction.gearbox.from_rexs.gear_unit import (
     GearStage,
     Names,
     Part,
-    bearings,
-    couplings,
 )
 from lineofaction.gearbox.from_rexs.gears import (
     StageCase,
@@ -39,7 +37,7 @@ from lineofaction.gearbox.from_rexs.loads import (
 )
 from lineofaction.gearbox.from_rexs.placement import FIXED, SAME_PLACE, PlacedShaft, placement
 from lineofaction.gearbox.from_rexs.power_flow import FORCES, OperatingPoint, PowerFlow
-from lineofaction.gearbox.from_rexs.scene_bearings import scene_bearings, stub_couplings
+from lineofaction.gearbox.from_rexs.scene_bearings import SceneBearings, stub_couplings
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShaft, SceneShafts, scene_shafts
 from lineofaction.gearbox.units import MM
 
@@ -154,12 +152,11 @@ def _shafts(layout: Layout, shafts: SceneShafts) -> Iterator[tuple[str, ShaftPar
 
 def _bearings(layout: Layout, seats: Mapping[int, str]) -> Iterator[tuple[str, BearingPart]]:
     """Yield what holds shafts on the ground."""
-    entries: tuple[Connection, ...] = (*bearings(layout.unit), *couplings(layout.unit))
+    entries: tuple[Connection, ...] = (*layout.unit.bearings, *layout.unit.couplings)
     for entry in entries:
         if entry.part.id in seats and entry.held.id in layout.shafts:
-            place = placement(layout.unit, entry.part) or layout.shafts[entry.held.id].place
-            inside = entry.held.id == entry.inner.id
-            yield seats[entry.part.id], BearingPart(entry.part.id, layout.axes.turn(place), inside)
+            turn, inside = layout.turn(entry.part, entry.held), entry.held.id == entry.inner.id
+            yield seats[entry.part.id], BearingPart(entry.part.id, turn, inside)
 
 
 def _face_sense(layout: Layout, flow: PowerFlow, stage: GearStage, case: StageCase) -> int:
@@ -258,7 +255,7 @@ def _forces(layout: Layout, loads: Sequence[Part], shafts: SceneShafts) -> Itera
 
 def _placed(layout: Layout, load: Part, shafts: SceneShafts) -> tuple[PlacedShaft | None, str]:
     """Return the shaft that a load acts on, or why its force cannot be one of the scene."""
-    shaft = layout.unit.owner(load, "shaft")
+    shaft = load.shaft
     if shaft is None:
         return None, "acts on no shaft"
     if shaft.id not in layout.shafts or layout.rotor(shaft.id) not in shafts.by_rotor:
@@ -348,7 +345,7 @@ def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[Stag
     cut = [stage for stage in layout.stages if stage not in computed]
     shafts = scene_shafts(layout, computed, names)
     _say_without_mesh(layout, cases, computed, shafts)
-    bearings = scene_bearings(layout, shafts)
+    bearings = SceneBearings(layout, shafts)
     gears, meshes = scene_gears(layout, shafts, by_stage, Names())
     torques = applied_torques(layout, flow, shafts, cut)
     drivers = driving(torques, flow, trains_of(layout, shafts))
@@ -362,7 +359,7 @@ def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[Stag
         "bushings": bearings.bushings,
         "rolling_bearings": bearings.rolling_bearings,
         "planet_bearings": bearings.planet_bearings,
-        "couplings": [*bearings.couplings, *stub_couplings(shafts, names)],
+        "couplings": [*bearings.couplings, *stub_couplings(shafts)],
         "housings": scene_housings(layout, bearings.seats),
         "planets": _planets(layout, {shaft.rotor: shaft.name for shaft in shafts.by_rotor.values()}),
         "meshes": meshes,
@@ -405,8 +402,7 @@ def _duration(layout: Layout, rate: float) -> float:
 def _gravity(layout: Layout) -> list[float]:
     """Return the acceleration of gravity in x, y, z, m/s^2; none where the file does not account for it."""
     for part in layout.unit.of_type("gear_unit"):
-        flag = part.attribute("account_for_gravity")
-        if flag is None or flag.value is not True:
+        if part.value("account_for_gravity") is not True:
             continue
         if layout.rotors.sets:
             part.say("account_for_gravity", "refused", "a scene with a planet carrier's frame has no gravity")
@@ -419,7 +415,7 @@ def _gravity(layout: Layout) -> list[float]:
         if length == 0.0 or not math.isfinite(length):
             part.say("account_for_gravity", "refused", "the file gives gravity no direction")
             break
-        place = placement(layout.unit, part) or FIXED
+        place = placement(part) or FIXED
         turned = layout.axes.turn(place) @ vector / length * (size or STANDARD_GRAVITY)
         return [float(value) + 0.0 for value in np.round(turned, 12)]
     return [0.0, 0.0, 0.0]
@@ -444,7 +440,7 @@ def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
         if not np.allclose(turned, equal, atol=1e-6):
             table["angles_deg"] = turned
         for planet in planets.planets[1:]:
-            gears = layout.unit.children(planet, "cylindrical_gear")
+            gears = planet.children("cylindrical_gear")
             for part in (planet, *gears):
                 part.say("", "derived", f"copy of planet {names[first.id]}")
         tables.append(table)

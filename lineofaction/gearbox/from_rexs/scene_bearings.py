@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,53 +14,220 @@ from dynamics.bearings.roller_bearing import BOTH, NEGATIVE, NONE, POSITIVE
 from dynamics.bearings.rolling_bearing import AXIAL_PRELOAD, DYNAMIC_CAPACITY
 from lineofaction.gearbox.from_rexs.bearings import (
     BearingGeometry,
-    BearingStiffness,
     bearing_geometry,
     bearing_stiffness,
     operating_point,
     stated_stiffness,
 )
-from lineofaction.gearbox.from_rexs.gear_unit import (
-    Connection,
-    Names,
-    Part,
-    bearings,
-    bounded_number,
-    couplings,
-)
+from lineofaction.gearbox.from_rexs.gear_unit import Connection, Names, Part
 from lineofaction.gearbox.from_rexs.housing import loosely_housed
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.placement import placement
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.schemas.declared import figures
 
-# A bearing of a REXS model as a rolling bearing of the scene, by its geometry.
+Table = dict[str, Any]
 
+RIGID_COUPLING, RIGID_TORSION = 1e9, 1e7
+"""N/m, and N m/rad, of a coupling that does not yield."""
+_CLEARANCES = ("radial_clearance", "axial_clearance", "operating_axial_bearing_clearance", "preload_distance")
+_STIFFNESSES = ("radial_stiffness", "axial_stiffness", "bending_stiffness")
 
-# In which directions a bearing of a REXS model holds its shaft along the axis of the scene.
-
-
-ITEM, ROW_ITEM = "axial_force_absorption", "axial_force_absorption_of_row"
+_ABSORPTION = "axial_force_absorption"
 _LOCATING = {"both_directions": BOTH, "positive": POSITIVE, "negative": NEGATIVE, "no_direction": NONE}
 _OPPOSITE = {POSITIVE: NEGATIVE, NEGATIVE: POSITIVE}
+_SIGN = {POSITIVE: 1, NEGATIVE: -1}
 
 
-def _axial_location(part: Part, sense: int, item: str = ITEM) -> str | None:
+class SceneBearings:
+    """Tables of what holds the shafts, as a scene file has them; the account says what is left out and why.
+
+    Attributes
+    ----------
+    seats : dict of int to str
+        The bushing or rolling bearing of each bearing on the ground, by its component.
+    """
+
+    def __init__(self, layout: Layout, shafts: SceneShafts) -> None:
+        self._layout, self._shafts, self._names = layout, shafts, Names()
+        self._loose = loosely_housed(layout)
+        self.bushings: list[Table] = []
+        self.rolling_bearings: list[Table] = []
+        self.planet_bearings: list[Table] = []
+        self.couplings: list[Table] = []
+        self.seats: dict[int, str] = {}
+        for entry in layout.unit.bearings:
+            self._enter(entry)
+        for entry in layout.unit.couplings:
+            if entry.on_ground is not None and self._rotor(entry.held) is not None:
+                self._enter(entry)
+        for entry in layout.rotors.couplings:
+            self._enter_coupling(entry)
+
+    def _enter(self, entry: Connection) -> None:
+        """Enter a bearing, or a coupling on the ground, by what it joins."""
+        ends = [self._rotor(side) for side in (entry.inner, entry.outer)]
+        planets = {planets.planets[0].id: planets for planets in self._layout.rotors.sets}
+        planet = next((side for side in (entry.inner, entry.outer) if side.id in planets), None)
+        if entry.on_ground is not None and self._rotor(entry.held) is not None:
+            self._enter_on_ground(entry)
+        elif planet is not None and ends[0] is not None and ends[1] is not None:
+            carrier = self._layout.rotor(planets[planet.id].carrier[0].id)
+            if self._layout.rotor(entry.other(planet).id) == carrier:
+                table = self._seat(entry, planet) | self._bushing(entry, planet)
+                self.planet_bearings.append(table | {"carrier": self._shafts.by_rotor[carrier].name})
+                _say_clearances(entry.part)
+                entry.part.say("", "taken", f"bearing of shaft {table['shaft']}")
+        elif ends[0] is not None and ends[1] is not None and ends[0] != ends[1]:
+            _say_clearances(entry.part)
+            self.couplings.append(self._between(entry))
+        else:
+            copies = {copy.id for planets in self._layout.rotors.sets for copy in planets.planets[1:]}
+            is_copy = bool(copies & {entry.inner.id, entry.outer.id})
+            words = "that of an equal planet" if is_copy else "what it holds is not in the scene"
+            entry.part.say("", "derived" if is_copy else "refused", words)
+
+    def _enter_on_ground(self, entry: Connection) -> None:
+        """Enter a bearing by its geometry, or as a bushing for the reason that the account has."""
+        rolling = self._rolling_bearing(entry)
+        seat = self._seat(entry, entry.held)
+        if isinstance(rolling, str):
+            _say_clearances(entry.part)
+            self.bushings.append(seat | self._bushing(entry, entry.held))
+            entry.part.say("", "taken", f"bushing on shaft {seat['shaft']}: {rolling}")
+        else:
+            self.rolling_bearings.append(seat | rolling)
+            entry.part.say("", "taken", f"rolling bearing on shaft {seat['shaft']}, by its geometry")
+        self.seats[entry.part.id] = seat["name"]
+
+    def _rotor(self, side: Part) -> int | None:
+        """Return the rotor of a side if the scene has it."""
+        rotor = self._layout.rotors.of.get(side.id)
+        return rotor if rotor in self._shafts.by_rotor else None
+
+    def _rolling_bearing(self, entry: Connection) -> Table | str:
+        """Return what a scene file states of a bearing by its geometry, or why it is a bushing."""
+        part = entry.part
+        if part.id in self._loose:
+            return "the matrix of the casing is singular, and only linear bearings sit in it"
+        if entry.held.id != entry.inner.id:
+            return "the shaft is on its outer side"
+        if operating_point(part) is not None or any(stated_stiffness(part, item) for item in _STIFFNESSES):
+            return "its stiffness is stated"
+        if part.value("radial_force_absorption") is False:
+            return "it carries no radial force"
+        geometry = bearing_geometry(part)
+        if isinstance(geometry, str):
+            return geometry
+        sense = 1 if float(self._layout.turn(part, entry.held)[2, 0]) > 0.0 else -1
+        located = _located(part, geometry, sense)
+        return located if isinstance(located, str) else located | _further(part)
+
+    def _seat(self, entry: Connection, held: Part) -> Table:
+        """Return name, shaft and position of a bearing on a shaft."""
+        shaft = self._shafts.by_rotor[self._layout.rotor(held.id)]
+        side = "inner" if held.id == entry.inner.id else "outer"
+        return {
+            "name": self._names.of(entry.part),
+            "shaft": shaft.name,
+            "position_mm": shaft.position_mm(self._z(entry.part, held, side)),
+        }
+
+    def _bushing(self, entry: Connection, held: Part) -> Table:
+        """Return the stiffness of a bearing on a shaft as a bushing states it."""
+        stiffness = bearing_stiffness(entry.part)
+        if stiffness.matrix is not None:
+            return {"stiffness_matrix": self._turned(entry.part, held, stiffness.matrix).tolist()}
+        linear = {"radial_stiffness_n_per_m": stiffness.radial, "axial_stiffness_n_per_m": stiffness.axial}
+        tilt = np.diag([0.0, 0.0, 0.0, stiffness.tilt, stiffness.tilt])
+        return linear | ({"stiffness_matrix": tilt.tolist()} if stiffness.tilt > 0.0 else {})
+
+    def _turned(self, part: Part, held: Part, matrix: FloatArray) -> FloatArray:
+        """Return the stiffness (5, 5) in x, y, z, tilt_x, tilt_y of a matrix along u, v, w of a bearing."""
+        full = np.zeros((6, 6))
+        kept = np.array([0, 1, 2, 4, 5])
+        full[np.ix_(kept, kept)] = matrix
+        both = np.kron(np.eye(2), self._layout.turn(part, held))
+        return np.asarray((both @ full @ both.T)[:5, :5])
+
+    def _z(self, part: Part, held: Part, side: str) -> float:
+        """Return z of a bearing, m."""
+        if held.id not in self._layout.shafts:
+            place = placement(part)
+            return 0.0 if place is None else float(self._layout.axes.point(place.origin)[2])
+        return self._layout.z_on(self._layout.shafts[held.id], part, f"u_coordinate_on_shaft_{side}_side")
+
+    def _between(self, entry: Connection) -> Table:
+        """Return a bearing between two shafts: a coupling that leaves their rotations free."""
+        stiffness = bearing_stiffness(entry.part)
+        if stiffness.matrix is None:
+            rows = [stiffness.radial, stiffness.radial, stiffness.axial, stiffness.tilt, stiffness.tilt, 0.0]
+            full = np.diag(np.minimum(rows, RIGID_COUPLING))
+        else:
+            full = np.zeros((6, 6))
+            full[:5, :5] = self._turned(entry.part, entry.inner, stiffness.matrix)
+        entry.part.say("", "taken", "bearing between two shafts")
+        return self._joint(entry) | _coupled(0.0, full)
+
+    def _joint(self, entry: Connection) -> Table:
+        """Return what every coupling states."""
+        sides = (entry.inner, entry.outer)
+        first, second = (self._shafts.by_rotor[self._layout.rotor(side.id)] for side in sides)
+        z = self._z(entry.part, entry.inner, "inner")
+        return {
+            "name": self._names.of(entry.part),
+            "first": first.name,
+            "second": second.name,
+            "position_mm": first.position_mm(z),
+        }
+
+    def _enter_coupling(self, entry: Connection) -> None:
+        if any(self._rotor(side) is None for side in (entry.inner, entry.outer)):
+            return
+        radial, axial = (_limited(entry.part, item, RIGID_COUPLING) for item in _STIFFNESSES[:2])
+        tilt = _limited(entry.part, "bending_stiffness", RIGID_TORSION)
+        torsion = _limited(entry.part, "rotational_stiffness", RIGID_TORSION)
+        entry.part.say("", "taken", "coupling")
+        matrix = np.diag([radial, radial, axial, tilt, tilt, 0.0])
+        self.couplings.append(self._joint(entry) | _coupled(torsion or RIGID_TORSION, matrix))
+
+
+def _coupled(torsion: float, matrix: FloatArray) -> Table:
+    return {"torsional_stiffness_n_m_per_rad": torsion, "stiffness_matrix": matrix.tolist()}
+
+
+def _limited(part: Part, item: str, rigid: float) -> float:
+    """Return a stiffness of a coupling, at most the rigid one; that where the file gives none."""
+    value = part.number(item, "stiffness of the coupling", rigid, f"rigid: {rigid:g} (N, m, rad)")
+    if value > rigid:
+        part.say(item, "derived", f"{value:.3g} (N, m, rad) means rigid: {rigid:g} here")
+    return min(max(value, 0.0), rigid)
+
+
+def _say_clearances(part: Part) -> None:
+    for item in _CLEARANCES:
+        value = part.value(item)
+        if isinstance(value, (int, float)) and value != 0:
+            part.say(item, "refused", "a linear bushing has neither clearance nor preload")
+
+
+def stub_couplings(shafts: SceneShafts) -> Iterator[Table]:
+    """Yield the couplings that fix the stubs of planetary sets on their shafts."""
+    matrix = np.diag([*[RIGID_COUPLING] * 3, *[RIGID_TORSION] * 2, 0.0])
+    for number, stub in enumerate(shafts.stubs.values(), 1):
+        main = shafts.by_rotor[stub.rotor]
+        joint = {"first": main.name, "second": stub.name, "position_mm": main.position_mm(stub.begin)}
+        yield {"name": f"stub {number}", **joint, **_coupled(RIGID_TORSION, matrix)}
+
+
+# A bearing by its geometry, and in which directions it holds its shaft along the axis of the scene.
+
+
+def _axial_location(part: Part, sense: int, item: str = _ABSORPTION) -> str | None:
     """Return the directions along z in which a bearing, or its row, holds its shaft.
 
-    Parameters
-    ----------
-    part : Part
-        The bearing, or its row.
-    sense : int
-        +1 where u of the bearing is along z, -1 where it is against it.
-    item : str
-        The attribute.
-
-    Returns
-    -------
-    str or None
-        both, positive, negative, none; None where the file does not say.
+    Both, positive, negative, none; None where the file does not say. `sense` is +1 where u of the bearing is
+    along z, -1 where it is against it.
     """
     stated = _LOCATING.get(part.text(item, "directions in which it holds the shaft, by its own u") or "")
     if stated in _OPPOSITE and sense < 0:
@@ -74,63 +241,30 @@ def _contact_side(part: Part, row: Part | None, sense: int) -> int | str:
 
     The row's own direction counts, else that of the bearing; the reason where neither says or they differ.
     """
-    senses = {POSITIVE: 1, NEGATIVE: -1}
-    own = senses.get(_axial_location(part, sense) or "")
-    of_row = None if row is None else senses.get(_axial_location(row, sense, ROW_ITEM) or "")
+    own = _SIGN.get(_axial_location(part, sense) or "")
+    of_row = None
+    if row is not None:
+        of_row = _SIGN.get(_axial_location(row, sense, f"{_ABSORPTION}_of_row") or "")
     if own is not None and of_row is not None and own != of_row:
-        return f"{ITEM} of the bearing and of its row are opposite"
+        return f"{_ABSORPTION} of the bearing and of its row are opposite"
     side = of_row or own
-    return side or f"{ITEM} does not say which direction its contact angle holds: positive or negative"
+    return side or f"{_ABSORPTION} does not say which direction its contact angle holds: positive or negative"
 
 
-_STIFFNESSES = ("radial_stiffness", "axial_stiffness", "bending_stiffness")
-
-
-def rolling_bearing(layout: Layout, entry: Connection, loose: Collection[int]) -> dict[str, Any] | str:
-    """Return what a scene file states of a bearing by its geometry, or why it is a bushing.
-
-    Name, shaft and position are left to the caller.
-
-    Parameters
-    ----------
-    layout : Layout
-    entry : Connection
-        A bearing on the ground.
-    loose : collection of int
-        Components in an elastic housing that is not held in all directions.
-    """
-    part = entry.part
-    if part.id in loose:
-        return "the matrix of the casing is singular, and only linear bearings sit in it"
-    if entry.held.id != entry.inner.id:
-        return "the shaft is on its outer side"
-    if operating_point(part) is not None or any(stated_stiffness(part, item) for item in _STIFFNESSES):
-        return "its stiffness is stated"
-    absorbs = part.attribute("radial_force_absorption")
-    if absorbs is not None and absorbs.value is False:
-        return "it carries no radial force"
-    geometry = bearing_geometry(layout.unit, part)
-    if isinstance(geometry, str):
-        return geometry
-    located = _located(layout, entry, geometry)
-    return located if isinstance(located, str) else located | _further(part, geometry)
-
-
-def _located(layout: Layout, entry: Connection, geometry: BearingGeometry) -> dict[str, Any] | str:
+def _located(part: Part, geometry: BearingGeometry, sense: int) -> Table | str:
     """Return the row and the directions that it holds, or why there are none."""
-    place = placement(layout.unit, entry.part) or layout.shafts[entry.held.id].place
-    sense = 1 if float(layout.axes.turn(place)[2, 0]) > 0.0 else -1
     if geometry.row.contact_angle == 0.0:
-        return _without_angle(entry.part, geometry, sense)
-    rows = layout.unit.children(entry.part, "rolling_bearing_row")
-    side = _contact_side(entry.part, rows[0] if rows else None, sense)
+        return _without_angle(part, geometry, sense)
+    rows = part.children("rolling_bearing_row")
+    side = _contact_side(part, rows[0] if rows else None, sense)
     if isinstance(side, str):
         return side
-    row = replace(geometry.row, contact_angle=side * geometry.row.contact_angle)
-    return _table(row) | _preload(entry.part, side)
+    table = _table(replace(geometry.row, contact_angle=side * geometry.row.contact_angle))
+    force = part.bounded("preload_force", "axial preload, N", AXIAL_PRELOAD)
+    return table | ({"axial_preload_n": side * abs(force)} if force else {})
 
 
-def _without_angle(part: Part, geometry: BearingGeometry, sense: int) -> dict[str, Any] | str:
+def _without_angle(part: Part, geometry: BearingGeometry, sense: int) -> Table | str:
     """Return a deep groove ball or cylindrical roller bearing."""
     locating, table = _axial_location(part, sense), _table(geometry.line or geometry.row)
     if isinstance(geometry.row, RollerBearing):
@@ -138,30 +272,24 @@ def _without_angle(part: Part, geometry: BearingGeometry, sense: int) -> dict[st
         return table if locating in (NONE, None) else ribs
     if locating is None:
         locating = BOTH
-        part.say(ITEM, "defaulted", "both directions: the file does not say")
+        part.say(_ABSORPTION, "defaulted", "both directions: the file does not say")
     for item in ("preload_force", "preload_distance"):
         if part.number(item, "preload"):
             part.say(item, "refused", "without a contact angle it has no direction")
     return table | ({} if locating == BOTH else {"locating": locating})
 
 
-def _preload(part: Part, side: int) -> dict[str, Any]:
-    """Return the axial preload of a row with a contact angle."""
-    force = bounded_number(part, "preload_force", "axial preload, N", AXIAL_PRELOAD)
-    return {"axial_preload_n": side * abs(force)} if force else {}
-
-
-def _further(part: Part, geometry: BearingGeometry) -> dict[str, Any]:
+def _further(part: Part) -> Table:
     """Return the rating of a bearing; state that its stiffness follows from the geometry."""
     for item in _STIFFNESSES:
         if part.number(item, "stiffness of the bearing") is not None:
             part.say(item, "ignored", "the stiffness follows from the geometry")
     words = "dynamic load rating, kN: the rating life"
-    rating = bounded_number(part, "radial_dynamic_load_rating", words, DYNAMIC_CAPACITY)
+    rating = part.bounded("radial_dynamic_load_rating", words, DYNAMIC_CAPACITY)
     return {"dynamic_capacity_n": float(f"{rating:.12g}")} if rating else {}
 
 
-def _table(row: BallBearing | RollerBearing | CatalogLine) -> dict[str, Any]:
+def _table(row: BallBearing | RollerBearing | CatalogLine) -> Table:
     """Return a row as a scene file states it; defaults are not written out."""
     names = {BallBearing: "ball", RollerBearing: "roller", CatalogLine: "catalog"}
     values = {
@@ -170,213 +298,3 @@ def _table(row: BallBearing | RollerBearing | CatalogLine) -> dict[str, Any]:
         if (value := getattr(row, figure.name)) != figure.default
     }
     return {names[type(row)]: values}
-
-
-RIGID_COUPLING, RIGID_TORSION = 1e9, 1e7
-"""N/m, and N m/rad, of a coupling that does not yield."""
-_CLEARANCES = ("radial_clearance", "axial_clearance", "operating_axial_bearing_clearance", "preload_distance")
-
-
-@dataclass
-class SceneBearings:
-    """Tables of what holds the shafts.
-
-    Attributes
-    ----------
-    bushings, rolling_bearings, planet_bearings, couplings : list of dict
-        Tables of a scene file.
-    seats : dict of int to str
-        The bushing or rolling bearing of each bearing on the ground, by its component.
-    loose : frozenset of int
-        The components in an elastic housing that is not held in all directions.
-    """
-
-    bushings: list[dict[str, Any]] = field(default_factory=list)
-    rolling_bearings: list[dict[str, Any]] = field(default_factory=list)
-    planet_bearings: list[dict[str, Any]] = field(default_factory=list)
-    couplings: list[dict[str, Any]] = field(default_factory=list)
-    seats: dict[int, str] = field(default_factory=dict)
-    loose: frozenset[int] = frozenset()
-
-
-def scene_bearings(layout: Layout, shafts: SceneShafts) -> SceneBearings:
-    """Return bearings and couplings of the scene; the account says what is left out and why."""
-    tables, names = SceneBearings(loose=frozenset(loosely_housed(layout))), Names()
-    for entry in bearings(layout.unit):
-        _enter(layout, shafts, tables, names, entry)
-    for entry in couplings(layout.unit):
-        if entry.on_ground is not None and _rotor(layout, shafts, entry.held) is not None:
-            _enter(layout, shafts, tables, names, entry)
-    for entry in layout.rotors.couplings:
-        _enter_coupling(layout, shafts, tables, names, entry)
-    return tables
-
-
-def _enter(
-    layout: Layout, shafts: SceneShafts, tables: SceneBearings, names: Names, entry: Connection
-) -> None:
-    """Enter a bearing, or a coupling on the ground, by what it joins."""
-    ends = [_rotor(layout, shafts, side) for side in (entry.inner, entry.outer)]
-    planets = {planets.planets[0].id: planets for planets in layout.rotors.sets}
-    planet = next((side for side in (entry.inner, entry.outer) if side.id in planets), None)
-    if entry.on_ground is not None and _rotor(layout, shafts, entry.held) is not None:
-        _enter_on_ground(layout, shafts, tables, names, entry)
-    elif planet is not None and ends[0] is not None and ends[1] is not None:
-        carrier = layout.rotor(planets[planet.id].carrier[0].id)
-        if layout.rotor(entry.other(planet).id) == carrier:
-            table = _seat(layout, shafts, names, entry, planet) | _bushing(layout, entry, planet)
-            tables.planet_bearings.append(table | {"carrier": shafts.by_rotor[carrier].name})
-            _say_clearances(entry.part)
-            entry.part.say("", "taken", f"bearing of shaft {table['shaft']}")
-    elif ends[0] is not None and ends[1] is not None and ends[0] != ends[1]:
-        _say_clearances(entry.part)
-        tables.couplings.append(_between(layout, shafts, names, entry))
-    else:
-        copies = {copy.id for planets in layout.rotors.sets for copy in planets.planets[1:]}
-        is_copy = bool(copies & {entry.inner.id, entry.outer.id})
-        words = "that of an equal planet" if is_copy else "what it holds is not in the scene"
-        entry.part.say("", "derived" if is_copy else "refused", words)
-
-
-def _enter_on_ground(
-    layout: Layout, shafts: SceneShafts, tables: SceneBearings, names: Names, entry: Connection
-) -> None:
-    """Enter a bearing by its geometry, or as a bushing for the reason that the account has."""
-    rolling = rolling_bearing(layout, entry, tables.loose)
-    seat = _seat(layout, shafts, names, entry, entry.held)
-    if isinstance(rolling, str):
-        _say_clearances(entry.part)
-        tables.bushings.append(seat | _bushing(layout, entry, entry.held))
-        entry.part.say("", "taken", f"bushing on shaft {seat['shaft']}: {rolling}")
-    else:
-        tables.rolling_bearings.append(seat | rolling)
-        entry.part.say("", "taken", f"rolling bearing on shaft {seat['shaft']}, by its geometry")
-    tables.seats[entry.part.id] = seat["name"]
-
-
-def _rotor(layout: Layout, shafts: SceneShafts, side: Part) -> int | None:
-    """Return the rotor of a side if the scene has it."""
-    rotor = layout.rotors.of.get(side.id)
-    return rotor if rotor in shafts.by_rotor else None
-
-
-def _seat(layout: Layout, shafts: SceneShafts, names: Names, entry: Connection, held: Part) -> dict[str, Any]:
-    """Return name, shaft and position of a bearing on a shaft."""
-    shaft = shafts.by_rotor[layout.rotor(held.id)]
-    side = "inner" if held.id == entry.inner.id else "outer"
-    return {
-        "name": names.of(entry.part),
-        "shaft": shaft.name,
-        "position_mm": shaft.position_mm(_z(layout, entry.part, held, side)),
-    }
-
-
-def _bushing(layout: Layout, entry: Connection, held: Part) -> dict[str, Any]:
-    """Return the stiffness of a bearing on a shaft as a bushing states it."""
-    stiffness = bearing_stiffness(layout.unit, entry.part)
-    matrix = _matrix(layout, entry.part, held, stiffness)
-    if stiffness.matrix is not None:
-        return {"stiffness_matrix": matrix.tolist()}
-    linear = {"radial_stiffness_n_per_m": stiffness.radial, "axial_stiffness_n_per_m": stiffness.axial}
-    return linear | ({"stiffness_matrix": matrix.tolist()} if stiffness.tilt > 0.0 else {})
-
-
-def _matrix(layout: Layout, part: Part, held: Part, stiffness: BearingStiffness) -> FloatArray:
-    """Return the stiffness in x, y, z, tilt_x, tilt_y that is beside radial and axial stiffness."""
-    if stiffness.matrix is None:
-        return np.diag([0.0, 0.0, 0.0, stiffness.tilt, stiffness.tilt])
-    place = placement(layout.unit, part) or layout.shafts[held.id].place
-    turn = layout.axes.turn(place)
-    full = np.zeros((6, 6))
-    kept = np.array([0, 1, 2, 4, 5])
-    full[np.ix_(kept, kept)] = stiffness.matrix
-    both = np.kron(np.eye(2), turn)
-    return np.asarray((both @ full @ both.T)[:5, :5])
-
-
-def _z(layout: Layout, part: Part, held: Part, side: str) -> float:
-    """Return z of a bearing, m."""
-    if held.id not in layout.shafts:
-        place = placement(layout.unit, part)
-        return 0.0 if place is None else float(layout.axes.point(place.origin)[2])
-    return layout.z_on(layout.shafts[held.id], part, f"u_coordinate_on_shaft_{side}_side")
-
-
-def _between(layout: Layout, shafts: SceneShafts, names: Names, entry: Connection) -> dict[str, Any]:
-    """Return a bearing between two shafts: a coupling that leaves their rotations free."""
-    stiffness = bearing_stiffness(layout.unit, entry.part)
-    if stiffness.matrix is None:
-        rows = [stiffness.radial, stiffness.radial, stiffness.axial, stiffness.tilt, stiffness.tilt, 0.0]
-        full = np.diag(np.minimum(rows, RIGID_COUPLING))
-    else:
-        full = np.zeros((6, 6))
-        full[:5, :5] = _matrix(layout, entry.part, entry.inner, stiffness)
-    entry.part.say("", "taken", "bearing between two shafts")
-    return _joint(layout, shafts, names, entry) | {
-        "torsional_stiffness_n_m_per_rad": 0.0,
-        "stiffness_matrix": full.tolist(),
-    }
-
-
-def _joint(layout: Layout, shafts: SceneShafts, names: Names, entry: Connection) -> dict[str, Any]:
-    """Return what every coupling states."""
-    first, second = (shafts.by_rotor[layout.rotor(side.id)] for side in (entry.inner, entry.outer))
-    z = _z(layout, entry.part, entry.inner, "inner")
-    return {
-        "name": names.of(entry.part),
-        "first": first.name,
-        "second": second.name,
-        "position_mm": first.position_mm(z),
-    }
-
-
-def _enter_coupling(
-    layout: Layout, shafts: SceneShafts, tables: SceneBearings, names: Names, entry: Connection
-) -> None:
-    if any(_rotor(layout, shafts, side) is None for side in (entry.inner, entry.outer)):
-        return
-    radial = _limited(entry.part, "radial_stiffness", RIGID_COUPLING)
-    axial = _limited(entry.part, "axial_stiffness", RIGID_COUPLING)
-    tilt = _limited(entry.part, "bending_stiffness", RIGID_TORSION)
-    torsion = _limited(entry.part, "rotational_stiffness", RIGID_TORSION)
-    entry.part.say("", "taken", "coupling")
-    tables.couplings.append(
-        _joint(layout, shafts, names, entry)
-        | {
-            "torsional_stiffness_n_m_per_rad": torsion or RIGID_TORSION,
-            "stiffness_matrix": np.diag([radial, radial, axial, tilt, tilt, 0.0]).tolist(),
-        }
-    )
-
-
-def _limited(part: Part, item: str, rigid: float) -> float:
-    """Return a stiffness of a coupling, at most the rigid one; that where the file gives none."""
-    value = part.number(item, "stiffness of the coupling")
-    if value is None:
-        part.say(item, "defaulted", f"rigid: {rigid:g} (N, m, rad)")
-        return rigid
-    if value > rigid:
-        part.say(item, "derived", f"{value:.3g} (N, m, rad) means rigid: {rigid:g} here")
-    return min(max(value, 0.0), rigid)
-
-
-def _say_clearances(part: Part) -> None:
-    """State that a linear bushing has no clearance."""
-    for item in _CLEARANCES:
-        attribute = part.attribute(item)
-        if attribute is not None and isinstance(attribute.value, (int, float)) and attribute.value != 0:
-            part.say(item, "refused", "a linear bushing has neither clearance nor preload")
-
-
-def stub_couplings(shafts: SceneShafts, names: Names) -> Iterator[dict[str, Any]]:
-    """Yield the couplings that fix the stubs of planetary sets on their shafts."""
-    for number, stub in enumerate(shafts.stubs.values(), 1):
-        main = shafts.by_rotor[stub.rotor]
-        yield {
-            "name": f"stub {number}",
-            "first": main.name,
-            "second": stub.name,
-            "position_mm": main.position_mm(stub.begin),
-            "torsional_stiffness_n_m_per_rad": RIGID_TORSION,
-            "stiffness_matrix": np.diag([*[RIGID_COUPLING] * 3, *[RIGID_TORSION] * 2, 0.0]).tolist(),
-        }

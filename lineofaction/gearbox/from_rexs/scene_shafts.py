@@ -88,7 +88,7 @@ def _axis(layout: Layout, rotor: int) -> int:
     pins = {
         shaft.id
         for planets in layout.rotors.sets
-        for shaft in layout.unit.related(planets.stage, "planet_pin", "planetary_stage", "shaft")
+        for shaft in planets.stage.related("planet_pin", "planetary_stage", "shaft")
     }
     shafts = [member for member in layout.rotors.members(rotor) if member in layout.shafts]
     return next((member for member in shafts if member not in pins), shafts[0])
@@ -105,7 +105,7 @@ def _pieces(layout: Layout, part: Part, axis: tuple[float, float]) -> Iterator[_
             yield _Piece(inertia, left + z, radius, left, left + section.length)
             left += section.length
         return
-    place = placement(layout.unit, part)
+    place = placement(part)
     outer, bore, length = (part.number(item, "size of the side plate, mm") for item in _SIZES)
     if place is None or not outer or not length or (bore or 0.0) >= outer:
         part.say("", "refused", "a side plate needs its place, diameters and length; its mass is left out")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from fe_contact.flank.involute import involute_function
-from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
+from lineofaction.gearbox.from_rexs.gear_unit import Part
 from lineofaction.gearbox.from_rexs.meshing import LoadedFlank
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, as_typed
@@ -58,7 +58,7 @@ def toothing_of(gear: Part, loaded: LoadedFlank) -> ToothingData:
     BadInput
         A number that every gear has is missing or impossible, named by component and attribute.
     """
-    teeth = required(gear, "number_of_teeth", "teeth")
+    teeth = gear.required("number_of_teeth", "teeth")
     ring = gear.type == "ring_gear"
     if teeth != round(teeth) or teeth == 0.0 or (teeth < 0.0 and not ring):
         bound = f"a whole number {'other than' if ring else 'above'} 0"
@@ -68,40 +68,12 @@ def toothing_of(gear: Part, loaded: LoadedFlank) -> ToothingData:
         part=gear,
         sign=-1 if ring else 1,
         teeth=abs(round(teeth)),
-        normal_module=positive(gear, "normal_module", "normal_module_mm"),
+        normal_module=gear.positive("normal_module", "normal_module_mm"),
         pressure_angle=_pressure_angle(gear, loaded),
         helix_angle=_helix_angle(gear),
-        face_width=positive(gear, "face_width", "face_width_mm"),
+        face_width=gear.positive("face_width", "face_width_mm"),
         profile_shift_coefficient=_shift(loaded),
     )
-
-
-def required(part: Part, item: str, words: str) -> float:
-    """Return a number that a component must have.
-
-    Raises
-    ------
-    BadInput
-        It is missing.
-    """
-    value = part.number(item, words)
-    if value is None:
-        raise BadInput.of(f"{part.place}, {item}", None, "given", f"{part.name} needs it.")
-    return value
-
-
-def positive(part: Part, item: str, words: str) -> float:
-    """Return a number above zero that a component must have.
-
-    Raises
-    ------
-    BadInput
-        It is missing, zero or negative.
-    """
-    value = required(part, item, words)
-    if not value > 0.0:
-        raise BadInput.of(f"{part.place}, {item}", value, "above 0")
-    return value
 
 
 def _pressure_angle(gear: Part, loaded: LoadedFlank) -> float:
@@ -116,14 +88,10 @@ def _pressure_angle(gear: Part, loaded: LoadedFlank) -> float:
 
 
 def _helix_angle(gear: Part) -> float:
-    """Return the helix angle, > 0 for a right hand; a spur gear may leave it out."""
-    value = gear.number("helix_angle_reference_diameter", "helix_angle_deg; > 0 is right hand")
-    if value is None:
-        gear.say("helix_angle_reference_diameter", "defaulted", "0: a spur gear")
-        return 0.0
+    item = "helix_angle_reference_diameter"
+    value = gear.number(item, "helix_angle_deg; > 0 is right hand", 0.0, "0: a spur gear")
     if not abs(value) < math.radians(80.0):
-        field = f"{gear.place}, helix_angle_reference_diameter"
-        raise BadInput.of(field, math.degrees(value), "-80 to 80 deg")
+        raise BadInput.of(f"{gear.place}, {item}", math.degrees(value), "-80 to 80 deg")
     return value + 0.0  # -0.0 becomes 0.0
 
 
@@ -247,9 +215,7 @@ class ToothDepth:
     cutter_shift: float | None = None
 
 
-def tooth_depth(
-    unit: GearUnit, gear: ToothingData, loaded: LoadedFlank, shift: float, tip_alteration: float
-) -> ToothDepth:
+def tooth_depth(gear: ToothingData, loaded: LoadedFlank, shift: float, tip_alteration: float) -> ToothDepth:
     """Return tip and root of a gear.
 
     Parameters
@@ -259,7 +225,7 @@ def tooth_depth(
     tip_alteration : float
         k in normal modules of a tip that the file leaves out, <= 0.
     """
-    tool = _tool(unit, gear.part, loaded)
+    tool = _tool(gear.part, loaded)
     cutter = tool if tool is not None and tool.type == "cutter_wheel_tool" and gear.sign < 0 else None
     tip = _given_tip(gear, shift)
     return ToothDepth(
@@ -364,14 +330,13 @@ def _cutter_shift(cutter: Part) -> float | None:
     return cutter.number("addendum_modification_coefficient", "cutter_profile_shift_coefficient")
 
 
-def _tool(unit: GearUnit, gear: Part, loaded: LoadedFlank) -> Part | None:
+def _tool(gear: Part, loaded: LoadedFlank) -> Part | None:
     """Return the tool that makes the root: the first step of the loaded flank, else of the gear."""
-    workpieces = (*loaded.flanks, gear)
-    for part in workpieces:
+    for part in (*loaded.flanks, gear):
         tools = (
-            *unit.related(part, "manufacturing_step", "workpiece", "tool"),
-            *unit.related(part, "ordered_reference", "origin", "referenced"),
-            *unit.related(part, "reference", "origin", "referenced"),
+            *part.related("manufacturing_step", "workpiece", "tool"),
+            *part.related("ordered_reference", "origin", "referenced"),
+            *part.referenced,
         )
         for tool in tools:
             if tool.type in _TOOLS:

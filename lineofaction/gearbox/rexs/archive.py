@@ -6,14 +6,15 @@ import io
 import re
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
-from pathlib import Path
+from collections.abc import Mapping
 
-from lineofaction.gearbox.rexs.model import Document, Model
-from lineofaction.gearbox.rexs.refusal import MOST_BYTES, MOST_FILES, MOST_RATIO, refused
+from lineofaction.gearbox.problems import BadInput
 
-# Files that a model names (`data_source` and others): from its archive or from its folder, nothing else.
-
+MOST_BYTES = 64_000_000
+"""Of a file, and of an archive's files together."""
+MOST_FILES = 1_000
+MOST_RATIO = 200
+"""Bytes of an archive's files by bytes of the archive; models compress 20 to 50 times."""
 
 MODEL_NAME = "rexs-model.rexs"
 _MODEL_ENDINGS = (".rexs", ".rexsj")
@@ -40,10 +41,10 @@ def read_archive(data: bytes) -> tuple[str, bytes, dict[str, bytes]]:
         ValueError,
         OSError,
     ):
-        raise refused("archive", None, "a ZIP archive that can be read") from None
+        raise BadInput.of("archive", None, "a ZIP archive that can be read") from None
     models = [name for name in files if name.lower().endswith(_MODEL_ENDINGS)]
     if len(models) != 1:
-        raise refused("archive", ", ".join(models) or None, "an archive of one model, .rexs or .rexsj")
+        raise BadInput.of("archive", ", ".join(models) or None, "an archive of one model, .rexs or .rexsj")
     text = files.pop(models[0])
     return models[0], text, files
 
@@ -59,7 +60,7 @@ def write_archive(model: bytes, files: Mapping[str, bytes]) -> bytes:
     return stream.getvalue()
 
 
-def inside(name: str) -> bool:
+def _inside(name: str) -> bool:
     """Return whether a relative name stays in its folder on every system."""
     parts = re.split(r"[/\\]", name)
     return bool(name) and parts[0] != "" and ".." not in parts and ":" not in name and "\0" not in name
@@ -68,14 +69,14 @@ def inside(name: str) -> bool:
 def _files(archive: zipfile.ZipFile, size: int) -> dict[str, bytes]:
     entries = [entry for entry in archive.infolist() if not entry.is_dir()]
     if len(entries) > MOST_FILES:
-        raise refused("archive", f"{len(entries)} files", f"at most {MOST_FILES}")
+        raise BadInput.of("archive", f"{len(entries)} files", f"at most {MOST_FILES}")
     files: dict[str, bytes] = {}
     left = min(MOST_BYTES, MOST_RATIO * size)
     for entry in entries:
-        if not inside(entry.filename):
-            raise refused("archive", entry.filename, "a name inside the archive")
+        if not _inside(entry.filename):
+            raise BadInput.of("archive", entry.filename, "a name inside the archive")
         if entry.filename in files:
-            raise refused("archive", entry.filename, "in the archive once")
+            raise BadInput.of("archive", entry.filename, "in the archive once")
         files[entry.filename] = _read(archive, entry, left)
         left -= len(files[entry.filename])
     return files
@@ -87,48 +88,5 @@ def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most: int) -> bytes:
         data = stream.read(most + 1)
     if len(data) > most:
         bound = f"at most {MOST_BYTES} bytes and {MOST_RATIO} times its archive"
-        raise refused("archive", f"{entry.filename}, larger", bound)
-    return data
-
-
-_KIND = "file_reference"
-
-
-def external_files(model: Model) -> Iterator[tuple[str, str]]:
-    """Yield the place of each attribute that names a file, and the name."""
-    for place, component in model.all_components():
-        for attribute in component.attributes:
-            if attribute.kind == _KIND and attribute.value is not None:
-                yield f"{place}, {attribute.id}", str(attribute.value)
-
-
-def external_file(document: Document, name: str, place: str, folder: Path | None = None) -> bytes:
-    """Return a file that a model names.
-
-    Parameters
-    ----------
-    document : Document
-        The model with the files of its archive.
-    name, place : str
-        As `external_files` yields them.
-    folder : Path, optional
-        The folder of a model that lies in no archive; without it only the archive is looked in.
-
-    Raises
-    ------
-    BadInput
-        The name leads outside the archive or the folder, also by a link, or to no file; it is too large.
-    """
-    if not inside(name):
-        raise refused(place, name, "a file in the archive or folder of the model")
-    key = name.replace("\\", "/")
-    if key in document.files:
-        return document.files[key]
-    path = (folder / key).resolve() if folder else None
-    if folder is None or path is None or not path.is_relative_to(folder.resolve()) or not path.is_file():
-        raise refused(place, name, "a file in the archive or folder of the model")
-    with path.open("rb") as stream:
-        data = stream.read(MOST_BYTES + 1)
-    if len(data) > MOST_BYTES:
-        raise refused(place, name, f"a file of at most {MOST_BYTES} bytes")
+        raise BadInput.of("archive", f"{entry.filename}, larger", bound)
     return data

@@ -1,4 +1,4 @@
-"""Values of attributes from text and from base64, and back."""
+"""Kinds and values of attributes: from text and from base64, and back."""
 
 from __future__ import annotations
 
@@ -8,10 +8,23 @@ import binascii
 import math
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
-from lineofaction.gearbox.rexs.model import Array, Scalar
-from lineofaction.gearbox.rexs.refusal import refused
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs.model import Array, Scalar, Value
+from lineofaction.gearbox.rexs.vocabulary import owners
+
+KINDS = (
+    "floating_point",
+    "integer",
+    "boolean",
+    "enum",
+    "string",
+    "reference_component",
+    "file_reference",
+    "date_time",
+)
+_SHOWN = ("floating_point", "boolean")
 
 CODES = {"float32": "f", "float64": "d", "int32": "i"}
 """The codes of REXS, little-endian, with the letters of `array`."""
@@ -30,38 +43,24 @@ def integer_of(text: str, place: str) -> int:
     """
     plain = text.strip()
     if not _INTEGER.fullmatch(plain) or abs(int(plain)) >= _MOST_INTEGER:
-        raise refused(place, text, "an integer of at most 64 bits")
+        raise BadInput.of(place, text, "an integer of at most 64 bits")
     return int(plain)
 
 
 def _float_of(text: str, place: str) -> float:
-    """Return a finite number.
-
-    Raises
-    ------
-    BadInput
-        It is none.
-    """
     try:
         number = float(text) if "_" not in text else math.nan
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise refused(place, text, "a finite number")
+        raise BadInput.of(place, text, "a finite number")
     return number
 
 
 def _boolean_of(text: str, place: str) -> bool:
-    """Return true or false, in any case.
-
-    Raises
-    ------
-    BadInput
-        It is neither.
-    """
     plain = text.strip().lower()
     if plain not in ("true", "false"):
-        raise refused(place, text, "true or false")
+        raise BadInput.of(place, text, "true or false")
     return plain == "true"
 
 
@@ -89,6 +88,43 @@ def scalar_of(kind: str, text: str, place: str) -> Scalar:
     return OF_TEXT.get(kind, _words)(text, place)
 
 
+def entry_kind(kind: str) -> str:
+    """Return the kind of the entries of an array or a matrix, a scalar kind as it is."""
+    for end in ("_arrays", "_array", "_matrix"):
+        kind = kind.removesuffix(end)
+    return kind.removeprefix("array_of_")
+
+
+def kind_of(attribute: str, texts: Sequence[str]) -> str:
+    """Return the kind of the entries of an attribute's value that XML writes as text only.
+
+    `kinds.toml` lists the attributes of REXS 1.0 to 2.0.0 whose kind their text does not show. Of
+    others, and where the text is no value of the listed kind, a number is a floating point, true and false
+    are boolean, and any other text is a string. No text at all is a number not given.
+    """
+    listed = owners("kinds").get(attribute)
+    if listed and _all_of(listed, texts):
+        return listed
+    return next((kind for kind in _SHOWN if _all_of(kind, texts)), "string")
+
+
+def _all_of(kind: str, texts: Sequence[str]) -> bool:
+    try:
+        for text in texts:
+            scalar_of(kind, text, "")
+    except BadInput:
+        return False
+    return True
+
+
+def texts_of(value: Value) -> list[str]:
+    """Return the texts of all entries of a value, none of one that is not given."""
+    if value is None:
+        return []
+    rows = value if isinstance(value, tuple) else (value,)
+    return [text_of(entry) for row in rows for entry in (row if isinstance(row, tuple) else (row,))]
+
+
 def text_of(value: Scalar) -> str:
     """Return a value as XML writes it; a float reads back the same to the last bit."""
     if isinstance(value, bool):
@@ -105,20 +141,20 @@ def decoded(code: str, text: str, place: str) -> Array:
         The code is none of REXS, the text is not base64, or a number is not finite.
     """
     if code not in CODES:
-        raise refused(place, code, "one of " + ", ".join(CODES))
+        raise BadInput.of(place, code, "one of " + ", ".join(CODES))
     numbers = array.array(CODES[code])
     try:
         numbers.frombytes(base64.b64decode("".join(text.split()), validate=True))
     except (ValueError, binascii.Error):
-        raise refused(place, text[:40], f"base64 of whole {code} numbers") from None
+        raise BadInput.of(place, text[:40], f"base64 of whole {code} numbers") from None
     if sys.byteorder == "big":
         numbers.byteswap()
     if code != "int32" and not all(map(math.isfinite, numbers)):
-        raise refused(place, "a number that is not finite", "finite numbers")
+        raise BadInput.of(place, "a number that is not finite", "finite numbers")
     return tuple(numbers)
 
 
-def coded(code: str, values: Array) -> str:
+def coded(code: str, values: Sequence[Scalar]) -> str:
     """Return numbers as base64 of a code."""
     numbers = array.array(CODES[code], values)  # type: ignore[type-var]  # numbers, by the kind
     if sys.byteorder == "big":
@@ -135,5 +171,5 @@ def rows_of(values: Array, rows: int, columns: int, place: str) -> tuple[Array, 
         There are more or fewer values than the matrix has.
     """
     if rows < 0 or columns < 0 or rows * columns != len(values):
-        raise refused(place, f"{rows} x {columns}", f"the size of a matrix of {len(values)} values")
+        raise BadInput.of(place, f"{rows} x {columns}", f"the size of a matrix of {len(values)} values")
     return tuple(values[start : start + columns] for start in range(0, len(values), columns or 1))

@@ -1,15 +1,119 @@
-"""Words of REXS that say what a component is."""
+"""Words, units and quantities of REXS, from the tables beside this file."""
 
 from __future__ import annotations
 
 import functools
 import tomllib
+from dataclasses import dataclass
 from importlib.resources import files
-from typing import Literal
+from typing import Any, Literal
+
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs.model import Attribute, Component
 
 
 @functools.cache
+def table(name: str) -> dict[str, Any]:
+    """Return a TOML table of this package."""
+    return tomllib.loads(files(__package__).joinpath(f"{name}.toml").read_text(encoding="utf-8"))
+
+
+@functools.cache
+def owners(name: str) -> dict[str, str]:
+    """Return the key by entry, of a table that has a list of entries for each key."""
+    return {entry: key for key, entries in table(name).items() for entry in entries}
+
+
 def words(name: Literal["descriptive_components", "bearing_types"]) -> frozenset[str]:
-    """Return a list of `vocabulary.toml`."""
-    table = tomllib.loads(files(__package__).joinpath("vocabulary.toml").read_text(encoding="utf-8"))
-    return frozenset(table[name])
+    """Return words that say what a component is."""
+    return frozenset(table("vocabulary")[name])
+
+
+@dataclass(frozen=True)
+class SiUnit:
+    """A unit: a value v in it is v * factor + offset in the SI unit `si`."""
+
+    si: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+@functools.cache
+def units() -> dict[str, SiUnit]:
+    """Return every unit of REXS 1.0 to 2.0.0 by its spelling."""
+    return {name: SiUnit(**unit) for name, unit in table("units").items()}
+
+
+def si_value(value: float, unit: str | None, expected: str, place: str) -> float:
+    """Return a value in SI.
+
+    Parameters
+    ----------
+    value, unit : float, str or None
+        As the file has them.
+    expected : str
+        A unit of the value's quantity, as the schema has it.
+    place : str
+        Component and attribute, for the error.
+
+    Raises
+    ------
+    BadInput
+        The unit is none of REXS, or of another quantity.
+    """
+    written = units().get("none" if unit is None else unit)
+    wanted = units()[expected]
+    if written is None or written.si != wanted.si:
+        fit = ", ".join(name for name, own in units().items() if own.si == wanted.si and name)
+        raise BadInput.of(f"{place}, unit", unit, f"one of {fit}")
+    return value * written.factor + written.offset
+
+
+def listed_unit(name: str) -> str | None:
+    """Return the unit that REXS gives an attribute, None of one that is not in `quantities.toml`."""
+    return owners("quantities").get(name)
+
+
+def quantity(component: Component, name: str, place: str) -> float | None:
+    """Return a number of a component in SI, None where the file gives none.
+
+    Parameters
+    ----------
+    component : Component
+        Of a model of the newest version.
+    name : str
+        An attribute of `quantities.toml`.
+    place : str
+        The component, for the error.
+
+    Raises
+    ------
+    BadInput
+        The value is no number, is given twice, or its unit belongs to another quantity.
+    """
+    attribute = _only(component, name, place)
+    return None if attribute is None else _number(attribute.value, attribute, f"{place}, {name}")
+
+
+def quantities(component: Component, name: str, place: str) -> tuple[float, ...] | None:
+    """Return an array of numbers of a component in SI, as `quantity` a number."""
+    attribute = _only(component, name, place)
+    if attribute is None:
+        return None
+    if not isinstance(attribute.value, tuple):
+        raise BadInput.of(f"{place}, {name}", attribute.value, "an array of numbers")
+    return tuple(_number(entry, attribute, f"{place}, {name}") for entry in attribute.value)
+
+
+def _only(component: Component, name: str, place: str) -> Attribute | None:
+    """Return the attribute of a name, None if there is none or it has no value."""
+    named = [attribute for attribute in component.attributes if attribute.id == name]
+    if len(named) > 1:
+        raise BadInput.of(f"{place}, {name}", f"{len(named)} values", "given once")
+    return named[0] if named and named[0].value is not None else None
+
+
+def _number(value: object, attribute: Attribute, place: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise BadInput.of(place, value, "a number")
+    return si_value(float(value), attribute.unit, owners("quantities")[attribute.id], place)

@@ -15,7 +15,8 @@ from lineofaction.gearbox.from_rexs.loads import LoadCase
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.from_rexs.scene import BearingPart, SceneParts, ShaftPart
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Attribute, Document, upgrade
+from lineofaction.gearbox.rexs.model import Attribute, Document
+from lineofaction.gearbox.rexs.upgrade import upgrade
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
 from lineofaction.gearbox.studies.deflect.run import scene_of
 from lineofaction.gearbox.to_rexs.exported import calculated, with_case_results

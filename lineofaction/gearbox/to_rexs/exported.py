@@ -12,7 +12,8 @@ from fe_contact.ste import Curve, SteDatabase
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
 from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Attribute, Component, Document, upgrade
+from lineofaction.gearbox.rexs.model import Attribute, Component, Document
+from lineofaction.gearbox.rexs.upgrade import upgrade
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.units import UM

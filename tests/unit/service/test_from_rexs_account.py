@@ -7,7 +7,15 @@ import math
 import pytest
 
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.rexs import Attribute, Component, LoadCase, LoadSpectrum, Model, Reference, Relation
+from lineofaction.gearbox.rexs.model import (
+    Attribute,
+    Component,
+    LoadCase,
+    LoadSpectrum,
+    Model,
+    Reference,
+    Relation,
+)
 
 MODULE = Attribute("normal_module", "floating_point", 4.5, "mm")
 HELIX = Attribute("helix_angle_reference_diameter", "floating_point", 21.0, "deg")
@@ -80,9 +88,9 @@ def test_the_last_word_counts_and_a_value_that_lacks_can_be_said() -> None:
 def test_parts_come_in_the_order_of_an_ordered_assembly() -> None:
     gears = unit()
     shaft = gears.part(1)
-    assert [part.id for part in gears.children(shaft, "shaft_section")] == [3, 4]
-    assert {part.id for part in gears.children(shaft)} == {2, 3, 4}
-    owner = gears.owner(gears.part(4), "shaft")
+    assert [part.id for part in shaft.children("shaft_section")] == [3, 4]
+    assert {part.id for part in shaft.children()} == {2, 3, 4}
+    owner = gears.part(4).shaft
     assert owner is not None
     assert owner.id == 1
 

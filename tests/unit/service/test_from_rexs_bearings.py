@@ -10,7 +10,7 @@ from rexs_reference import needs_reference, reference
 from dynamics.bearings.loaded_bearing import LoadedBearing
 from lineofaction.gearbox.convert.scene import rolling_bearing_of
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
-from lineofaction.gearbox.rexs import read_rexs
+from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas.scene_bearings import RollingBearingInput
 from tests.fakes.deflected_unit import deflection_of_unit
 from tests.fakes.opened_unit import said

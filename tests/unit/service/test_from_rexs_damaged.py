@@ -11,7 +11,7 @@ import pytest
 
 from lineofaction.gearbox.from_rexs.opened import opened, unit_files
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Document
+from lineofaction.gearbox.rexs.model import Document
 from tests.fakes.rexs_unit import (
     STAGES,
     planetary,

@@ -19,7 +19,7 @@ from rexs_stage import (
 
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import stage_cases
-from lineofaction.gearbox.from_rexs.micro_geometry import READERS, UNREAD
+from lineofaction.gearbox.from_rexs.modifications import READERS, UNREAD
 from lineofaction.gearbox.schemas.case import WheelInput
 from lineofaction.gearbox.schemas.gear import GearInput
 

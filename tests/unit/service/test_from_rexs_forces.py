@@ -16,7 +16,8 @@ from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.convert.topology import facts_of
 from lineofaction.gearbox.from_rexs.opened import LOAD_CASES_FILE, OpenedUnit, opened, unit_files, unit_json
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Document, serialized
+from lineofaction.gearbox.rexs.files import serialized
+from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.studies.deflect import Inputs
 from lineofaction.gearbox.studies.deflect.run import load_cases

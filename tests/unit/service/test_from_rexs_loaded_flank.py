@@ -48,9 +48,9 @@ def test_a_ring_gear_carries_on_its_trailing_flank_its_tooth_turned_upwards(sens
     expected = side_by_vectors(sense, drives=False, datum=datum, ring=True)
     assert loaded(unit, WHEEL, 10.0 * sense).side == expected
     # If the ring gear drives, it carries on its leading flank, and the planet on its trailing one.
-    meshing = meshing_of(unit, unit.part(STAGE), driver=WHEEL, torques=(10.0 * sense,))
-    ring = loaded_flank(unit, meshing, unit.part(WHEEL))
-    planet = loaded_flank(unit, meshing, unit.part(PINION))
+    meshing = meshing_of(unit.part(STAGE), driver=WHEEL, torques=(10.0 * sense,))
+    ring = loaded_flank(meshing, unit.part(WHEEL))
+    planet = loaded_flank(meshing, unit.part(PINION))
     assert ring.side == side_by_vectors(sense, drives=True, datum=datum, ring=True)
     assert planet.side == side_by_vectors(sense, drives=False, datum=-1)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lineofaction.gearbox.from_rexs.opened import opened, unit_files
-from lineofaction.gearbox.rexs import Document
+from lineofaction.gearbox.rexs.model import Document
 from tests.fakes.opened_unit import content, said, scene_of
 from tests.fakes.rexs_stage import relation
 from tests.fakes.rexs_unit import (

@@ -15,7 +15,7 @@ from lineofaction.gearbox.problems import BadInput
 def frame_with(**values: Any) -> Any:
     """Return the frame of the pinion, whose values are changed, and the unit."""
     unit = stage_unit({PINION: values})
-    return frame_of(unit, unit.part(PINION)), unit
+    return frame_of(unit.part(PINION)), unit
 
 
 def test_a_frame_within_a_turned_frame_is_turned_with_it() -> None:
@@ -26,7 +26,7 @@ def test_a_frame_within_a_turned_frame_is_turned_with_it() -> None:
         "w_axis_vector": (1.0, 0.0, 0.0),
     }
     unit = stage_unit({1: turned, PINION: {"reference_component_for_position": 1}})
-    frame = frame_of(unit, unit.part(PINION))
+    frame = frame_of(unit.part(PINION))
     assert frame.origin == pytest.approx([1e-3, 2e-3, 33e-3], rel=1e-12)
     assert frame.u == pytest.approx([0.0, 0.0, 1.0], abs=1e-15)
     assert np.linalg.det(frame.axes) == pytest.approx(1.0, rel=1e-12)
@@ -64,7 +64,7 @@ def test_frames_in_a_circle_are_refused() -> None:
         }
     )
     with pytest.raises(BadInput, match="not placed by this one itself"):
-        frame_of(unit, unit.part(PINION))
+        frame_of(unit.part(PINION))
 
 
 def test_a_part_of_a_shaft_that_another_refers_to_carries_it() -> None:
@@ -74,4 +74,4 @@ def test_a_part_of_a_shaft_that_another_refers_to_carries_it() -> None:
         2: {"support_vector": (0.0, 0.0, 80.0), "reference_component_for_position": PINION},
     }
     unit = stage_unit(changes)
-    assert frame_of(unit, unit.part(2)).origin == pytest.approx([12e-3, 0.0, 80e-3], rel=1e-12)
+    assert frame_of(unit.part(2)).origin == pytest.approx([12e-3, 0.0, 80e-3], rel=1e-12)

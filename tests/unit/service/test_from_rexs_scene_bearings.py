@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from lineofaction.gearbox.from_rexs.opened import opened
-from lineofaction.gearbox.rexs import Document, read_rexs
+from lineofaction.gearbox.rexs.files import read_rexs
+from lineofaction.gearbox.rexs.model import Document
 from tests.fakes.opened_unit import said, scene_of
 from tests.fakes.rexs_stage import relation
 from tests.fakes.rexs_unit import (

@@ -9,7 +9,8 @@ import pytest
 from small_rexs import small_document, small_model
 
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Document, external_file, external_files, parsed, read_rexs, serialized
+from lineofaction.gearbox.rexs.files import parsed, read_rexs, serialized
+from lineofaction.gearbox.rexs.model import Document
 
 FORMS = ("a.rexs", "a.rexsj", "a.rexsz", "a.rexs.zip")
 FORMS_IN_TURN = ("a.rexs", "a.rexsj", "a.rexsz", "a.rexs")
@@ -63,27 +64,3 @@ def test_a_load_case_of_json_has_the_types_of_the_components() -> None:
     shorter = head + mark + cases.replace('"type": "shaft",', "", 1)
     assert shorter != text
     assert parsed(shorter.encode()).model == small_model()
-
-
-def test_named_files_come_from_the_archive_or_the_folder(tmp_path: Path) -> None:
-    document = small_document()
-    [(place, name)] = external_files(document.model)
-    assert external_file(document, name, place) == b"1 2 3"
-    loose = Document(document.model)
-    (tmp_path / "inner" / "matrices").mkdir(parents=True)
-    (tmp_path / "inner" / "matrices" / "housing.txt").write_bytes(b"4")
-    assert external_file(loose, name, place, tmp_path / "inner") == b"4"
-    with pytest.raises(BadInput, match="in the archive or folder"):
-        external_file(loose, name, place)
-
-
-@pytest.mark.parametrize(
-    "name", ["../secret", "/etc/passwd", "C:\\secret", "a\\..\\..\\secret", "", "link", "nul\0"]
-)
-def test_a_named_file_outside_is_refused(name: str, tmp_path: Path) -> None:
-    (tmp_path / "secret").write_bytes(b"secret")
-    folder = tmp_path / "inner"
-    folder.mkdir()
-    (folder / "link").symlink_to(tmp_path / "secret")
-    with pytest.raises(BadInput, match="in the archive or folder"):
-        external_file(Document(small_model()), name, "component 1, data_source", folder)

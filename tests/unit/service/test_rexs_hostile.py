@@ -15,7 +15,8 @@ from hostile_rexs import JSON, XML, ZIP, damaged_files, hostile_files
 
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Document, parsed, serialized
+from lineofaction.gearbox.rexs.files import parsed, serialized
+from lineofaction.gearbox.rexs.model import Document
 
 HOSTILE = {name: (data, words) for name, data, words in hostile_files()}
 MOST_SECONDS = 10.0  # the largest takes 2.5 s on a loaded machine

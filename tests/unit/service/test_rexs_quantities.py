@@ -7,8 +7,8 @@ import math
 import pytest
 
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Attribute, Component, quantities, quantity
-from lineofaction.gearbox.rexs.model import Value
+from lineofaction.gearbox.rexs.model import Attribute, Component, Value
+from lineofaction.gearbox.rexs.vocabulary import quantities, quantity
 
 
 def gear(name: str, value: Value, unit: str | None, *others: Attribute) -> Component:

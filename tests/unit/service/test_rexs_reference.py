@@ -40,10 +40,11 @@ from lineofaction.gearbox.from_rexs.gear_unit import BEARINGS, COUPLINGS, GearUn
 from lineofaction.gearbox.from_rexs.gears import stage_cases
 from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.from_rexs.scene import BearingPart
-from lineofaction.gearbox.rexs import Document, parsed, read_rexs, serialized, upgrade
-from lineofaction.gearbox.rexs.kinds import KINDS, kind_of
-from lineofaction.gearbox.rexs.upgrade import UNITS
-from lineofaction.gearbox.rexs.vocabulary import words
+from lineofaction.gearbox.rexs.files import parsed, read_rexs, serialized
+from lineofaction.gearbox.rexs.model import Document
+from lineofaction.gearbox.rexs.upgrade import upgrade
+from lineofaction.gearbox.rexs.values import KINDS, kind_of
+from lineofaction.gearbox.rexs.vocabulary import units, words
 from lineofaction.gearbox.to_rexs.deflected import bearing_results, deflected
 from lineofaction.gearbox.to_rexs.exported import exported
 from tests.fakes.deflected_unit import deflection_of_unit
@@ -117,7 +118,7 @@ def test_the_units_are_those_of_the_schemas() -> None:
     named = {
         unit.get("name") for version in SCHEMAS for unit in parsed_schema(version).iterfind("units/unit")
     }
-    assert set(UNITS) - {""} == named
+    assert set(units()) - {""} == named
 
 
 def test_the_quantities_are_those_of_the_newest_schema() -> None:

@@ -10,7 +10,8 @@ from rexs_reference import examples, needs_reference
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
-from lineofaction.gearbox.rexs import read_rexs, upgrade
+from lineofaction.gearbox.rexs.files import read_rexs
+from lineofaction.gearbox.rexs.upgrade import upgrade
 from lineofaction.gearbox.schemas.case import PairInput
 
 pytestmark = needs_reference

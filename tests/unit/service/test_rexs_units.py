@@ -7,7 +7,7 @@ import math
 import pytest
 
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import si_value
+from lineofaction.gearbox.rexs.vocabulary import si_value
 
 VALUES = [
     (3.0, "mm", "mm", 3e-3),

@@ -6,17 +6,8 @@ import pytest
 from small_rexs import small_model
 
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import (
-    NEWEST,
-    VERSIONS,
-    Attribute,
-    Change,
-    Component,
-    LoadCase,
-    LoadSpectrum,
-    Model,
-    upgrade,
-)
+from lineofaction.gearbox.rexs.model import Attribute, Component, LoadCase, LoadSpectrum, Model
+from lineofaction.gearbox.rexs.upgrade import NEWEST, VERSIONS, Change, upgrade
 
 
 def model_of(version: str, *components: Component) -> Model:

@@ -10,7 +10,7 @@ import pytest
 from lineofaction.client.offers import offers
 from lineofaction.gearbox.from_rexs.opened import opened, unit_files, unit_json
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import read_rexs
+from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.studies.deflect import Inputs
 from service.schemas.answers import UnitBody
 

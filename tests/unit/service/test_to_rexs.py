@@ -18,7 +18,8 @@ from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Attribute, Component, Document, parsed, serialized
+from lineofaction.gearbox.rexs.files import parsed, serialized
+from lineofaction.gearbox.rexs.model import Attribute, Component, Document
 from lineofaction.gearbox.to_rexs.exported import exported
 
 

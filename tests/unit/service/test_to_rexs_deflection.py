@@ -18,7 +18,9 @@ from dynamics.mechanism.flank_gradients import table_sense
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs import Document, parsed, serialized, si_value
+from lineofaction.gearbox.rexs.files import parsed, serialized
+from lineofaction.gearbox.rexs.model import Document
+from lineofaction.gearbox.rexs.vocabulary import si_value
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection
 from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.to_rexs.deflected import deflected, left_out

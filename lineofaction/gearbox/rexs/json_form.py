@@ -1,0 +1,254 @@
+"""REXS's JSON form (``.rexsj``): a model from it and back, every doubt refused."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs.model import Attribute, Extra, LoadSpectrum, Model, Scalar, Value
+from lineofaction.gearbox.rexs.tree import MOST_ENTRIES, Element, Written, written
+from lineofaction.gearbox.rexs.values import KINDS, coded, decoded, entry_kind, integer_of, rows_of
+
+_TYPES: dict[str, tuple[type, ...]] = {
+    "floating_point": (float, int),
+    "integer": (int,),
+    "reference_component": (int,),
+    "boolean": (bool,),
+}
+_TEXT = (str,)
+_CODED = "_coded"
+_WORDS = {dict: "a table", list: "a list", str: "a text", int: "an integer"}
+
+
+@dataclass(slots=True)
+class _Table(Element):
+    """A table of the JSON form with its place."""
+
+    place: str
+    fields: dict[str, Any]
+    line: None = None
+
+    @classmethod
+    def of(cls, value: Any, place: str) -> _Table:
+        """Return a table, refuse what is none."""
+        return cls(place, _typed(value, dict, place))
+
+    def text(self, name: str) -> str:
+        text: str = _typed(self.fields.pop(name, None), str, f"{self.place}.{name}")
+        return text
+
+    def optional_text(self, name: str) -> str | None:
+        if self.fields.get(name) is None:
+            self.fields.pop(name, None)
+            return None
+        return self.text(name)
+
+    def number(self, name: str) -> int:
+        number: int = _typed(self.fields.pop(name, None), int, f"{self.place}.{name}")
+        return number
+
+    def optional_number(self, name: str) -> int | None:
+        if self.fields.get(name) is None:
+            self.fields.pop(name, None)
+            return None
+        return self.number(name)
+
+    def parts(self, name: str) -> list[_Table]:
+        place = f"{self.place}.{name}s"
+        entries = _typed(self.fields.pop(f"{name}s", None), list, place)
+        return [_Table.of(entry, f"{place}[{index}]") for index, entry in enumerate(entries)]
+
+    def extra(self) -> Extra:
+        return tuple((name, self.text(name)) for name in list(self.fields))
+
+    def type_of(self, inherited: str | None) -> str:
+        stated = self.fields.get("type")
+        if stated in (None, "") and inherited is not None:
+            self.fields.pop("type", None)
+            return inherited
+        return self.text("type")
+
+    def attribute(self) -> Attribute:
+        name = self.text("id")
+        kinds = [field for field in self.fields if entry_kind(field.removesuffix(_CODED)) in KINDS]
+        if len(kinds) != 1:
+            raise BadInput.of(self.place, ", ".join(kinds) or None, "one value of a type of REXS")
+        place, kind = f"{self.place}, {name}", kinds[0].removesuffix(_CODED)
+        plain = self.fields.pop(kinds[0])
+        code = None
+        if kinds[0].endswith(_CODED):
+            body = _Table.of(plain, place)
+            code = body.text("code")
+            value = body._decoded(kind, code)
+        else:
+            value = _value(kind, plain, place)
+        unit, origin = self.optional_text("unit"), self.optional_text("origin")
+        return Attribute(name, kind, value, unit, code, origin, self.extra())
+
+    def _decoded(self, kind: str, code: str) -> Value:
+        """Return the value of an array or a matrix in base64."""
+        entry = entry_kind(kind)
+        if entry != ("integer" if code == "int32" else "floating_point") or kind == entry:
+            raise BadInput.of(self.place, code, f"a code of {kind}")
+        values = decoded(code, self.text("value"), self.place)
+        if kind.endswith("_matrix"):
+            return rows_of(values, self.number("rows"), self.number("columns"), self.place)
+        return values
+
+
+def read_json(data: bytes) -> Model:
+    """Return the model of a JSON text in UTF-8, with or without byte-order mark.
+
+    Raises
+    ------
+    BadInput
+        It is no JSON, nested too deep, too large, has a field twice or a number that is not finite, or is no
+        REXS.
+    """
+    root = _Table.of(_Table.of(_json(data), "file").fields.get("model"), "model")
+    beside: dict[str, Any] = {
+        name: root.fields.pop(name) for name in ("load_spectrum", "accumulation") if name in root.fields
+    }
+    components = tuple(part.component({}) for part in root.parts("component"))
+    types = {component.id: component.type for component in components}
+    relations = (part.relation() for part in root.parts("relation"))
+    return root.model(relations, components, _spectra(beside, types))
+
+
+def _spectra(beside: dict[str, Any], types: dict[int, str]) -> Iterator[LoadSpectrum]:
+    """Yield the load spectrum, if there is one, with its accumulation, which stands beside it.
+
+    A component of a load case may leave its type to the component of its id.
+    """
+    if beside.get("load_spectrum") is None:
+        if "accumulation" in beside:
+            raise BadInput.of("model.accumulation", "an accumulation", "beside a load spectrum")
+        return
+    table = _Table.of(beside["load_spectrum"], "model.load_spectrum")
+    cases = table.parts("load_case") if "load_cases" in table.fields else []
+    loads = tuple(case.load_case(types) for case in cases)
+    number, extra, whole = table.number("id"), table.extra(), None
+    if beside.get("accumulation") is not None:
+        parts = _Table.of(beside["accumulation"], "model.accumulation").parts("component")
+        whole = tuple(part.component(types) for part in parts)
+    yield LoadSpectrum(number, loads, whole, extra)
+
+
+def _json(data: bytes) -> Any:
+    if sum(data.count(mark) for mark in (b",", b"[", b"{")) > MOST_ENTRIES:
+        raise BadInput.of("file", f"more than {MOST_ENTRIES} values", "smaller", "Code arrays in base64.")
+    try:
+        return json.loads(
+            data.decode("utf-8-sig"),
+            parse_constant=_no_number,
+            parse_int=lambda text: integer_of(text, "file"),
+            object_pairs_hook=_unique,
+        )
+    except json.JSONDecodeError as error:
+        raise BadInput.of(f"line {error.lineno}", error.msg, "JSON") from None
+    except UnicodeDecodeError as error:
+        raise BadInput.of(f"byte {error.start}", error.reason, "UTF-8") from None
+    except RecursionError:
+        raise BadInput.of("file", "too many lists and tables in each other", "nested as a model is") from None
+
+
+def _typed(value: Any, kind: type, place: str) -> Any:
+    """Return a value of a type; true and false are no integers."""
+    if not isinstance(value, kind) or isinstance(value, bool):
+        shown = value if isinstance(value, (str, int, float, bool)) else type(value).__name__
+        raise BadInput.of(place, shown if value is not None else None, _WORDS[kind])
+    return value
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return the fields of a table, each given once."""
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise BadInput.of("file", twice, "given once in its table")
+    return table
+
+
+def _no_number(text: str) -> NoReturn:
+    """Refuse NaN and Infinity, which JSON does not have."""
+    raise BadInput.of("file", text, "a finite number")
+
+
+def _value(kind: str, plain: Any, place: str) -> Value:
+    entry = entry_kind(kind)
+    if plain is None or (isinstance(plain, str) and not plain.strip()):
+        return None
+    if kind == entry:
+        return _scalar(entry, plain, place)
+    if kind.endswith("_array"):
+        return tuple(_scalar(entry, part, place) for part in _list(plain, place))
+    return tuple(
+        tuple(_scalar(entry, part, place) for part in _list(row, place)) for row in _list(plain, place)
+    )
+
+
+def _scalar(kind: str, plain: Any, place: str) -> Scalar:
+    """Return a value of a scalar kind; a floating point may be written as an integer."""
+    types: Any = _TYPES.get(kind, _TEXT)
+    if not isinstance(plain, types) or (isinstance(plain, bool) and bool not in types):
+        shown = plain if isinstance(plain, (str, int, float)) else type(plain).__name__
+        raise BadInput.of(place, shown, f"of type {kind}")
+    value: Scalar = float(plain) if kind == "floating_point" else plain
+    if isinstance(value, float) and not math.isfinite(value):
+        raise BadInput.of(place, str(value), "a finite number")
+    return value
+
+
+def _list(plain: Any, place: str) -> list[Any]:
+    if not isinstance(plain, list):
+        raise BadInput.of(place, type(plain).__name__, "a list")
+    return plain
+
+
+def json_of(model: Model) -> bytes:
+    """Return a model as JSON in UTF-8, the same bytes at every time.
+
+    Raises
+    ------
+    BadInput
+        The model has several load spectra: the form has a place for one.
+    """
+    if len(model.spectra) > 1:
+        raise BadInput.of("load_spectrum", f"{len(model.spectra)} spectra", "one in JSON", "Write XML.")
+    table = _written(written(model))
+    for spectrum in table.pop("load_spectra"):
+        whole = spectrum.pop("accumulation", None)
+        table["load_spectrum"] = spectrum
+        if whole is not None:
+            table["accumulation"] = {"components": whole}
+    text = json.dumps({"model": table}, ensure_ascii=False, indent=1, allow_nan=False)
+    return f"{text}\n".encode()
+
+
+def _written(element: Written | Attribute) -> dict[str, Any]:
+    if isinstance(element, Attribute):
+        return _attribute(element)
+    groups = {name: [_written(part) for part in parts] for name, parts in element.groups.items()}
+    return element.fields | groups
+
+
+def _attribute(attribute: Attribute) -> dict[str, Any]:
+    """Return an attribute; one without a value says null."""
+    own = {"id": attribute.id, "unit": attribute.unit, "origin": attribute.origin, **dict(attribute.extra)}
+    fields = {name: value for name, value in own.items() if value is not None}
+    value: Any = attribute.value
+    if attribute.code is None or value is None:
+        return {**fields, attribute.kind: value}
+    body: dict[str, Any] = {"code": attribute.code}
+    if attribute.kind.endswith("_matrix"):
+        numbers = [number for row in value for number in row]
+        size = {"rows": len(value), "columns": len(value[0]) if value else 0}
+        body |= {"value": coded(attribute.code, numbers), **size}
+    else:
+        body["value"] = coded(attribute.code, value)
+    return {**fields, f"{attribute.kind}{_CODED}": body}

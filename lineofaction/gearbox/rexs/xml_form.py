@@ -1,0 +1,326 @@
+"""REXS's XML form (``.rexs``): a model from it and back."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NoReturn
+from xml.parsers import expat
+from xml.sax.saxutils import escape, quoteattr
+
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs.model import Array, Attribute, Extra, LoadSpectrum, Model, Scalar, Value
+from lineofaction.gearbox.rexs.tree import MOST_ENTRIES, Element, Written, written
+from lineofaction.gearbox.rexs.values import (
+    KINDS,
+    coded,
+    decoded,
+    entry_kind,
+    integer_of,
+    kind_of,
+    rows_of,
+    scalar_of,
+    text_of,
+    texts_of,
+)
+
+_MOST_DEPTH = 32
+_SHOWN = 60
+"""Characters of a line that is not well-formed."""
+
+_ENCODINGS = ("utf-8", "utf-16", "utf-16le", "utf-16be", "us-ascii", "iso-8859-1", "windows-1252")
+"""What expat decodes itself, and what writers on Windows use."""
+
+_KIND_FIELD = "valueType"
+"""Our field of XML's attributes, with the kind of a value whose text shows another; REXS allows it."""
+
+
+@dataclass(slots=True)
+class _XmlElement(Element):
+    """An element: its fields, its elements, and its text between them."""
+
+    name: str
+    line: int
+    fields: dict[str, str]
+    inside: list[_XmlElement] = field(default_factory=list)
+    words: list[str] = field(default_factory=list)
+
+    @property
+    def place(self) -> str:
+        return f"line {self.line}, {self.name}"
+
+    def content(self) -> str:
+        """Return the text directly inside, empty if it is blank."""
+        text = "".join(self.words)
+        return text if text.strip() else ""
+
+    def text(self, name: str) -> str:
+        text = self.fields.pop(name, None)
+        if text is None:
+            raise BadInput.of(f"{self.place}, {name}", None, "given")
+        return text
+
+    def optional_text(self, name: str) -> str | None:
+        return self.fields.pop(name, None)
+
+    def number(self, name: str) -> int:
+        return integer_of(self.text(name), f"{self.place}, {name}")
+
+    def optional_number(self, name: str) -> int | None:
+        text = self.fields.pop(name, None)
+        return None if text is None else integer_of(text, self.place)
+
+    def parts(self, name: str) -> list[_XmlElement]:
+        return self.groups({name: None})[name]
+
+    def extra(self) -> Extra:
+        return tuple(self.fields.items())
+
+    def groups(self, known: dict[str, int | None]) -> dict[str, list[_XmlElement]]:
+        """Return the elements inside by their names, where `known` says how many there may be."""
+        groups: dict[str, list[_XmlElement]] = {name: [] for name in known}
+        for part in self.inside:
+            name = part.name.rpartition(":")[2]
+            if name not in groups:
+                raise BadInput.of(part.place, part.name, "one of " + ", ".join(known))
+            groups[name].append(part)
+            if known[name] is not None and len(groups[name]) > 1:
+                raise BadInput.of(part.place, part.name, "given once")
+        return groups
+
+    def group(self, name: str) -> list[_XmlElement]:
+        """Return the elements of a group, which has no fields of its own."""
+        for field_name in self.fields:
+            raise BadInput.of(self.place, field_name, "left out: a group has no fields")
+        return self.parts(name)
+
+    def attribute(self) -> Attribute:
+        name = self.text("id")
+        shapes = self.groups({"array": 1, "matrix": 1, "array_of_arrays": 1})
+        bodies = [part for group in shapes.values() for part in group]
+        if len(bodies) > 1 or (bodies and self.content()):
+            raise BadInput.of(self.place, name, "one value, array or matrix")
+        is_kind = entry_kind(self.fields.get(_KIND_FIELD, "")) in KINDS
+        stated = self.fields.pop(_KIND_FIELD) if is_kind else None
+        kind, value, code = bodies[0]._shaped(name, stated) if bodies else self._scalar(name, stated)
+        unit, origin = self.optional_text("unit"), self.optional_text("origin")
+        return Attribute(name, kind, value, unit, code, origin, self.extra())
+
+    def _scalar(self, name: str, stated: str | None) -> tuple[str, Value, None]:
+        """Return kind, value and no code; an empty one has no value."""
+        text = self.content()
+        if not text:
+            return stated or kind_of(name, []), None, None
+        kind = entry_kind(stated) if stated else kind_of(name, [text])
+        return kind, scalar_of(kind, text, f"{self.place}, {name}"), None
+
+    def _shaped(self, name: str, stated: str | None) -> tuple[str, Value, str | None]:
+        """Return kind, value and code of an array, a matrix or an array of arrays."""
+        place = f"{self.place}, {name}"
+        code = self.fields.get("code")
+        if code is not None:
+            return self._coded(code, place)
+        is_array = self.name == "array"
+        bodies = [self] if is_array else self.parts("r" if self.name == "matrix" else "array")
+        texts = [["".join(cell.words) for cell in body.parts("c")] for body in bodies]
+        kind = entry_kind(stated) if stated else kind_of(name, [text for row in texts for text in row])
+        rows = tuple(tuple(scalar_of(kind, text, place) for text in row) for row in texts)
+        if is_array:
+            return f"{kind}_array", rows[0], None
+        return f"{kind}_matrix" if self.name == "matrix" else f"array_of_{kind}_arrays", rows, None
+
+    def _coded(self, code: str, place: str) -> tuple[str, Value, str]:
+        """Return kind, value and code of an array or matrix in base64."""
+        if self.inside or self.name == "array_of_arrays":
+            raise BadInput.of(place, self.name, "an array or a matrix in base64, or one of elements")
+        values = decoded(code, "".join(self.words), place)
+        kind = "integer" if code == "int32" else "floating_point"
+        if self.name == "array":
+            return f"{kind}_array", values, code
+        rows, columns = self.number("rows"), self.number("columns")
+        return f"{kind}_matrix", rows_of(values, rows, columns, place), code
+
+    def spectrum(self) -> LoadSpectrum:
+        parts = self.groups({"load_case": None, "accumulation": 1})
+        cases = tuple(case.load_case({}) for case in parts["load_case"])
+        whole = [
+            tuple(part.component({}) for part in group.group("component")) for group in parts["accumulation"]
+        ]
+        return LoadSpectrum(self.number("id"), cases, whole[0] if whole else None, self.extra())
+
+
+def read_xml(data: bytes) -> Model:
+    """Return the model of an XML text; comments are not kept.
+
+    No codec is looked up by a name of the file.
+
+    Raises
+    ------
+    BadInput
+        It is not well-formed, declares a document type or an entity, is too deep or too large, or is no REXS.
+    """
+    root = _root(data)
+    if root.name.rpartition(":")[2] != "model":
+        raise BadInput.of(root.place, root.name, "model, the root of a REXS file")
+    parts = root.groups({"relations": 1, "components": 1, "load_spectrum": None})
+    return root.model(
+        (part.relation() for group in parts["relations"] for part in group.group("relation")),
+        (part.component({}) for group in parts["components"] for part in group.group("component")),
+        (part.spectrum() for part in parts["load_spectrum"]),
+    )
+
+
+def _root(data: bytes) -> _XmlElement:
+    builder = _Builder()
+    try:
+        builder.parser.Parse(data, True)
+    except expat.ExpatError as error:
+        words = expat.errors.messages.get(error.code, "unknown")
+        bound = f"well-formed XML, which line {error.lineno} is not ({words})"
+        lines = data.splitlines()[error.lineno - 1 : error.lineno]
+        shown = lines[0].strip()[:_SHOWN].decode(errors="replace") if lines else ""
+        raise BadInput.of("file", shown, bound, "REXS is XML, JSON or a ZIP of them.") from None
+    return builder.root.inside[0]
+
+
+class _Builder:
+    """Builds the elements from expat's events; document types, entities and depth are refused."""
+
+    def __init__(self) -> None:
+        self.root = _XmlElement("", 0, {})
+        self.parser = expat.ParserCreate()
+        self.parser.buffer_text = True
+        self.parser.StartElementHandler = self._start
+        self.parser.EndElementHandler = self._end
+        self.parser.CharacterDataHandler = self._characters
+        self.parser.StartDoctypeDeclHandler = self._document_type
+        self.parser.XmlDeclHandler = self._declaration
+        self._open = [self.root]
+        self._count = 0
+
+    def _start(self, name: str, fields: dict[str, str]) -> None:
+        line = self.parser.CurrentLineNumber
+        self._count += 1
+        if self._count > MOST_ENTRIES:
+            raise BadInput.of(
+                f"line {line}", f"more than {MOST_ENTRIES} elements", "smaller", "Code arrays in base64."
+            )
+        if len(self._open) > _MOST_DEPTH:
+            raise BadInput.of(
+                f"line {line}", f"elements nested {len(self._open)} deep", f"at most {_MOST_DEPTH} deep"
+            )
+        element = _XmlElement(name, line, fields)
+        self._open[-1].inside.append(element)
+        self._open.append(element)
+
+    def _end(self, name: str) -> None:
+        del name
+        self._open.pop()
+
+    def _characters(self, text: str) -> None:
+        self._open[-1].words.append(text)
+
+    def _declaration(self, version: str, encoding: str | None, standalone: int) -> None:
+        del version, standalone
+        if encoding is not None and encoding.lower() not in _ENCODINGS:
+            raise BadInput.of(
+                "encoding", encoding[:_SHOWN], f"one of {', '.join(_ENCODINGS)}", "Write UTF-8."
+            )
+
+    def _document_type(self, name: str, *rest: object) -> NoReturn:
+        del rest
+        raise BadInput.of("document type", name, "left out: REXS has none, and entities are not read")
+
+
+_STEP = "  "
+_NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_WRAPPED = {"model": ("relations", "components"), "load_spectrum": ("accumulation",)}
+"""Groups that are elements of their own."""
+
+
+def xml_of(model: Model) -> bytes:
+    """Return a model as XML in UTF-8, the same bytes at every time.
+
+    Raises
+    ------
+    BadInput
+        A text has a character that XML cannot hold.
+    """
+    text = "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', *_lines(written(model)), ""])
+    if unfit := _NO_XML.search(text):
+        raise BadInput.of("model", unfit[0], "of characters that XML can hold")
+    return text.encode("utf-8")
+
+
+def _lines(element: Written | Attribute, indent: str = "") -> Iterator[str]:
+    if isinstance(element, Attribute):
+        yield f"{indent}{_attribute(element)}"
+        return
+    start = f"{indent}<{element.name}{_fields(element.fields)}"
+    if element.name == "ref":
+        yield f"{start}/>"
+        return
+    yield f"{start}>"
+    inner = indent + _STEP
+    for name, parts in element.groups.items():
+        if name in _WRAPPED.get(element.name, ()):
+            yield f"{inner}<{name}>"
+            yield from (line for part in parts for line in _lines(part, inner + _STEP))
+            yield f"{inner}</{name}>"
+        else:
+            yield from (line for part in parts for line in _lines(part, inner))
+    yield f"{indent}</{element.name}>"
+
+
+def _fields(fields: Mapping[str, str | int]) -> str:
+    """Return fields in quotes; ends of lines stay what they are."""
+    kept = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+    return "".join(f" {name}={quoteattr(str(value), kept)}" for name, value in fields.items())
+
+
+def _attribute(attribute: Attribute) -> str:
+    own = {
+        "id": attribute.id,
+        "unit": attribute.unit,
+        "origin": attribute.origin,
+        _KIND_FIELD: _hidden_kind(attribute),
+    }
+    fields = {name: value for name, value in own.items() if value is not None} | dict(attribute.extra)
+    return f"<attribute{_fields(fields)}>{_body(attribute)}</attribute>"
+
+
+def _hidden_kind(attribute: Attribute) -> str | None:
+    """Return the kind of a value whose text shows another, else None."""
+    if attribute.code is not None:
+        return None
+    entry = kind_of(attribute.id, texts_of(attribute.value))
+    rows = isinstance(attribute.value, tuple) and any(isinstance(row, tuple) for row in attribute.value)
+    forms = (f"{entry}_matrix", f"array_of_{entry}_arrays") if rows else (f"{entry}_array",)
+    shown = forms if isinstance(attribute.value, tuple) else (entry,)
+    return None if attribute.kind in shown else attribute.kind
+
+
+def _body(attribute: Attribute) -> str:
+    kind, value, code = attribute.kind, attribute.value, attribute.code
+    if value is None:
+        return ""
+    if not isinstance(value, tuple):
+        return escape(text_of(value))
+    rows: list[Array] = [row for row in value if isinstance(row, tuple)]
+    scalars: list[Scalar] = [entry for entry in value if not isinstance(entry, tuple)]
+    if code is not None:
+        size = f' rows="{len(rows)}" columns="{len(rows[0]) if rows else 0}"'
+        numbers = [*scalars, *(number for row in rows for number in row)]
+        form, size = ("array", "") if kind.endswith("_array") else ("matrix", size)
+        return f'<{form} code="{code}"{size}>{coded(code, numbers)}</{form}>'
+    if kind.startswith("array_of_"):
+        inside = "".join(f"<array>{_cells(row)}</array>" for row in rows)
+        return f"<array_of_arrays>{inside}</array_of_arrays>"
+    if kind.endswith("_matrix"):
+        return f"<matrix>{''.join(f'<r>{_cells(row)}</r>' for row in rows)}</matrix>"
+    return f"<array>{_cells(scalars)}</array>"
+
+
+def _cells(values: Sequence[Scalar]) -> str:
+    return "".join(f"<c>{escape(text_of(value))}</c>" for value in values)
