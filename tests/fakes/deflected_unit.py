@@ -11,7 +11,7 @@ from dynamics.scene import Scene
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.convert.topology import facts_of
-from lineofaction.gearbox.from_rexs.opened import SCENE_FILE, OpenedUnit, load_case_tables, unit_files
+from lineofaction.gearbox.from_rexs.opened import SCENE_FILE, OpenedUnit, unit_files
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.deflect import Inputs
@@ -33,7 +33,7 @@ def deflection_of_unit(unit: OpenedUnit) -> GearboxDeflection:
     """Return the result as `loa deflect` keeps it, under all load cases of the unit."""
     assert unit.scene is not None
     scene = scene_in_si(unit)
-    inputs = validated(Inputs, load_case_tables(unit.load_cases))
+    inputs = validated(Inputs, {"load_cases": [case.table() for case in unit.load_cases]})
     found = deflect(scene, load_cases(inputs), POSITIONS)
     flanks = tuple(_flanks(case, mesh) for case in found.cases for mesh in case.meshes)
     cases = {case.name: case.case.model_dump(mode="json") for case in unit.cases}

@@ -10,7 +10,7 @@ from typing import Any
 from fe_contact.errors import FeContactError
 from fe_contact.geometry import Gear
 from lineofaction.gearbox.convert.checks import check_plain_case
-from lineofaction.gearbox.from_rexs.gear_unit import Part
+from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, Meshing
 from lineofaction.gearbox.from_rexs.micro_geometry import micro_geometry
 from lineofaction.gearbox.from_rexs.placement import u_on_shaft
@@ -18,7 +18,6 @@ from lineofaction.gearbox.from_rexs.toothing import (
     ToothDepth,
     ToothedPair,
     ToothingData,
-    tip_alteration,
     tooth_depth,
 )
 from lineofaction.gearbox.problems import BadInput
@@ -35,33 +34,19 @@ _INTEGRAL = 0.5  # of the root diameter
 STEEL = (210e9, 0.3)
 
 
-@dataclass(frozen=True)
-class Blank:
-    """Rim and web of a gear's body, m."""
-
-    rim_thickness: float
-    web_thickness: float
-
-
-def root_diameter(gear: ToothingData, depth: ToothDepth, shift: float) -> float:
+def _root_diameter(gear: ToothingData, depth: ToothDepth, shift: float) -> float:
     """Return d_f = d - 2 m_n (h_fP - x) in m, of a ring gear d + 2 m_n (h_fP - x)."""
     height = depth.dedendum_coefficient - shift
     return gear.reference_diameter - 2.0 * gear.sign * gear.normal_module * height
 
 
 def _held_diameter(gear: ToothingData, root: float) -> float:
-    """Return the bore of an external gear, the outside of a ring gear's rim, m.
-
-    Parameters
-    ----------
-    root : float
-        Root diameter, m.
-    """
+    """Return the bore of a gear of a root diameter, the outside of a ring gear's rim, m."""
     return _rim_diameter(gear, root) if gear.sign < 0 else _bore(gear, root)
 
 
 def _rim_diameter(gear: ToothingData, root: float) -> float:
-    for part in (gear.part, *bodies(gear.part)):
+    for part in (gear.part, *gear.part.children("gear_body")):
         value = part.number("outer_diameter", "rim_diameter_mm")
         if value is not None and value > root:
             return value
@@ -74,7 +59,7 @@ def _rim_diameter(gear: ToothingData, root: float) -> float:
 def _bore(gear: ToothingData, root: float) -> float:
     """Return the bore: the gear's or its body's own, else the shaft's outside, else half the root circle."""
     largest = root - 2.0 * _THINNEST * gear.normal_module
-    for part in (gear.part, *bodies(gear.part)):
+    for part in (gear.part, *gear.part.children("gear_body")):
         value = part.number("inner_diameter", "bore_diameter_mm")
         if value is not None and 0.0 < value < root:
             return value
@@ -107,7 +92,6 @@ def _shaft_diameter(gear: Part) -> float | None:
 
 
 def _section_diameter(section: Part, fraction: float) -> float | None:
-    """Return the outer diameter at a fraction of a section's length, m."""
     begin = section.number("outer_diameter_begin", "outer diameter of the section")
     end = section.number("outer_diameter_end", "outer diameter of the section")
     if begin is None or end is None:
@@ -115,27 +99,10 @@ def _section_diameter(section: Part, fraction: float) -> float | None:
     return begin + fraction * (end - begin)
 
 
-def bodies(gear: Part) -> tuple[Part, ...]:
-    """Return the bodies of a gear."""
-    return gear.children("gear_body")
-
-
-def _blank_of(gear: Part) -> Blank | None:
-    """Return rim and web of a gear's body, None for a solid one."""
-    for body in bodies(gear):
-        rim = body.number("gear_body_rim_thickness", "blank.rim_thickness_mm")
-        web = body.number("gear_body_web_thickness", "blank.web_thickness_mm")
-        if rim and web:
-            return Blank(rim, web)
-        if body.attribute("body_contour_coordinate_u") is not None:
-            body.say("body_contour_coordinate_u", "ignored", "a solid body: contours have no place in a case")
-    return None
-
-
-def elasticity(gear: Part) -> tuple[float, float]:
+def _elasticity(gear: Part) -> tuple[float, float]:
     """Return Young's modulus in Pa and Poisson's ratio: the gear's, its body's, its shaft's, else steel's."""
     shaft = gear.shaft
-    owners = (gear, *bodies(gear), *(() if shaft is None else (shaft,)))
+    owners = (gear, *gear.children("gear_body"), *(() if shaft is None else (shaft,)))
     for owner in owners:
         for material in owner.referenced:
             young = material.number("elastic_modulus", "youngs_modulus_gpa")
@@ -159,21 +126,9 @@ _STEP = 0.01 * MM  # tip diameters are rounded up to it
 
 
 def _clearing_tip(pair: ToothedPair, depths: Sequence[ToothDepth], shifts: Mapping[int, float]) -> ToothDepth:
-    """Return the ring gear's depth with a tip that stays on the involute of its mate.
+    """Return the ring gear's depth, of those of both, with a tip that stays on the involute of its mate.
 
     The tip meets the mate's form circle at the roll length l_F1 + a sin(alpha_wt) of the ring gear.
-
-    Parameters
-    ----------
-    depths : sequence of ToothDepth
-        Of pinion and ring gear.
-    shifts : mapping of int to float
-        Profile shift coefficients by gear.
-
-    Raises
-    ------
-    BadInput
-        No such pinion exists.
     """
     ring, depth = pair.wheel, depths[1]
     base = 0.5 * ring.reference_diameter * math.cos(ring.transverse_pressure_angle)
@@ -191,7 +146,6 @@ def _clearing_tip(pair: ToothedPair, depths: Sequence[ToothDepth], shifts: Mappi
 
 
 def _form_roll_length(pair: ToothedPair, depth: ToothDepth, shifts: Mapping[int, float]) -> float:
-    """Return the roll length in m at which the pinion's involute begins."""
     gear, shift = pair.pinion, shifts[pair.pinion.part.id]
     try:
         return Gear(
@@ -217,7 +171,7 @@ _UPPER, _LOWER = (f"{side}_backlash_allowance_referenced_to_span" for side in ("
 _SERIES = "tooth_thickness_deviation_tolerance_series_din_3967_1978"
 
 
-def thickness_allowance(gear: ToothingData) -> float:
+def _thickness_allowance(gear: ToothingData) -> float:
     """Return the normal tooth thickness removed at the reference circle in m: the mean of its limits.
 
     The span changes by the thickness times cos(alpha_n). A tolerance series (DIN 3967) without deviations is
@@ -292,12 +246,12 @@ def case_of(pair: PairData, pairs: Sequence[PairData], shifts: Mapping[int, floa
     """
     _refuse_strangers(pair)
     depths = [_depth(gear, loaded, pairs, shifts) for gear, loaded in pair.gears]
-    if pair.meshing.internal and not depths[1].tip_given:
+    if pair.meshing.internal and not depths[1].tip_stated:
         depths[1] = _clearing_tip(pair.toothed, depths, shifts)
     first, second = (
         _gear(gear, depth, shifts[gear.part.id]) for (gear, _), depth in zip(pair.gears, depths, strict=True)
     )
-    stiff = tuple(elasticity(gear.part) for gear, _ in pair.gears)
+    stiff = tuple(_elasticity(gear.part) for gear, _ in pair.gears)
     if stiff[0] != stiff[1]:
         second["material"] = _material(stiff[1])
     pinion = pair.toothed.pinion
@@ -322,11 +276,6 @@ def case_of(pair: PairData, pairs: Sequence[PairData], shifts: Mapping[int, floa
     case = validated(Case, table)
     check_plain_case(case)
     return case
-
-
-def rounded(value: float) -> float:
-    """Return a number without the rounding that a change of units leaves, 12 digits."""
-    return float(f"{value:.12g}") + 0.0
 
 
 def _refuse_strangers(pair: PairData) -> None:
@@ -397,9 +346,9 @@ def _gear(gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
         "tip_diameter_mm": rounded(depth.tip_diameter / MM),
         "dedendum_coefficient": rounded(depth.dedendum_coefficient),
         "root_radius_coefficient": rounded(depth.root_radius_coefficient),
-        "thickness_allowance_um": rounded(thickness_allowance(gear) / UM),
-        held: rounded(_held_diameter(gear, root_diameter(gear, depth, shift)) / MM),
-        **_cutter(depth),
+        "thickness_allowance_um": rounded(_thickness_allowance(gear) / UM),
+        held: rounded(_held_diameter(gear, _root_diameter(gear, depth, shift)) / MM),
+        **depth.cutter,
         **_blank(gear),
     }
 
@@ -419,31 +368,26 @@ def _tip_alteration(gear: ToothingData, pairs: Sequence[PairData], shifts: Mappi
 
 
 def _alteration(pair: ToothedPair, shifts: Mapping[int, float]) -> float:
-    """Return k of an external pair, 0 of an internal one."""
+    """Return k = (a - a_d) / m_n - (x_1 + x_2) of an external pair, at most 0 (ISO 21771-1); else 0."""
     first, second = (shifts.get(gear.part.id) for gear in (pair.pinion, pair.wheel))
     if pair.wheel.sign < 0 or first is None or second is None:
         return 0.0
     reference = 0.5 * (pair.pinion.reference_diameter + pair.wheel.reference_diameter)
-    return tip_alteration(first + second, reference, pair.center_distance, pair.pinion.normal_module)
-
-
-def _cutter(depth: ToothDepth) -> Table:
-    """Return the fields of a ring gear's cutter that the file has."""
-    fields: Table = {}
-    if depth.cutter_teeth is not None:
-        fields["cutter_teeth"] = depth.cutter_teeth
-    if depth.cutter_shift is not None:
-        fields["cutter_profile_shift_coefficient"] = rounded(depth.cutter_shift)
-    return fields
+    alteration = (pair.center_distance - reference) / pair.pinion.normal_module - (first + second)
+    return alteration if math.isfinite(alteration) and alteration < -1e-9 else 0.0
 
 
 def _blank(gear: ToothingData) -> Table:
-    """Return rim and web of an external gear."""
-    blank = None if gear.sign < 0 else _blank_of(gear.part)
-    if blank is None:
-        return {}
-    sizes = {"rim_thickness_mm": blank.rim_thickness, "web_thickness_mm": blank.web_thickness}
-    return {"blank": {name: rounded(value / MM) for name, value in sizes.items()}}
+    """Return rim and web of an external gear's body, nothing of a solid one."""
+    for body in gear.part.children("gear_body") if gear.sign > 0 else ():
+        rim = body.number("gear_body_rim_thickness", "blank.rim_thickness_mm")
+        web = body.number("gear_body_web_thickness", "blank.web_thickness_mm")
+        if rim and web:
+            sizes = {"rim_thickness_mm": rim, "web_thickness_mm": web}
+            return {"blank": {name: rounded(value / MM) for name, value in sizes.items()}}
+        if body.attribute("body_contour_coordinate_u") is not None:
+            body.say("body_contour_coordinate_u", "ignored", "a solid body: contours have no place in a case")
+    return {}
 
 
 def _material(stiffness: tuple[float, float]) -> Table:
@@ -467,7 +411,6 @@ def _torques(pair: PairData) -> list[float]:
 
 
 def _say_axial_offset(pair: PairData) -> None:
-    """State an axial offset, which a case does not have."""
     if abs(pair.axial_offset) > 1e-9:
         words = f"{pair.axial_offset / MM:.4g} mm between the mid-faces: the case puts them together"
         pair.meshing.stage.say("axial_offset", "ignored", words)

@@ -223,6 +223,11 @@ class GearUnit:
             part.say(item, fate, words)
 
 
+def rounded(value: float) -> float:
+    """Return a number without the rounding that its computation or a change of units leaves: 12 digits."""
+    return float(f"{value:.12g}") + 0.0
+
+
 # Names of a scene's parts: those of the file, made unlike each other.
 
 

@@ -12,15 +12,13 @@ from bounds import engineering
 from fe_contact.geometry import FlankGrid, Toothing
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.from_rexs.gear_unit import Part
+from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.meshing import LoadedFlank
 from lineofaction.gearbox.from_rexs.modifications import (
     READERS,
     UNREAD,
     FlankPlace,
     Modification,
-    mm,
-    um,
 )
 from lineofaction.gearbox.units import MM, UM
 
@@ -112,7 +110,7 @@ def _tip_edge(place: FlankPlace, flank: Part) -> Table:
     if not height or height <= 1e-9:
         return {}
     flank.say("tip_chamfer_angle", "defaulted", "30 deg to the flank")
-    return {"tip_chamfer_mm": mm(height / MM)}
+    return {"tip_chamfer_mm": rounded(height / MM)}
 
 
 # Flank modifications for which the case has no field, as the nodes of its free-form flank.
@@ -153,9 +151,9 @@ def _on_grid(place: FlankPlace, modifications: Sequence[Modification], count: in
     with boundary_errors("flank_grid"):
         grid = FlankGrid(tuple(rolls), tuple(faces), tuple(map(tuple, removed.tolist())))
     table = {
-        "roll_length_mm": [mm(value / MM) for value in rolls],
-        "face_position_mm": [mm(value / MM) for value in faces],
-        "removed_um": [[um(value) for value in row] for row in removed],
+        "roll_length_mm": [rounded(value / MM) for value in rolls],
+        "face_position_mm": [rounded(value / MM) for value in faces],
+        "removed_um": [[rounded(value / UM) for value in row] for row in removed],
     }
     return _Raster(table, _difference(place, modifications, grid), (len(rolls), len(faces)))
 

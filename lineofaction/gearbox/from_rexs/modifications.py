@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.geometry import Toothing
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.from_rexs.account import Fate
-from lineofaction.gearbox.from_rexs.gear_unit import Part
+from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.meshing import LoadedFlank
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, UM
@@ -103,16 +103,6 @@ class FlankPlace:
         return abs(second - first) / MM
 
 
-def um(value: float) -> float:
-    """Return a depth in um without the rounding that a change of units leaves, 12 digits."""
-    return mm(value / UM)
-
-
-def mm(value: float) -> float:
-    """Return a length in mm, given in mm, with 12 digits."""
-    return float(f"{value:.12g}") + 0.0
-
-
 # Laws by which a relief grows from nothing where it starts to its amount (ISO 21771-1, clause 7).
 
 
@@ -193,7 +183,11 @@ class _Growth:
         if self.shape not in SCALABLE and not place.same(self.stated, end):
             return {}
         at_end = float(self.at(np.asarray(end)))
-        return {f"{name}_um": um(at_end), f"{name}_length_mm": mm(length_mm), f"{name}_shape": self.shape}
+        return {
+            f"{name}_um": rounded(at_end / UM),
+            f"{name}_length_mm": rounded(length_mm),
+            f"{name}_shape": self.shape,
+        }
 
 
 def _profile_relief(place: FlankPlace, part: Part) -> Modification:
@@ -286,13 +280,13 @@ def _profile_crowning(place: FlankPlace, part: Part) -> Modification:
     whole = place.same(ends[0], place.tip) and place.same(ends[1], place.root)
     fields = {}
     if whole and place.same(highest, middle) and amounts[0] == amounts[1]:
-        fields = {"profile_crowning_um": um(amounts[0])}
+        fields = {"profile_crowning_um": rounded(amounts[0] / UM)}
     else:
         sides = zip(("tip", "root"), (place.tip, place.root), ends, amounts, strict=True)
         for side, end, stated, amount in sides:
             name = f"profile_crowning_{side}"
-            fields[f"{name}_um"] = um(amount * ((end - highest) / (stated - highest)) ** 2)
-            fields[f"{name}_length_mm"] = mm(place.radial(highest, end))
+            fields[f"{name}_um"] = rounded(amount * ((end - highest) / (stated - highest)) ** 2 / UM)
+            fields[f"{name}_length_mm"] = rounded(place.radial(highest, end))
     return Modification(
         part, lambda roll, _face: _two_parabolas(roll, highest, ends, amounts), fields, rolls=(highest,)
     )
@@ -320,7 +314,7 @@ def _profile_slope(place: FlankPlace, part: Part) -> Modification:
     return Modification(
         part,
         lambda roll, _face: whole * (roll - middle) / (place.tip - place.root),
-        {"profile_slope_um": um(whole)},
+        {"profile_slope_um": rounded(whole / UM)},
     )
 
 
@@ -339,18 +333,18 @@ def _helix_crowning(place: FlankPlace, part: Part) -> Modification:
     highest = 0.5 * (ends[0] + ends[1]) if highest is None else highest
     if not ends[0] < highest < ends[1]:
         field = f"{part.place}, helix_highest_point"
-        raise BadInput.of(field, mm(1e3 * highest), "between the stated amounts")
+        raise BadInput.of(field, rounded(1e3 * highest), "between the stated amounts")
     part.text("shape_of_helix_crowning", "a parabola; an arc is one to (amount / length)^2")
     whole = place.same(ends[0], 0.0) and place.same(ends[1], place.width)
     fields = {}
     if whole and place.same(highest, 0.5 * place.width) and amounts[0] == amounts[1]:
-        fields = {"helix_crowning_um": um(amounts[0])}
+        fields = {"helix_crowning_um": rounded(amounts[0] / UM)}
     else:
         sides = zip((True, False), (0.0, place.width), ends, amounts, strict=True)
         for datum, face, stated, amount in sides:
             name = place.face_field("helix_crowning", datum=datum)
-            fields[f"{name}_um"] = um(amount * ((face - highest) / (stated - highest)) ** 2)
-            fields[f"{name}_length_mm"] = mm(1e3 * abs(face - highest))
+            fields[f"{name}_um"] = rounded(amount * ((face - highest) / (stated - highest)) ** 2 / UM)
+            fields[f"{name}_length_mm"] = rounded(1e3 * abs(face - highest))
     return Modification(
         part, lambda _roll, face: _two_parabolas(face, highest, ends, amounts), fields, faces=(highest,)
     )
@@ -363,7 +357,7 @@ def _helix_slope(place: FlankPlace, part: Part) -> Modification:
     return Modification(
         part,
         lambda _roll, face: whole * (face / place.width - 0.5),
-        {"helix_slope_um": um(-place.loaded.datum * whole)},
+        {"helix_slope_um": rounded(-place.loaded.datum * whole / UM)},
     )
 
 
@@ -381,7 +375,7 @@ def _slope_length(place: FlankPlace, part: Part) -> float:
     end = place.width if stated is None else stated
     if not end > (start or 0.0):
         field = f"{part.place}, helix_evaluation_end"
-        raise BadInput.of(field, mm(1e3 * end), "above helix_evaluation_start")
+        raise BadInput.of(field, rounded(1e3 * end), "above helix_evaluation_start")
     return end - (start or 0.0)
 
 
@@ -398,7 +392,7 @@ def _end_relief(place: FlankPlace, part: Part) -> Modification:
     growth = _Growth(depth, shape, start, end if stated is None else stated)
     if not 0.0 < length <= place.width or not (start - growth.stated) * inwards > 0.0:
         field = f"{part.place}, end_relief_length_{side}"
-        raise BadInput.of(field, mm(1e3 * length), "above 0, within the face")
+        raise BadInput.of(field, rounded(1e3 * length), "above 0, within the face")
     name = place.face_field("end_relief", datum=is_datum)
     fields = growth.fields(place, name, end, 1e3 * length)
     return Modification(part, lambda _roll, face: growth.at(face), fields, faces=(start,))
@@ -423,7 +417,7 @@ def _profile_twist(place: FlankPlace, part: Part) -> Modification:
         lambda roll, face: (
             0.25 * whole * np.asarray((roll - middle) / half * (2.0 * face / place.width - 1.0))
         ),
-        {"flank_twist_um": um(-0.25 * place.loaded.datum * whole)},
+        {"flank_twist_um": rounded(-0.25 * place.loaded.datum * whole / UM)},
     )
 
 

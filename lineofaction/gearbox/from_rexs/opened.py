@@ -17,7 +17,7 @@ from lineofaction.gearbox.from_rexs.account import Assumption, Line, assumed
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
 from lineofaction.gearbox.from_rexs.layout import Layout, layout_of, train_of
-from lineofaction.gearbox.from_rexs.loads import AppliedTorque, LoadCase, load_case
+from lineofaction.gearbox.from_rexs.loads import LoadCase
 from lineofaction.gearbox.from_rexs.power_flow import REPLACED, PowerFlow, operating_points, power_flow
 from lineofaction.gearbox.from_rexs.scene import SceneParts, SceneTable, scene_table
 from lineofaction.gearbox.problems import BadInput
@@ -59,7 +59,7 @@ def headline(lines: Iterable[Line]) -> str:
     return f"left out of the scene: {'; '.join(texts)}" if parts else ""
 
 
-def statements(lines: Iterable[Line]) -> tuple[str, ...]:
+def _statements(lines: Iterable[Line]) -> tuple[str, ...]:
     """Return what is left out with lines of the file and the reason, a sentence for each reason.
 
     Stages come first, for what stands behind them is left out with them; then other parts, then values of
@@ -137,7 +137,7 @@ class OpenedUnit:
     @property
     def left_out(self) -> tuple[str, ...]:
         """What the file has and the scene has not, a sentence for each reason; as the scene states it."""
-        return statements(self.lines)
+        return _statements(self.lines)
 
 
 def opened(document: Document, assumptions: Iterable[Assumption] = ()) -> OpenedUnit:
@@ -163,7 +163,10 @@ def opened(document: Document, assumptions: Iterable[Assumption] = ()) -> Opened
     flows = _flows(layout)
     cases = stage_cases(unit, _torques(layout, flows), _drivers(layout, flows))
     table = scene_table(layout, flows, cases) if flows and cases else None
-    _say_missing(layout, flows, cases)
+    if not flows:
+        unit.say("scene", "refused", "no load case fits the train")
+    elif not cases:
+        unit.say("scene", "refused", "no stage has a case")
     if table is not None:
         _say_left_out(unit)
     scene = None if table is None else _scene(layout, table)
@@ -216,7 +219,7 @@ def _torques(layout: Layout, flows: Sequence[PowerFlow]) -> Mapping[int, tuple[f
 
 def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
     """Return the validated scene, marked by what is left out; None if the account says what it lacks."""
-    left_out = statements(layout.unit.account.lines())
+    left_out = _statements(layout.unit.account.lines())
     try:
         return validated(SceneInput, table.table | ({"left_out": list(left_out)} if left_out else {}))
     except BadInput as error:
@@ -225,34 +228,15 @@ def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
 
 
 def _load_cases(flows: Sequence[PowerFlow], table: SceneTable | None) -> tuple[LoadCase, ...]:
+    """Return the load cases of a scene, each with its forces that are others than the scene's."""
     if table is None or table.leader is None:
         return ()
-    leader: AppliedTorque = table.leader
-    cases = [
-        load_case(flow, leader, _torque(flow, leader), leader.torque, _forces(flow, flows[0], table))
-        for flow in flows
-    ]
-    order = sorted(range(len(flows)), key=lambda index: flows[index].point.number)
-    return tuple(cases[index] for index in order)
-
-
-def _forces(flow: PowerFlow, scene: PowerFlow, table: SceneTable) -> tuple[dict[str, Any], ...]:
-    """Return the tables of the forces that are others at an operating point than at the scene's."""
-    both = [(force.stated(flow.point), force.stated(scene.point)) for force in table.forces]
-    return tuple(own for own, of_scene in both if own != of_scene)
-
-
-def _torque(flow: PowerFlow, leader: AppliedTorque) -> float:
-    """Return the torque of the leader at an operating point, N m about z."""
-    return flow.loads.get(leader.part.id, leader.torque)
-
-
-def _say_missing(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> None:
-    """State why there is no scene."""
-    if not flows:
-        layout.unit.say("scene", "refused", "no load case fits the train")
-    elif not cases:
-        layout.unit.say("scene", "refused", "no stage has a case")
+    cases = []
+    for flow in flows:
+        both = [(force.stated(flow.point), force.stated(flows[0].point)) for force in table.forces]
+        forces = tuple(own for own, of_scene in both if own != of_scene)
+        cases.append(LoadCase.of(flow, table.leader, forces))
+    return tuple(sorted(cases, key=lambda case: case.number))
 
 
 # An opened gear unit as files: a case a stage, the scene, its load cases, and the account.
@@ -268,14 +252,9 @@ def unit_files(unit: OpenedUnit) -> dict[str, str]:
     if unit.scene is not None:
         files[SCENE_FILE] = toml_text(_plain(unit.scene))
     if unit.load_cases:
-        files[LOAD_CASES_FILE] = toml_text(load_case_tables(unit.load_cases))
+        files[LOAD_CASES_FILE] = toml_text({"load_cases": [case.table() for case in unit.load_cases]})
     files[ACCOUNT_FILE] = _account_csv(unit.lines)
     return files
-
-
-def load_case_tables(cases: Iterable[LoadCase]) -> dict[str, Any]:
-    """Return the tables of load cases."""
-    return {"load_cases": [case.table() for case in cases]}
 
 
 def _account_csv(lines: Iterable[Line]) -> str:
@@ -293,12 +272,10 @@ def _safe(value: object) -> object:
 
 
 def _plain(model: Any) -> dict[str, Any]:
-    """Return what a model states, its numbers without the rounding of their computation."""
     return dict(_rounded(model.model_dump(mode="json", exclude_unset=True)))
 
 
 def _rounded(value: Any) -> Any:
-    """Return a value with numbers of twelve digits."""
     if isinstance(value, dict):
         return {key: _rounded(item) for key, item in value.items()}
     if isinstance(value, list):

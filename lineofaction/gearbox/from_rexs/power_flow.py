@@ -79,8 +79,8 @@ def operating_points(unit: GearUnit) -> tuple[OperatingPoint, ...]:
         parts = [(share or 0.0) / whole for share in shares]
     else:
         parts = [1.0 / len(cases)] * len(cases)
-        for part in unit.of_type("gear_unit"):
-            part.say(_SHARES[0], "defaulted", "equal shares: not every load case states one")
+        for root in unit.of_type("gear_unit"):
+            root.say(_SHARES[0], "defaulted", "equal shares: not every load case states one")
     rows = enumerate(zip(cases, parts, strict=True), 1)
     return tuple(_point(f"load case {number}", (number, share), own, case) for number, (case, share) in rows)
 
@@ -211,12 +211,18 @@ class PowerFlow:
         """Return the speed of a rotor, rad/s."""
         return float(self.speeds[self.train.rotors.index(rotor)])
 
+    def relative_speed(self, stage: GearStage, gear: int) -> float:
+        """Return the speed of gear 1 (0) or 2 (1) of a stage in the frame of its carrier, rad/s."""
+        carrier = self.layout.carrier(stage)
+        frame = 0.0 if carrier is None else self.speed(carrier)
+        return self.speed(self.layout.rotor(stage.shafts[gear].id)) - frame
+
     def on_gear(self, stage: GearStage, gear: int) -> float:
         """Return the torque about z of the stage on its gear 1 (0) or 2 (1), N m."""
         row = self.train.stages.index(stage)
-        columns = self._columns(stage)
-        share = stage.teeth[0] / float(self.train.rows[row, columns[0]])
-        first = share * float(self.flow.on_rotor[row, columns[0]])
+        column = self.train.rotors.index(self.layout.rotor(stage.shafts[0].id))
+        share = stage.teeth[0] / float(self.train.rows[row, column])
+        first = share * float(self.flow.on_rotor[row, column])
         ratio = stage.teeth[1] / stage.teeth[0] * (-1.0 if stage.internal else 1.0)
         return first if gear == 0 else ratio * first
 
@@ -225,14 +231,7 @@ class PowerFlow:
 
         The stage does negative work on it, seen from the carrier. Without load or speed gear 1 is said to.
         """
-        carrier = self.layout.carrier(stage)
-        frame = 0.0 if carrier is None else self.speed(carrier)
-        speed = float(self.speeds[self._columns(stage)[0]]) - frame
-        return 1 if self.on_gear(stage, 0) * speed > 0.0 else 0
-
-    def _columns(self, stage: GearStage) -> tuple[int, int]:
-        first, second = (self.train.rotors.index(self.layout.rotor(s.id)) for s in stage.shafts)
-        return first, second
+        return 1 if self.on_gear(stage, 0) * self.relative_speed(stage, 0) > 0.0 else 0
 
 
 def power_flow(point: OperatingPoint, layout: Layout, train: Train) -> PowerFlow | str:

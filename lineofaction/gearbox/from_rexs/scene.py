@@ -16,6 +16,7 @@ from lineofaction.gearbox.from_rexs.gear_unit import (
     GearStage,
     Names,
     Part,
+    rounded,
 )
 from lineofaction.gearbox.from_rexs.gears import (
     StageCase,
@@ -26,15 +27,7 @@ from lineofaction.gearbox.from_rexs.gears import (
 )
 from lineofaction.gearbox.from_rexs.housing import scene_housings
 from lineofaction.gearbox.from_rexs.layout import Layout
-from lineofaction.gearbox.from_rexs.loads import (
-    DIGITS,
-    AppliedTorque,
-    applied_torques,
-    driving,
-    motion_tables,
-    slowest_mesh,
-    trains_of,
-)
+from lineofaction.gearbox.from_rexs.loads import AppliedTorque, SceneMotion
 from lineofaction.gearbox.from_rexs.placement import FIXED, SAME_PLACE, PlacedShaft, placement
 from lineofaction.gearbox.from_rexs.power_flow import FORCES, OperatingPoint, PowerFlow
 from lineofaction.gearbox.from_rexs.scene_bearings import SceneBearings, stub_couplings
@@ -166,9 +159,7 @@ def _face_sense(layout: Layout, flow: PowerFlow, stage: GearStage, case: StageCa
     pushed back by it.
     """
     driver, _ = driving_gears(stage, case)
-    number = 0 if driver.id == stage.gears[0].id else 1
-    rotor, carrier = layout.rotor(stage.shafts[number].id), layout.carrier(stage)
-    relative = flow.speed(rotor) - (0.0 if carrier is None else flow.speed(carrier))
+    relative = flow.relative_speed(stage, 0 if driver.id == stage.gears[0].id else 1)
     pushed = -relative if case.wheel_drives else relative
     return -int(np.sign(pushed)) * layout.sense(stage.shafts[0].id)
 
@@ -293,9 +284,8 @@ def _beyond(load: Part, lever: float) -> float:
 
 
 def _digits(vector: FloatArray) -> list[float]:
-    """Return a vector without the rounding of its computation."""
     least = ROUNDING * float(np.max(np.abs(vector)))
-    return [0.0 if abs(value) <= least else float(f"{value:.{DIGITS}g}") for value in vector]
+    return [0.0 if abs(value) <= least else rounded(value) for value in vector]
 
 
 STANDARD_GRAVITY = 9.80665
@@ -347,11 +337,10 @@ def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[Stag
     _say_without_mesh(layout, cases, computed, shafts)
     bearings = SceneBearings(layout, shafts)
     gears, meshes = scene_gears(layout, shafts, by_stage, Names())
-    torques = applied_torques(layout, flow, shafts, cut)
-    drivers = driving(torques, flow, trains_of(layout, shafts))
+    motion = SceneMotion(flow, shafts, cut)
     forces = _scene_forces(layout, [each.point for each in flows], shafts)
     table: dict[str, Any] = {
-        "run": {"duration_s": _duration(layout, slowest_mesh(layout, flow, shafts))},
+        "run": {"duration_s": _duration(layout, motion.slowest_mesh())},
         "gravity_m_per_s2": _gravity(layout),
         "shafts": [shaft.table for shaft in shafts.all],
         "gears": gears,
@@ -363,7 +352,7 @@ def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[Stag
         "housings": scene_housings(layout, bearings.seats),
         "planets": _planets(layout, {shaft.rotor: shaft.name for shaft in shafts.by_rotor.values()}),
         "meshes": meshes,
-        **motion_tables(layout, flow, shafts, torques, drivers),
+        **motion.tables(),
         "forces": [force.table(flow.point) for force in forces],
     }
     named = [
@@ -371,7 +360,7 @@ def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[Stag
     ]
     return SceneTable(
         {key: value for key, value in table.items() if value != []},
-        drivers[0] if drivers else None,
+        motion.drivers[0] if motion.drivers else None,
         forces,
         _scene_parts(layout, flow, shafts, bearings.seats, named),
     )

@@ -19,7 +19,7 @@ from lineofaction.gearbox.from_rexs.bearings import (
     operating_point,
     stated_stiffness,
 )
-from lineofaction.gearbox.from_rexs.gear_unit import Connection, Names, Part
+from lineofaction.gearbox.from_rexs.gear_unit import Connection, Names, Part, rounded
 from lineofaction.gearbox.from_rexs.housing import loosely_housed
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.placement import placement
@@ -286,7 +286,7 @@ def _further(part: Part) -> Table:
             part.say(item, "ignored", "the stiffness follows from the geometry")
     words = "dynamic load rating, kN: the rating life"
     rating = part.bounded("radial_dynamic_load_rating", words, DYNAMIC_CAPACITY)
-    return {"dynamic_capacity_n": float(f"{rating:.12g}")} if rating else {}
+    return {"dynamic_capacity_n": rounded(rating)} if rating else {}
 
 
 def _table(row: BallBearing | RollerBearing | CatalogLine) -> Table:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from fe_contact.flank.involute import involute_function
-from lineofaction.gearbox.from_rexs.gear_unit import Part
+from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.meshing import LoadedFlank
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, as_typed
@@ -201,18 +201,17 @@ class ToothDepth:
 
     Attributes
     ----------
-    tip_given : bool
+    tip_stated : bool
         Whether the tip diameter is the file's.
-    cutter_teeth, cutter_shift : int, float or None
-        Of the pinion cutter of a ring gear; None where the file has none.
+    cutter : mapping
+        Fields of the pinion cutter of a ring gear; none where the file has none.
     """
 
     tip_diameter: float
-    tip_given: bool
+    tip_stated: bool
     dedendum_coefficient: float
     root_radius_coefficient: float
-    cutter_teeth: int | None = None
-    cutter_shift: float | None = None
+    cutter: Mapping[str, int | float] = field(default_factory=dict)
 
 
 def tooth_depth(gear: ToothingData, loaded: LoadedFlank, shift: float, tip_alteration: float) -> ToothDepth:
@@ -226,26 +225,23 @@ def tooth_depth(gear: ToothingData, loaded: LoadedFlank, shift: float, tip_alter
         k in normal modules of a tip that the file leaves out, <= 0.
     """
     tool = _tool(gear.part, loaded)
-    cutter = tool if tool is not None and tool.type == "cutter_wheel_tool" and gear.sign < 0 else None
-    tip = _given_tip(gear, shift)
+    tip = _stated_tip(gear, shift)
     return ToothDepth(
         tip_diameter=_computed_tip(gear, loaded, shift, tip_alteration) if tip is None else tip,
-        tip_given=tip is not None,
+        tip_stated=tip is not None,
         dedendum_coefficient=_dedendum(gear, tool, shift),
         root_radius_coefficient=_root_radius(gear, tool),
-        cutter_teeth=None if cutter is None else _cutter_teeth(cutter),
-        cutter_shift=None if cutter is None else _cutter_shift(cutter),
+        cutter=_cutter(tool, gear.sign),
     )
 
 
-def _given_tip(gear: ToothingData, shift: float) -> float | None:
+def _stated_tip(gear: ToothingData, shift: float) -> float | None:
     """Return the tip diameter of the file in m, None if it gives none that a tip can have."""
     value = gear.part.number("tip_diameter", "tip_diameter_mm")
-    return None if value is None or not _is_tip(gear, abs(value), shift) else abs(value)
-
-
-def _is_tip(gear: ToothingData, diameter: float, shift: float) -> bool:
-    return _ADDENDUM_BOUND[0] <= _implied_addendum(gear, diameter, shift) <= _ADDENDUM_BOUND[1]
+    if value is None:
+        return None
+    lowest, highest = _ADDENDUM_BOUND
+    return abs(value) if lowest <= _implied_addendum(gear, abs(value), shift) <= highest else None
 
 
 def _implied_addendum(gear: ToothingData, diameter: float, shift: float) -> float:
@@ -321,13 +317,14 @@ def _say_ignored(tool: Part) -> None:
             tool.say(item, "ignored", "the fillet is generated without protuberance")
 
 
-def _cutter_teeth(cutter: Part) -> int | None:
-    value = cutter.number("number_of_teeth", "cutter_teeth")
-    return None if value is None else abs(round(value))
-
-
-def _cutter_shift(cutter: Part) -> float | None:
-    return cutter.number("addendum_modification_coefficient", "cutter_profile_shift_coefficient")
+def _cutter(tool: Part | None, sign: int) -> Mapping[str, int | float]:
+    """Return the fields of a ring gear's pinion cutter that the file has."""
+    if tool is None or tool.type != "cutter_wheel_tool" or sign > 0:
+        return {}
+    teeth = tool.number("number_of_teeth", "cutter_teeth")
+    shift = tool.number("addendum_modification_coefficient", "cutter_profile_shift_coefficient")
+    fields: dict[str, int | float] = {} if teeth is None else {"cutter_teeth": abs(round(teeth))}
+    return fields if shift is None else fields | {"cutter_profile_shift_coefficient": rounded(shift)}
 
 
 def _tool(gear: Part, loaded: LoadedFlank) -> Part | None:
@@ -342,19 +339,3 @@ def _tool(gear: Part, loaded: LoadedFlank) -> Part | None:
             if tool.type in _TOOLS:
                 return tool
     return None
-
-
-def tip_alteration(pair_shift_sum: float, reference: float, distance: float, module: float) -> float:
-    """Return k = (a - a_d) / m_n - (x_1 + x_2) of an external pair, at most 0 (ISO 21771-1).
-
-    Parameters
-    ----------
-    pair_shift_sum : float
-        x_1 + x_2.
-    reference, distance : float
-        Reference and actual center distance, m.
-    module : float
-        Normal module, m.
-    """
-    alteration = (distance - reference) / module - pair_shift_sum
-    return alteration if math.isfinite(alteration) and alteration < -1e-9 else 0.0
