@@ -58,13 +58,7 @@ class Assumption:
 
 
 def assumed(model: Model, assumptions: Iterable[Assumption]) -> Model:
-    """Return a model of the newest version with the assumed values, in load cases that state them too.
-
-    Raises
-    ------
-    BadInput
-        The model has no such component, or the value is none of the attribute's kind.
-    """
+    """Return a model of the newest version with the assumed values, in load cases that state them too."""
     for assumption in assumptions:
         if model.component(assumption.component) is None:
             bound = "the id of a component of the file"

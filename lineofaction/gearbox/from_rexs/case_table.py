@@ -238,11 +238,6 @@ def case_of(pair: PairData, pairs: Sequence[PairData], shifts: Mapping[int, floa
         All of the unit; a gear's tip clears all its mates.
     shifts : mapping of int to float
         Profile shift coefficients by gear.
-
-    Raises
-    ------
-    BadInput
-        A shift that cannot be derived, gears that do not mate, a value out of its bounds.
     """
     _refuse_strangers(pair)
     depths = [_depth(gear, loaded, pairs, shifts) for gear, loaded in pair.gears]

@@ -413,6 +413,11 @@ class PlanetarySet:
     central: tuple[Part, ...]
     carrier: tuple[Part, ...]
 
+    @property
+    def pins(self) -> tuple[Part, ...]:
+        """The shafts of the carrier on which planets turn."""
+        return self.stage.related("planet_pin", "planetary_stage", "shaft")
+
 
 def planetary_sets(unit: GearUnit) -> tuple[PlanetarySet, ...]:
     """Return the planetary sets that have a carrier and planets; the account says what the others lack."""
@@ -433,7 +438,6 @@ def planetary_sets(unit: GearUnit) -> tuple[PlanetarySet, ...]:
 
 
 def _carrier(stage: Part) -> Iterator[Part]:
-    """Yield the parts that the file calls the carrier's, pins included."""
     for relation in ("planet_carrier_shaft", "planet_pin"):
         yield from stage.related(relation, "planetary_stage", "shaft")
     for carrier in stage.children("planet_carrier"):

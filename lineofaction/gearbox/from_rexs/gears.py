@@ -32,13 +32,7 @@ from lineofaction.gearbox.units import MM
 
 
 def _center_distance_of(stage: Part, meshing: Meshing) -> float:
-    """Return the center distance in m: the stage's own, else the distance of the gears' axes.
-
-    Raises
-    ------
-    BadInput
-        Neither is above zero.
-    """
+    """Return the center distance in m: the stage's own, else the distance of the gears' axes."""
     value = stage.number("center_distance", "center_distance_mm")
     if value:
         return abs(value)
@@ -105,7 +99,6 @@ def stage_cases(
 
     Parameters
     ----------
-    unit : GearUnit
     torques : mapping of int to tuple of float
         By id of the stage: torques of its shaft on the driving gear about that gear's u axis, N m, all of the
         sign of its sense of rotation. A stage without gets three load levels, which the account states.
@@ -190,17 +183,7 @@ INTEGRAL = 0.95
 def scene_gears(
     layout: Layout, shafts: SceneShafts, cases: Mapping[int, StageCase], names: Names
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """Return the tables of gears and meshes.
-
-    Parameters
-    ----------
-    layout : Layout
-    shafts : SceneShafts
-    cases : mapping of int to StageCase
-        By stage.
-    names : Names
-        Of the gears.
-    """
+    """Return the tables of gears and meshes; `cases` are by stage, `names` those of the gears."""
     gears: dict[int, dict[str, Any]] = {}
     meshes, mesh_names = [], Names()
     for stage in shafts.stages:

@@ -24,21 +24,19 @@ from lineofaction.gearbox.from_rexs.placement import (
     PlacedShaft,
     Placement,
     SceneAxes,
-    placed_shaft,
     placement,
-    scene_axes,
 )
 from lineofaction.gearbox.problems import BadInput
 
 # What turns together: a shaft by itself, or all parts of a planet carrier; and what the ground holds.
 
 
-RIGID_ROTATION = 1e12
+_RIGID_ROTATION = 1e12
 """N m/rad; no coupling of a gear unit is as stiff: files write 1e17 and more for one that does not yield."""
 
 
 @dataclass(frozen=True)
-class Rotors:
+class _Rotors:
     """The rotating bodies of a gear unit.
 
     Attributes
@@ -70,7 +68,7 @@ class Rotors:
         return tuple(part for part, own in self.of.items() if own == rotor)
 
 
-def _rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
+def _rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> _Rotors:
     """Return the rotors: the parts of a carrier are one, with what is rigidly coupled to them."""
     of = {part.id: part.id for part in unit.of_type("shaft", "side_plate")}
     joined = [entry for entry in unit.couplings if entry.on_ground is None and _turn(entry, of)]
@@ -82,7 +80,7 @@ def _rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
         changed = False
         for entry in joined:
             ends = of[entry.inner.id], of[entry.outer.id]
-            if ends[0] != ends[1] and carriers & set(ends) and _rigid(entry):
+            if ends[0] != ends[1] and carriers & set(ends) and _rotation(entry) >= _RIGID_ROTATION:
                 carriers.add(_merge(of, list(ends)))
                 changed = True
     grounded = [entry for entry in unit.couplings if entry.on_ground is not None]
@@ -91,7 +89,7 @@ def _rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
     for entry in joined:
         if entry not in between:
             entry.part.say("", "derived", "rigid: its sides are parts of one planet carrier")
-    return Rotors(of, held, between, tuple(sets))
+    return _Rotors(of, held, between, tuple(sets))
 
 
 def _turn(entry: Connection, of: Mapping[int, int]) -> bool:
@@ -108,15 +106,10 @@ def _merge(of: dict[int, int], parts: list[int]) -> int:
     return lowest
 
 
-def _rigid(entry: Connection) -> bool:
-    """Return whether a coupling does not yield in rotation."""
-    return _rotation(entry) >= RIGID_ROTATION
-
-
 def _rotation(entry: Connection) -> float:
     """Return the torsional stiffness of a coupling, N m/rad; rigid where the file says none."""
     item, words = "rotational_stiffness", "torsional stiffness, N mm/rad"
-    return entry.part.number(item, words, RIGID_ROTATION, "rigid: the file gives none")
+    return entry.part.number(item, words, _RIGID_ROTATION, "rigid: the file gives none")
 
 
 # The layout of a gear unit: its shafts along the axes of the scene, its stages, what turns together.
@@ -128,18 +121,15 @@ def _rotation(entry: Connection) -> float:
 _ANGLE = "rotating_angle_around_neg_u_axis"
 
 
-def _shaft_places(unit: GearUnit, stages: Sequence[GearStage]) -> dict[int, Placement]:
+def _shaft_places(
+    unit: GearUnit, stages: Sequence[GearStage], sets: Sequence[PlanetarySet]
+) -> dict[int, Placement]:
     """Return the places of the shafts by their ids; those that nothing places are left out.
 
     A shaft without a place of its own follows from a placed one: in a stage at the center distance, in the
     direction w turned about -u by the stage's angle, the gears face to face; or along a coupling. If none is
     placed, the first shaft of a stage is the origin. A carrier's shaft that only its set places is on the
     axis of the central shafts, its u = 0 at theirs.
-
-    Raises
-    ------
-    BadInput
-        As `placement`.
     """
     shafts = unit.of_type("shaft")
     places = {shaft.id: place for shaft in shafts if (place := placement(shaft)) is not None}
@@ -148,8 +138,8 @@ def _shaft_places(unit: GearUnit, stages: Sequence[GearStage]) -> dict[int, Plac
         places[first.id] = FIXED
         first.say("support_vector", "defaulted", "no shaft has a place; the first is the origin")
     _spread(unit, stages, places)
-    for planets in planetary_sets(unit):
-        pins = {pin.id for pin in planets.stage.related("planet_pin", "planetary_stage", "shaft")}
+    for planets in sets:
+        pins = {pin.id for pin in planets.pins}
         for shaft in planets.carrier:
             _by_set(shaft, pins, planets.central, places)
     _spread(unit, stages, places)
@@ -212,7 +202,6 @@ def _by_coupling(coupling: Connection, places: dict[int, Placement]) -> None:
 
 
 def _u(part: Part, item: str) -> float:
-    """Return a coordinate along a shaft, m; 0 where the file gives none."""
     return part.number(item, "place along the shaft, mm") or 0.0
 
 
@@ -235,7 +224,7 @@ class Layout:
         The frame of the scene.
     shafts : mapping of int to PlacedShaft
         The shafts parallel to z, by id.
-    rotors : Rotors
+    rotors : _Rotors
         What turns together.
     stages : tuple of GearStage
         All stages with two gears.
@@ -244,8 +233,31 @@ class Layout:
     unit: GearUnit
     axes: SceneAxes
     shafts: Mapping[int, PlacedShaft]
-    rotors: Rotors
+    rotors: _Rotors
     stages: tuple[GearStage, ...]
+
+    @classmethod
+    def of(cls, unit: GearUnit) -> Layout:
+        """Return the layout; the account says what is left out."""
+        stages, sets = tuple(gear_stages(unit)), planetary_sets(unit)
+        places = _shaft_places(unit, stages, sets)
+        root = next(iter(unit.of_type("gear_unit")), None)
+        first = [shaft.id for stage in stages if stage.is_cylindrical for shaft in stage.shafts]
+        lines = [places[shaft] for shaft in (*first, *places) if shaft in places]
+        axes = SceneAxes.of(None if root is None else placement(root), lines)
+        shafts = {}
+        for part in unit.of_type("shaft"):
+            place = places.get(part.id)
+            if place is None:
+                continue
+            if axes.sense(place) == 0:
+                words = "not parallel to the shafts of the first stage: left out of the scene"
+                part.say("", "refused", words)
+                continue
+            shafts[part.id] = PlacedShaft.of(part, place, axes)
+        rotors = _rotors_of(unit, sets)
+        turning = tuple(s for s in stages if len({rotors.of[shaft.id] for shaft in s.shafts}) == 2)
+        return cls(unit, axes, shafts, rotors, turning)
 
     def sense(self, shaft: int) -> int:
         """Return +1 or -1 for u along z or against it; +1 of shafts that are not parallel."""
@@ -294,48 +306,12 @@ def _compare(part: Part, item: str, stated: float | None, u: float, off_axis: fl
         part.say("support_vector", "refused", words)
 
 
-def layout_of(unit: GearUnit) -> Layout:
-    """Return the layout; the account says what is left out.
-
-    Raises
-    ------
-    BadInput
-        Places or sections of shafts are no such thing.
-    """
-    stages = tuple(gear_stages(unit))
-    places = _shaft_places(unit, stages)
-    axes = scene_axes(_root(unit), _by_stages(stages, places))
-    shafts = {}
-    for part in unit.of_type("shaft"):
-        place = places.get(part.id)
-        if place is None:
-            continue
-        if axes.sense(place) == 0:
-            part.say("", "refused", "not parallel to the shafts of the first stage: left out of the scene")
-            continue
-        shafts[part.id] = placed_shaft(part, place, axes)
-    rotors = _rotors_of(unit, planetary_sets(unit))
-    turning = tuple(s for s in stages if len({rotors.of[shaft.id] for shaft in s.shafts}) == 2)
-    return Layout(unit, axes, shafts, rotors, turning)
-
-
-def _root(unit: GearUnit) -> Placement | None:
-    units = unit.of_type("gear_unit")
-    return placement(units[0]) if units else None
-
-
-def _by_stages(stages: tuple[GearStage, ...], places: Mapping[int, Placement]) -> list[Placement]:
-    """Return the places of shafts, those of cylindrical stages first."""
-    first = [shaft.id for stage in stages if stage.is_cylindrical for shaft in stage.shafts]
-    return [places[shaft] for shaft in (*first, *places) if shaft in places]
-
-
 # Speeds and torques of a gear train: the ratios of its stages, and the statics that follow from them.
 
 
 EQUAL = 1e-9
 """Relative; ratios of whole numbers, solved in floating point."""
-MOST_ROTORS = 300
+_MOST_ROTORS = 300
 """The largest trains that are solved have fewer; so many take 0.1 s."""
 
 
@@ -359,6 +335,31 @@ class Train:
     stages: tuple[GearStage, ...]
     rows: FloatArray
     held: tuple[int, ...]
+
+    @classmethod
+    def of(cls, layout: Layout) -> Train:
+        """Return the train of stages and couplings; all speeds and torques are about z.
+
+        Those of a shaft that is not parallel are about its own u: the sense in which a bevel stage turns what
+        lies behind it is left open by the file, its power is not.
+        """
+        stages, rotors = layout.stages, layout.rotors
+        ids = tuple(sorted(set(rotors.of.values())))
+        if len(ids) > _MOST_ROTORS:
+            raise BadInput.of("model", f"{len(ids)} shafts and side plates", f"at most {_MOST_ROTORS}")
+        rows = np.zeros((len(stages) + len(rotors.couplings), len(ids)))
+        for row, stage in zip(rows, stages, strict=False):
+            first, second = (ids.index(rotors.of[shaft.id]) for shaft in stage.shafts)
+            sign = -1.0 if stage.internal else 1.0
+            row[first] += stage.teeth[0]
+            row[second] += sign * stage.teeth[1]
+            carrier = layout.carrier(stage)
+            if carrier is not None:
+                row[ids.index(carrier)] -= stage.teeth[0] + sign * stage.teeth[1]
+        for row, entry in zip(rows[len(stages) :], rotors.couplings, strict=True):
+            row[ids.index(rotors.of[entry.inner.id])] += 1.0
+            row[ids.index(rotors.of[entry.outer.id])] -= 1.0
+        return cls(ids, stages, rows, tuple(ids.index(rotor) for rotor in sorted(rotors.held)))
 
     def speeds(self, known: Mapping[int, float]) -> FloatArray | None:
         """Return the speeds of all rotors, rad/s, None where the known ones do not fit or leave some open.
@@ -452,35 +453,6 @@ class Flow:
     on_rotor: FloatArray
     outside: Mapping[int, float]
     is_shared: bool
-
-
-def train_of(stages: Sequence[GearStage], rotors: Rotors) -> Train:
-    """Return the train of stages and couplings; all speeds and torques are about z.
-
-    Those of a shaft that is not parallel are about its own u: the sense in which a bevel stage turns what
-    lies behind it is left open by the file, its power is not.
-
-    Raises
-    ------
-    BadInput
-        There are too many rotors.
-    """
-    ids = tuple(sorted(set(rotors.of.values())))
-    if len(ids) > MOST_ROTORS:
-        raise BadInput.of("model", f"{len(ids)} shafts and side plates", f"at most {MOST_ROTORS}")
-    rows = np.zeros((len(stages) + len(rotors.couplings), len(ids)))
-    for row, stage in zip(rows, stages, strict=False):
-        first, second = (ids.index(rotors.of[shaft.id]) for shaft in stage.shafts)
-        sign = -1.0 if stage.internal else 1.0
-        row[first] += stage.teeth[0]
-        row[second] += sign * stage.teeth[1]
-        carrier = rotors.carrier_of(*(shaft.id for shaft in stage.shafts))
-        if carrier is not None:
-            row[ids.index(carrier)] -= stage.teeth[0] + sign * stage.teeth[1]
-    for row, entry in zip(rows[len(stages) :], rotors.couplings, strict=True):
-        row[ids.index(rotors.of[entry.inner.id])] += 1.0
-        row[ids.index(rotors.of[entry.outer.id])] -= 1.0
-    return Train(ids, tuple(stages), rows, tuple(ids.index(rotor) for rotor in sorted(rotors.held)))
 
 
 def _null_space(matrix: FloatArray) -> FloatArray:

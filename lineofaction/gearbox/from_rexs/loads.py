@@ -195,14 +195,8 @@ class LoadCase:
         Torques on what drives the scene are of opposite signs in it and at the operating point where the
         other flanks carry, in whichever sense the shafts turn.
 
-        Parameters
-        ----------
-        flow : PowerFlow
-            At the operating point.
-        leader : AppliedTorque
-            What drives the scene.
-        forces : tuple of mapping
-            Tables of the forces that are not those of the scene at the operating point.
+        `leader` is what drives the scene, `forces` are the tables of those that are others there than in the
+        scene.
         """
         torque = flow.loads.get(leader.part.id, leader.torque)
         return cls(

@@ -128,11 +128,6 @@ def meshing_of(stage: Part, driver: int | None = None, torques: tuple[float, ...
         Id of the driving gear; else the file's `is_driving_gear`, else gear 1.
     torques : tuple of float, optional
         On the driving gear about its u axis, N m; their sign is its sense of rotation.
-
-    Raises
-    ------
-    BadInput
-        No two gears, two ring gears, a driver that is none of them, or torques of both signs.
     """
     gears = _stage_gears(stage)
     if gears is None or all(gear.type == "ring_gear" for gear in gears):
@@ -224,13 +219,7 @@ class LoadedFlank:
 
 
 def loaded_flank(meshing: Meshing, gear: Part) -> LoadedFlank:
-    """Return the flank of a gear that carries in a stage.
-
-    Raises
-    ------
-    BadInput
-        Axes of the gear that are no directions.
-    """
+    """Return the flank of a gear that carries in a stage."""
     u_along_z = 1.0 if float(np.dot(frame_of(gear).u, meshing.z)) > 0.0 else -1.0
     datum = u_along_z * _datum_along_u(gear)
     sides = ("right", "left") if datum > 0.0 else ("left", "right")

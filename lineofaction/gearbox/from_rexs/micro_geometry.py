@@ -30,16 +30,7 @@ def micro_geometry(gear: Toothing, loaded: LoadedFlank) -> Table:
 
     What has no field, or a field that another modification takes, is summed on the case's `flank_grid`; the
     account has the grid's largest difference.
-
-    Parameters
-    ----------
-    gear : Toothing
-        The gear without modifications.
-
-    Raises
-    ------
-    BadInput
-        A modification without its amount, or at a place that the flank does not have.
+    `gear` is without modifications.
     """
     if loaded.flank is None:
         return {}

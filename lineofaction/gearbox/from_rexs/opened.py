@@ -16,7 +16,7 @@ from lineofaction.gearbox.convert.toml import toml_text
 from lineofaction.gearbox.from_rexs.account import Assumption, Line, assumed
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
-from lineofaction.gearbox.from_rexs.layout import Layout, layout_of, train_of
+from lineofaction.gearbox.from_rexs.layout import Layout, Train
 from lineofaction.gearbox.from_rexs.loads import LoadCase
 from lineofaction.gearbox.from_rexs.power_flow import REPLACED, PowerFlow, operating_points, power_flow
 from lineofaction.gearbox.from_rexs.scene import SceneParts, SceneTable, scene_table
@@ -159,7 +159,7 @@ def opened(document: Document, assumptions: Iterable[Assumption] = ()) -> Opened
     """
     model, changes = upgrade(document.model)
     unit = GearUnit(assumed(model, assumptions))
-    layout = layout_of(unit)
+    layout = Layout.of(unit)
     flows = _flows(layout)
     cases = stage_cases(unit, _torques(layout, flows), _drivers(layout, flows))
     table = scene_table(layout, flows, cases) if flows and cases else None
@@ -177,7 +177,7 @@ def opened(document: Document, assumptions: Iterable[Assumption] = ()) -> Opened
 
 def _flows(layout: Layout) -> list[PowerFlow]:
     """Return the flows of power of the load cases, that of the largest share first."""
-    train = train_of(layout.stages, layout.rotors)
+    train = Train.of(layout)
     flows = []
     points = operating_points(layout.unit)
     for point in points:

@@ -56,13 +56,7 @@ FIXED = Placement(np.zeros(3), np.eye(3))
 
 
 def placement(part: Part) -> Placement | None:
-    """Return where a component stands, None where the file does not say.
-
-    Raises
-    ------
-    BadInput
-        A vector has not three numbers, an axis has no direction, or places refer to each other in a ring.
-    """
+    """Return where a component stands, None where the file does not say."""
     return _stated(part, ())
 
 
@@ -71,18 +65,8 @@ def frame_of(part: Part, inner: tuple[int, ...] = ()) -> Placement:
 
     On a shaft it stands at its u coordinate, along the shaft's axes; without one it has the origin of the
     component that its place refers to.
-
-    Parameters
-    ----------
-    unit : GearUnit
-    part : Part
-    inner : tuple of int
-        The components whose places refer to this one, the innermost first.
-
-    Raises
-    ------
-    BadInput
-        As of `placement`.
+    `inner` are the components whose places refer to this one, the innermost first. Raises `BadInput` as
+    `placement`.
     """
     if part.id in inner or len(inner) > _MOST_REFERENCES:
         bound = "a component that is not placed by this one itself"
@@ -179,6 +163,19 @@ class SceneAxes:
 
     rows: FloatArray
 
+    @classmethod
+    def of(cls, root: Placement | None, shafts: Iterable[Placement]) -> SceneAxes:
+        """Return the axes for shafts that are parallel to the first of them.
+
+        u of the gear unit, whose place is `root`, is z if the first shaft is parallel to it, in either sense;
+        else that of the first shaft.
+        """
+        unit = root or FIXED
+        first = next(iter(shafts), unit)
+        parallel = float(np.linalg.norm(np.cross(unit.axes[0], first.axes[0]))) <= PARALLEL
+        u, v, w = unit.axes if parallel else first.axes
+        return cls(np.array([v, w, u]))
+
     def point(self, origin: FloatArray) -> FloatArray:
         """Return a point of the model in x, y, z, m."""
         return np.asarray(self.rows @ origin)
@@ -192,23 +189,6 @@ class SceneAxes:
     def turn(self, place: Placement) -> FloatArray:
         """Return the matrix that takes u, v, w of a place to x, y, z."""
         return np.asarray(self.rows @ place.axes.T)
-
-
-def scene_axes(root: Placement | None, shafts: Iterable[Placement]) -> SceneAxes:
-    """Return the axes for shafts that are parallel to the first of them.
-
-    Parameters
-    ----------
-    root : Placement or None
-        The gear unit's: its u is z if the first shaft is parallel to it, in either sense.
-    shafts : iterable of Placement
-        The first gives the direction otherwise.
-    """
-    unit = root or FIXED
-    first = next(iter(shafts), unit)
-    parallel = float(np.linalg.norm(np.cross(unit.axes[0], first.axes[0]))) <= PARALLEL
-    u, v, w = unit.axes if parallel else first.axes
-    return SceneAxes(np.array([v, w, u]))
 
 
 # Shafts of a REXS model: where they stand along the scene's z axis, and their sections.
@@ -247,6 +227,17 @@ class PlacedShaft:
     end: float
     sections: tuple[BeamSection, ...] = ()
 
+    @classmethod
+    def of(cls, part: Part, place: Placement, axes: SceneAxes) -> PlacedShaft:
+        """Return a shaft with its sections."""
+        rows = tuple(_rows(part))
+        sense = axes.sense(place)
+        begin = rows[0][0] if rows else 0.0
+        sections = tuple(section if sense > 0 else _turned(section) for _, section in rows)
+        end = begin + sum(section.length for section in sections)
+        along_z = sections if sense > 0 else sections[::-1]
+        return cls(part, place, axes.point(place.origin), sense, begin, end, along_z)
+
     @property
     def length(self) -> float:
         """Length, m."""
@@ -280,24 +271,6 @@ class PlacedShaft:
                 return first + share * (last - first)
             left += section.length
         return 0.0
-
-
-def placed_shaft(part: Part, place: Placement, axes: SceneAxes) -> PlacedShaft:
-    """Return a shaft with its sections.
-
-    Raises
-    ------
-    BadInput
-        A section lacks its length or its diameter, or has no such size.
-    """
-    rows = tuple(_rows(part))
-    sense = axes.sense(place)
-    begin = rows[0][0] if rows else 0.0
-    sections = tuple(section if sense > 0 else _turned(section) for _, section in rows)
-    end = begin + sum(section.length for section in sections)
-    return PlacedShaft(
-        part, place, axes.point(place.origin), sense, begin, end, sections if sense > 0 else sections[::-1]
-    )
 
 
 def _rows(shaft: Part) -> Iterator[tuple[float, BeamSection]]:
@@ -359,7 +332,6 @@ def _size(part: Part, item: str) -> float:
 
 
 def _material(shaft: Part) -> dict[str, float]:
-    """Return what the file says of the shaft's material."""
     names = {
         "elastic_modulus": "youngs_modulus",
         "poisson_ratio": "poissons_ratio",

@@ -114,19 +114,7 @@ def _scene_parts(
     seats: Mapping[int, str],
     meshes: Sequence[tuple[str, StageCase]],
 ) -> SceneParts:
-    """Return the components of a scene's parts.
-
-    Parameters
-    ----------
-    layout : Layout
-    flow : PowerFlow
-        At the operating point of the scene.
-    shafts : SceneShafts
-    seats : mapping of int to str
-        The bushing of each bearing on the ground, by its component.
-    meshes : sequence of (str, StageCase)
-        Names and cases of the scene's meshes, in the order of `shafts.stages`.
-    """
+    """Return the components of a scene's parts, its meshes in the order of `shafts.stages`."""
     parts = {
         name: MeshPart(stage.stage.id, case.name, _face_sense(layout, flow, stage, case))
         for stage, (name, case) in zip(shafts.stages, meshes, strict=True)
@@ -317,16 +305,7 @@ class SceneTable:
 
 
 def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> SceneTable:
-    """Return the scene at an operating point.
-
-    Parameters
-    ----------
-    layout : Layout
-    flows : sequence of PowerFlow
-        Speeds and torques of the scene's operating point, then those of the others.
-    cases : sequence of StageCase
-        Of the stages; those without are cut off.
-    """
+    """Return the scene at the operating point of the first flow; stages without a case are cut off."""
     flow = flows[0]
     by_stage, names = cases_by_stage(cases), Names()
     computed = [

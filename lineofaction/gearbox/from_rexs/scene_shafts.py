@@ -22,25 +22,6 @@ _SIZES = ("outer_diameter", "inner_diameter", "length")
 
 
 @dataclass(frozen=True)
-class CarrierBody:
-    """A carrier along its axis.
-
-    Attributes
-    ----------
-    origin : tuple of float
-        Left end in x, y, z, m; the center of mass is at mid-length.
-    length : float
-        m.
-    inertia : Inertia
-        About the center of mass.
-    """
-
-    origin: tuple[float, float, float]
-    length: float
-    inertia: Inertia
-
-
-@dataclass(frozen=True)
 class _Piece:
     """A body of revolution at z (m), off the axis by `radius` (m), from `begin` to `end`."""
 
@@ -51,7 +32,7 @@ class _Piece:
     end: float
 
 
-def _carrier_body(layout: Layout, rotor: int) -> CarrierBody:
+def _carrier_body(layout: Layout, rotor: int) -> dict[str, Any]:
     """Return the body of a carrier.
 
     A piece off the axis adds m r^2 about it and, as one of several around it, m r^2 / 2 across it.
@@ -69,10 +50,10 @@ def _carrier_body(layout: Layout, rotor: int) -> CarrierBody:
         p.inertia.transverse + p.inertia.mass * (0.5 * p.radius**2 + (p.z - center) ** 2) for p in pieces
     )
     half = max(max(center - p.begin, p.end - center) for p in pieces)
-    return CarrierBody((x, y, center - half), 2.0 * half, Inertia(mass, polar, across))
+    return _rigid((x, y, center - half), 2.0 * half, Inertia(mass, polar, across))
 
 
-def _disc(layout: Layout, axis: PlacedShaft, rotor: int) -> CarrierBody:
+def _disc(layout: Layout, axis: PlacedShaft, rotor: int) -> dict[str, Any]:
     """Return a steel disc of the circle of the planets' axes, where no part of the carrier has a size."""
     planets = next(s.planets for s in layout.rotors.sets if layout.rotor(s.carrier[0].id) == rotor)
     placed = [layout.shafts[planet.id] for planet in planets if planet.id in layout.shafts]
@@ -80,16 +61,12 @@ def _disc(layout: Layout, axis: PlacedShaft, rotor: int) -> CarrierBody:
     radius = max((math.hypot(p.origin[0] - x, p.origin[1] - y) for p in placed), default=0.0) or DISC
     words = f"no part has a size: a steel disc of {2e3 * radius:.6g} mm diameter, {DISC * 1e3:g} mm long"
     layout.unit.part(rotor).say("inertia", "defaulted", words)
-    return CarrierBody((x, y, z), DISC, hollow_cylinder(2.0 * radius, DISC))
+    return _rigid((x, y, z), DISC, hollow_cylinder(2.0 * radius, DISC))
 
 
 def _axis(layout: Layout, rotor: int) -> int:
     """Return the shaft on the carrier's axis: the first that is no pin."""
-    pins = {
-        shaft.id
-        for planets in layout.rotors.sets
-        for shaft in planets.stage.related("planet_pin", "planetary_stage", "shaft")
-    }
+    pins = {pin.id for planets in layout.rotors.sets for pin in planets.pins}
     shafts = [member for member in layout.rotors.members(rotor) if member in layout.shafts]
     return next((member for member in shafts if member not in pins), shafts[0])
 
@@ -173,16 +150,7 @@ class SceneShafts:
 
 
 def scene_shafts(layout: Layout, stages: Sequence[GearStage], names: Names) -> SceneShafts:
-    """Return the shafts that computed stages and couplings make parts of one train.
-
-    Parameters
-    ----------
-    layout : Layout
-    stages : sequence of GearStage
-        Those that have a case.
-    names : Names
-        Of the shafts.
-    """
+    """Return the shafts that computed stages and couplings make parts of one train."""
     first = {planets.planets[0].id for planets in layout.rotors.sets}
     others = {shaft.id for planets in layout.rotors.sets for shaft in planets.planets} - first
     kept = tuple(s for s in stages if not others & {shaft.id for shaft in s.shafts})
@@ -231,14 +199,12 @@ def _shaft(layout: Layout, rotor: int, names: Names) -> SceneShaft:
 
 def _body(placed: PlacedShaft, part: Part) -> dict[str, Any]:
     """Return place, length and sections of a shaft; without sections it is rigid and has no mass."""
-    length = placed.length
+    origin = tuple(map(float, placed.origin))
     if not placed.sections:
         part.say("shaft_section", "defaulted", "no sections: a rigid shaft without mass")
-        length = 1.0
-    table = {"length_mm": length / MM, "origin_mm": [float(value) / MM for value in placed.origin]}
-    if not placed.sections:
-        return table | {"inertia": inertia_table(Inertia())}
-    return table | {"sections": [_section(section) for section in placed.sections]}
+        return _rigid(origin, 1.0, Inertia())
+    sections = [_section(section) for section in placed.sections]
+    return _line(origin, placed.length) | {"sections": sections}
 
 
 def _section(section: BeamSection) -> dict[str, Any]:
@@ -267,24 +233,27 @@ def _carrier(layout: Layout, rotor: int, names: Names) -> SceneShaft:
     for member in members:
         member.say("", "derived", f"part of the rigid planet carrier of {len(members)} parts")
     name = names.of(layout.unit.part(rotor))
-    table = {
-        "name": name,
-        "length_mm": body.length / MM,
-        "origin_mm": [value / MM for value in body.origin],
-        "inertia": inertia_table(body.inertia),
-    }
-    return SceneShaft(name, rotor, table)
+    return SceneShaft(name, rotor, {"name": name, **body})
 
 
 def _stub(layout: Layout, shaft: Part, gear: Part, names: Names) -> SceneShaft:
     placed = layout.shafts[shaft.id]
     z = layout.z_on(placed, gear)
-    x, y = (float(value) / MM for value in placed.origin[:2])
+    x, y = map(float, placed.origin[:2])
     name = names.of(shaft, " stub")
     gear.say("", "derived", f"on a stub of its shaft in the carrier's frame, {name}")
-    origin = [x, y, (z - 0.5 * STUB) / MM]
-    table = {"name": name, "length_mm": STUB / MM, "origin_mm": origin, "inertia": inertia_table(Inertia())}
-    return SceneShaft(name, layout.rotor(shaft.id), table)
+    table = _rigid((x, y, z - 0.5 * STUB), STUB, Inertia())
+    return SceneShaft(name, layout.rotor(shaft.id), {"name": name, **table})
+
+
+def _line(origin: Sequence[float], length: float) -> dict[str, Any]:
+    """Return length and left end (m) of a shaft."""
+    return {"length_mm": length / MM, "origin_mm": [value / MM for value in origin]}
+
+
+def _rigid(origin: Sequence[float], length: float, inertia: Inertia) -> dict[str, Any]:
+    """Return a rigid body along its axis; its center of mass is at mid-length."""
+    return _line(origin, length) | {"inertia": inertia_table(inertia)}
 
 
 def _enter_frames(layout: Layout, shafts: SceneShafts) -> None:

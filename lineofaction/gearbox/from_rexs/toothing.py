@@ -51,13 +51,7 @@ class ToothingData:
 
 
 def toothing_of(gear: Part, loaded: LoadedFlank) -> ToothingData:
-    """Return the numbers of a gear.
-
-    Raises
-    ------
-    BadInput
-        A number that every gear has is missing or impossible, named by component and attribute.
-    """
+    """Return the numbers of a gear."""
     teeth = gear.required("number_of_teeth", "teeth")
     ring = gear.type == "ring_gear"
     if teeth != round(teeth) or teeth == 0.0 or (teeth < 0.0 and not ring):
@@ -130,13 +124,7 @@ class ToothedPair:
 
     @property
     def working_pressure_angle(self) -> float:
-        """Transverse working pressure angle alpha_wt, rad.
-
-        Raises
-        ------
-        BadInput
-            The base circles overlap, or one encloses the other, at this distance.
-        """
+        """Transverse working pressure angle alpha_wt, rad."""
         pinion, wheel = self.pinion, self.wheel
         reference = abs(0.5 * (pinion.reference_diameter + wheel.sign * wheel.reference_diameter))
         cosine = reference * math.cos(pinion.transverse_pressure_angle) / self.center_distance
@@ -215,15 +203,7 @@ class ToothDepth:
 
 
 def tooth_depth(gear: ToothingData, loaded: LoadedFlank, shift: float, tip_alteration: float) -> ToothDepth:
-    """Return tip and root of a gear.
-
-    Parameters
-    ----------
-    shift : float
-        x, given or derived.
-    tip_alteration : float
-        k in normal modules of a tip that the file leaves out, <= 0.
-    """
+    """Return tip and root of a gear: x stated or derived, k <= 0 of a tip that the file leaves out."""
     tool = _tool(gear.part, loaded)
     tip = _stated_tip(gear, shift)
     return ToothDepth(

@@ -22,13 +22,7 @@ _FIRST_DAY = (1980, 1, 1, 0, 0, 0)
 
 
 def read_archive(data: bytes) -> tuple[str, bytes, dict[str, bytes]]:
-    """Return the name and text of the model, and the other files by name.
-
-    Raises
-    ------
-    BadInput
-        It is no ZIP, is too large, names a file outside itself or one twice, or has no model or several.
-    """
+    """Return the name and text of the model, and the other files by name."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             files = _files(archive, len(data))

@@ -18,14 +18,7 @@ _MOST_FAULTS = 20
 
 
 def _check(model: Model) -> None:
-    """Check the model's references.
-
-    Raises
-    ------
-    BadInput
-        With a fault for each id given twice, reference to no component, and component that holds itself; at
-        most 20.
-    """
+    """Check the model's references."""
     faults = [*_repeated(model), *_dangling(model), *_cycles(model)]
     if faults:
         raise BadInput(faults[:_MOST_FAULTS])
@@ -109,13 +102,7 @@ def read_rexs(path: Path) -> Document:
 
 
 def parsed(data: bytes) -> Document:
-    """Return the document of a file's bytes.
-
-    Raises
-    ------
-    BadInput
-        As `read_rexs`.
-    """
+    """Return the document of a file's bytes."""
     if len(data) > MOST_BYTES:
         raise BadInput.of("file", f"more than {MOST_BYTES} bytes", "smaller")
     if data.startswith(b"PK"):

@@ -211,13 +211,7 @@ def _list(plain: Any, place: str) -> list[Any]:
 
 
 def json_of(model: Model) -> bytes:
-    """Return a model as JSON in UTF-8, the same bytes at every time.
-
-    Raises
-    ------
-    BadInput
-        The model has several load spectra: the form has a place for one.
-    """
+    """Return a model as JSON in UTF-8, the same bytes at every time."""
     if len(model.spectra) > 1:
         raise BadInput.of("load_spectrum", f"{len(model.spectra)} spectra", "one in JSON", "Write XML.")
     table = _written(written(model))

@@ -1,4 +1,7 @@
-"""Kinds and values of attributes: from text and from base64, and back."""
+"""Kinds and values of attributes: from text and from base64, and back.
+
+What is no such value is refused (`BadInput`) by its place in the file.
+"""
 
 from __future__ import annotations
 
@@ -34,13 +37,7 @@ _MOST_INTEGER = 2**63
 
 
 def integer_of(text: str, place: str) -> int:
-    """Return an integer of at most 64 bits.
-
-    Raises
-    ------
-    BadInput
-        It is none.
-    """
+    """Return an integer of at most 64 bits."""
     plain = text.strip()
     if not _INTEGER.fullmatch(plain) or abs(int(plain)) >= _MOST_INTEGER:
         raise BadInput.of(place, text, "an integer of at most 64 bits")
@@ -78,13 +75,7 @@ OF_TEXT: dict[str, Callable[[str, str], Scalar]] = {
 
 
 def scalar_of(kind: str, text: str, place: str) -> Scalar:
-    """Return the value of a text of a scalar kind.
-
-    Raises
-    ------
-    BadInput
-        The text is no value of the kind.
-    """
+    """Return the value of a text of a scalar kind."""
     return OF_TEXT.get(kind, _words)(text, place)
 
 
@@ -133,13 +124,7 @@ def text_of(value: Scalar) -> str:
 
 
 def decoded(code: str, text: str, place: str) -> Array:
-    """Return the numbers of a base64 text.
-
-    Raises
-    ------
-    BadInput
-        The code is none of REXS, the text is not base64, or a number is not finite.
-    """
+    """Return the numbers of a base64 text."""
     if code not in CODES:
         raise BadInput.of(place, code, "one of " + ", ".join(CODES))
     numbers = array.array(CODES[code])
@@ -163,13 +148,7 @@ def coded(code: str, values: Sequence[Scalar]) -> str:
 
 
 def rows_of(values: Array, rows: int, columns: int, place: str) -> tuple[Array, ...]:
-    """Return the rows of a matrix of which base64 holds all values, row by row.
-
-    Raises
-    ------
-    BadInput
-        There are more or fewer values than the matrix has.
-    """
+    """Return the rows of a matrix of which base64 holds all values, row by row."""
     if rows < 0 or columns < 0 or rows * columns != len(values):
         raise BadInput.of(place, f"{rows} x {columns}", f"the size of a matrix of {len(values)} values")
     return tuple(values[start : start + columns] for start in range(0, len(values), columns or 1))

@@ -240,13 +240,7 @@ _WRAPPED = {"model": ("relations", "components"), "load_spectrum": ("accumulatio
 
 
 def xml_of(model: Model) -> bytes:
-    """Return a model as XML in UTF-8, the same bytes at every time.
-
-    Raises
-    ------
-    BadInput
-        A text has a character that XML cannot hold.
-    """
+    """Return a model as XML in UTF-8, the same bytes at every time."""
     text = "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', *_lines(written(model)), ""])
     if unfit := _NO_XML.search(text):
         raise BadInput.of("model", unfit[0], "of characters that XML can hold")

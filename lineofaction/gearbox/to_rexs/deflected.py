@@ -35,13 +35,7 @@ _ADVICE = "Deflect the scene and the load cases that `loa open` writes of this u
 
 
 def _check_same_scene(unit: OpenedUnit, result: GearboxDeflection) -> None:
-    """Refuse a result of another scene than the unit's, or of load cases that it has not.
-
-    Raises
-    ------
-    BadInput
-        With the first difference, in the units of scene files.
-    """
+    """Refuse a result of another scene than the unit's, or of load cases that it has not."""
     if unit.scene is None:
         raise BadInput.of("rexs", "no scene", "a unit that makes a scene", "See the report of `loa open`.")
     if not result.scene:
@@ -150,12 +144,7 @@ def bearing_results(part: BearingPart, load: BearingLoad) -> tuple[Attribute, ..
     The force on a side is what the bearing exerts on the component of that side: what it carries acts on the
     housing, its reaction on the shaft. The deflection is the displacement of the inner less that of the
     outer side, clearance included.
-
-    Parameters
-    ----------
-    part : BearingPart
-    load : BearingLoad
-        In x, y, z of the scene.
+    The load is in x, y, z of the scene.
     """
     on_housing, moment = _turned(part, load.force)
     across, tilt = _turned(part, load.elastic + load.clearance)
@@ -210,12 +199,7 @@ def _alignment_results(mesh: MeshAlignment, sense: int) -> tuple[Attribute, ...]
 
     The attribute of ISO 6336 is its size without running-in allowance; signed it is a custom one: > 0 where
     the gap between the flanks grows along u of gear 1's shaft.
-
-    Parameters
-    ----------
-    mesh : MeshAlignment
-    sense : int
-        +1 where the case's face positions count along that u, -1 against it.
+    `sense` is +1 where the case's face positions count along that u, -1 against it.
     """
     return (
         calculated("effective_equivalent_misalignment_iso_6336_2019", abs(mesh.misalignment) / UM, "mum"),
@@ -227,12 +211,7 @@ def flank_results(flanks: MeshFlanks, sense: int) -> tuple[Attribute, ...]:
     """Return the load along the face and what follows from it, by increasing u of gear 1's shaft.
 
     Nodes count from the end of the face of the lower u. K_Hbeta is left out where the model is plane.
-
-    Parameters
-    ----------
-    flanks : MeshFlanks
-    sense : int
-        As of `_alignment_results`.
+    `sense` is as of `_alignment_results`.
     """
     order = slice(None, None, sense)
     along = sense * flanks.face_position[order]
@@ -260,13 +239,8 @@ def flank_results(flanks: MeshFlanks, sense: int) -> tuple[Attribute, ...]:
 def _shaft_results(part: ShaftPart, position: FloatArray, motion: FloatArray) -> tuple[Attribute, ...]:
     """Return the deflection line of a shaft along its own u, v, w, by increasing u, mean over the mesh cycle.
 
-    Parameters
-    ----------
-    part : ShaftPart
-    position : (P,) array
-        From the left end in the scene, m, increasing.
-    motion : (P, 6) array
-        Displacement in x, y, z, m; rotation about them, rad.
+    `position` (P,) is from the left end in the scene, m, increasing; `motion` (P, 6) displacement in x, y, z,
+    m, and rotation about them, rad.
     """
     order = slice(None, None, part.sense)
     u = part.sense * (position - part.zero)[order]

@@ -40,11 +40,6 @@ def _with_calculated(document: Document, results: Results) -> Document:
     """Return a document with results on its components; everything else stays as it is.
 
     A result takes the place of an attribute of its name, another program's too.
-
-    Raises
-    ------
-    BadInput
-        The document has no component of an id.
     """
     model = document.model
     _refuse_unknown(document, results)
@@ -56,14 +51,7 @@ def with_case_results(document: Document, number: int, results: Results) -> Docu
     """Return a document with results in a load case of its first spectrum; see `_with_calculated`.
 
     Without a spectrum the results are the components' own.
-
-    Parameters
-    ----------
-    document : Document
-    number : int
-        Place of the load case in the spectrum, from 1.
-    results : mapping of int to iterable of Attribute
-        By id of the component.
+    `number` is the place of the load case in the spectrum, from 1.
     """
     model = document.model
     if not model.spectra:
@@ -113,22 +101,7 @@ def _stage_results(
     REXS has no attribute of the transmission error: it stands in custom ones, along the transverse line of
     action, > 0 where the driven gear lags, over positions of the driving gear in transverse base pitches; 0:
     the reference pair touches at the pitch point.
-
-    Parameters
-    ----------
-    pair : ParallelAxes
-        The gears of the stage.
-    database : SteDatabase
-        Of the same gears.
-    torque : float, optional
-        On gear 1, N m; the largest stored by default.
-
-    Raises
-    ------
-    BadInput
-        The torque is outside what is stored.
-    JobFailed
-        The table has failed points.
+    The table is of the same gears, the torque on gear 1, N m; the largest stored by default.
     """
     at = np.arange(POSITIONS * database.period) / POSITIONS
     load = float(database.torque[-1]) if torque is None else torque
