@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
@@ -14,6 +13,8 @@ from dynamics.effects import EFFECTS
 from dynamics.errors import InputError, SolveError
 from dynamics.influence.linear_figures import COMPARED, LinearFigures, linear_figures, operating_conditions
 from dynamics.linearize.operating_speeds import leading_law
+from dynamics.motion.sampled_states import States
+from dynamics.results.checks import Check, SeriesBlock
 from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds
@@ -281,7 +282,7 @@ class NeglectedChecks:
         self._low, self._high = np.full(meshes, np.inf), np.full(meshes, -np.inf)
         self._sum, self._samples, self._parted = np.zeros(meshes), 0, False
 
-    def see(self, series: dict[str, Any]) -> None:
+    def see(self, series: SeriesBlock, _states: States) -> None:
         """Take a block of series."""
         error: FloatArray = series["dynamic_transmission_error"]
         self._low = np.minimum(self._low, np.min(error, axis=1, initial=np.inf))
@@ -290,18 +291,17 @@ class NeglectedChecks:
         self._samples += error.shape[1]
         self._parted = self._parted or bool(np.any(series["mesh_force"] <= 0.0))
 
-    def found(self) -> list[Json]:
-        """Return one entry per neglected effect.
+    def checks(self) -> list[Check]:
+        """Return one per neglected effect.
 
         ``change`` is its estimate over the computed mean and peak-to-peak transmission error, and of bearing
         forces as estimated. Where flanks parted the linear theory of the estimate says nothing: it does not
         hold.
         """
         left = self._decided.neglected if self._samples else {}
-        return [self._entry(name, influence) for name, influence in left.items()]
+        return [self._check(name, influence) for name, influence in left.items()]
 
-    def _entry(self, name: str, influence: Influence) -> Json:
-        """One effect."""
+    def _check(self, name: str, influence: Influence) -> Check:
         mean, ripple = np.abs(self._sum) / self._samples, self._high - self._low
         parts = [
             np.max(np.abs(influence.mean) / np.maximum(mean, 1e-300)),
@@ -314,11 +314,6 @@ class NeglectedChecks:
         )
         if self._parted:
             reason = "flanks lifted off: the linear theory that neglected it is invalid"
-        return {
-            "effect": name,
-            "assumption": "neglected effects are negligible",
-            "part": ANY_PART,
-            "holds": not self._parted and change <= (self._decided.scene.tolerance or 0.0),
-            "change": change,
-            "reason": reason,
-        }
+        holds = not self._parted and change <= (self._decided.scene.tolerance or 0.0)
+        assumption = "neglected effects are negligible"
+        return Check(name, assumption, ANY_PART, holds, reason, {"change": change})

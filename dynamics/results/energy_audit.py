@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from bounds import engineering
+from dynamics.results.checks import Check
 from dynamics.types import FloatArray, Json
 
 # The energy audit: what went in, what is stored, what was lost, and what is missing.
@@ -109,8 +110,8 @@ FALLEN = 1e-3
 """Of the turnover: a loss that falls by more has driven; less is the error of a step's weights."""
 
 
-def energy_check(audit: EnergyAudit) -> Json:
-    """Return the entry of `audit`: what is unaccounted for over the turnover, how far a loss fell in J."""
+def energy_check(audit: EnergyAudit) -> Check:
+    """Return the check of `audit`: what is unaccounted for over the turnover, how far a loss fell in J."""
     lost = audit.fallen > FALLEN * audit.turnover
     missing = audit.relative > UNACCOUNTED
     reason = f"{engineering(100.0 * audit.relative, 2)} % of {audit.turnover:.3g} J is not accounted for"
@@ -118,13 +119,6 @@ def energy_check(audit: EnergyAudit) -> Json:
         reason = f"{reason}: shorten the fixed step, or lower the tolerance of the step control"
     if lost:
         reason = f"{reason}; a loss fell by {audit.fallen:.3g} J, so it supplied energy"
-    return {
-        "effect": "",
-        "assumption": "work is balanced and losses only grow",
-        "part": "energy audit",
-        "holds": not (lost or missing),
-        "valid": not (lost or missing),
-        "unaccounted": audit.relative,
-        "fallen": audit.fallen,
-        "reason": reason,
-    }
+    figures, holds = {"unaccounted": audit.relative, "fallen": audit.fallen}, not (lost or missing)
+    assumption = "work is balanced and losses only grow"
+    return Check("", assumption, "energy audit", holds, reason, figures, valid=holds)

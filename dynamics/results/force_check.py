@@ -8,34 +8,16 @@ holds everywhere.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.errors import SolveError
+from dynamics.motion.sampled_states import States
+from dynamics.results.checks import Check, SeriesBlock, ending
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, Json
-
-# The verdict of the checks of a result, and those that end a run or a study.
-#
-# A check is an entry with `effect`, `assumption`, `part`, `holds` and `reason`. Where it does not hold, the
-# result is to be taken with its reason in mind, and an automatic effect may mend it. Where it also has
-# `valid` False, the result is wrong and no effect mends it: that ends a run unless the scene only wants a
-# report.
-
-
-def ending(checks: Sequence[Json], on_violation: str) -> str:
-    """Say which `checks` end a run or a study by the scene's `on_violation`; empty where none does."""
-    wrong = [check for check in checks if check["holds"] is False]
-    if on_violation == "report":
-        return ""
-    if on_violation == "repeat":
-        wrong = [check for check in wrong if check.get("valid") is False]
-    return "; ".join(
-        f"{check['assumption']} ({check['part'] or check['effect']}): {check['reason']}" for check in wrong
-    )
-
 
 STRAIGHT_ON = 1.2
 """Times the highest load of a table: up to here it may go on straight."""
@@ -51,26 +33,27 @@ class ForceChecks:
         self._beyond = np.zeros(self._highest.size, dtype=np.int64)
         self._largest = np.zeros(self._highest.size)
 
-    def see(self, driving: FloatArray, coast: FloatArray) -> None:
-        """Take the forces of driving and coast flanks (m, T), N; none of these where there are none."""
+    def see(self, series: SeriesBlock, _states: States) -> None:
+        """Take a block of series of a run."""
+        driving, coast = series["largest_mesh_force"], series["coast_force"]
         force = np.maximum(driving, coast) if coast.shape == driving.shape else driving
         self._samples += force.shape[1]
         self._beyond += np.count_nonzero(force > self._highest[:, None], axis=1)
         self._largest = np.maximum(self._largest, np.max(force, axis=1, initial=0.0))
 
-    def found(self) -> list[Json]:
-        """Return the entries; ``beyond`` is the share of samples above the highest load."""
+    def checks(self) -> list[Check]:
+        """Return those of all meshes; ``beyond`` is the share of samples above the highest load."""
         shares = self._beyond / max(self._samples, 1)
         return _force_checks(self._scene, self._largest, shares)
 
 
-def _force_checks(scene: Scene, largest: FloatArray, beyond: FloatArray | None = None) -> list[Json]:
-    """Return one entry per mesh whose table is read between its loads.
+def _force_checks(scene: Scene, largest: FloatArray, beyond: FloatArray | None = None) -> list[Check]:
+    """Return one check per mesh whose table is read between its loads.
 
-    `largest` (m,) are the largest transverse mesh forces, N, also in the entries.
+    `largest` (m,) are the largest transverse mesh forces, N, also among the figures.
     """
     return [
-        _entry(
+        _force_check(
             scene, index, float(largest[index]), {} if beyond is None else {"beyond": float(beyond[index])}
         )
         for index, mesh in enumerate(scene.meshes)
@@ -87,13 +70,13 @@ def checked_ledger(system: System, largest: FloatArray) -> Json:
         If a force is beyond its table and the scene's ``on_violation`` does not let that pass.
     """
     checks = _force_checks(system.scene, largest)
-    if wrong := ending(checks, system.scene.on_violation):
+    entries = [check.to_json() for check in checks]
+    if wrong := ending(entries, system.scene.on_violation):
         raise SolveError(f"violated assumptions of the study: {wrong}")
-    return {**system.ledger.to_json(), "checks": checks}
+    return {**system.ledger.to_json(), "checks": entries}
 
 
-def _entry(scene: Scene, index: int, largest: float, share: Json) -> Json:
-    """One mesh."""
+def _force_check(scene: Scene, index: int, largest: float, share: Mapping[str, float]) -> Check:
     highest = _highest(scene, index)
     times = largest / highest
     reason = f"forces up to {largest:.4g} N of {highest:.4g} N in the table"
@@ -104,16 +87,9 @@ def _entry(scene: Scene, index: int, largest: float, share: Json) -> Json:
             f"above it the table is extrapolated linearly, up to {STRAIGHT_ON:g} times. Compute it with "
             f"torques up to {_rounded_up(largest * radius):g} N m, it ends at {highest * radius:.4g} N m"
         )
-    return {
-        "effect": "",
-        "assumption": "force inside the table",
-        "part": scene.meshes[index].name,
-        "holds": times <= 1.0,
-        "valid": times <= STRAIGHT_ON,
-        **share,
-        "largest": largest,
-        "reason": reason,
-    }
+    figures = {**share, "largest": largest}
+    name, valid = scene.meshes[index].name, times <= STRAIGHT_ON
+    return Check("", "force inside the table", name, times <= 1.0, reason, figures, valid)
 
 
 def _highest(scene: Scene, index: int) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -16,9 +16,10 @@ from dynamics.meshes import GearMesh
 from dynamics.meshes.operating_point_table import table_at_operating_point
 from dynamics.motion.observation import static_deflections
 from dynamics.motion.sampled_states import States
+from dynamics.results.checks import Check, SeriesBlock
 from dynamics.results.force_check import ForceChecks
 from dynamics.results.histories import FIELDS, axis_rows
-from dynamics.types import FloatArray, Json
+from dynamics.types import FloatArray
 
 # Whether a run stayed on the axes of its mesh-force tables.
 
@@ -35,8 +36,7 @@ class _AxisChecks:
         self._beyond = dict.fromkeys(self._watched, 0)
         self._range = dict.fromkeys(self._watched, (np.inf, -np.inf))
 
-    def see(self, series: dict[str, Any]) -> None:
-        """Take a block of series."""
+    def see(self, series: SeriesBlock, _states: States) -> None:
         self._samples += series["time"].size
         for axis, mesh in self._watched:
             values, (low, high) = series[FIELDS[axis]][mesh], self._range[axis, mesh]
@@ -47,30 +47,29 @@ class _AxisChecks:
                 float(np.max(values, initial=high)),
             )
 
-    def found(self) -> list[Json]:
-        """Return one entry per mesh and axis in use.
+    def checks(self) -> list[Check]:
+        """Return one per mesh and axis in use.
 
         ``beyond`` is the share of the samples off the axis, where the table's last value holds, ``farthest``
         in m how far off.
         """
-        return [self._entry(axis, mesh) for axis, mesh in self._watched if self._samples]
+        return [self._check(axis, mesh) for axis, mesh in self._watched if self._samples]
 
-    def _entry(self, axis: int, mesh: int) -> Json:
+    def _check(self, axis: int, mesh: int) -> Check:
         (low, high), (first, last) = self._range[axis, mesh], self._ends(axis, mesh)
         farthest = max(first - low, high - last, 0.0)
         span = f"{low:.4g} to {high:.4g} m of {first:.4g} to {last:.4g} m"
         reason = f"{WHAT[axis]} inside the table's axis: {span}"
         if farthest > 0.0:
             reason = f"{WHAT[axis]} beyond the axis: {span}; the last value was held. Compute a wider axis"
-        return {
-            "effect": self._system.ledger.effect_adding(FIELDS[axis]),
-            "assumption": f"{WHAT[axis]} inside the table",
-            "part": self._system.scene.meshes[mesh].name,
-            "holds": farthest <= 0.0,
-            "beyond": self._beyond[axis, mesh] / self._samples,
-            "farthest": farthest,
-            "reason": reason,
-        }
+        return Check(
+            self._system.ledger.effect_adding(FIELDS[axis]),
+            f"{WHAT[axis]} inside the table",
+            self._system.scene.meshes[mesh].name,
+            farthest <= 0.0,
+            reason,
+            {"beyond": self._beyond[axis, mesh] / self._samples, "farthest": farthest},
+        )
 
     def _ends(self, axis: int, mesh: int) -> tuple[float, float]:
         """First and last knot of the table's axis, m."""
@@ -109,24 +108,22 @@ class _HeldOperatingPointChecks:
         ]
         self._range = [(0.0, 0.0)] * len(self._watched)
 
-    def see(self, q: FloatArray) -> None:
-        """Take the displacements (T, n)."""
+    def see(self, _series: SeriesBlock, states: States) -> None:
         for k, watched in enumerate(self._watched):
-            moved = q @ watched.gradient
+            moved = states.q @ watched.gradient
             low, high = self._range[k]
             self._range[k] = (float(np.min(moved, initial=low)), float(np.max(moved, initial=high)))
 
-    def found(self) -> list[Json]:
-        """Return one entry per mesh and axis.
+    def checks(self) -> list[Check]:
+        """Return one per mesh and axis.
 
         ``farthest`` is how far the bodies moved in m, ``change`` how much that changes the mean transmission
         error of the nominal force, of its value.
         """
         pairs = zip(self._watched, self._range, strict=True)
-        return [self._entry(watched, max(span, key=abs)) for watched, span in pairs]
+        return [self._check(watched, max(span, key=abs)) for watched, span in pairs]
 
-    def _entry(self, watched: _Watched, farthest: float) -> Json:
-        """One mesh and axis."""
+    def _check(self, watched: _Watched, farthest: float) -> Check:
         system, quantity = self._system, WHAT[watched.axis]
         mesh, force = system.scene.meshes[watched.mesh], float(system.flanks.nominal_force[watched.mesh])
         change = _change(mesh, force, watched.axis, farthest)
@@ -134,15 +131,14 @@ class _HeldOperatingPointChecks:
             f"bodies moved by up to {farthest:.3g} m, which "
             f"changes the mean by {engineering(100.0 * change, 2)} %"
         )
-        return {
-            "effect": system.ledger.effect_adding(FIELDS[watched.axis]),
-            "assumption": f"{quantity} stays at the operating point",
-            "part": mesh.name,
-            "holds": abs(change) <= (system.scene.tolerance or USUAL_TOLERANCE),
-            "farthest": farthest,
-            "change": change,
-            "reason": reported,
-        }
+        return Check(
+            system.ledger.effect_adding(FIELDS[watched.axis]),
+            f"{quantity} stays at the operating point",
+            mesh.name,
+            abs(change) <= (system.scene.tolerance or USUAL_TOLERANCE),
+            reported,
+            {"farthest": farthest, "change": change},
+        )
 
 
 def _change(mesh: GearMesh, force: float, axis: int, moved: float) -> float:
@@ -181,8 +177,9 @@ class _ContactChecks:
         self._gap = np.zeros(len(meshes))
         self._first = np.full(len(meshes), -1, dtype=np.int64)
 
-    def see(self, position: FloatArray, deflection: FloatArray, force: FloatArray, least: FloatArray) -> None:
-        """Take series (m, T) of the driving flanks; `least` is what the force falls to between samples."""
+    def see(self, series: SeriesBlock, _states: States) -> None:
+        position, deflection = series["position"], series["dynamic_transmission_error"]
+        force, least = series["mesh_force"], series["least_mesh_force"]
         before = self._samples
         self._samples += position.shape[1]
         for index in self._watched:
@@ -196,35 +193,35 @@ class _ContactChecks:
             gap = float(np.max((touch - deflection[index])[apart], initial=0.0))
             self._gap[index] = max(self._gap[index], gap)
 
-    def found(self) -> list[Json]:
-        """Return one entry per mesh that ran without backlash.
+    def checks(self) -> list[Check]:
+        """Return one per mesh that ran without backlash.
 
         ``parted`` is the share of the samples out of contact, ``widest_gap`` in m how far flanks were apart
         along the line of action, ``holds`` whether leaving the coast flank out changed nothing: none parted,
         or the gap stayed below a backlash that is given. ``since`` is the time of the last sample before they
         parted first, s; None if they never did, or from the start: without effect on what came before.
         """
-        return [self._entry(index) for index in self._watched]
+        return [self._check(index) for index in self._watched]
 
-    def _entry(self, index: int) -> Json:
-        """One mesh."""
+    def _check(self, index: int) -> Check:
         mesh, gap = self._system.scene.meshes[index], float(self._gap[index])
         first = int(self._first[index])
         room = mesh.coast.backlash if mesh.coast is not None else 0.0
-        return {
-            "effect": self._system.ledger.effect_adding(COAST_FLANKS),
-            "assumption": "coast flanks are not reached",
-            "part": mesh.name,
-            "holds": bool(gap <= room),
-            "parted": float(self._parted[index] / max(self._samples, 1)),
-            "widest_gap": gap,
-            "since": (first - 1) / self._system.sampling.rate if first > 0 else None,
-            "reason": _reason(gap, mesh.coast is not None, room),
-        }
+        return Check(
+            self._system.ledger.effect_adding(COAST_FLANKS),
+            "coast flanks are not reached",
+            mesh.name,
+            bool(gap <= room),
+            _contact_in_words(gap, mesh.coast is not None, room),
+            {
+                "parted": float(self._parted[index] / max(self._samples, 1)),
+                "widest_gap": gap,
+                "since": (first - 1) / self._system.sampling.rate if first > 0 else None,
+            },
+        )
 
 
-def _reason(gap: float, known: bool, room: float) -> str:
-    """In words."""
+def _contact_in_words(gap: float, known: bool, room: float) -> str:
     if gap == 0.0:
         return "the driving flanks stayed in contact"
     if known and gap <= room:
@@ -256,8 +253,8 @@ class _BearingLoadChecks:
         self._samples = 0
         self._unloaded = np.zeros(len(self._watched), dtype=np.int64)
 
-    def see(self, force: FloatArray) -> None:
-        """Take the bearing forces (b, 3, T), N; none where they are not stored."""
+    def see(self, series: SeriesBlock, _states: States) -> None:
+        force = series["bearing_force"]  # (0, 3, T) where it is not stored
         if force.shape[0] != len(self._name) or force.shape[2] == 0:
             return
         radial = force[self._watched, :2]
@@ -268,31 +265,24 @@ class _BearingLoadChecks:
         self._unloaded += np.where(loaded, np.count_nonzero(along <= 0.0, axis=1), 0)
         self._samples += force.shape[2]
 
-    def found(self) -> list[Json]:
-        """Return one entry per linear bearing that carries load at the start.
+    def checks(self) -> list[Check]:
+        """Return one per linear bearing that carries load at the start.
 
         ``unloaded`` is the share of the samples in which the force along the static load was not positive.
         """
         if self._direction is None:
             return []
         loaded = np.any(self._direction != 0.0, axis=1)
-        return [self._entry(row, index) for row, index in enumerate(self._watched) if loaded[row]]
+        return [self._check(row, index) for row, index in enumerate(self._watched) if loaded[row]]
 
-    def _entry(self, row: int, index: int) -> Json:
-        """One bearing."""
+    def _check(self, row: int, index: int) -> Check:
         share = float(self._unloaded[row] / max(self._samples, 1))
         reason = "the bearing stayed loaded"
         if share > 0.0:
             advice = "enable the effect" if self._has_law[row] else "give the bearing its clearance"
             reason = f"the load reversed in {100.0 * share:.3g} % of the run: {advice}"
-        return {
-            "effect": self._effect,
-            "assumption": "linear bearing stays loaded",
-            "part": self._name[index],
-            "holds": share == 0.0,
-            "unloaded": share,
-            "reason": reason,
-        }
+        assumption, name = "linear bearing stays loaded", self._name[index]
+        return Check(self._effect, assumption, name, share == 0.0, reason, {"unloaded": share})
 
 
 def _directions(force: FloatArray) -> FloatArray:
@@ -302,38 +292,24 @@ def _directions(force: FloatArray) -> FloatArray:
     return np.asarray(np.where(carries[:, None], force / np.where(carries, size, 1.0)[:, None], 0.0))
 
 
-class _SeriesCheck(Protocol):
-    """A check of series."""
+class _RunCheck(Protocol):
+    def see(self, series: SeriesBlock, states: States) -> None: ...
 
-    def see(self, series: dict[str, Any]) -> None:
-        """Take a block of series."""
-
-    def found(self) -> list[Json]:
-        """Return its entries."""
+    def checks(self) -> list[Check]: ...
 
 
 class RunChecks:
-    """All checks of a run; `further` ones look at its series too."""
+    """All checks of a run on its own model; `further` ones look at it too."""
 
-    def __init__(self, system: System, further: Sequence[_SeriesCheck] = ()) -> None:
-        self._further, self._operating_points = tuple(further), _HeldOperatingPointChecks(system)
-        self._contact, self._axes = _ContactChecks(system), _AxisChecks(system)
-        self._force, self._bearings = ForceChecks(system), _BearingLoadChecks(system)
+    def __init__(self, system: System, further: Sequence[_RunCheck] = ()) -> None:
+        own = (_ContactChecks, _AxisChecks, ForceChecks, _BearingLoadChecks, _HeldOperatingPointChecks)
+        self._all: tuple[_RunCheck, ...] = (*(kind(system) for kind in own), *further)
 
-    def see(self, series: dict[str, Any], states: States) -> None:
+    def see(self, series: SeriesBlock, states: States) -> None:
         """Take a block of unfiltered series, and the states they are of."""
-        self._operating_points.see(states.q)
-        for check in self._further:
-            check.see(series)
-        names = ("position", "dynamic_transmission_error", "mesh_force", "least_mesh_force")
-        self._contact.see(*(series[name] for name in names))
-        self._axes.see(series)
-        self._force.see(series["largest_mesh_force"], series["coast_force"])
-        self._bearings.see(series["bearing_force"])
+        for each in self._all:
+            each.see(series, states)
 
-    def found(self) -> list[Json]:
-        """Return the entries of all checks."""
-        contact, axes = self._contact.found(), self._axes.found()
-        further = [entry for check in self._further for entry in check.found()]
-        rest = (*self._force.found(), *self._bearings.found(), *self._operating_points.found(), *further)
-        return [*contact, *axes, *rest]
+    def checks(self) -> list[Check]:
+        """Return the checks of all that was seen."""
+        return [check for each in self._all for check in each.checks()]

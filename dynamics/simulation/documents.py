@@ -1,9 +1,10 @@
-"""The documents of a result beside its series, from the system and the end of its run."""
+"""The documents of a result beside its series: ledger, resolved case, modes, bearings at rest, receipt."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -28,18 +29,191 @@ from dynamics.linearize.modes import freedom_parts
 from dynamics.linearize.operating_speeds import leading_law, mesh_frequencies
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.bearing_elements import BearingElement
-from dynamics.motion.observation import local_state, observe
+from dynamics.mechanism.rotor import Rotor
+from dynamics.meshes import GearMesh
+from dynamics.motion.observation import local_state, observe, static_deflections
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
 from dynamics.results import EnergyAudit, StepStatistics
-from dynamics.results.case import effect_ledger, resolved_case
+from dynamics.results.checks import Check
 from dynamics.results.energy_audit import energy_check
 from dynamics.results.histories import checked_series, filtered, histories, unfiltered
 from dynamics.results.run_checks import RunChecks
 from dynamics.scene import Integration
+from dynamics.shafts import ElasticShaft
 from dynamics.simulation.violations import FIRST, EarlierRun
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds
+
+# The effect ledger of a run in plain JSON: decisions, influence, price, and the checks of the run.
+
+
+NOT_CHECKED = "no; toggling it measures it (ablation)"
+POSITIONS = 32
+
+
+def _effect_ledger(
+    system: System,
+    checks: Sequence[Check],
+    automatic: Mapping[str, str],
+    influences: Mapping[str, Influence],
+) -> Json:
+    """Return entries, estimates, what the model leaves out, and the checks.
+
+    Parameters
+    ----------
+    system : System
+    checks : sequence of Check
+        Those of the run.
+    automatic : mapping of str to str
+        Effects that were left to "auto" and are not as the scene calls for them, and why: for the tolerance,
+        or because a run without them showed that they are needed.
+    influences : mapping of str to Influence
+        What leaving effects out in all their parts is estimated to change.
+    """
+    deflection = _mean_deflection(system)
+    whole = system.ledger.to_json()
+    entries = [_ledger_entry(entry, deflection, checks, automatic, influences) for entry in whole["entries"]]
+    return {
+        **whole,
+        "entries": entries,
+        "worths": {name: influence.to_json() for name, influence in influences.items()},
+        "checks": [check.to_json() for check in checks],
+    }
+
+
+def _mean_deflection(system: System) -> float:
+    """Return the largest of the meshes' mean static transmission errors under the nominal force, m."""
+    table = system.arrays.elements.laws.flank.table
+    position, touched = np.arange(POSITIONS) / POSITIONS, np.empty(POSITIONS)
+    deflections = [0.0]
+    for index, force in enumerate(system.flanks.nominal_force):
+        static_deflections(table, index, position, float(force), touched)
+        deflections.append(float(np.mean(np.abs(touched))))
+    return max(deflections)
+
+
+def _ledger_entry(
+    entry: Json,
+    deflection: float,
+    checks: Sequence[Check],
+    automatic: Mapping[str, str],
+    influences: Mapping[str, Influence],
+) -> Json:
+    name = entry["effect"]
+    own = [check for check in checks if (check.effect, check.part) == (entry["effect"], entry["part"])]
+    assessed = {
+        "worth_relative": entry["worth"] / deflection if deflection > 0.0 else None,
+        "checked": "; ".join(check.reason for check in own) or NOT_CHECKED,
+        "holds": all(check.holds for check in own) if own else None,
+    }
+    if entry["price"] and not entry["on"] and name in influences:
+        assessed["price"] = f"left out: {influences[name].words}"
+    if name in automatic and entry["possible"]:
+        assessed |= {"choice": "auto", "reason": automatic[name], "price": ""}
+    return {**entry, **assessed}
+
+
+# The model of flexible shafts: elements, modes, errors, in plain JSON.
+
+
+def _flexible_shafts(rotors: Sequence[Rotor]) -> list[Json]:
+    """Return one entry per flexible shaft, SI."""
+    return [_flexible_shaft(rotor.shaft.name, rotor.elastic) for rotor in rotors if rotor.elastic is not None]
+
+
+def _flexible_shaft(name: str, elastic: ElasticShaft) -> Json:
+    """One shaft: how its beam was divided, what was kept of it, and the errors of either."""
+    families = {"bending": elastic.bending, "extension": elastic.extension, "torsion": elastic.torsion}
+    return {
+        "shaft": name,
+        "elements": elastic.position.size - 1,
+        "element_error": elastic.mesh_error,
+        "highest_frequency": elastic.highest,
+        "truncation_error": elastic.truncation,
+        "damping_ratio": elastic.damping_ratio,
+        "held_modes": {kind: modes.fixed for kind, modes in families.items()},
+        "held_modes_up_to": {kind: modes.limit for kind, modes in families.items()},
+        "free_frequencies": {kind: modes.frequency.tolist() for kind, modes in families.items()},
+        "freedoms": list(elastic.kinds),
+    }
+
+
+def _resolved_case(system: System) -> Json:
+    """Return what was computed: parts, dampings in use, lines of action, freedoms; of tables the size."""
+    scene, flanks = system.scene, system.flanks
+    case = {
+        "shafts": [asdict(shaft) for shaft in scene.shafts],
+        "gears": [asdict(gear) for gear in scene.gears],
+        "discs": [asdict(disc) for disc in scene.discs],
+        "bushings": [asdict(part) for rotor in system.rotors for part in rotor.bushings],
+        "planet_bearings": [asdict(part) for rotor in system.rotors for part in rotor.planet_bearings],
+        "meshes": [_mesh(system, index) for index in range(len(scene.meshes))],
+        "drives": [asdict(drive) for drive in scene.drives],
+        "speed_torques": [asdict(torque) for torque in scene.speed_torques],
+        "forces": [asdict(force) for force in scene.forces],
+        "unbalances": [asdict(part) for part in scene.unbalances],
+        "housings": [vars(housing) for housing in scene.housings],  # as it is: matrices of 10^4 numbers
+        "rolling_contacts": [asdict(part) for part in scene.rolling_contacts],
+        "spring_curves": [asdict(part) for part in scene.spring_curves],
+        "rolling_bearings": [asdict(part) for part in scene.rolling_bearings],
+        "couplings": [asdict(coupling) for coupling in scene.couplings],
+        "free_rotations": [asdict(rotation) for rotation in scene.free_rotations],
+        "speed_ratios": {
+            shaft.name: [str(value) for value in row]
+            for shaft, row in zip(scene.shafts, system.kinematics.ratio, strict=True)
+        },
+        "loads": [asdict(load) for load in scene.loads],
+        "flexible_shafts": _flexible_shafts(system.rotors),
+        "duration": scene.duration,
+        "gravity": list(scene.gravity),
+        "effects": dict(scene.effects),
+        "tolerance": scene.tolerance,
+        "outputs": {**asdict(scene.outputs), "sample_rate": system.sampling.rate},
+        "integration": asdict(scene.integration),
+        "freedoms": list(system.freedoms.name),
+        "damping_reach": [float(value) for value in flanks.law.reach[: len(scene.meshes)]],
+    }
+    plain: Json = json.loads(json.dumps(case, default=float))  # lists for tuples, as a file gives them back
+    return plain
+
+
+def _mesh(system: System, index: int) -> Json:
+    mesh, line, flanks = system.scene.meshes[index], system.lines[index], system.flanks
+    return {
+        "name": mesh.name,
+        "driver": mesh.driver,
+        "driven": mesh.driven,
+        "technique": mesh.technique,
+        "nominal_force": float(flanks.nominal_force[index]),
+        "mean_stiffness": float(flanks.mean_stiffness[index]),
+        "damping": float(flanks.law.damping[index]),
+        "damping_ratio": mesh.damping_ratio,
+        "position_offset": mesh.position_offset,
+        "misalignment": mesh.misalignment,
+        "center_distance_change": mesh.center_distance_change,
+        "friction": mesh.friction,
+        "working_pressure_angle": line.working_pressure_angle,
+        "line_of_action": [float(value) for value in line.force],
+        "point_of_action": [float(value) for value in line.point],
+        "coast": _coast(mesh),
+        "table": {
+            "positions": np.size(mesh.table.position),
+            "levels": np.size(mesh.table.level),
+            "period": int(mesh.table.period),
+        },
+    }
+
+
+def _coast(mesh: GearMesh) -> Json | None:
+    if mesh.coast is None:
+        return None
+    return {
+        "backlash": mesh.coast.backlash,
+        "thickness": mesh.coast.thickness,
+        "own_table": mesh.coast.table is not None,
+    }
+
 
 # The modes that a run keeps: natural modes at rest, and whirl modes over its speeds.
 
@@ -166,19 +340,17 @@ def documents(
     """
     automatic = {**decided.automatic, **before.reasons}
     began = cpu_seconds()
-    influences = {
-        name: influence.to_json() for name, influence in _known_influences(decided, system, end).items()
-    }
+    influences = _known_influences(decided, system, end)
     seconds = {**seconds, "worth_estimates": cpu_seconds() - began + decided.seconds}
     audit = None
     if system.scene.outputs.energy_audit:
         audit = EnergyAudit.from_arrays(end.work, end.stored, end.fallen)
-    entries = [*checks.found(), *([] if audit is None else [energy_check(audit)])]
+    held = [*checks.checks(), *([] if audit is None else [energy_check(audit)])]
     return {
         "status": end.status,
         "statistics": _statistics(system, end),
         "energy": audit,
-        "effect_ledger": effect_ledger(system, entries, automatic, influences),
+        "effect_ledger": _effect_ledger(system, held, automatic, influences),
         "receipt": {
             "seconds": seconds,
             "error": {**error, "sampling": end.figures.error(system)},
@@ -189,7 +361,7 @@ def documents(
         | before.to_json()
         | _bearings_at_rest(system)
         | system.corrections,
-        "case": resolved_case(system),
+        "case": _resolved_case(system),
         "warnings": [finding.to_json() for finding in scene_findings(decided.scene)],
         "modes": _modes_of_run(system),
     }
@@ -215,7 +387,6 @@ def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[st
 
 
 def _method(choice: MethodChoice | None, end: Ending) -> Json:
-    """Return what a receipt says of the method."""
     steps = int(end.count[Count.ACCEPTED] + end.count[Count.REJECTED])
     if choice is None or steps == 0:
         return {}
@@ -250,7 +421,6 @@ def squared_difference(system: System, q: FloatArray, other: FloatArray) -> floa
 
 
 def _statistics(system: System, end: Ending) -> StepStatistics:
-    """Name the counts."""
     count = [int(value) for value in end.count]
     implicit = system.scene.integration.method == "implicit"
     stages = IMPLICIT_STAGES_PER_STEP * max(count[Count.ACCEPTED] + count[Count.REJECTED], 1)

@@ -27,7 +27,7 @@ from dynamics.integrators.state_sink import MemorySink, blocks
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
 from dynamics.results import RunResult
-from dynamics.results.force_check import ending
+from dynamics.results.checks import ending
 from dynamics.results.run_checks import RunChecks
 from dynamics.results.run_files import RunFile, attributes
 from dynamics.results.series import over_time

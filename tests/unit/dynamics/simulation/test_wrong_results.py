@@ -58,8 +58,8 @@ def test_friction_that_drives_is_found():
     audit = EnergyAudit.from_arrays(run.work, run.stored, run.fallen)
     assert abs(audit.friction) < 0.2 * audit.fallen
     found = energy_check(audit)
-    assert found["valid"] is False
-    assert "it supplied energy" in found["reason"]
+    assert found.valid is False
+    assert "it supplied energy" in found.reason
     assert EnergyAudit.from_json(audit.to_json()) == audit
 
 

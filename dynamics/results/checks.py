@@ -1,0 +1,60 @@
+"""Checks of a result: assumptions, whether they held, and which of them end a run or a study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from dynamics.types import Json
+
+SeriesBlock = dict[str, Any]
+"""Series of `RunResult` by name, over some of its samples."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """An assumption, and whether it held.
+
+    Where it does not hold, the result is to be taken with its reason in mind, and an automatic effect may
+    mend it. Where it also is not `valid`, the result is wrong and no effect mends it: that ends a run unless
+    the scene only wants a report.
+
+    Attributes
+    ----------
+    effect : str
+        That mends it; empty: none.
+    assumption, part : str
+    holds : bool
+    reason : str
+    figures : mapping of str to float or None
+        By how much it holds or not, SI.
+    valid : bool or None
+        None: right either way.
+    """
+
+    effect: str
+    assumption: str
+    part: str
+    holds: bool
+    reason: str
+    figures: Mapping[str, float | None] = field(default_factory=dict)
+    valid: bool | None = None
+
+    def to_json(self) -> Json:
+        """Return its entry in the effect ledger."""
+        head = {name: getattr(self, name) for name in ("effect", "assumption", "part", "holds")}
+        valid = {} if self.valid is None else {"valid": self.valid}
+        return {**head, **valid, **self.figures, "reason": self.reason}
+
+
+def ending(checks: Sequence[Json], on_violation: str) -> str:
+    """Say which `checks` end a run or a study by the scene's `on_violation`; empty where none does."""
+    wrong = [check for check in checks if check["holds"] is False]
+    if on_violation == "report":
+        return ""
+    if on_violation == "repeat":
+        wrong = [check for check in wrong if check.get("valid") is False]
+    return "; ".join(
+        f"{check['assumption']} ({check['part'] or check['effect']}): {check['reason']}" for check in wrong
+    )
