@@ -42,7 +42,7 @@ from dynamics.simulation.documents import (
 )
 from dynamics.simulation.error_by_source import error_by_source
 from dynamics.simulation.leg import Leg, MadeRun
-from dynamics.simulation.violations import FIRST, EarlierRun, needed_effects, taken_over
+from dynamics.simulation.violations import FIRST, EarlierRun, StatesOf, needed_effects, taken_over
 from dynamics.types import Json, RunStatus
 
 # From a scene to its result in memory.
@@ -88,7 +88,7 @@ def run_scene(scene: Scene, progress: Progress | None = None, cancel: Cancel | N
     """Run `scene` as `simulate` does; what is implausible about it is in the result alone."""
     decided, before = decide_effects(scene), FIRST
     run = _run(decided, before, None, progress, cancel)
-    while needed := _in_memory_needed(scene, run.result):
+    while needed := _needed_effects(scene, run.result.effect_ledger, run.result):
         before = before.then(needed, sum(run.result.receipt["seconds"].values()))
         run = _run(before.of(decided), before, run, progress, cancel)
     if progress is not None:
@@ -96,12 +96,17 @@ def run_scene(scene: Scene, progress: Progress | None = None, cancel: Cancel | N
     return run.result
 
 
-def _in_memory_needed(scene: Scene, result: RunResult) -> dict[str, str]:
+def _needed_effects(
+    scene: Scene, ledger: Json, partial: RunResult | None = None, file: Path | None = None
+) -> dict[str, str]:
     """Return the effects that a run is to be repeated with; raises where it cannot be left as it is."""
-    needed = needed_effects(result.effect_ledger) if scene.on_violation == "repeat" else {}
-    wrong = "" if needed else ending(result.effect_ledger["checks"], scene.on_violation)
+    needed = needed_effects(ledger) if scene.on_violation == "repeat" else {}
+    wrong = "" if needed else ending(ledger["checks"], scene.on_violation)
+    if wrong and file is not None:
+        _remove(interrupted_run(file))
+        wrong = f"{wrong}. It is in {file}"
     if wrong:
-        raise SolveError(f"violated assumptions of the run: {wrong}", result)
+        raise SolveError(f"violated assumptions of the run: {wrong}", partial)
     return needed
 
 
@@ -118,6 +123,39 @@ class _Run:
         return self.trajectory.states.rows(first, stop)
 
 
+@dataclass(frozen=True)
+class _Start:
+    """A system at rest in equilibrium, the method that a run takes, and the wall time so far, s."""
+
+    system: System
+    rest: StaticSolution
+    choice: MethodChoice
+    trail: Trail
+    seconds: dict[str, float]
+
+    @classmethod
+    def of(cls, decided: Decided) -> _Start:
+        """Assemble a scene and find its equilibrium.
+
+        Raises
+        ------
+        SolveError
+            There is none; ``partial`` shows where the search for it ended.
+        """
+        began = clock.perf_counter()
+        system = assemble(decided.scene)
+        rest = static_equilibrium(system)
+        seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
+        if not rest.status.usable:
+            message = (
+                f"no static equilibrium at t = 0: {rest.status.name.lower()}, {rest.residual:.3g} N left"
+            )
+            raise SolveError(message, _result(system, _no_trajectory(system, rest), seconds, {}, decided))
+        choice = choose_method(system, rest.displacement, decided.scene.integration)
+        made = choice.of(with_static_reference(system, rest.displacement))
+        return cls(made, rest, choice, Trail(system), seconds)
+
+
 def _run(
     decided: Decided,
     before: EarlierRun,
@@ -126,42 +164,21 @@ def _run(
     cancel: Cancel | None,
 ) -> _Run:
     """Run a scene once; `before` says what of the run `earlier` it repeats."""
-    began, scene = clock.perf_counter(), decided.scene
-    system = assemble(scene)
-    start = static_equilibrium(system)
-    seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
-    _require_equilibrium(system, start, seconds, decided)
-    choice = choose_method(system, start.displacement, scene.integration)
-    system, trail = choice.of(with_static_reference(system, start.displacement)), Trail(system)
-    taken = None
+    start, taken = _Start.of(decided), None
+    system = start.system
     if earlier is not None:
         taken = taken_over(earlier.result.effect_ledger, earlier.trail, earlier.states, system)
         before = before if taken is None else replace(before, since=taken.at.time)
     trajectory = integrate(
-        system, start, system.scene.integration, progress, cancel=cancel, trail=trail, taken=taken
+        system, start.rest, system.scene.integration, progress, cancel=cancel, trail=start.trail, taken=taken
     )
-    seconds["integration"] = trajectory.seconds
-    error = _error_estimate(system, start, trajectory, progress)
-    result = _result(system, trajectory, seconds, error, decided, before, choice)
+    start.seconds["integration"] = trajectory.seconds
+    error = _error_estimate(system, start.rest, trajectory, progress)
+    result = _result(system, trajectory, start.seconds, error, decided, before, start.choice)
     if not trajectory.status.usable:
-        reached = f"at {trajectory.end:.6g} s of {scene.duration:g} s"
+        reached = f"at {trajectory.end:.6g} s of {decided.scene.duration:g} s"
         raise SolveError(f"run ended early, {trajectory.status.name.lower()} {reached}", result)
-    return _Run(result, trail, trajectory)
-
-
-def _require_equilibrium(
-    system: System, start: StaticSolution, seconds: dict[str, float], decided: Decided
-) -> None:
-    """Refuse to start from anything but an equilibrium.
-
-    Raises
-    ------
-    SolveError
-        If `start` is none; ``partial`` shows where the search for it ended.
-    """
-    if not start.status.usable:
-        message = f"no static equilibrium at t = 0: {start.status.name.lower()}, {start.residual:.3g} N left"
-        raise SolveError(message, _result(system, _no_trajectory(system, start), seconds, {}, decided))
+    return _Run(result, start.trail, trajectory)
 
 
 def _result(
@@ -173,22 +190,26 @@ def _result(
     before: EarlierRun = FIRST,
     choice: MethodChoice | None = None,
 ) -> RunResult:
-    """Put the result together."""
     began = clock.perf_counter()
     checks = RunChecks(system, [NeglectedChecks(decided)])
-    parts: list[dict[str, Any]] = []
-    for first, stop in blocks(trajectory.samples):
-        states = trajectory.states.rows(first, stop)
-        series, raw = series_of(system, trajectory.time[first:stop], states)
-        parts.append(series)
-        checks.see(raw, states)
+    parts = list(_checked_series(system, trajectory.states.rows, trajectory.samples, checks))
     seconds = {**seconds, "outputs": clock.perf_counter() - began}
     about = documents(system, trajectory, checks, seconds, error, decided, before, choice)
     return RunResult(**_joined(parts), **about)
 
 
+def _checked_series(
+    system: System, states_of: StatesOf, samples: int, checks: RunChecks
+) -> Iterator[dict[str, Any]]:
+    """Yield the series of a run block by block; `checks` see them."""
+    for first, stop in blocks(samples):
+        states = states_of(first, stop)
+        series, raw = series_of(system, np.arange(first, stop) / system.sampling.rate, states)
+        checks.see(raw, states)
+        yield series
+
+
 def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
-    """Join blocks of series."""
     if len(parts) == 1:
         return parts[0]
     whole = dict(parts[0])
@@ -284,7 +305,7 @@ def simulate_to_file(
     warn_of(scene_findings(scene))
     decided = decide_effects(scene)
     run = _run_to_file(before.of(decided), path, before, how, None)
-    while needed := _needed(scene, path, run):
+    while run.status.usable and (needed := _needed_effects(scene, run.ledger, file=path)):
         before = before.then(needed, run.seconds)
         for checkpoint in folder.glob("*.checkpoint"):
             checkpoint.unlink()  # of a system without these effects
@@ -295,18 +316,6 @@ def simulate_to_file(
     if progress is not None:
         progress(1.0, "done" if run.status.usable else run.status.name.lower())
     return run.status
-
-
-def _needed(scene: Scene, path: Path, run: MadeRun) -> dict[str, str]:
-    """Return the effects that a run is to be repeated with; raises where it cannot be left as it is."""
-    if not run.status.usable:
-        return {}
-    needed = needed_effects(run.ledger) if scene.on_violation == "repeat" else {}
-    wrong = "" if needed else ending(run.ledger["checks"], scene.on_violation)
-    if wrong:
-        _remove(interrupted_run(path))
-        raise SolveError(f"violated assumptions of the run: {wrong}. It is in {path}")
-    return needed
 
 
 @dataclass(frozen=True)
@@ -323,32 +332,27 @@ def _run_to_file(
     decided: Decided, path: Path, before: EarlierRun, how: _How, earlier: MadeRun | None
 ) -> MadeRun:
     """Run once; `before` says what of the run `earlier` it repeats."""
-    began, scene = clock.perf_counter(), decided.scene
-    system = assemble(scene)
-    start = static_equilibrium(system)
-    seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
-    _require_equilibrium(system, start, seconds, decided)
-    choice = choose_method(system, start.displacement, scene.integration)
-    system, trail = choice.of(with_static_reference(system, start.displacement)), Trail(system)
+    start = _Start.of(decided)
+    system, rest, seconds = start.system, start.rest, start.seconds
     integration = system.scene.integration
     folder = interrupted_run(path)
     folder.mkdir(exist_ok=True)
     going = (how.progress, how.cancel, how.checkpoint_every)
     with ExitStack() as stack:
-        leg = Leg(stack, folder / "run", system, start, integration, how.resume, earlier)
+        leg = Leg(stack, folder / "run", system, rest, integration, how.resume, earlier)
         before = replace(before, since=leg.since)
-        end = leg.go(*going, trail)
+        end = leg.go(*going, start.trail)
         error = requested_error(integration)
         if end.status.usable:
             error = error_by_source(system, leg.spool.states, end.samples)
         if integration.estimate_error and end.status.usable:
-            check = Leg(stack, folder / "check", system, start, finer(integration), how.resume)
+            check = Leg(stack, folder / "check", system, rest, finer(integration), how.resume)
             other = check.go(*going)
             end = replace(end, status=other.status)
             error = error | (_difference(system, leg, check, other) if other.status.usable else {})
         seconds["integration"] = end.seconds
-        ledger = _write(path, leg, end, choice, seconds, error, decided, before)
-    return MadeRun(end.status, ledger, sum(seconds.values()), trail, leg.march.widths)
+        ledger = _write(path, leg, end, start, error, decided, before)
+    return MadeRun(end.status, ledger, sum(seconds.values()), start.trail, leg.march.widths)
 
 
 def _read_earlier(folder: Path) -> EarlierRun:
@@ -363,7 +367,6 @@ def _read_earlier(folder: Path) -> EarlierRun:
 
 
 def _difference(system: System, leg: Leg, check: Leg, end: Ending) -> Json:
-    """Measure the step error against the finer run."""
     total = 0.0
     for first, stop in blocks(end.samples):
         total += squared_difference(
@@ -376,8 +379,7 @@ def _write(
     path: Path,
     leg: Leg,
     end: Ending,
-    choice: MethodChoice,
-    seconds: dict[str, float],
+    start: _Start,
     error: Json,
     decided: Decided,
     before: EarlierRun,
@@ -386,25 +388,15 @@ def _write(
     began, system = clock.perf_counter(), leg.march.system
     checks = RunChecks(system, [NeglectedChecks(decided)])
     with RunFile(path) as file:
-        for series, raw, states in _series(system, leg, end.samples):
-            checks.see(raw, states)
+        for series in _checked_series(system, leg.spool.states, end.samples, checks):
             file.append(series)
-        seconds["outputs"] = clock.perf_counter() - began
-        about = documents(system, end, checks, seconds, error, decided, before, choice)
+        start.seconds["outputs"] = clock.perf_counter() - began
+        about = documents(system, end, checks, start.seconds, error, decided, before, start.choice)
         file.publish(attributes(about))
     return dict(about["effect_ledger"])
 
 
-def _series(
-    system: System, leg: Leg, samples: int
-) -> Iterator[tuple[dict[str, Any], dict[str, Any], States]]:
-    for first, stop in blocks(samples):
-        states = leg.spool.states(first, stop)
-        yield *series_of(system, np.arange(first, stop) / system.sampling.rate, states), states
-
-
 def _remove(folder: Path) -> None:
-    """Remove what an ended run does not need."""
     for file in folder.iterdir():
         file.unlink()
     folder.rmdir()
