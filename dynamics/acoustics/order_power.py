@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from dynamics.acoustics.radiation import RadiationModel, resistance
 from dynamics.checks import increasing
 from dynamics.errors import InputError
 from dynamics.orders.third_octaves import band_number, nominal_center
+from dynamics.results.array_file import stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray
 
 # Radiation resistance of vibration modes, computed at a few frequencies and interpolated between them.
@@ -35,8 +36,10 @@ class ModalResistance:
         Hermitian, kg/s for shapes of amplitude in m/s.
     """
 
-    frequency: FloatArray
-    matrix: ComplexArray
+    frequency: FloatArray = field(metadata=stored("Hz", "frequency", "frequency"))
+    matrix: ComplexArray = field(
+        metadata=stored("kg s-1", "radiation resistance", "frequency", "coordinate", "coordinate")
+    )
 
     def power(self, frequency: FloatArray, velocity: ComplexArray) -> FloatArray:
         """Return the sound power v^H R v / 2 at every sample, (B,), W.

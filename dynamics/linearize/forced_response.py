@@ -29,7 +29,7 @@ from dynamics.linearize.steady_vibration import (
 from dynamics.mechanism.columns import elastic_columns, elastic_terms, housing_columns
 from dynamics.motion.force_balance import swept_by_frames
 from dynamics.motion.observation import local_state
-from dynamics.results.array_file import ArrayFile, Stored
+from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.force_check import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, Json
 from host import cpu_seconds
@@ -249,29 +249,6 @@ def _power(force: ComplexArray, rate: ComplexArray) -> FloatArray:
     return np.asarray(0.5 * np.real(np.sum(force * rate.conj(), axis=-1)))
 
 
-STORED = {
-    "speed": Stored(("speed",), "rad s-1", "speed of the leading shaft"),
-    "order": Stored(("order",), "1", "multiple of the frequency of the first mesh that turns"),
-    "frequency": Stored(("speed", "order"), "Hz", "frequency of the harmonic"),
-    "static_transmission_error": Stored(("mesh", "order"), "m", "complex amplitude of the excitation"),
-    "dynamic_transmission_error": Stored(("mesh", "speed", "order"), "m", "complex amplitude"),
-    "mesh_force": Stored(("mesh", "speed", "order"), "N", "complex amplitude, transverse"),
-    "bearing_force": Stored(
-        ("bearing", "direction", "speed", "order"), "N or N m", "complex amplitude on the ground or the pin"
-    ),
-    "displacement": Stored(("freedom", "speed", "order"), "m or rad", "complex amplitude"),
-    "mean_force": Stored(("mesh",), "N", "static mesh force"),
-    "mean_stiffness": Stored(("mesh",), "N m-1", "tangent stiffness, mean over the positions"),
-    "least_mesh_force": Stored(("mesh", "speed"), "N", "least of mean and harmonics together"),
-    "excitation_difference": Stored(
-        ("mesh", "order"), "1", "change of the largest amplitude with the other excitation, relative"
-    ),
-    "natural_frequency": Stored(("mode",), "Hz", "undamped natural frequency"),
-    "power_input": Stored(("source", "speed", "order"), "W", "mean power put in"),
-    "power_loss": Stored(("sink", "speed", "order"), "W", "mean power lost"),
-}
-
-
 @dataclass(frozen=True)
 class ForcedResponse(HarmonicResponse, ArrayFile):
     """Harmonic response over S speeds with a measure of its validity.
@@ -283,7 +260,7 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         excites instead of the static error, relative to the largest of all harmonics: what a theory of first
         order in the ripple cannot tell.
     natural_frequency : (n,) array
-        Undamped, with the mean mesh stiffness, Hz.
+        With the mean mesh stiffness.
     power_source, power_input, power_sink, power_sink_kind, power_loss
         The fields of `power`; empty in files of versions without it.
     facts : dict
@@ -291,15 +268,27 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
     """
 
     SCHEMA = "lineofaction forced response"
-    ARRAYS = STORED
 
-    excitation_difference: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
-    natural_frequency: FloatArray = field(default_factory=lambda: np.empty(0))
+    excitation_difference: FloatArray = field(
+        default_factory=lambda: np.empty((0, 0)),
+        metadata=stored(
+            "1", "change of the largest amplitude with the other excitation, relative", "mesh", "order"
+        ),
+    )
+    natural_frequency: FloatArray = field(
+        default_factory=lambda: np.empty(0), metadata=stored("Hz", "undamped natural frequency", "mode")
+    )
     power_source: tuple[str, ...] = ()
-    power_input: FloatArray = field(default_factory=lambda: np.empty((0, 0, 0)))
+    power_input: FloatArray = field(
+        default_factory=lambda: np.empty((0, 0, 0)),
+        metadata=stored("W", "mean power put in", "source", "speed", "order"),
+    )
     power_sink: tuple[str, ...] = ()
     power_sink_kind: tuple[str, ...] = ()
-    power_loss: FloatArray = field(default_factory=lambda: np.empty((0, 0, 0)))
+    power_loss: FloatArray = field(
+        default_factory=lambda: np.empty((0, 0, 0)),
+        metadata=stored("W", "mean power lost", "sink", "speed", "order"),
+    )
     facts: Json = field(default_factory=dict)
 
     @property

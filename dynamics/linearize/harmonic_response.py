@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 import numpy as np
@@ -25,6 +25,7 @@ from dynamics.linearize.steady_vibration import (
 )
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.motion.observation import local_state
+from dynamics.results.array_file import stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
 # Harmonic forced response to the transmission error, about the static equilibrium, over speeds.
@@ -35,32 +36,18 @@ class HarmonicResponse:
     """Steady vibration at S speeds in H harmonics of the common period; m meshes, b bearings, n freedoms.
 
     Complex peak amplitudes A: the quantity is its mean and the sum over h of Re(A exp(2 pi i frequency t)),
-    with all meshes at their position offsets at t = 0.
+    with all meshes at their position offsets at t = 0. Fields state unit, meaning and dimensions of arrays.
 
     Attributes
     ----------
-    mesh, bearing, freedom : tuples of str
-    speed : (S,) array
-        Of the leading drive, rad/s.
     order : (H,) array
-        Multiples of the frequency of the first mesh that turns, those that are excited; fractions where
-        tables or trains repeat after several pitches.
-    frequency : (S, H) array
-        Hz.
+        Those that are excited; fractions where tables or trains repeat after several pitches.
     static_transmission_error : (m, H) complex array
-        What excites, at the static mesh forces, m.
-    dynamic_transmission_error : (m, S, H) complex array
-        m.
-    mesh_force : (m, S, H) complex array
-        Transverse, N.
+        At the static mesh forces.
     bearing_force : (b, 3, S, H) complex array
         On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m.
-    displacement : (n, S, H) complex array
-        m and rad.
-    mean_force, mean_stiffness : (m,) arrays
-        Static mesh force, N, and its tangent stiffness, mean over the positions, N/m.
     least_mesh_force : (m, S) array
-        Of mean and all harmonics together, N: where it is negative flanks part, and no linear answer holds.
+        Where it is negative flanks part, and no linear answer holds.
     residual : float
         Largest force left by the linear solves, of the largest exciting force.
     """
@@ -68,17 +55,35 @@ class HarmonicResponse:
     mesh: tuple[str, ...]
     bearing: tuple[str, ...]
     freedom: tuple[str, ...]
-    speed: FloatArray
-    order: FloatArray
-    frequency: FloatArray
-    static_transmission_error: ComplexArray
-    dynamic_transmission_error: ComplexArray
-    mesh_force: ComplexArray
-    bearing_force: ComplexArray
-    displacement: ComplexArray
-    mean_force: FloatArray
-    mean_stiffness: FloatArray
-    least_mesh_force: FloatArray
+    speed: FloatArray = field(metadata=stored("rad s-1", "speed of the leading shaft", "speed"))
+    order: FloatArray = field(
+        metadata=stored("1", "multiple of the frequency of the first mesh that turns", "order")
+    )
+    frequency: FloatArray = field(metadata=stored("Hz", "frequency of the harmonic", "speed", "order"))
+    static_transmission_error: ComplexArray = field(
+        metadata=stored("m", "complex amplitude of the excitation", "mesh", "order")
+    )
+    dynamic_transmission_error: ComplexArray = field(
+        metadata=stored("m", "complex amplitude", "mesh", "speed", "order")
+    )
+    mesh_force: ComplexArray = field(
+        metadata=stored("N", "complex amplitude, transverse", "mesh", "speed", "order")
+    )
+    bearing_force: ComplexArray = field(
+        metadata=stored(
+            "N or N m", "complex amplitude on the ground or the pin", "bearing", "direction", "speed", "order"
+        )
+    )
+    displacement: ComplexArray = field(
+        metadata=stored("m or rad", "complex amplitude", "freedom", "speed", "order")
+    )
+    mean_force: FloatArray = field(metadata=stored("N", "static mesh force", "mesh"))
+    mean_stiffness: FloatArray = field(
+        metadata=stored("N m-1", "tangent stiffness, mean over the positions", "mesh")
+    )
+    least_mesh_force: FloatArray = field(
+        metadata=stored("N", "least of mean and harmonics together", "mesh", "speed")
+    )
     residual: float = 0.0
 
     @property

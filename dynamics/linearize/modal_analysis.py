@@ -15,7 +15,7 @@ from dynamics.linearize.flank_cycles import averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, require_freedoms
 from dynamics.linearize.modes import Modes, freedom_parts, natural_modes, spring_parts
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law, mesh_frequencies
-from dynamics.results.array_file import ArrayFile, Stored
+from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.force_check import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
@@ -54,57 +54,21 @@ MOST_ORDERS = 100
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
 
 _ENERGY = "share of the strain energy", "share of the kinetic energy"
-STORED = {
-    "natural_frequency": Stored(("natural_mode",), "Hz", "undamped natural frequency at rest"),
-    "natural_damping_ratio": Stored(("natural_mode",), "1", "modal damping ratio at rest"),
-    "natural_shape": Stored(("natural_mode", "freedom"), "m or rad", "mode shape of unit modal mass"),
-    "natural_strain_energy": Stored(("natural_mode", "spring"), "1", _ENERGY[0]),
-    "natural_kinetic_energy": Stored(("natural_mode", "freedom"), "1", _ENERGY[1]),
-    "speed": Stored(("speed",), "rad s-1", "speed of the leading shaft"),
-    "mesh_frequency": Stored(("mesh", "speed"), "Hz", "mesh frequency"),
-    "frequency": Stored(("speed", "mode"), "Hz", "damped frequency of a whirl mode"),
-    "damping_ratio": Stored(("speed", "mode"), "1", "damping ratio of a whirl mode"),
-    "whirl": Stored(("speed", "mode"), "1", "-1 backward circular, 0 in a plane, 1 forward circular"),
-    "shape": Stored(("speed", "mode", "freedom"), "m or rad", "mode shape, largest entry in meters 1"),
-    "strain_energy": Stored(("speed", "mode", "spring"), "1", _ENERGY[0]),
-    "kinetic_energy": Stored(("speed", "mode", "freedom"), "1", _ENERGY[1]),
-    "critical_speed": Stored(("crossing",), "rad s-1", "speed of the leading shaft"),
-    "critical_frequency": Stored(("crossing",), "Hz", "frequency of mode and mesh order"),
-    "critical_damping_ratio": Stored(("crossing",), "1", "damping ratio of the mode"),
-    "critical_mode": Stored(("crossing",), "1", "mode, counted from 0"),
-    "critical_mesh": Stored(("crossing",), "1", "mesh, counted from 0"),
-    "critical_order": Stored(("crossing",), "1", "multiple of the mesh frequency"),
-    "critical_residual": Stored(("crossing",), "Hz", "frequency of the mode less that of the order"),
-}
 
 
 @dataclass(frozen=True)
 class ModalAnalysis(ArrayFile):
-    """Modes of a system about its static equilibrium.
+    """Modes of a system about its static equilibrium; fields state unit, meaning and dimensions of arrays.
 
-    n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds.
+    n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds. What
+    modes at rest are: `Modes`; over speed: `WhirlBranches`, NaN where one does not oscillate; where they
+    cross orders: `CriticalSpeeds`.
 
     Attributes
     ----------
     freedom, mesh, shaft : tuples of str
     spring, spring_part, spring_kind : tuples of str, (p)
         Name, the mesh, bearing, coupling or drive it belongs to, and which of these that is.
-    natural_frequency, natural_damping_ratio : (n,) arrays
-        At rest: undamped, Hz; modal damping ratio. See `Modes`, also for the next three.
-    natural_shape, natural_kinetic_energy : (n, n) arrays
-    natural_strain_energy : (n, p) array
-    speed : (S,) array
-        Of the leading shaft, rad/s, >= 0.
-    mesh_frequency : (m, S) array
-        Hz.
-    frequency, damping_ratio, whirl : (S, A) arrays
-        See `WhirlBranches`, also for the next three; NaN where a mode does not oscillate.
-    shape : (S, A, n) complex array
-    strain_energy : (S, A, p) array
-    kinetic_energy : (S, A, n) array
-    critical_speed, critical_frequency, critical_damping_ratio, critical_residual : (C,) arrays
-        See `CriticalSpeeds`.
-    critical_mode, critical_mesh, critical_order : (C,) int arrays
     facts : dict
         Plain JSON: `leading_shaft`, `time`, `orders`, `equilibrium` (status, residual in N, mesh forces),
         `seconds` (CPU by stage), `effect_ledger`, `highest_frequency` (Hz, to which shafts that bend are
@@ -112,7 +76,6 @@ class ModalAnalysis(ArrayFile):
     """
 
     SCHEMA = "lineofaction modal analysis"
-    ARRAYS = STORED
 
     freedom: tuple[str, ...]
     mesh: tuple[str, ...]
@@ -120,26 +83,48 @@ class ModalAnalysis(ArrayFile):
     spring: tuple[str, ...]
     spring_part: tuple[str, ...]
     spring_kind: tuple[str, ...]
-    natural_frequency: FloatArray
-    natural_damping_ratio: FloatArray
-    natural_shape: FloatArray
-    natural_strain_energy: FloatArray
-    natural_kinetic_energy: FloatArray
-    speed: FloatArray
-    mesh_frequency: FloatArray
-    frequency: FloatArray
-    damping_ratio: FloatArray
-    whirl: FloatArray
-    shape: ComplexArray
-    strain_energy: FloatArray
-    kinetic_energy: FloatArray
-    critical_speed: FloatArray
-    critical_frequency: FloatArray
-    critical_damping_ratio: FloatArray
-    critical_mode: IntArray
-    critical_mesh: IntArray
-    critical_order: IntArray
-    critical_residual: FloatArray
+    natural_frequency: FloatArray = field(
+        metadata=stored("Hz", "undamped natural frequency at rest", "natural_mode")
+    )
+    natural_damping_ratio: FloatArray = field(
+        metadata=stored("1", "modal damping ratio at rest", "natural_mode")
+    )
+    natural_shape: FloatArray = field(
+        metadata=stored("m or rad", "mode shape of unit modal mass", "natural_mode", "freedom")
+    )
+    natural_strain_energy: FloatArray = field(
+        metadata=stored("1", "share of the strain energy", "natural_mode", "spring")
+    )
+    natural_kinetic_energy: FloatArray = field(
+        metadata=stored("1", "share of the kinetic energy", "natural_mode", "freedom")
+    )
+    speed: FloatArray = field(metadata=stored("rad s-1", "speed of the leading shaft", "speed"))
+    mesh_frequency: FloatArray = field(metadata=stored("Hz", "mesh frequency", "mesh", "speed"))
+    frequency: FloatArray = field(metadata=stored("Hz", "damped frequency of a whirl mode", "speed", "mode"))
+    damping_ratio: FloatArray = field(metadata=stored("1", "damping ratio of a whirl mode", "speed", "mode"))
+    whirl: FloatArray = field(
+        metadata=stored("1", "-1 backward circular, 0 in a plane, 1 forward circular", "speed", "mode")
+    )
+    shape: ComplexArray = field(
+        metadata=stored("m or rad", "mode shape, largest entry in meters 1", "speed", "mode", "freedom")
+    )
+    strain_energy: FloatArray = field(
+        metadata=stored("1", "share of the strain energy", "speed", "mode", "spring")
+    )
+    kinetic_energy: FloatArray = field(
+        metadata=stored("1", "share of the kinetic energy", "speed", "mode", "freedom")
+    )
+    critical_speed: FloatArray = field(metadata=stored("rad s-1", "speed of the leading shaft", "crossing"))
+    critical_frequency: FloatArray = field(
+        metadata=stored("Hz", "frequency of mode and mesh order", "crossing")
+    )
+    critical_damping_ratio: FloatArray = field(metadata=stored("1", "damping ratio of the mode", "crossing"))
+    critical_mode: IntArray = field(metadata=stored("1", "mode, counted from 0", "crossing"))
+    critical_mesh: IntArray = field(metadata=stored("1", "mesh, counted from 0", "crossing"))
+    critical_order: IntArray = field(metadata=stored("1", "multiple of the mesh frequency", "crossing"))
+    critical_residual: FloatArray = field(
+        metadata=stored("Hz", "frequency of the mode less that of the order", "crossing")
+    )
     facts: Json = field(default_factory=dict)
 
     def held_by(self, strain_energy: FloatArray) -> dict[str, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
@@ -21,7 +21,7 @@ from dynamics.checks import positive
 from dynamics.errors import InputError, ResultError
 from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
-from dynamics.results.array_file import ArrayFile, Stored
+from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import ComplexArray, FloatArray, Json
 from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
 from model_studies.kept_file import kept_in
@@ -159,12 +159,6 @@ BAND = 10.0**0.05
 WORK = "radiation resistance by {}"
 """Name of a model over a range of frequencies in the log of runs."""
 
-STORED = {
-    "frequency": Stored(("frequency",), "Hz", "frequency"),
-    "matrix": Stored(("frequency", "coordinate", "coordinate"), "kg s-1", "radiation resistance"),
-    "surface": Stored(("coordinate", "coordinate"), "m2", "integral of products of normal motions"),
-}
-
 
 @dataclass(frozen=True)
 class RadiationFacts:
@@ -216,10 +210,11 @@ class HousingRadiation(ModalResistance, ArrayFile):
     """
 
     SCHEMA = "lineofaction housing radiation"
-    ARRAYS = STORED
     RECORDS = MappingProxyType({"facts": RadiationFacts.from_json})
 
-    surface: FloatArray
+    surface: FloatArray = field(
+        metadata=stored("m2", "integral of products of normal motions", "coordinate", "coordinate")
+    )
     area: float
     impedance: float
     model_name: str

@@ -15,7 +15,7 @@ from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.noise.panel_sound import PanelSound
-from dynamics.results.array_file import ArrayFile, Stored
+from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 from dynamics.vibration import BearingHarmonics, seat_forces
 from dynamics.vibration.housing_motion import modal_amplitudes
@@ -66,22 +66,6 @@ def _power(velocity: ComplexArray, force: ComplexArray) -> FloatArray:
 
 
 POWER = ("speed", "order")
-STORED = {
-    "speed": Stored(("speed",), "rad s-1", "speed of the leading drive"),
-    "order": Stored(("order",), "1", "multiple of the frequency of the first mesh that turns"),
-    "frequency": Stored(POWER, "Hz", "frequency of the harmonic"),
-    "power": Stored(POWER, "W", "radiated sound power"),
-    "efficiency": Stored(POWER, "1", "radiation efficiency"),
-    "bearing_share": Stored(("bearing", *POWER), "W", "part of the power by the force of a bearing"),
-    "bearing_alone": Stored(("bearing", *POWER), "W", "power under the force of a bearing alone"),
-    "mode_share": Stored(("mode", *POWER), "W", "part of the power by a mode of the housing"),
-    "mode_alone": Stored(("mode", *POWER), "W", "power of a mode of the housing alone"),
-    "natural_frequency": Stored(("mode",), "Hz", "natural frequency of the housing, seats free"),
-    "in_contact": Stored(("speed",), "1", "whether all flanks stay in contact"),
-    "panel_node": Stored(("panel_nodes", "xyz"), "m", "nodes of the panels"),
-    "panel_corner": Stored(("panel", "corner"), "1", "nodes of each panel"),
-    "panel_power": Stored(("panel",), "W", "radiated sound power of each panel"),
-}
 
 
 @dataclass(frozen=True)
@@ -90,57 +74,67 @@ class RadiatedSound(ArrayFile):
 
     Orders add up in power, and so do several housings. Shares of bearings add up to the power; to those of
     modes what the kept modes lack statically is missing. A share is negative where a part cancels others.
+    Fields state unit, meaning and dimensions of arrays.
 
     Attributes
     ----------
     housing, bearing : tuples of str
     mode_housing : tuple of str
         The housing of each mode.
-    speed, order : (S,), (H,) arrays
-        rad/s of the leading drive; multiples of the frequency of the first mesh that turns.
-    frequency : (S, H) array
-        Hz.
-    power : (S, H) array
-        W.
     efficiency : (S, H) array
-        Radiation efficiency: power over that of a plane with the same mean square velocity.
-    bearing_share, bearing_alone : (b, S, H) arrays
-        W: share in the power; power if this force acted alone.
-    mode_share, mode_alone : (m, S, H) arrays
-        W.
+        Power over that of a plane with the same mean square velocity.
     natural_frequency : (m,) array
-        Of the housing on its feet, its seats free, Hz.
+        Of the housing on its feet.
     in_contact : (S,) bool array
-        Whether the flanks stay in contact; where not, no linear answer holds.
+        Where flanks part, no linear answer holds.
     facts : dict
         Plain JSON: `radiation` by housing (`HousingRadiation.facts`, `model_name`, `area`, and
         `valid_frequency` in Hz, to which the modes kept carry the motion).
     panel_node, panel_corner, panel_power : (N, 3), (T, 3), (T,) arrays
-        The panels of all housings at the loudest order and speed, m, and what each radiates there, W
-        (`PanelSound`); empty where they were not looked at.
+        Of all housings at the loudest order and speed (`PanelSound`); empty where they were not looked at.
     """
 
     SCHEMA = "lineofaction radiated sound"
-    ARRAYS = STORED
 
     housing: tuple[str, ...]
     bearing: tuple[str, ...]
     mode_housing: tuple[str, ...]
-    speed: FloatArray
-    order: FloatArray
-    frequency: FloatArray
-    power: FloatArray
-    efficiency: FloatArray
-    bearing_share: FloatArray
-    bearing_alone: FloatArray
-    mode_share: FloatArray
-    mode_alone: FloatArray
-    natural_frequency: FloatArray
-    in_contact: BoolArray
+    speed: FloatArray = field(metadata=stored("rad s-1", "speed of the leading drive", "speed"))
+    order: FloatArray = field(
+        metadata=stored("1", "multiple of the frequency of the first mesh that turns", "order")
+    )
+    frequency: FloatArray = field(metadata=stored("Hz", "frequency of the harmonic", "speed", "order"))
+    power: FloatArray = field(metadata=stored("W", "radiated sound power", "speed", "order"))
+    efficiency: FloatArray = field(metadata=stored("1", "radiation efficiency", "speed", "order"))
+    bearing_share: FloatArray = field(
+        metadata=stored("W", "part of the power by the force of a bearing", "bearing", "speed", "order")
+    )
+    bearing_alone: FloatArray = field(
+        metadata=stored("W", "power under the force of a bearing alone", "bearing", "speed", "order")
+    )
+    mode_share: FloatArray = field(
+        metadata=stored("W", "part of the power by a mode of the housing", "mode", "speed", "order")
+    )
+    mode_alone: FloatArray = field(
+        metadata=stored("W", "power of a mode of the housing alone", "mode", "speed", "order")
+    )
+    natural_frequency: FloatArray = field(
+        metadata=stored("Hz", "natural frequency of the housing, seats free", "mode")
+    )
+    in_contact: BoolArray = field(metadata=stored("1", "whether all flanks stay in contact", "speed"))
     facts: Json = field(default_factory=dict)
-    panel_node: FloatArray = field(default_factory=lambda: np.empty((0, 3)))
-    panel_corner: IntArray = field(default_factory=lambda: np.empty((0, 3), dtype=int))
-    panel_power: FloatArray = field(default_factory=lambda: np.empty(0))
+    panel_node: FloatArray = field(
+        default_factory=lambda: np.empty((0, 3)),
+        metadata=stored("m", "nodes of the panels", "panel_nodes", "xyz"),
+    )
+    panel_corner: IntArray = field(
+        default_factory=lambda: np.empty((0, 3), dtype=int),
+        metadata=stored("1", "nodes of each panel", "panel", "corner"),
+    )
+    panel_power: FloatArray = field(
+        default_factory=lambda: np.empty(0),
+        metadata=stored("W", "radiated sound power of each panel", "panel"),
+    )
 
     @property
     def panels(self) -> PanelSound | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from dynamics.periodic.continuation import Branch, follow_branch
 from dynamics.periodic.motion import motion
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
 from dynamics.periodic.shooting import Instability, Orbit, find_orbit
-from dynamics.results.array_file import ArrayFile, Stored
+from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.force_check import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
@@ -36,46 +37,25 @@ PER_MESH = (
 KINDS = (Instability.NONE, Instability.FOLD, Instability.PERIOD_DOUBLING, Instability.NEIMARK_SACKER)
 
 
-@dataclass(frozen=True)
-class MotionFigures:
-    """Figures of P motions as `SteadyStates` holds them."""
-
-    speed: FloatArray
-    status: IntArray
-    residual: FloatArray
-    iterations: IntArray
-    step_error: FloatArray
-    instability: IntArray
-    multiplier: ComplexArray
-    mean_error: FloatArray
-    rms_error: FloatArray
-    peak_to_peak_error: FloatArray
-    least_force: FloatArray
-    largest_force: FloatArray
-    parted: FloatArray
-    coasting: FloatArray
-    rms_bearing_force: FloatArray
-
-
-def _figures_of(problem: PeriodicProblem, orbits: Sequence[Orbit]) -> MotionFigures:
-    """Return the figures of all `orbits`; NaN where no motion was found."""
+def _figures_of(problem: PeriodicProblem, orbits: Sequence[Orbit]) -> dict[str, Any]:
+    """Return the figures of all `orbits` by the names of `SteadyStates`; NaN where no motion was found."""
     meshes, bearings = len(problem.system.scene.meshes), len(problem.system.supports.name)
     per_mesh = np.full((len(PER_MESH), len(orbits), meshes), np.nan)
     on_bearing = np.full((len(orbits), bearings), np.nan)
     for index, orbit in enumerate(orbits):
         if orbit.status.usable:
             per_mesh[:, index], on_bearing[index] = _figures(problem, orbit)
-    return MotionFigures(
-        np.array([abs(orbit.speed) for orbit in orbits]),
-        np.array([int(orbit.status) for orbit in orbits], dtype=np.int64),
-        np.array([orbit.residual for orbit in orbits]),
-        np.array([orbit.iterations for orbit in orbits], dtype=np.int64),
-        np.array([orbit.step_error for orbit in orbits]),
-        np.array([KINDS.index(orbit.instability) for orbit in orbits], dtype=np.int64),
-        np.array([orbit.multipliers for orbit in orbits]),
+    return {
+        "speed": np.array([abs(orbit.speed) for orbit in orbits]),
+        "status": np.array([int(orbit.status) for orbit in orbits], dtype=np.int64),
+        "residual": np.array([orbit.residual for orbit in orbits]),
+        "iterations": np.array([orbit.iterations for orbit in orbits], dtype=np.int64),
+        "step_error": np.array([orbit.step_error for orbit in orbits]),
+        "instability": np.array([KINDS.index(orbit.instability) for orbit in orbits], dtype=np.int64),
+        "multiplier": np.array([orbit.multipliers for orbit in orbits]),
         **dict(zip(PER_MESH, per_mesh, strict=True)),
-        rms_bearing_force=on_bearing,
-    )
+        "rms_bearing_force": on_bearing,
+    }
 
 
 def _figures(problem: PeriodicProblem, orbit: Orbit) -> tuple[FloatArray, FloatArray]:
@@ -152,75 +132,78 @@ UP, DOWN, BRANCH = 0, 1, 2
 CURVES = ("up", "down", "branch")
 SAME = 0.02  # of the rms of the transmission error: motions nearer than that are one
 
-_MESH, _POINT = ("point", "mesh"), ("point",)
-STORED = {
-    "curve": Stored(_POINT, "1", "0 rising speeds, 1 falling speeds, 2 along the branch"),
-    "speed": Stored(_POINT, "rad s-1", "speed of the leading shaft"),
-    "status": Stored(_POINT, "1", "how the search ended: 0 converged, see OrbitStatus"),
-    "residual": Stored(_POINT, "m", "largest change of the state over the period"),
-    "iterations": Stored(_POINT, "1", "Newton iterations"),
-    "step_error": Stored(_POINT, "m", "estimate of what the steps' errors move the motion by"),
-    "instability": Stored(_POINT, "1", "0 stable, 1 fold, 2 period doubling, 3 Neimark-Sacker"),
-    "multiplier": Stored(("point", "state"), "1", "Floquet multipliers by falling size"),
-    "mean_error": Stored(_MESH, "m", "mean dynamic transmission error"),
-    "rms_error": Stored(_MESH, "m", "root mean square of its alternating part"),
-    "peak_to_peak_error": Stored(_MESH, "m", "its peak-to-peak"),
-    "least_force": Stored(_MESH, "N", "least mesh force of the driving flank"),
-    "largest_force": Stored(_MESH, "N", "largest mesh force of the driving flank"),
-    "parted": Stored(_MESH, "1", "share of the period that the driving flank is out of contact"),
-    "coasting": Stored(_MESH, "1", "share of the period that the coast flank is in contact"),
-    "rms_bearing_force": Stored(("point", "bearing"), "N", "root mean square of the alternating force"),
-    "bifurcation_speed": Stored(("bifurcation",), "rad s-1", "speed of the leading shaft"),
-    "bifurcation_kind": Stored(("bifurcation",), "1", "1 fold, 2 period doubling, 3 Neimark-Sacker"),
-    "jump_curve": Stored(("jump",), "1", "0 at rising speeds, 1 at falling ones"),
-    "jump_speed": Stored(("jump", "side"), "rad s-1", "last speed before and first after the jump"),
-}
-
 
 @dataclass(frozen=True)
-class SteadyStates(MotionFigures, ArrayFile):
+class SteadyStates(ArrayFile):
     """P periodic motions on three curves: at rising speeds, at falling ones, and along the branch.
 
-    m meshes, b bearings, n freedoms. Figures of motions that were not found are NaN; their status says why.
+    m meshes, b bearings, n freedoms; fields state unit, meaning and dimensions of arrays. Figures of motions
+    that were not found are NaN; their status says why. The branch goes from the lowest to the highest speed.
 
     Attributes
     ----------
     mesh, bearing : tuples of str
-    curve : (P,) int array
-        0 rising speeds, 1 falling ones, 2 along the branch from the lowest to the highest speed.
-    speed, residual, step_error : (P,) arrays
-        Of the leading shaft, rad/s, > 0; m; m, see `Orbit`.
-    status, iterations, instability : (P,) int arrays
-        `OrbitStatus`; of Newton's method; 0 stable, 1 fold, 2 period doubling, 3 Neimark-Sacker.
-    multiplier : (P, 2n) complex array
-        Floquet's, by falling size.
-    mean_error, rms_error, peak_to_peak_error : (P, m) arrays
-        Of the dynamic transmission error: mean, rms of the rest, m.
-    least_force, largest_force : (P, m) arrays
-        Of the driving flank, N.
-    parted, coasting : (P, m) arrays
-        Shares of the period in which the driving flank does not touch, and the coast flank does.
+    residual, step_error : (P,) arrays
+        See `Orbit`.
     rms_bearing_force : (P, b) array
-        Alternating part, root of the sum of squares of x, y and z, N.
-    bifurcation_speed, bifurcation_kind : (B,) arrays
-        Along the branch, as `instability`.
-    jump_curve, jump_speed : (J,) int and (J, 2) arrays
-        Sweep (0 up, 1 down), last speed before and first after each jump onto another motion.
+        Root of the sum of squares of x, y and z.
     facts : dict
         Plain JSON: `leading_shaft`, `branch` (status; "none" without), `repeat`, `period_pitches`,
         `freedoms`, `seconds` (CPU by stage), `effect_ledger`.
     """
 
     SCHEMA = "lineofaction steady states"
-    ARRAYS = STORED
 
     mesh: tuple[str, ...]
     bearing: tuple[str, ...]
-    curve: IntArray
-    bifurcation_speed: FloatArray
-    bifurcation_kind: IntArray
-    jump_curve: IntArray
-    jump_speed: FloatArray
+    curve: IntArray = field(
+        metadata=stored("1", "0 rising speeds, 1 falling speeds, 2 along the branch", "point")
+    )
+    speed: FloatArray = field(metadata=stored("rad s-1", "speed of the leading shaft", "point"))
+    status: IntArray = field(
+        metadata=stored("1", "how the search ended: 0 converged, see OrbitStatus", "point")
+    )
+    residual: FloatArray = field(metadata=stored("m", "largest change of the state over the period", "point"))
+    iterations: IntArray = field(metadata=stored("1", "Newton iterations", "point"))
+    step_error: FloatArray = field(
+        metadata=stored("m", "estimate of what the steps' errors move the motion by", "point")
+    )
+    instability: IntArray = field(
+        metadata=stored("1", "0 stable, 1 fold, 2 period doubling, 3 Neimark-Sacker", "point")
+    )
+    multiplier: ComplexArray = field(
+        metadata=stored("1", "Floquet multipliers by falling size", "point", "state")
+    )
+    mean_error: FloatArray = field(metadata=stored("m", "mean dynamic transmission error", "point", "mesh"))
+    rms_error: FloatArray = field(
+        metadata=stored("m", "root mean square of its alternating part", "point", "mesh")
+    )
+    peak_to_peak_error: FloatArray = field(metadata=stored("m", "its peak-to-peak", "point", "mesh"))
+    least_force: FloatArray = field(
+        metadata=stored("N", "least mesh force of the driving flank", "point", "mesh")
+    )
+    largest_force: FloatArray = field(
+        metadata=stored("N", "largest mesh force of the driving flank", "point", "mesh")
+    )
+    parted: FloatArray = field(
+        metadata=stored("1", "share of the period that the driving flank is out of contact", "point", "mesh")
+    )
+    coasting: FloatArray = field(
+        metadata=stored("1", "share of the period that the coast flank is in contact", "point", "mesh")
+    )
+    rms_bearing_force: FloatArray = field(
+        metadata=stored("N", "root mean square of the alternating force", "point", "bearing")
+    )
+    bifurcation_speed: FloatArray = field(
+        metadata=stored("rad s-1", "speed of the leading shaft", "bifurcation")
+    )
+    bifurcation_kind: IntArray = field(
+        metadata=stored("1", "1 fold, 2 period doubling, 3 Neimark-Sacker", "bifurcation")
+    )
+    jump_curve: IntArray = field(metadata=stored("1", "0 at rising speeds, 1 at falling ones", "jump"))
+    jump_speed: FloatArray = field(
+        metadata=stored("rad s-1", "last speed before and first after the jump", "jump", "side")
+    )
     facts: Json = field(default_factory=dict)
 
 
@@ -291,13 +274,13 @@ def _study(
     problem: PeriodicProblem,
     curves: tuple[tuple[Orbit, ...], ...],
     branch: Branch | None,
-    figures: MotionFigures,
+    figures: dict[str, Any],
     seconds: Json,
 ) -> SteadyStates:
-    """Put the study together."""
     bifurcations = branch.bifurcations if branch is not None else ()
     jumps = _jumps(figures, len(curves[UP])) if curves[DOWN] else []
     scene = problem.system.scene
+    largest = np.asarray(np.max(np.nan_to_num(figures["largest_force"]), axis=0, initial=0.0))
     facts: Json = {
         "leading_shaft": scene.references[leading_law(problem.system)].shaft,
         "branch": branch.status.name if branch is not None else "none",
@@ -309,11 +292,11 @@ def _study(
         "freedoms": list(problem.system.freedoms.name),
         "steps_per_period": int(problem.grid.level.size) * problem.repeat,
         "seconds": seconds,
-        "effect_ledger": checked_ledger(problem.system, _largest(figures)),
+        "effect_ledger": checked_ledger(problem.system, largest),
         **problem.system.corrections,
     }
     return SteadyStates(
-        **vars(figures),
+        **figures,
         mesh=tuple(mesh.name for mesh in scene.meshes),
         bearing=problem.system.supports.name,
         curve=np.repeat(np.arange(len(curves)), [len(orbits) for orbits in curves]),
@@ -325,22 +308,17 @@ def _study(
     )
 
 
-def _largest(figures: MotionFigures) -> FloatArray:
-    """Return the largest force of each mesh over all motions that were found, (m,) N."""
-    return np.asarray(np.max(np.nan_to_num(figures.largest_force), axis=0, initial=0.0))
-
-
-def _jumps(figures: MotionFigures, speeds: int) -> list[tuple[int, tuple[float, float]]]:
+def _jumps(figures: dict[str, Any], speeds: int) -> list[tuple[int, tuple[float, float]]]:
     """Return where a sweep leaves its motion for that of the other: beside the speeds that have two.
 
     The first `speeds` figures are of rising speeds, as many after them of falling ones.
     """
-    rising, falling = figures.rms_error[:speeds], figures.rms_error[speeds : 2 * speeds][::-1]
+    rising, falling = figures["rms_error"][:speeds], figures["rms_error"][speeds : 2 * speeds][::-1]
     apart = np.abs(rising - falling) > SAME * np.maximum(rising, falling)  # False where one was not found
     two = np.any(apart, axis=1)
     jumps = []
     for index in range(len(two) - 1):
-        low, high = (float(value) for value in figures.speed[index : index + 2])
+        low, high = (float(value) for value in figures["speed"][index : index + 2])
         if two[index] and not two[index + 1]:
             jumps.append((UP, (low, high)))
         if two[index + 1] and not two[index]:

@@ -1,4 +1,4 @@
-"""Results that are arrays and names as netCDF-4 files: one table of fields says what is stored how."""
+"""Results that are arrays and names as netCDF-4 files: a field says what is stored how."""
 
 from __future__ import annotations
 
@@ -14,25 +14,33 @@ from dynamics.types import Json
 from model_studies.array_file import Stored, read_arrays, write_arrays
 from model_studies.netcdf import UnreadableFile
 
-__all__ = ["ArrayFile", "Stored"]
+
+def stored(units: str, words: str, *dimensions: str) -> dict[str, Stored]:
+    """Return the metadata of a field that is an array of a file: SI unit, description, dimensions."""
+    return {"stored": Stored(dimensions, units, words)}
 
 
 class ArrayFile:
     """A frozen dataclass of arrays, names, records and plain JSON that is kept as a netCDF-4 file.
 
+    Fields with the metadata `stored` are arrays; all others are written as JSON.
+
     Attributes
     ----------
     SCHEMA : str
         What a file of it is.
-    ARRAYS : mapping of str to Stored
-        The fields that are arrays; all others are written as JSON.
     RECORDS : mapping of str to callable
         The fields that are dataclasses, and what makes one of its JSON.
     """
 
     SCHEMA: ClassVar[str]
-    ARRAYS: ClassVar[Mapping[str, Stored]]
     RECORDS: ClassVar[Mapping[str, Callable[[Json], Any]]] = {}
+
+    @classmethod
+    def arrays(cls) -> dict[str, Stored]:
+        """Return what is stored how, of the fields that are arrays."""
+        own = fields(cls)  # type: ignore[arg-type]
+        return {each.name: each.metadata["stored"] for each in own if "stored" in each.metadata}
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write a netCDF-4 file; it appears whole or not at all.
@@ -40,9 +48,10 @@ class ArrayFile:
         Complex arrays get a last dimension of real and imaginary part.
         """
         values = {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
-        arrays = {name: np.asarray(values.pop(name)) for name in self.ARRAYS}
+        kinds = self.arrays()
+        arrays = {name: np.asarray(values.pop(name)) for name in kinds}
         values |= {name: asdict(values[name]) for name in self.RECORDS}
-        write_arrays(Path(path), self.SCHEMA, self.ARRAYS, arrays, values)
+        write_arrays(Path(path), self.SCHEMA, kinds, arrays, values)
 
     @classmethod
     def from_netcdf(cls, path: str | Path) -> Self:

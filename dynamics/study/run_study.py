@@ -5,7 +5,7 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import groupby
 from pathlib import Path
 from typing import Any, ClassVar, Protocol
@@ -14,7 +14,7 @@ import numpy as np
 
 from dynamics.checks import integer, within
 from dynamics.errors import DynamicsError, InputError
-from dynamics.results.array_file import ArrayFile, Stored
+from dynamics.results.array_file import ArrayFile, stored
 from dynamics.scene import Scene
 from dynamics.simulation import run_scene, simulate_to_file
 from dynamics.study.design import Design
@@ -83,24 +83,21 @@ class Study(ArrayFile):
     kind: tuple[str, ...]
     response: tuple[str, ...]
     unit: tuple[str, ...]
-    value: FloatArray
-    figure: FloatArray
-    error: FloatArray
+    value: FloatArray = field(
+        metadata=stored("", "values of the factors, in the units of their names", "point", "factor")
+    )
+    figure: FloatArray = field(metadata=stored("", "responses, in their SI units", "point", "response"))
+    error: FloatArray = field(metadata=stored("", "stated errors of the responses", "point", "response"))
     reason: tuple[str, ...]
-    seconds: FloatArray
+    seconds: FloatArray = field(
+        metadata=stored("s", "CPU time in all, wall time of the integration", "point", "cost")
+    )
     samples: int
     confidence: float
-    worst: IntArray
+    worst: IntArray = field(metadata=stored("", "points kept as full runs", "kept"))
     facts: Json
 
     SCHEMA: ClassVar[str] = "lineofaction study"
-    ARRAYS: ClassVar[Mapping[str, Stored]] = {
-        "value": Stored(("point", "factor"), "", "values of the factors, in the units of their names"),
-        "figure": Stored(("point", "response"), "", "responses, in their SI units"),
-        "error": Stored(("point", "response"), "", "stated errors of the responses"),
-        "seconds": Stored(("point", "cost"), "s", "CPU time in all, wall time of the integration"),
-        "worst": Stored(("kept",), "", "points kept as full runs"),
-    }
 
     @property
     def usable(self) -> int:

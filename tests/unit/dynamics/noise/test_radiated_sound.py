@@ -120,7 +120,7 @@ def test_without_mass_to_speak_of_the_hull_follows_its_springs() -> None:
 def test_a_result_comes_back_from_its_file_as_it_was(tmp_path) -> None:
     sound().to_netcdf(tmp_path / "sound.nc")
     again = RadiatedSound.from_netcdf(tmp_path / "sound.nc")
-    for name in RadiatedSound.ARRAYS:
+    for name in RadiatedSound.arrays():
         np.testing.assert_array_equal(getattr(again, name), getattr(sound(), name))
     assert (again.housing, again.bearing, again.facts) == (("housing",), PAIR, sound().facts)
 
