@@ -18,7 +18,8 @@ from dynamics.results import RunResult
 from dynamics.results.series import over_time
 from dynamics.types import FloatArray, Json
 
-# Datasets of universal files: 58 (function at a nodal degree of freedom), 164 (units), 2411 (nodes).
+# Datasets of universal files: 58 (function at a nodal degree of freedom), 164 (units), 2411 (nodes). Pyuff,
+# which reads them, writes neither spectra (function 12) nor orders (24), and a digit less of every ordinate.
 
 
 DOUBLE = 4  # ordinates are real, double precision
@@ -88,7 +89,6 @@ class _NodalFunction:
 
 
 def _units_dataset() -> str:
-    """Return dataset 164: SI, absolute temperatures."""
     factors = "".join(f"{value:25.16E}" for value in (1.0, 1.0, 1.0)).replace("E", "D")
     offset = f"{273.15:25.16E}".replace("E", "D")
     return _dataset(164, [f"{1:10d}{'SI: Meter (newton)':<20}{2:10d}", factors, offset])
@@ -104,7 +104,6 @@ def _nodes_dataset(nodes: Iterable[tuple[int, FloatArray]]) -> str:
 
 
 def _function_dataset(function: _NodalFunction) -> str:
-    """Return dataset 58 of one function."""
     lines = [line[:80] for line in (*function.lines, *["NONE"] * 5)][:5]
     entity = f"{function.entity[:10]:<10}"
     node = f" {entity}{function.node:10d}{function.direction:4d} {'NONE':<10}{0:10d}{0:4d}"

@@ -205,7 +205,6 @@ def _shaft_lines(system: System, motion: FloatArray) -> ShaftLines:
 
 
 def _points(system: System, index: int) -> list[float]:
-    """Return positions along the shaft `index`, m."""
     rotor, scene = system.rotors[index], system.scene
     if rotor.elastic is not None:
         return [float(position) for position in rotor.elastic.position]

@@ -369,7 +369,6 @@ def _step_sizes(integration: Integration) -> FloatArray:
 
 
 def _control(system: System, integration: Integration) -> Control:
-    """Make the settings for the compiled loop."""
     implicit = integration.method == "implicit"
     tolerance = STEP_SHARE * integration.tolerance
     stiffness = float(np.max(system.flanks.mean_stiffness, initial=1.0))

@@ -167,7 +167,6 @@ def added_rows(before: System, after: System) -> IntArray | None:
 
 
 def _rows(system: System) -> list[tuple[int, bytes]]:
-    """Law and direction of every row."""
     elements = system.arrays.elements
     law = np.repeat(elements.law, np.diff(elements.first))
     return [(int(kind), row.tobytes()) for kind, row in zip(law, system.arrays.direction, strict=True)]

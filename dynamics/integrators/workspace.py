@@ -238,7 +238,6 @@ def _per_row(rows: int) -> dict[str, Any]:
 
 
 def _works() -> dict[str, Any]:
-    """Allocate powers and works."""
     return {
         "power": np.zeros((STAGES, len(Power))),
         "work": np.zeros(len(Power)),
@@ -248,7 +247,6 @@ def _works() -> dict[str, Any]:
 
 
 def _counts(step_sizes: FloatArray, first_step: float) -> IntArray:
-    """Return the step statistics before the first step."""
     counts = np.zeros(len(Count), dtype=np.int64)
     levels = step_sizes.size
     counts[Count.LEVEL] = min(int(np.searchsorted(-step_sizes, -first_step)), levels - 2)
@@ -257,7 +255,6 @@ def _counts(step_sizes: FloatArray, first_step: float) -> IntArray:
 
 
 def _per_level(levels: int, rows: int, meshes: int, linear: int, entries: int) -> dict[str, Any]:
-    """Allocate the matrices of each step size."""
     return {
         "ready": np.zeros(levels, dtype=np.bool_),
         "inverse": np.zeros((levels, entries)),

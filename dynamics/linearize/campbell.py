@@ -252,7 +252,6 @@ def _gathered(
     branches: list[list[int]],
     count: int,
 ) -> WhirlBranches:
-    """Put the branches together."""
     n, p = linear.scale.size, len(linear.spring)
     frequency, ratio, whirl = (np.full((speed.size, count), np.nan) for _ in range(3))
     shape = np.full((speed.size, count, n), np.nan + 0j)

@@ -107,7 +107,6 @@ class _Course:
         return self._multiple[position - len(self._system.scene.meshes)]
 
     def _shaft_speed(self, name: str) -> FloatArray:
-        """Return the speed of a shaft, (S,)."""
         ratio = self._system.kinematics.float_ratio[self._system.scene.shaft_index(name)]
         return np.asarray(float(ratio @ law_speeds(self._system, 1.0)) * self._speed)
 

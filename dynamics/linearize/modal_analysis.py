@@ -193,7 +193,7 @@ def modal_analysis(
     seconds = {"equilibrium_and_rest": cpu_seconds() - began}
     began = cpu_seconds()
     branches = whirl_branches(system, linear, speeds, progress)
-    crossings = critical_speeds(system, linear, branches, orders) if speeds.size else _none()
+    crossings = critical_speeds(system, linear, branches, orders) if speeds.size else _no_crossings()
     seconds["over_speed"] = cpu_seconds() - began
     facts = _facts(system, linear, time, orders, seconds, speeds.size > 0) | {"effect_ledger": ledger}
     facts |= {"highest_frequency": highest} | system.corrections
@@ -203,7 +203,6 @@ def modal_analysis(
 def _facts(
     system: System, linear: LinearSystem, time: float, orders: int, seconds: Json, rotating: bool
 ) -> Json:
-    """Return what is no array."""
     scene, start = system.scene, linear.equilibrium
     return {
         "leading_shaft": scene.references[leading_law(system)].shaft if rotating else "",
@@ -228,7 +227,6 @@ def _analysis(
     crossings: CriticalSpeeds,
     facts: Json,
 ) -> ModalAnalysis:
-    """Put the result together."""
     parts = spring_parts(system, linear.spring)
     meshes = np.empty((len(system.scene.meshes), 0))
     return ModalAnalysis(
@@ -262,8 +260,7 @@ def _analysis(
     )
 
 
-def _none() -> CriticalSpeeds:
-    """No crossings."""
+def _no_crossings() -> CriticalSpeeds:
     empty, counts = np.empty(0), np.empty(0, dtype=np.int64)
     return CriticalSpeeds(empty, empty, empty, counts, counts, counts, empty)
 

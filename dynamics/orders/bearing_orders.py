@@ -295,7 +295,6 @@ def _windows(own: FloatArray, pitches: int) -> Iterator[slice]:
 def _row(
     result: RunResult, harmonics: MeshHarmonics, cycles: FloatArray, signals: FloatArray, window: slice
 ) -> _Row:
-    """Fit the orders in one window."""
     hertz = result.mesh_frequency[:, window]
     own = hertz[_counting_mesh(result)]
     progress = cycles[0, window]
@@ -344,7 +343,6 @@ def _by_speed(rows: list[_Row]) -> list[_Row]:
 
 
 def _no_window(own: FloatArray, pitches: int, rows: list[_Row]) -> InputError:
-    """Return the error of a run without a window."""
     if not rows:
         value = f"{float(np.max(own)):.4g} base pitches of one sense"
         return InputError("result", value, f"at least {pitches}, the length of a window", "Run for longer.")
@@ -357,7 +355,6 @@ def _no_window(own: FloatArray, pitches: int, rows: list[_Row]) -> InputError:
 def _put_together(
     result: RunResult, harmonics: MeshHarmonics, rows: list[_Row], facts: Json
 ) -> BearingOrders:
-    """Stack the windows."""
     frequency = np.stack([row.frequency for row in rows])
     sweep = np.array([row.sweep for row in rows])
     return BearingOrders(

@@ -77,7 +77,6 @@ class RunFile:
         self._part.replace(self._path)
 
     def _lay_out(self, fields: Mapping[str, Any]) -> None:
-        """Make dimensions, names and variables from the first samples."""
         labels = {dimension: fields[field] for field, dimension in LABELS.items() if fields[field]}
         labels["direction"] = DIRECTIONS
         self._file.dimensions = {name: len(names) for name, names in labels.items()} | {"time": None}
@@ -210,7 +209,6 @@ def write_csv(result: RunResult, path: Path) -> None:
 
 
 def _labels(result: RunResult, dimensions: tuple[str, ...]) -> list[str]:
-    """One suffix per row of the leading dimensions."""
     if not dimensions:
         return [""]
     names = getattr(result, {dimension: field for field, dimension in LABELS.items()}[dimensions[0]])

@@ -99,7 +99,6 @@ def windows(system: System, states_of: StatesOf, samples: int) -> list[Window]:
 
 
 def _window(system: System, states_of: StatesOf, first: int, stop: int) -> Window:
-    """Look at the run from sample `first` to `stop` - 1."""
     rate = system.sampling.rate
     states, time = states_of(first, stop), np.arange(stop - first) / rate
     later = starting_at(system, first / rate, states.moved[0])
@@ -112,7 +111,6 @@ def _window(system: System, states_of: StatesOf, first: int, stop: int) -> Windo
 
 
 def _seen(system: System, time: FloatArray, states: States) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return positions, transmission errors and bearing forces."""
     seen = observe(system.arrays, time, states.q, states.v, states.moved)
     force = system.bearing_force(seen.force, states.q, states.v)
     meshes = len(system.scene.meshes)  # frames that turn have positions too, behind those of the meshes
@@ -170,7 +168,7 @@ def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
         or requested["time_step"],
         "table_interpolation": _estimate(tables, TABLE_REST, "runs of windows on every second position"),
         "left_out_effects": left_out,
-        "windows": _pitches_of(looked),
+        "windows": _first_and_last_samples(looked),
         "cpu_seconds": seconds,
     }
 
@@ -207,6 +205,5 @@ def _estimate(differences: Sequence[_Difference | None], rest: float, source: st
     }
 
 
-def _pitches_of(looked: Sequence[Window]) -> list[list[int]]:
-    """First and last sample of each window."""
+def _first_and_last_samples(looked: Sequence[Window]) -> list[list[int]]:
     return [[window.first, window.stop - 1] for window in looked]

@@ -106,7 +106,6 @@ class Leg:
         return ending(self.march, self.spool, self._status, self._seconds)
 
     def _save(self, status: RunStatus) -> None:
-        """Write a checkpoint."""
         samples = int(self.march.work.counts[Count.OUTPUT])
         facts = {"mark": self._mark, "samples": samples, "seconds": self._seconds, "since": self.since}
         self.spool.save(self.march.state, **facts, status=int(status))

@@ -94,7 +94,6 @@ Factor = Levels | Listed | Normal | Uniform
 
 
 def _check_values(field: str, values: tuple[float, ...]) -> None:
-    """Refuse an empty list, and what is no number."""
     if not values:
         raise InputError(field, values, "at least one value")
     for index, value in enumerate(values):

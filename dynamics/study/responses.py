@@ -78,7 +78,6 @@ class _Window:
         return self._fits[self.mesh]
 
     def _fitted(self) -> tuple[FloatArray, dict[int, FloatArray]]:
-        """Fit the orders of the mesh."""
         checked_order(self.run, "order", self.highest_order, self.mesh)
         position = unwrapped(self.run.position[self.mesh, self.part])
         forces = (self.run.bearing_force[bearing, :, self.part] for bearing in self.bearings)
@@ -222,7 +221,6 @@ def _dte_rms(window: _Window, row: int, _order: int) -> _Value:
 
 
 def _dte_peak_to_peak(window: _Window, row: int, _order: int) -> _Value:
-    """Largest less least value."""
     return _Value(float(np.ptp(window.transmission_error(row))))
 
 

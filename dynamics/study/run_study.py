@@ -375,7 +375,6 @@ def keep_runs(task: StudyTask, study: Study, folder: Path, progress: Progress = 
 def _result(
     task: StudyTask, design: Design, points: Sequence[PointResult], confidence: float, keep_worst: int
 ) -> Study:
-    """Put the result together."""
     figure = np.array([point.figures for point in points])
     return Study(
         design.names,

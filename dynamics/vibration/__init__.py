@@ -1,6 +1,6 @@
 """Vibration of housings under the forces of their bearings."""
 
-from dynamics.vibration.housing_motion import housing_motion, housing_power
+from dynamics.vibration.housing_motion import housing_motion
 from dynamics.vibration.housing_vibration import (
     MotionQuantity,
     housing_vibration,
@@ -39,7 +39,6 @@ __all__ = [
     "bearing_parts",
     "finer_seat_forces",
     "housing_motion",
-    "housing_power",
     "housing_vibration",
     "mean_square",
     "mean_square_mobility",

@@ -149,7 +149,6 @@ def motion_pieces(
 
 
 def _checked_step(time: FloatArray, force: FloatArray, housing: ReducedHousing) -> float:
-    """Return the sampling step, s."""
     if time.ndim != 1 or time.size < 2:
         raise InputError("time", time.shape, "at least two samples, (T,)")
     step = float((time[-1] - time[0]) / (time.size - 1))

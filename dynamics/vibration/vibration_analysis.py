@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dynamics.acoustics.outer_hull import QUARTERS
 from dynamics.checks import integer, not_negative
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import ReducedHousing, SurfaceMotion
@@ -168,10 +169,6 @@ def mean_square_mobility(housing: ReducedHousing, frequency: FloatArray, weight:
 
 
 # Shapes of a housing's surface: natural modes and operating deflections.
-
-
-QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
-"""Nodes of the four plane facets of a triangle with six nodes."""
 
 
 @dataclass(frozen=True)
@@ -376,7 +373,6 @@ def _mobilities(housing: ReducedHousing, highest: float, points: Sequence[str] |
 
 
 def _shares(housing: ReducedHousing, parts: Parts, points: Sequence[str] | None) -> Shares:
-    """Return contributions to the motion of each point and of the surface."""
     rows = point_rows(housing, points)
     shares = np.array([parts.shares(row.T @ row) for row in rows]).reshape(len(rows), len(parts.name))
     surface = np.full(len(parts.name), np.nan)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Concatenate, Literal, ParamSpec, TypeVar
 
 from dynamics.ablation import Ablation as DynamicsAblation
-from dynamics.accuracy.frontier import Frontier as DynamicsFrontier
+from dynamics.accuracy import Frontier as DynamicsFrontier
 from dynamics.linearize.forced_response import ForcedResponse as DynamicsForcedResponse
 from dynamics.linearize.modal_analysis import ModalAnalysis as DynamicsModalAnalysis
 from dynamics.noise.radiated_sound import RadiatedSound as DynamicsRadiatedSound

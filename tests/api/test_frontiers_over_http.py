@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from study_service import CASE, Served, figures_alone, prepared, scene_by_hash, study_service, without
 
-from dynamics.accuracy.frontier import FIDELITIES as SCENE_FIDELITIES
+from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
 from fe_contact.analysis.studies.accuracy_study import FIDELITIES
 from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase

@@ -375,7 +375,6 @@ def _write(target: Path, content: Mapping[str, bytes]) -> None:
 
 
 def _umask() -> int:
-    """Return the mask for new files."""
     mask = os.umask(0o077)
     os.umask(mask)
     return mask

@@ -7,7 +7,7 @@ from dataclasses import replace
 from bounds.types import Json
 from dynamics.accuracy import Frontier as SceneFrontier
 from dynamics.accuracy import frontier as frontier_of_scene
-from dynamics.accuracy.frontier import FIDELITIES as SCENE_FIDELITIES
+from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
 from fe_contact.analysis.studies.accuracy_study import FIDELITIES
 from fe_contact.analysis.studies.frontier import Frontier, frontier
 from fe_contact.errors import chosen

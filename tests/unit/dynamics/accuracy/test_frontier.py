@@ -9,9 +9,7 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
 
-from dynamics.accuracy import FIDELITIES, frontier
-from dynamics.accuracy.frontier import FIGURES, TimeIntegration, knee_of_results
-from dynamics.accuracy.vibration import blocks_of
+from dynamics.accuracy import FIDELITIES, FIGURES, TimeIntegration, blocks_of, frontier, knee_of_results
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.loads import TimeLaw

@@ -1,7 +1,8 @@
-"""Error against time of every fidelity on one scene."""
+"""The cost of accuracy on a scene: models and settings from quasi-static to the finest steps."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -10,7 +11,6 @@ from typing import Protocol
 import numpy as np
 
 import model_studies
-from dynamics.accuracy.vibration import Blocks, Vibration, blocks_of, vibration_of
 from dynamics.assembly.assemble import System, assemble
 from dynamics.assembly.decimated_tables import with_decimated_tables
 from dynamics.checks import chosen
@@ -21,15 +21,106 @@ from dynamics.integrators.method_choice import EVALUATIONS
 from dynamics.linearize import HarmonicResponse, harmonic_response
 from dynamics.mechanism.additions import COAST_FLANKS
 from dynamics.motion.observation import observe, observe_laws, static_deflections
+from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
 from dynamics.scene import Outputs, Scene
-from dynamics.types import FloatArray, Json
+from dynamics.types import FloatArray, IntArray, Json
 from model_studies import Outcome, Progress, against_finest, in_unit, knee_above, run_fidelities, silent
 from model_studies.frontier import Errors
 
-# The fidelities of the accuracy study of dynamics: time integration, and what does without it.
+MOST_BLOCKS, ORDERS = 6, 5
+LEAST_SAMPLES = 32
+LEAST_PITCHES = 2.0
 
 
-# The interface of a fidelity of the accuracy study of dynamics.
+@dataclass(frozen=True)
+class Vibration:
+    """In B blocks of a run: m meshes, b bearings, n mesh orders (of the first mesh for bearings).
+
+    Attributes
+    ----------
+    rms : (B, m) array
+        Of the transmission error about its mean, m.
+    error_orders : (B, m, n) array
+        Amplitudes of the transmission errors, m.
+    force_orders : (B, b, n) array
+        Amplitudes of the bearing forces in their own frames, N: the norm over three directions. NaN where a
+        model has none.
+    """
+
+    rms: FloatArray
+    error_orders: FloatArray
+    force_orders: FloatArray
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """The output grid that a run is compared on.
+
+    Attributes
+    ----------
+    time : (T,) array
+        Output grid, s.
+    position : (m, T) array
+        Of the meshes in the kinematic motion, unwrapped base pitches.
+    bounds : (B, 2) int array
+        First sample of each block, and the one behind its last.
+    orders : int
+    """
+
+    time: FloatArray
+    position: FloatArray
+    bounds: IntArray
+    orders: int
+
+    @property
+    def middle(self) -> FloatArray:
+        """Time in the middle of each block, s."""
+        return np.asarray(self.time[self.bounds.mean(axis=1).astype(int)])
+
+
+def blocks_of(system: System) -> Blocks:
+    """Cut the run of `system` into blocks of equal time.
+
+    Raises
+    ------
+    InputError
+        The run turns its first mesh by less than `LEAST_PITCHES`, or has too few samples a period.
+    """
+    rate, scene = system.sampling.rate, system.scene
+    samples = math.floor(scene.duration * rate * (1.0 + 1e-12)) + 1
+    time = np.arange(samples) / rate
+    rest = np.zeros((samples, system.arrays.mass.shape[0]))
+    position = unwrapped(observe(system.arrays, time, rest, rest).position[: len(scene.meshes)])
+    ends = np.linspace(0, samples, MOST_BLOCKS + 1).astype(np.int64)
+    bounds = np.stack([ends[:-1], ends[1:]], axis=1)
+    turned = [abs(position[0, stop - 1] - position[0, first]) for first, stop in bounds]
+    bounds = bounds[(np.array(turned) >= LEAST_PITCHES) & (np.diff(bounds, axis=1)[:, 0] >= LEAST_SAMPLES)]
+    if bounds.size == 0:
+        bounds = np.array([[0, samples]])
+        if samples < LEAST_SAMPLES or abs(position[0, -1] - position[0, 0]) < LEAST_PITCHES:
+            bound = f"long enough for {LEAST_PITCHES:g} base pitches and {LEAST_SAMPLES} samples"
+            raise InputError("duration", scene.duration, bound, "Lengthen the run or raise its speed.")
+    orders = min(orders_seen(line[bounds[0, 0] :], ORDERS) for line in position)
+    if orders < 1:
+        bound = "at least four samples a base pitch"
+        raise InputError("outputs.sample_rate", rate, bound, "Raise it.")
+    return Blocks(time, position, bounds, orders)
+
+
+def _vibration_of(blocks: Blocks, error: FloatArray, force: FloatArray) -> Vibration:
+    """Return the vibration in transmission errors (m, T), m, and bearing forces (b, 3, T), N."""
+    rms, by_error, by_force = [], [], []
+    for first, stop in blocks.bounds:
+        part = slice(int(first), int(stop))
+        position, series = blocks.position[:, part], error[:, part]
+        rms.append(series.std(axis=1))
+        by_error.append(
+            [order_amplitudes(at, line, blocks.orders) for at, line in zip(position, series, strict=True)]
+        )
+        by_force.append(
+            np.linalg.norm(order_amplitudes(position[0], force[..., part], blocks.orders), axis=1)
+        )
+    return Vibration(np.array(rms), np.array(by_error), np.array(by_force))
 
 
 class Fidelity(model_studies.Fidelity[Scene], Protocol):
@@ -107,11 +198,10 @@ class TimeIntegration:
         trajectory = integrate(system, start, system.scene.integration)
         if not trajectory.status.usable:
             raise SolveError(f"run ended early, {trajectory.status.name.lower()} at {trajectory.end:.6g} s")
-        return vibration_of(blocks, *_series(system, trajectory))
+        return _vibration_of(blocks, *_series(system, trajectory))
 
 
 def _decided(scene: Scene) -> set[tuple[str, str]]:
-    """Return the effects that are on, and where."""
     return {(entry.effect, entry.part) for entry in assemble(scene).ledger.entries if entry.on}
 
 
@@ -159,7 +249,7 @@ class _QuasiStatic:
                 deflection = np.empty_like(position)
                 static_deflections(system.flanks.static, f, position, float(force), deflection)
                 error[f, first:stop] = deflection
-        return vibration_of(blocks, error, np.zeros((len(system.supports.name), 3, blocks.time.size)))
+        return _vibration_of(blocks, error, np.zeros((len(system.supports.name), 3, blocks.time.size)))
 
 
 @dataclass(frozen=True)
