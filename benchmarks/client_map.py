@@ -17,9 +17,9 @@ from benchmarks.fresh_process import measure
 from benchmarks.service_process import cpu_seconds, memory_mb, running
 from lineofaction.client import AsyncLineOfActionClient
 from lineofaction.gearbox.subjects import case_inputs
-from service.page.examples import examples
+from service.page.files import examples
 from service.store import stored_results
-from service.worker.catalogue import ANALYZE
+from service.worker.process import ANALYZE
 
 COUNT, CONCURRENCY = 1000, 16
 _TABLE = (

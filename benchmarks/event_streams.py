@@ -18,11 +18,11 @@ from statistics import median
 from benchmarks.figures import Figure
 from benchmarks.service_process import cpu_seconds, memory_mb, running
 from lineofaction.gearbox.subjects import case_inputs
-from service.page.examples import examples
+from service.page.files import examples
 from service.queue.claims import Claims
 from service.queue.machinery import Machinery, job_machinery
 from service.settings import load_settings
-from service.worker.catalogue import ANALYZE, default_registry
+from service.worker.process import ANALYZE, default_registry
 
 STREAMS, REPORTS_PER_S, SECONDS, ROUNDS = 200, 2.0, 5.0, 3
 

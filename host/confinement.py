@@ -106,7 +106,6 @@ def confine(folder: Path, limits: Limits = READING) -> None:
 
 
 def _limit(limits: Limits) -> None:
-    """Set the limits, none above one in force."""
     if sys.platform == "win32":
         raise Unavailable("Limits of processes")
     import resource  # noqa: PLC0415 (POSIX alone)

@@ -115,7 +115,6 @@ def ask_child(
 
 
 def _ask(request: str, seconds: float, command: Sequence[str], folder: Path | None) -> dict[str, Any]:
-    """Run the child on one request and return its answer."""
     # The child may find a module only where this process does, e.g. in a path added at run time.
     environment = child_environment(PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
     try:
@@ -150,13 +149,11 @@ def _refuse_no_memory(complaint: str) -> None:
 
 
 def _cause(returncode: int) -> str:
-    """Say how a child ended."""
     if returncode >= 0:
         return f"ended with exit code {returncode}"
     return f"killed by {ending_signal(returncode)}"
 
 
 def _last_line(text: str) -> str:
-    """Return the last line a child complained with."""
     lines = text.strip().splitlines()
     return lines[-1] if lines else ""

@@ -111,7 +111,6 @@ def _dimension(sizes: dict[str, int], name: str, size: int) -> str:
 
 
 def _restored(values: Any, kind: list[Any]) -> Any:
-    """Return an array as it was."""
     dtype, shape = np.dtype(kind[0]), tuple(kind[1])
     if dtype.kind not in NUMBERS:
         raise ValueError(dtype)

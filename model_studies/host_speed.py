@@ -81,7 +81,6 @@ def measured_slowness() -> float:
 
 
 def _identity() -> dict[str, object]:
-    """Return what a measurement is valid for."""
     return {
         "version": VERSION,
         "host": platform.node(),

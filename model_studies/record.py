@@ -52,7 +52,6 @@ def _known(value: object) -> bool:
 
 
 def _plain(value: Any) -> Any:
-    """Return what JSON takes."""
     if isinstance(value, tuple):
         return [_plain(entry) for entry in value]
     if isinstance(value, np.ndarray):

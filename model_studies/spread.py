@@ -45,7 +45,6 @@ def rank_correlation(deviation: FloatArray, sample: FloatArray) -> FloatArray:
 
 
 def _correlation(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Correlation (d, L) of columns."""
     a, b = (x - x.mean(axis=0) for x in (first, second))
     scale = np.sqrt(np.outer((a**2).sum(axis=0), (b**2).sum(axis=0)))
     return np.asarray(np.divide(a.T @ b, scale, out=np.zeros_like(scale), where=scale > 0.0))

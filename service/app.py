@@ -15,50 +15,24 @@ from service.access import open_identities
 from service.access.capacity import capacity
 from service.live.kept_answers import KeptAnswers
 from service.live.pool import live_pool
-from service.management.figures import process_registry
+from service.management.figures import Metrics, process_registry
 from service.queue.machinery import job_machinery
 from service.queue.watcher import Watcher
 from service.reading.pool import ReadingPool
-from service.routes import (
-    batches,
-    cases,
-    databases,
-    description,
-    effects,
-    events,
-    figures,
-    health,
-    jobs,
-    landing,
-    live,
-    page,
-    queries,
-    results,
-    scenes,
-    sounds,
-    units,
-)
-from service.routes.access import Access
-from service.routes.admission import Admission
+from service.routes import cases, documents, events, health, jobs, processes, queries, results
+from service.routes.access import Access, Admission
 from service.routes.context import Context
-from service.routes.direct import DirectRoutes
-from service.routes.errors import install_error_handlers
-from service.routes.job_results import job_results_router
-from service.routes.metrics import Metrics
-from service.routes.middleware import API_PREFIX, Guard
+from service.routes.middleware import API_PREFIX, Guard, install_error_handlers
 from service.routes.openapi import ABOUT, install_description
-from service.routes.processes import processes_router
+from service.routes.scopes import DirectRoutes
 from service.routes.warm_up import warm_up
-from service.routes.webhooks import deliverer_of
 from service.settings import Settings
 from service.store import DirectoryLock
-from service.store.deployment import Deployment
+from service.store.deployment import Deployment, WriteCheck
 from service.store.places import CACHE_DIRECTORY
-from service.store.write_check import WriteCheck
 from service.tracing.tracer import tracer
 from service.version import solver_version
-from service.worker.catalogue import default_registry
-from service.worker.process import Registry
+from service.worker.process import Registry, default_registry
 
 
 def create_app(settings: Settings, registry: Registry | None = None, *, works: bool = True) -> FastAPI:
@@ -113,19 +87,17 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
 
 
 def _route(app: FastAPI, offered: Registry) -> None:
-    """Add all routes, in the order of the description."""
-    jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results_router(offered))
-    stored = (databases.router, results.router, figures.router, sounds.router, queries.router, live.router)
-    grouped = (batches.router, events.router)
-    converted = (cases.router, scenes.router, units.router, effects.router)
-    for router in (*jobs_shown, *stored, *grouped, *converted):
+    shown = (documents.router, processes.processes_router(offered), jobs.router)
+    stored = (jobs.job_results_router(offered), results.router, queries.router, queries.live_router)
+    grouped = (processes.router, events.router)
+    converted = (cases.router, cases.scenes_router, cases.units_router, documents.effects_router)
+    for router in (*shown, *stored, *grouped, *converted):
         app.include_router(router, prefix=API_PREFIX)
-    for router in (page.router, description.router, health.router):
+    for router in (documents.pages_router, health.router):
         app.include_router(router)
 
 
 def _registry(context: Context) -> CollectorRegistry:
-    """Return the metrics of the process."""
     parts = (context.engine, context.store, context.writes, context.scheduler)
     return process_registry(*parts, context.settings)
 
@@ -138,7 +110,7 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
         if lock is not None:
             lock.acquire()
         context.scheduler.start()
-        deliverer = deliverer_of(context)
+        deliverer = processes.deliverer_of(context)
         if deliverer is not None:
             deliverer.start()
         warm_up()
@@ -158,7 +130,6 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
 
 
 def _context(settings: Settings, registry: Registry, works: bool) -> Context:
-    """Open the store and put the parts together."""
     parts = job_machinery(settings, registry, works=works)
     pools, engine = (live_pool(settings), ReadingPool(settings.data_directory)), parts.engine
     kept = KeptAnswers(settings.data_directory / CACHE_DIRECTORY / "figures")

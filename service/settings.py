@@ -37,7 +37,7 @@ def is_secret(field: FieldInfo) -> bool:
     return SecretStr in (field.annotation, *get_args(field.annotation))
 
 
-class SecretFiles(PydanticBaseSettingsSource):
+class _SecretFiles(PydanticBaseSettingsSource):
     """Reads the files that ``LOA_NAME_FILE`` names, for every setting that is a secret.
 
     Containers get secrets as files: unlike the environment they are not shown by `docker inspect`, and
@@ -232,7 +232,7 @@ class Settings(BaseSettings):
         file_secret_settings: PydanticBaseSettingsSource,
     ) -> tuple[PydanticBaseSettingsSource, ...]:
         """Let options come before the environment, and that before files of secrets."""
-        return init_settings, env_settings, SecretFiles(settings_cls)
+        return init_settings, env_settings, _SecretFiles(settings_cls)
 
     @property
     def database_address(self) -> str | None:
@@ -282,7 +282,6 @@ def load_settings(**options: object) -> Settings:
 
 
 def _fault(item: dict[str, object]) -> Fault:
-    """One wrong setting."""
     location = item["loc"]
     name = str(location[0]) if isinstance(location, tuple) and location else "settings"
     bound = str(item["msg"]).removeprefix("Input should be ").removeprefix("Value error, ")

@@ -33,19 +33,17 @@ from host.directories import keep_private
 from lineofaction.cli.guard import leave
 from lineofaction.gearbox.problems import Unexpected
 from service.management.figures import process_registry
-from service.management.server import ManagementServer
-from service.management.vitals import Vitals
+from service.management.server import ManagementServer, Vitals
 from service.queue.machinery import Machinery, job_machinery
 from service.queue.scheduler import Scheduler
 from service.routes.warm_up import HEAVY
 from service.settings import Settings, load_settings
 from service.store import DirectoryLock
-from service.store.deployment import Deployment
-from service.store.schema import shown
-from service.store.write_check import WriteCheck
+from service.store.database import shown
+from service.store.deployment import Deployment, WriteCheck
 from service.tracing.tracer import tracer
-from service.worker.catalogue import default_registry
 from service.worker.cluster import RemoteWork
+from service.worker.process import default_registry
 
 
 def log_to_standard_error() -> None:

@@ -35,9 +35,9 @@ from lineofaction.gearbox.problems import (
 from service.access import open_identities
 from service.access.capacity import capacity
 from service.app import create_app
-from service.management.vitals import EventLoop, Vitals
+from service.management.server import EventLoop, Vitals
 from service.routes.context import Context
-from service.routes.errors import problem_of
+from service.routes.middleware import problem_of
 from service.settings import Settings, load_settings
 
 MOST_HEAD_BYTES = 65_536

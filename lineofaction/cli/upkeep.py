@@ -19,13 +19,11 @@ from service.queue.machinery import Machinery, job_machinery
 from service.queue.retention import Retention
 from service.settings import Settings, load_settings
 from service.store import DATABASE_FILE, ResultStore, open_database
-from service.store.database import database_engine
+from service.store.database import Schema, database_engine, shown
 from service.store.deployment import Deployment
-from service.store.maintenance import Leftover, Quarantine, verify_store
+from service.store.maintenance import Leftover, Quarantine, reindex, verify_store
 from service.store.migrations import REVISIONS
 from service.store.places import result_files
-from service.store.reindex import reindex
-from service.store.schema import Schema, shown
 from service.worker.process import Registry
 
 

@@ -1,21 +1,138 @@
-"""Who a request comes from, by what it presents."""
+"""Who a request comes from, by what it presents: a key, or a token of an OpenID Connect issuer."""
 
 from __future__ import annotations
 
+import asyncio
 import ipaddress
+import json
+import time
+from collections.abc import Callable
 from importlib.util import find_spec
 from typing import Any
 from urllib.parse import urlsplit
 
+import httpx2
+import structlog
 from pydantic import ValidationError, field_validator, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
-from lineofaction.gearbox.problems import BadInput, Fault, KeyExpired, Unauthorised
-from service.access.holder import Holder, Scope
-from service.access.issuer import Issuer
-from service.access.keyring import PREFIX, KeyFile, Keyring
+from lineofaction.gearbox.problems import BadInput, Fault, IssuerUnavailable, KeyExpired, Unauthorised
+from service.access.keyring import PREFIX, Holder, KeyFile, Keyring, Scope
 from service.project import COMMON, PROJECT
 from service.settings import Settings
+
+# The public keys of an issuer: fetched from it alone, kept, fetched anew when they change.
+
+
+FRESH_S, STALE_S = 3600.0, 86_400.0
+"""Keys are fetched anew after so long; while the issuer does not answer they are good for so long."""
+PAUSE_S = 10.0
+"""Between attempts: tokens with made-up key identifiers do not make us ask more often."""
+_TIMEOUT_S = 5.0
+_LARGEST = 1_000_000
+_DISCOVERY = "/.well-known/openid-configuration"
+
+Json = dict[str, Any]
+logger = structlog.get_logger(__name__)
+
+
+class Issuer:
+    """The keys that one issuer signs with, by their identifiers; used from one event loop.
+
+    Parameters
+    ----------
+    url : str
+        The issuer, as its tokens name it.
+    keys_url : str, optional
+        Where its keys are; default: as its configuration says, on its own host.
+    clock : callable
+        Seconds, steady; replaced by tests.
+    """
+
+    def __init__(
+        self, url: str, keys_url: str | None = None, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self.url, self._keys_url, self._clock = url, keys_url, clock
+        self._keys: dict[str, Json] = {}
+        self._fetched = self._tried = -float("inf")
+        self._lock = asyncio.Lock()
+        self._renewal: asyncio.Task[None] | None = None
+
+    async def key(self, identifier: str) -> Json:
+        """Return a key (RFC 7517).
+
+        Raises
+        ------
+        Unauthorised
+            The issuer has none of this identifier.
+        IssuerUnavailable
+            It does not answer, and no key is at hand.
+        """
+        if not self._good(identifier):
+            await self._renew(identifier)
+        elif self._age > FRESH_S and (self._renewal is None or self._renewal.done()):
+            self._renewal = asyncio.create_task(self._renew(identifier))  # nobody waits for it
+        if self._good(identifier):
+            return self._keys[identifier]
+        if self._tried > self._fetched:
+            raise IssuerUnavailable("The issuer of access tokens does not answer. Try again later.")
+        raise Unauthorised.of("The token is signed with a key that its issuer does not publish.")
+
+    @property
+    def _age(self) -> float:
+        return self._clock() - self._fetched
+
+    def _good(self, identifier: str) -> bool:
+        return identifier in self._keys and self._age <= STALE_S
+
+    async def _renew(self, identifier: str) -> None:
+        """Fetch the keys, unless another caller has just done so or it was just tried."""
+        async with self._lock:
+            fresh = self._good(identifier) and self._age <= FRESH_S
+            if fresh or self._clock() - self._tried < PAUSE_S:
+                return
+            self._tried = self._clock()
+            try:
+                self._keys = await asyncio.to_thread(self._fetch)
+            except (httpx2.HTTPError, ValueError, KeyError, TypeError) as error:
+                logger.warning("keys of the issuer not fetched", issuer=self.url, error=type(error).__name__)
+            else:
+                self._fetched = self._tried
+
+    def _fetch(self) -> dict[str, Json]:
+        """Return the published keys that sign."""
+        with httpx2.Client(timeout=_TIMEOUT_S, follow_redirects=False) as http:
+            keys = _document(http, self._keys_url or self._discovered(http))["keys"]
+        return {key["kid"]: key for key in keys if "kid" in key and key.get("use", "sig") == "sig"}
+
+    def _discovered(self, http: httpx2.Client) -> str:
+        """Return where the issuer says its keys are; raise ValueError if that is not its own host."""
+        facts = _document(http, self.url.rstrip("/") + _DISCOVERY)
+        place = str(facts["jwks_uri"])
+        if facts["issuer"] != self.url or _host(place) != _host(self.url):
+            raise ValueError(place)
+        return place
+
+
+def _host(url: str) -> tuple[str, str]:
+    parts = urlsplit(url)
+    return parts.scheme, parts.netloc
+
+
+def _document(http: httpx2.Client, url: str) -> Json:
+    """Return the JSON object at an address; raise ValueError of anything else."""
+    with http.stream("GET", url) as answer:
+        answer.raise_for_status()
+        content = b""
+        for piece in answer.iter_bytes():
+            content += piece
+            if len(content) > _LARGEST:
+                raise ValueError(url)
+    document = json.loads(content)
+    if not isinstance(document, dict):
+        raise TypeError(url)
+    return document
+
 
 # Settings of bearer tokens of an OpenID Connect issuer: from the environment (``LOA_OIDC_...``).
 
@@ -24,7 +141,7 @@ ALGORITHMS = ("RS256", "RS384", "RS512", "PS256", "PS384", "PS512", "ES256", "ES
 """Signatures that only the holder of a private key makes (RFC 7518, RFC 8037): no others can be allowed."""
 
 
-class OidcSettings(BaseSettings):
+class _OidcSettings(BaseSettings):
     """What tokens are accepted, and what their claims mean.
 
     Attributes
@@ -82,7 +199,7 @@ class OidcSettings(BaseSettings):
         return names
 
     @model_validator(mode="after")
-    def _whole(self) -> OidcSettings:
+    def _whole(self) -> _OidcSettings:
         """Refuse an issuer whose tokens cannot be checked."""
         if self.issuer is not None and not self.audience:
             raise ValueError("given with LOA_OIDC_AUDIENCE: tokens for other services are not for this one")
@@ -91,16 +208,14 @@ class OidcSettings(BaseSettings):
         return self
 
 
-def _load_oidc_settings() -> OidcSettings:
-    """Return the settings; raises `BadInput` of what cannot be."""
+def _load_oidc_settings() -> _OidcSettings:
     try:
-        return OidcSettings()
+        return _OidcSettings()
     except ValidationError as error:
         raise BadInput(_fault(dict(item)) for item in error.errors(include_url=False)) from None
 
 
 def _fault(item: dict[str, object]) -> Fault:
-    """One wrong setting."""
     location = item["loc"]
     name = str(location[0]) if isinstance(location, tuple) and location else "issuer"
     bound = str(item["msg"]).removeprefix("Value error, ")
@@ -109,7 +224,6 @@ def _fault(item: dict[str, object]) -> Fault:
 
 
 def _loopback(host: str) -> bool:
-    """Whether only this machine answers at a host."""
     try:
         return host == "localhost" or ipaddress.ip_address(host).is_loopback
     except ValueError:
@@ -123,20 +237,18 @@ _LEEWAY_S = 30
 _LONGEST_NAME = 200
 _REQUIRED = ["exp", "iss", "aud"]
 
-Json = dict[str, Any]
 
-
-class Tokens:
+class _Tokens:
     """Finds the holders of tokens.
 
     Parameters
     ----------
-    settings : OidcSettings
+    settings : _OidcSettings
         With an issuer.
     issuer : Issuer
     """
 
-    def __init__(self, settings: OidcSettings, issuer: Issuer) -> None:
+    def __init__(self, settings: _OidcSettings, issuer: Issuer) -> None:
         self._settings, self._issuer = settings, issuer
 
     async def holder(self, token: str) -> Holder:
@@ -178,7 +290,6 @@ class Tokens:
         return algorithm, identifier
 
     async def _key(self, identifier: str, algorithm: str) -> Json:
-        """Return the issuer's key; raise ValueError if that is for another algorithm."""
         key = await self._issuer.key(identifier)
         if key.get("kty") == "oct" or key.get("alg", algorithm) != algorithm:
             raise ValueError(identifier)
@@ -225,11 +336,11 @@ class Identities:
     Parameters
     ----------
     keyring : Keyring
-    tokens : Tokens, optional
+    tokens : _Tokens, optional
         Of an issuer; without it there are keys only.
     """
 
-    def __init__(self, keyring: Keyring, tokens: Tokens | None = None) -> None:
+    def __init__(self, keyring: Keyring, tokens: _Tokens | None = None) -> None:
         self._keyring, self._tokens = keyring, tokens
 
     def __bool__(self) -> bool:
@@ -237,7 +348,7 @@ class Identities:
         return self._tokens is not None or bool(self._keyring)
 
     async def holder(self, presented: str | None) -> Holder:
-        """Return who presents a key or a token; raises `Unauthorised`, or as `Tokens.holder`."""
+        """Return who presents a key or a token; raises `Unauthorised`, or as `_Tokens.holder`."""
         if presented is None:
             raise Unauthorised("This service asks for an access key, sent as: Authorization: Bearer KEY")
         if self._tokens is not None and not presented.startswith(PREFIX):
@@ -258,7 +369,7 @@ def open_identities(settings: Settings) -> Identities:
         settings cannot be used.
     """
     oidc = _load_oidc_settings()
-    tokens = None if oidc.issuer is None else Tokens(oidc, Issuer(oidc.issuer, oidc.keys_url))
+    tokens = None if oidc.issuer is None else _Tokens(oidc, Issuer(oidc.issuer, oidc.keys_url))
     identities = Identities(Keyring(KeyFile(settings.key_file)), tokens)
     if not settings.loopback and not identities:
         raise BadInput.of(

@@ -1,4 +1,4 @@
-"""The keyring and its file: names, hashes, rights and limits of access keys, never the keys themselves.
+"""Who sends a request; the keyring and its file: names, hashes, rights and limits, never the keys themselves.
 
 A key has 256 random bits: nobody guesses it as one would a password, so that one round of SHA-256 is enough.
 Two keys have the same name while one takes the place of the other.
@@ -17,6 +17,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, fields, replace
 from datetime import UTC, datetime, timedelta
+from enum import StrEnum
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -24,8 +25,122 @@ from typing import Any
 import structlog
 
 from lineofaction.gearbox.problems import BadInput
-from service.access.holder import LEAST, LIMITS, SOON, Holder, Scope, duration, read, written
 from service.project import COMMON, PROJECT
+
+# How long a key is good: durations as they are written on the command line, instants as they are kept.
+
+
+SOON = timedelta(days=7)
+"""A key that ends within this is mentioned in the log."""
+
+_DURATION = re.compile(r"([1-9][0-9]{0,4})([hdw])")
+_UNITS = {"h": timedelta(hours=1), "d": timedelta(days=1), "w": timedelta(weeks=1)}
+
+
+def _duration(field: str, text: str) -> timedelta:
+    """Return a duration such as 12h, 90d or 26w; raises `BadInput`."""
+    parts = _DURATION.fullmatch(text)
+    if parts is None:
+        raise BadInput.of(field, text, "a number of hours, days or weeks", "For example: 12h, 90d, 26w")
+    return int(parts[1]) * _UNITS[parts[2]]
+
+
+def _written(instant: datetime) -> str:
+    """Return an instant in UTC as RFC 3339, seconds."""
+    return instant.astimezone(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
+
+
+def _instant_of(text: str) -> datetime:
+    """Return an instant as `_written`; raises ValueError of what has no time zone."""
+    instant = datetime.fromisoformat(text)
+    if instant.tzinfo is None:
+        raise ValueError(text)
+    return instant
+
+
+class Scope(StrEnum):
+    """Something that a caller may do; none contains another."""
+
+    READ = "read"
+    SUBMIT = "submit"
+    DISMISS = "dismiss"
+    OPERATE = "operate"
+
+
+MEANINGS = {
+    Scope.READ: "see processes, jobs and results of the project, ask for plans and live answers",
+    Scope.SUBMIT: "execute processes, name jobs of one's own",
+    Scope.DISMISS: "dismiss jobs of one's own",
+    Scope.OPERATE: "dismiss and name jobs of others in the project, read the metrics of the service",
+}
+EVERY_SCOPE = tuple(Scope)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Holder:
+    """A known caller.
+
+    Attributes
+    ----------
+    name : str
+        Stands in the log and beside jobs.
+    project : str
+        Whose jobs and results are seen.
+    scopes : tuple of Scope
+    expires : str or None
+        The instant from which the caller is refused, RFC 3339, UTC; None: none.
+    requests_per_minute : int or None
+        Beyond it requests are answered with 429; None: no limit.
+    unfinished_jobs : int or None
+        Jobs that may wait or run at the same time; None: no limit but the queue's.
+    highest_priority : int or None
+        That jobs may have, -9 to 9; None: any.
+    max_cost_s : int or None
+        CPU seconds that each job may take; None: no limit.
+    connections : int or None
+        Requests answered at the same time, and bodies under way; None: a share of the server's.
+    streams : int or None
+        Event streams open at the same time; None: no limit but the server's.
+    """
+
+    name: str
+    project: str = COMMON
+    scopes: tuple[Scope, ...] = EVERY_SCOPE
+    expires: str | None = None
+    requests_per_minute: int | None = None
+    unfinished_jobs: int | None = None
+    highest_priority: int | None = None
+    max_cost_s: int | None = None
+    connections: int | None = None
+    streams: int | None = None
+
+    @property
+    def limits(self) -> dict[str, int | None]:
+        """The limits by their names."""
+        return {name: getattr(self, name) for name in LIMITS}
+
+    def ends_within(self, time: timedelta, now: datetime | None = None) -> bool:
+        """Whether the caller's time ends in less than this, or is over."""
+        return self.expires is not None and _instant_of(self.expires) <= (now or datetime.now(UTC)) + time
+
+    @property
+    def expired(self) -> bool:
+        """Whether the caller's time is over."""
+        return self.ends_within(timedelta(0))
+
+
+LIMITS = (
+    "requests_per_minute",
+    "unfinished_jobs",
+    "highest_priority",
+    "max_cost_s",
+    "connections",
+    "streams",
+)
+"""Fields of a holder that are limits."""
+LEAST = {"highest_priority": -9}
+"""Of limits; of others 1."""
+
 
 # Look-up of a presented key: in constant time, from a file that may change while the service runs.
 
@@ -60,7 +175,7 @@ def _record_of(entry: dict[str, Any]) -> AccessKey:
     if key.project != COMMON and PROJECT.fullmatch(key.project) is None:
         raise ValueError(entry)
     if key.expires is not None:
-        read(key.expires)
+        _instant_of(key.expires)
     for name, limit in key.limits.items():
         if limit is not None and (not isinstance(limit, int) or limit < LEAST.get(name, 1)):
             raise ValueError(entry)
@@ -120,7 +235,7 @@ class KeyFile:
             advice = f"Renew it with: loa keys rotate {name}; or take it back first: loa keys remove {name}"
             raise BadInput.of("name", name, "new", advice)
         holder = Holder(name=name, **_chosen(rights))
-        secret, key = _made(holder, None if expires is None else duration("expires", expires))
+        secret, key = _made(holder, None if expires is None else _duration("expires", expires))
         self._write((*known, key))
         return secret
 
@@ -145,10 +260,10 @@ class KeyFile:
         if not old:
             raise _unknown(name, known)
         last, instant = old[-1], datetime.now(UTC)
-        life = _life(last) if expires is None else duration("expires", expires)
+        life = _life(last) if expires is None else _duration("expires", expires)
         holder = Holder(**{field.name: getattr(last, field.name) for field in fields(Holder)})
         secret, key = _made(holder, life)
-        rest = timedelta(0) if overlap == "0h" else duration("overlap", overlap)
+        rest = timedelta(0) if overlap == "0h" else _duration("overlap", overlap)
         others = (entry for entry in known if entry.name != name)
         self._write((*others, *_ending(old, instant, rest), key))
         return secret
@@ -188,31 +303,28 @@ class KeyFile:
 
 
 def _digest_of(secret: str) -> str:
-    """Return what is kept of a key, hexadecimal."""
     return hashlib.sha256(secret.encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def _made(holder: Holder, life: timedelta | None) -> tuple[str, AccessKey]:
-    """Return a new key and its record."""
     secret, instant = PREFIX + secrets.token_urlsafe(32), datetime.now(UTC)
-    expires = None if life is None else written(instant + life)
+    expires = None if life is None else _written(instant + life)
     facts = vars(holder) | {"expires": expires}
-    return secret, AccessKey(**facts, sha256=_digest_of(secret), created=written(instant))
+    return secret, AccessKey(**facts, sha256=_digest_of(secret), created=_written(instant))
 
 
 def _ending(keys: Iterable[AccessKey], instant: datetime, rest: timedelta) -> tuple[AccessKey, ...]:
     """Return keys that end after the time that is left them, or before if they do so anyway."""
     left = [key for key in keys if rest and not key.expired]
-    end = written(instant + rest)
+    end = _written(instant + rest)
     return tuple(key if key.ends_within(rest, instant) else replace(key, expires=end) for key in left)
 
 
 def _life(key: AccessKey) -> timedelta | None:
-    return None if key.expires is None else read(key.expires) - read(key.created)
+    return None if key.expires is None else _instant_of(key.expires) - _instant_of(key.created)
 
 
 def _unknown(name: str, known: Iterable[AccessKey]) -> BadInput:
-    """Return the error of a name that no key has."""
     names = ", ".join(dict.fromkeys(key.name for key in known)) or "none"
     return BadInput.of("name", name, f"one of the keys: {names}", "loa keys list shows them.")
 
@@ -234,7 +346,6 @@ def _chosen(rights: dict[str, Any]) -> dict[str, Any]:
 
 
 def _scopes(names: Iterable[str]) -> tuple[Scope, ...]:
-    """Return scopes by their names; raises `BadInput`."""
     names = tuple(names)
     unknown = sorted(set(names) - set(Scope))
     if unknown or not names:
@@ -292,7 +403,6 @@ class Keyring:
             logger.warning("key ends soon", key=key.name, expires=key.expires)
 
     def _current(self) -> tuple[AccessKey, ...]:
-        """Return the keys as the file has them now."""
         stamp = self._stamp_now()
         if stamp != self._stamp:
             with self._lock:

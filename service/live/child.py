@@ -54,7 +54,6 @@ def _listen(orders: queue.SimpleQueue[bytes]) -> None:
 
 
 def _answer(order: LiveOrder, channel: BinaryIO) -> bool:
-    """Answer one order; say whether there is memory for another."""
     head, body = worked(order)
     channel.write(head.line() + body)
     channel.flush()

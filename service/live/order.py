@@ -11,6 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from lineofaction.gearbox.problems import ServiceError, last_part
+
 Json = dict[str, Any]
 LiveWork = Callable[..., Json]
 
@@ -64,3 +66,28 @@ class AnswerHead:
     def from_line(cls, line: bytes) -> AnswerHead:
         """Read the line of a head."""
         return cls(**json.loads(line))
+
+
+# An error of another process, reported as that process reported it.
+
+
+class _PropagatedError(ServiceError):
+    """A problem as the live worker found it."""
+
+    def __init__(self, facts: dict[str, Any]) -> None:
+        self._facts = facts
+        super().__init__(str(facts["detail"]))
+
+    @property
+    def kind(self) -> str:
+        """Last part of the type of the problem that came."""
+        return last_part(str(self._facts["type"]))
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the problem details as they came."""
+        return self._facts
+
+
+def propagated(body: bytes) -> _PropagatedError:
+    """Return the error in the problem details `body`."""
+    return _PropagatedError(json.loads(body))

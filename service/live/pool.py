@@ -25,10 +25,9 @@ import structlog
 
 from host import child_environment, kill_group
 from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, Superseded, Unexpected
-from service.live.order import AnswerHead, LiveOrder
+from service.live.order import AnswerHead, LiveOrder, propagated
 from service.own_folder import own_folder, remove_left
 from service.settings import LEAST_MEMORY_MB, Settings
-from service.worker.propagated import propagated
 from service.worker.usage import machine_memory_mb
 
 # The live worker seen from the service: start, ask, end.
@@ -37,7 +36,7 @@ from service.worker.usage import machine_memory_mb
 _PIECE = 1 << 16
 
 
-class WorkerGone(Exception):
+class _WorkerGone(Exception):
     """The process ended, or did not answer in time."""
 
     def __init__(self, *, late: bool = False) -> None:
@@ -45,7 +44,7 @@ class WorkerGone(Exception):
         self.late = late
 
 
-class LiveWorker:
+class _LiveWorker:
     """One child process that answers one order after the other, leader of a session of its own."""
 
     def __init__(self, log: Path, memory_limit_mb: int, home: Path) -> None:
@@ -87,7 +86,7 @@ class LiveWorker:
 
         Raises
         ------
-        WorkerGone
+        _WorkerGone
             The process ended or took longer than `limit_s`; it is of no more use.
         """
         end = time.monotonic() + limit_s
@@ -96,7 +95,7 @@ class LiveWorker:
             self._process.stdin.write(order.line())
             self._process.stdin.flush()
         except BrokenPipeError:
-            raise WorkerGone from None
+            raise _WorkerGone from None
         while b"\n" not in self._rest:
             self._rest += self._piece(end)
         line, _, self._rest = self._rest.partition(b"\n")
@@ -110,13 +109,12 @@ class LiveWorker:
         return head.kind, body
 
     def _piece(self, end: float) -> bytes:
-        """Return what comes next before the instant `end`."""
         ready, _, _ = select.select([self._channel], [], [], max(end - time.monotonic(), 0.0))
         if not ready:
-            raise WorkerGone(late=True)
+            raise _WorkerGone(late=True)
         piece = os.read(self._channel, _PIECE)
         if not piece:
-            raise WorkerGone
+            raise _WorkerGone
         return piece
 
     def end_group(self) -> None:
@@ -182,7 +180,7 @@ class LivePool:
         self._waiting: OrderedDict[str, _Question] = OrderedDict()
         self._changed = threading.Condition()
         self._thread: threading.Thread | None = None
-        self._worker: LiveWorker | None = None
+        self._worker: _LiveWorker | None = None
         self._stopping = False
         remove_left(self._home)
 
@@ -231,7 +229,6 @@ class LivePool:
             thread.join()
 
     def _loop(self) -> None:
-        """Answer one question after the other until stopped or idle."""
         while (question := self._next()) is not None:
             if question.future.set_running_or_notify_cancel():
                 self._settle(question)
@@ -247,18 +244,16 @@ class LivePool:
             return None
 
     def _settle(self, question: _Question) -> None:
-        """Give a question its answer or its error."""
         try:
             question.future.set_result(self._answer(question.order))
-        except WorkerGone as gone:
+        except _WorkerGone as gone:
             logger.warning("live worker gone", late=gone.late, entry=question.order.entry)
             self._end_worker()
             question.future.set_exception(LiveUnavailable(self._told(gone)))
         except Exception as error:  # noqa: BLE001 (whoever asked is told)
             question.future.set_exception(error)
 
-    def _told(self, gone: WorkerGone) -> str:
-        """Say why there is no answer."""
+    def _told(self, gone: _WorkerGone) -> str:
         if self._stopping:
             return "The service stops."
         if gone.late:
@@ -267,7 +262,6 @@ class LivePool:
         return "The live worker ended. Repeat the request."
 
     def _answer(self, order: LiveOrder) -> bytes:
-        """Ask the worker, starting it if there is none."""
         kind, body = self._asked(order)
         if kind == "problem":
             raise propagated(body)
@@ -286,13 +280,13 @@ class LivePool:
         worker = self._ready()
         try:
             return worker.ask(order, self._limits.answer_s)
-        except WorkerGone as gone:
+        except _WorkerGone as gone:
             if gone.late or not worker.has_answered:
                 raise
         self._end_worker()
         return self._ready().ask(order, self._limits.answer_s)
 
-    def _ready(self) -> LiveWorker:
+    def _ready(self) -> _LiveWorker:
         with self._changed:
             if self._stopping:
                 raise LiveUnavailable("The service stops.")
@@ -300,12 +294,11 @@ class LivePool:
                 self._end_worker()
             if self._worker is None:
                 self._log.parent.mkdir(parents=True, exist_ok=True)
-                self._worker = LiveWorker(self._log, self._memory_limit_mb, self._home)
+                self._worker = _LiveWorker(self._log, self._memory_limit_mb, self._home)
                 logger.info("live worker started", pid=self._worker.pid)
             return self._worker
 
     def _end_worker(self) -> None:
-        """End the worker, if there is one."""
         with self._changed:
             worker, self._worker = self._worker, None
             if worker is not None:
@@ -313,7 +306,6 @@ class LivePool:
 
 
 def _refuse(question: _Question, error: Exception) -> None:
-    """Tell whoever waits that there will be no answer."""
     if question.future.set_running_or_notify_cancel():
         question.future.set_exception(error)
 

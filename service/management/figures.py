@@ -1,27 +1,40 @@
-"""Metrics of a service: of its database, and of one process with its program, workers and caches."""
+"""Metrics of a service: of its database, of one process with its program, workers and caches, of requests."""
 
 from __future__ import annotations
 
+import os
 import platform
 import shutil
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
-from prometheus_client import CollectorRegistry, Info, Metric, ProcessCollector, disable_created_metrics
+from prometheus_client import (
+    CollectorRegistry,
+    Counter,
+    Gauge,
+    Histogram,
+    Info,
+    Metric,
+    ProcessCollector,
+    disable_created_metrics,
+    generate_latest,
+)
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily
+from prometheus_client.multiprocess import MultiProcessCollector
 from prometheus_client.registry import Collector
 from sqlalchemy import Engine
 
 from fe_contact.cache_reads import CacheReads
 from fe_contact.solver_version import SOLVER_VERSION
-from lineofaction.gearbox.problems import DatabaseUnavailable
+from lineofaction.gearbox.problems import DatabaseUnavailable, ServiceError, last_part
 from service.queue.scheduler import Scheduler
 from service.queue.workload import Workload, WorkloadReader
 from service.settings import Settings
 from service.store import ResultStore
+from service.store.deployment import WriteCheck
 from service.store.migrations import REVISIONS
-from service.store.write_check import WriteCheck
 from service.version import solver_version
 from service.worker.cluster import RemoteWork
 
@@ -32,7 +45,7 @@ _STATES = ("accepted", "running", "successful", "failed", "dismissed")
 _ENDED = ["process", "outcome"]
 
 
-class DatabaseFigures(Collector):
+class _DatabaseFigures(Collector):
     """Metrics of the database, read when requested; without one, that it is gone."""
 
     def __init__(self, workload: WorkloadReader) -> None:
@@ -54,7 +67,7 @@ class DatabaseFigures(Collector):
         yield from _results(load)
 
 
-class WriteFigures(Collector):
+class _WriteFigures(Collector):
     """Metrics of writing, tried when requested."""
 
     def __init__(self, writes: WriteCheck) -> None:
@@ -71,7 +84,6 @@ class WriteFigures(Collector):
 
 
 def _queue(load: Workload) -> Iterable[Metric]:
-    """Return what waits, runs and has ended."""
     states = GaugeMetricFamily("loa_computations", "Computations by state", labels=["state"])
     for state in _STATES:
         states.add_metric([state], load.states.get(state, 0))
@@ -86,7 +98,6 @@ def _queue(load: Workload) -> Iterable[Metric]:
 
 
 def _ended(load: Workload) -> Iterable[Metric]:
-    """Return how long computations took, and in how many attempts."""
     text = "Computations that ended, from their first start"
     taken = HistogramMetricFamily("loa_computation_seconds", text, labels=_ENDED)
     attempts = CounterMetricFamily(
@@ -100,7 +111,6 @@ def _ended(load: Workload) -> Iterable[Metric]:
 
 
 def _results(load: Workload) -> Iterable[Metric]:
-    """Return what is stored."""
     number = GaugeMetricFamily("loa_results", "Results in the store", labels=["kind"])
     size = GaugeMetricFamily("loa_result_bytes", "Bytes of results in the store", labels=["kind"])
     for kind, count, total in load.results:
@@ -113,7 +123,6 @@ def _results(load: Workload) -> Iterable[Metric]:
 
 
 def _build_info() -> Info:
-    """Return the versions of what runs."""
     info = Info("loa_build", "Versions of the program, its interpreter, solver and tables", registry=None)
     info.info(
         {
@@ -126,7 +135,7 @@ def _build_info() -> Info:
     return info
 
 
-class SchedulerFigures(Collector):
+class _SchedulerFigures(Collector):
     """The workers of a scheduler now."""
 
     def __init__(self, scheduler: Scheduler, most_workers: int) -> None:
@@ -146,7 +155,7 @@ class SchedulerFigures(Collector):
             yield GaugeMetricFamily(name, text, value=float(value))
 
 
-class SpaceFigures(Collector):
+class _SpaceFigures(Collector):
     """The file system of the data directory: workspaces, caches, and results that have no other place."""
 
     def __init__(self, data_directory: Path) -> None:
@@ -160,7 +169,7 @@ class SpaceFigures(Collector):
             yield GaugeMetricFamily("loa_data_size_bytes", "Size of its file system", space.total)
 
 
-class StoreFigures(Collector):
+class _StoreFigures(Collector):
     """What this process looked for in the store."""
 
     def __init__(self, store: ResultStore) -> None:
@@ -174,7 +183,6 @@ class StoreFigures(Collector):
 
 
 def _reads(name: str, text: str, reads: CacheReads) -> CounterMetricFamily:
-    """Return hits and misses."""
     family = CounterMetricFamily(name, text, labels=["outcome"])
     family.add_metric(["hit"], reads.hits)
     family.add_metric(["miss"], reads.misses)
@@ -196,11 +204,87 @@ def process_registry(
     registry = CollectorRegistry()
     ProcessCollector(registry=registry)
     registry.register(_build_info())
-    registry.register(DatabaseFigures(WorkloadReader(engine)))
-    registry.register(WriteFigures(writes))
-    registry.register(StoreFigures(store))
-    registry.register(SpaceFigures(settings.data_directory))
+    registry.register(_DatabaseFigures(WorkloadReader(engine)))
+    registry.register(_WriteFigures(writes))
+    registry.register(_StoreFigures(store))
+    registry.register(_SpaceFigures(settings.data_directory))
     if isinstance(scheduler, Scheduler):
-        registry.register(SchedulerFigures(scheduler, settings.workers))
+        registry.register(_SchedulerFigures(scheduler, settings.workers))
         registry.register(scheduler.figures)
     return registry
+
+
+# Metrics of the requests that this process answers.
+
+
+_METHODS = frozenset(("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "CONNECT"))
+"""Of RFC 9110 and RFC 5789; a caller may send any word."""
+
+
+class Metrics:
+    """Metrics of one app.
+
+    Parameters
+    ----------
+    process : CollectorRegistry
+        With the metrics of its process. Those of requests are of the process, or, where several serve on one
+        socket, the sums over all of them.
+    """
+
+    def __init__(self, process: CollectorRegistry) -> None:
+        self._process, self._registry = process, CollectorRegistry()
+        self._answered = self._registry
+        if "PROMETHEUS_MULTIPROC_DIR" in os.environ:  # see `lineofaction.cli.processes`
+            self._answered = CollectorRegistry()
+            MultiProcessCollector(self._answered)  # type: ignore[no-untyped-call]
+        labels = ["method", "route", "status"]
+        self._requests = Counter("loa_requests", "Requests answered", labels, registry=self._registry)
+        text = "Time to answer, event streams left out"
+        self._seconds = Histogram("loa_request_seconds", text, labels, registry=self._registry)
+        self._problems = Counter(
+            "loa_problems", "Requests answered with a problem", ["problem"], registry=self._registry
+        )
+        for kind in sorted(_kinds(ServiceError)):
+            self._problems.labels(kind)  # rates count from 0, not from the first time
+        sums: dict[str, Any] = {"registry": self._registry, "multiprocess_mode": "livesum"}
+        self._open = Gauge("loa_event_streams", "Open event streams", ["route"], **sums)
+        self._events = Counter("loa_events", "Events sent", ["route"], registry=self._registry)
+        self._connections = Gauge("loa_connections", "Open HTTP connections", **sums)
+        self._dropped = Counter(
+            "loa_dropped_connections", "Idle connections closed to admit others", registry=self._registry
+        )
+
+    def observe(self, method: str, route: str, status: int, seconds: float | None) -> None:
+        """Note one answered request; None: it was a stream, which lasts as long as its reader likes."""
+        labels = (method if method in _METHODS else "other", route, str(status))
+        self._requests.labels(*labels).inc()
+        if seconds is not None:
+            self._seconds.labels(*labels).observe(seconds)
+
+    def refused(self, problem: str) -> None:
+        """Note the kind of problem of an answer."""
+        self._problems.labels(problem).inc()
+
+    def streams(self, route: str, change: int) -> None:
+        """Note an event stream that opened (1) or ended (-1)."""
+        self._open.labels(route).inc(change)
+
+    def sent(self, route: str, events: int) -> None:
+        """Note events of a stream."""
+        self._events.labels(route).inc(events)
+
+    def connected(self, change: int) -> None:
+        """Note a connection that was made (1) or lost (-1)."""
+        self._connections.inc(change)
+
+    def dropped(self) -> None:
+        """Note an idle connection that made room for another."""
+        self._dropped.inc()
+
+    def text(self) -> bytes:
+        """Return all figures in the text exposition format."""
+        return generate_latest(self._answered) + generate_latest(self._process)
+
+
+def _kinds(problem: type[ServiceError]) -> set[str]:
+    return {last_part(problem.type)}.union(*(_kinds(below) for below in problem.__subclasses__()))

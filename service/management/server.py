@@ -1,15 +1,17 @@
-"""The management port: health, readiness and metrics of one process, without a key.
+"""Whether a process is alive and can work; the management port: health, readiness, metrics, without a key.
 
-It answers from threads of its own. So it is the same for a program with an event loop and one without, and it
-still answers when the loop of requests is stuck, which is what health is to tell.
+The port answers from threads of its own. So it is the same for a program with an event loop and one without,
+and it still answers when the loop of requests is stuck, which is what health is to tell.
 """
 
 from __future__ import annotations
 
+import asyncio
 import json
 import socket
 import threading
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
 from socketserver import TCPServer, ThreadingMixIn
@@ -18,7 +20,74 @@ from typing import Any, NamedTuple, Self
 from urllib.parse import urlsplit
 
 from lineofaction.gearbox.problems import BadInput
-from service.management.vitals import Vitals
+from service.queue.scheduler import Scheduler
+from service.store.deployment import WriteCheck
+from service.worker.cluster import RemoteWork
+
+TURN_WITHIN_S = 120.0
+"""A scheduler whose turn takes longer is stuck: a turn may wait for locks of the database and for an object
+store, each for some 10 s."""
+_ANSWER_WITHIN_S = 0.8
+"""Supervisors wait for a second."""
+
+
+@dataclass
+class EventLoop:
+    """The loop that answers requests, seen from another thread.
+
+    Attributes
+    ----------
+    loop : asyncio.AbstractEventLoop or None
+        None before the program serves.
+    """
+
+    loop: asyncio.AbstractEventLoop | None = None
+
+    def fault(self) -> str:
+        """Return what is wrong with it, empty if it turns or has not begun."""
+        turned = threading.Event()
+        if self.loop is not None:
+            self.loop.call_soon_threadsafe(turned.set)
+            if not turned.wait(_ANSWER_WITHIN_S):
+                return f"The loop of requests has not turned for {_ANSWER_WITHIN_S:g} s."
+        return ""
+
+
+def _sound() -> str:
+    return ""
+
+
+@dataclass(frozen=True)
+class Vitals:
+    """The signs of one process. A fault is a sentence; empty: there is none.
+
+    Attributes
+    ----------
+    scheduler : Scheduler or RemoteWork
+    writes : WriteCheck
+    serving : callable
+        Returns the fault of what else it does: of the loop that answers requests.
+    """
+
+    scheduler: Scheduler | RemoteWork
+    writes: WriteCheck
+    serving: Callable[[], str] = field(default=_sound)
+
+    def fault_of_health(self) -> str:
+        """Return why the process is to be started again."""
+        if not self.scheduler.alive:
+            return "The scheduler does not run. Restart the service."
+        if self.scheduler.turn_age_s > TURN_WITHIN_S:
+            return f"The scheduler has not turned for {TURN_WITHIN_S:g} s. Restart the service."
+        return self.serving()
+
+    def fault_of_readiness(self) -> str:
+        """Return why it cannot work now: what cannot be written, or its own health."""
+        return self.writes.outcome().fault or self.fault_of_health()
+
+
+# The management port.
+
 
 METRICS_TYPE = "text/plain; version=0.0.4; charset=utf-8"
 _MOST_REQUESTS = 16
@@ -129,7 +198,6 @@ class _Handler(BaseHTTPRequestHandler):
         self._answer(with_body=False)
 
     def _answer(self, *, with_body: bool) -> None:
-        """Answer what the path names."""
         known = self.server.paths.get(urlsplit(self.path).path)
         status, media_type, body = _absent() if known is None else known()
         self.send_response(status)
@@ -149,14 +217,12 @@ class _Handler(BaseHTTPRequestHandler):
 
 
 def _told(fault: str, well: str) -> _Answer:
-    """Return 200, or 503 with the fault."""
     if fault:
         return _document(HTTPStatus.SERVICE_UNAVAILABLE, {"status": f"not {well}", "detail": fault})
     return _document(HTTPStatus.OK, {"status": well})
 
 
 def _absent() -> _Answer:
-    """Return 404."""
     return _document(HTTPStatus.NOT_FOUND, {"detail": "Here are /health, /ready and /metrics."})
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 import time
+import uuid
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
@@ -12,16 +14,22 @@ import structlog
 from prometheus_client import Counter, Histogram, Metric
 from prometheus_client.registry import Collector
 
+from bounds import engineering
+from host import family_cpu_seconds
 from lineofaction.gearbox.stages import PacedFraction
 from model_studies.progress import stage_name
-from service.queue.claims import Claim
+from service.queue.claims import Claim, Claims
+from service.queue.terms import LOWER_COST
 from service.settings import LEAST_MEMORY_MB, Settings
+from service.store import ResultStore
 from service.tracing.tracer import Fact, Span, trace_facts, tracer
-from service.worker.child_process import Launch
-from service.worker.order import USABLE, WorkOrder
+from service.worker.forks import Launch
+from service.worker.order import USABLE, Outcome, WorkOrder
 from service.worker.process import Process
-from service.worker.usage import BYTES_PER_MB, Usage, machine_memory_mb
+from service.worker.usage import BYTES_PER_MB, Usage, machine_memory_mb, no_space
 from service.worker.worker import Step, Worker
+
+logger = structlog.get_logger(__name__)
 
 # What the workers of one scheduler did: counted by the process they worked for.
 
@@ -89,7 +97,7 @@ _MOST_STAGES = 200
 """Spans of one attempt; what is reported after them belongs to the last."""
 
 
-class AttemptTrace:
+class _AttemptTrace:
     """Spans that end as the attempt goes on.
 
     Parameters
@@ -115,7 +123,6 @@ class AttemptTrace:
         self._stage = self._begun(_START, launched, 0.0)
 
     def _begun(self, name: str, at_s: float, cpu_s: float) -> Span:
-        """Begin a stage."""
         self._name, self._cpu_s, self._left = name, cpu_s, self._left - 1
         return tracer().begin(name, self._attempt.traceparent, at_s, {})
 
@@ -139,9 +146,6 @@ class AttemptTrace:
         self._attempt.end(now, facts | {"loa.cpu_s": usage.cpu_s, "loa.peak_mb": usage.peak_mb}, fault=fault)
 
 
-logger = structlog.get_logger(__name__)
-
-
 @dataclass(frozen=True)
 class Attempt:
     """A claim and the process that works on it.
@@ -156,7 +160,7 @@ class Attempt:
         What the worker writes to its standard error.
     figures : WorkerFigures
         Where its start and end are counted.
-    trace : AttemptTrace
+    trace : _AttemptTrace
         Its spans.
     fraction : PacedFraction
         Of the work, where it does not predict its cost.
@@ -167,7 +171,7 @@ class Attempt:
     workspace: Path
     log: Path
     figures: WorkerFigures
-    trace: AttemptTrace
+    trace: _AttemptTrace
     fraction: PacedFraction
 
     def note_end(self, how: str) -> None:
@@ -186,6 +190,21 @@ class Attempt:
             **trace_facts(self.claim.traceparent),
         )
 
+    def too_costly(self, claims: Claims) -> str | None:
+        """Return why it has to end, None as long as it is within the limit of its computation.
+
+        The limit is read again before it ends the work: a job that shares it may have extended it.
+        """
+        if self.claim.max_cost_s is None:
+            return None
+        spent = family_cpu_seconds(self.worker.pid)
+        if spent is None or spent <= self.claim.max_cost_s:
+            return None
+        limit = claims.max_cost_s(self.claim)
+        if limit is None or spent <= limit:
+            return None
+        return f"The limit of {engineering(limit, 4)} CPU s (max_cost_s) was reached. {LOWER_COST}"
+
 
 def begun(
     settings: Settings, process: Process, claim: Claim, launch: Launch, figures: WorkerFigures
@@ -200,7 +219,7 @@ def begun(
     facts = {"computation": claim.id, "process": claim.process, "key": claim.key}
     facts |= trace_facts(claim.traceparent)
     logger.info("worker started", **facts, pid=worker.pid, attempt=claim.attempts)
-    trace = AttemptTrace(claim, worker.pid, launched)
+    trace = _AttemptTrace(claim, worker.pid, launched)
     return Attempt(claim, worker, workspace, log, figures, trace, PacedFraction(process.stages))
 
 
@@ -230,3 +249,84 @@ def _memory_mb(settings: Settings) -> int:
     if settings.memory_limit_mb is not None:
         return settings.memory_limit_mb
     return max(LEAST_MEMORY_MB, machine_memory_mb() // settings.workers)
+
+
+# The end of an attempt: its products are stored, or the table states why there are none.
+
+
+@dataclass(frozen=True)
+class Ended:
+    """An attempt that has ended: its claim, how it ended, its workspace and the log of its worker."""
+
+    claim: Claim
+    outcome: Outcome
+    workspace: Path
+    log: Path
+
+
+@dataclass(frozen=True)
+class Settlement:
+    """Settles attempts; each step may be repeated until the database and the store take it.
+
+    Attributes
+    ----------
+    claims : Claims
+    store : ResultStore
+    most_attempts : int
+        At a computation.
+    """
+
+    claims: Claims
+    store: ResultStore
+    most_attempts: int
+
+    def settle(self, ended: Ended) -> None:
+        """Store what was made, or note why there is nothing; then remove the workspace.
+
+        The workspace of a worker that died stays for the next attempt, and that of one whose end cannot be
+        noted stays for the next call.
+        """
+        outcome = ended.outcome
+        span = tracer().begin("settle", ended.claim.traceparent, time.time(), {})
+        try:
+            self._note(ended)
+        finally:
+            span.end(time.time(), {"loa.computation": ended.claim.id})
+        if not outcome.died or ended.claim.attempts >= self.most_attempts:
+            shutil.rmtree(ended.workspace, ignore_errors=True)
+
+    def _note(self, ended: Ended) -> None:
+        claim, outcome = ended.claim, ended.outcome
+        if outcome.died:
+            self.again_or_fail(claim, outcome.failure)
+        elif outcome.unexpected:
+            reference = uuid.uuid4().hex[:12]
+            logger.error("worker failed", computation=claim.id, reference=reference, log=str(ended.log))
+            text = f"An unexpected failure occurred. The log has the details under {reference}."
+            self.claims.fail(claim, text, reference=reference)
+        elif outcome.failure:
+            self.claims.fail(claim, outcome.failure, outcome.faults)
+        else:
+            self._keep(claim, outcome)
+
+    def _keep(self, claim: Claim, outcome: Outcome) -> None:
+        """Store what was made; a file system that does not take it will not do so at a repetition either."""
+        try:
+            for product in outcome.products:
+                self.store.within(claim.project).put(product.key, product.kind, product.file)
+        except OSError as error:
+            reference = uuid.uuid4().hex[:12]
+            logger.exception("result could not be stored", computation=claim.id, reference=reference)
+            text = f"The result could not be stored. The log has the details under {reference}."
+            self.claims.fail(claim, no_space(error) or text, reference=reference)
+        else:
+            self.claims.succeed(claim)
+
+    def again_or_fail(self, claim: Claim, reason: str) -> None:
+        """Give work that died another attempt, as long as there are any."""
+        most = self.most_attempts
+        if claim.attempts < most:
+            text = f"{reason} Waits for attempt {claim.attempts + 1} of {most}."
+            self.claims.put_back(claim, text, counted=True)
+        else:
+            self.claims.fail(claim, f"{reason} That was attempt {claim.attempts} of {most}.")

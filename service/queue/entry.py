@@ -1,19 +1,26 @@
-"""Entries in the job table: who may make one, and which computation it shares."""
+"""Entries in the job table: who may make one, which computation it shares; one job, or a batch as a whole."""
 
 from __future__ import annotations
 
 import json
 import uuid
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, func, insert, select
+from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select
 
 from lineofaction.gearbox.problems import BadInput, QueueFull
-from service.project import COMMON
+from service.access.keyring import Holder
+from service.project import COMMON, address_of
+from service.queue.differences import NOT_COMPARED, Differences
 from service.queue.tables import computations, jobs
-from service.queue.terms import Caller, Terms
-from service.store import now
+from service.queue.terms import ANYBODY, AS_IT_IS, NO_LABEL, USUAL, Terms, extended, raised
+from service.queue.workload import FOR_EVER, HELD, batch_steps
+from service.store import now, retried, writing
 from service.tracing.tracer import TRACEPARENT
+from service.version import solver_version
 
 LIVE = ("accepted", "running")
 """States of work that goes on."""
@@ -21,13 +28,207 @@ _NAMES = uuid.UUID("4f5b2a0e-6c0f-4b7e-9a53-0d8f3a1c7e62")
 """Name space of the identifiers of jobs that their callers name."""
 
 
-def identifier_of(project: str, caller: Caller, process: str, name: str) -> uuid.UUID:
+@dataclass(frozen=True)
+class BatchCase:
+    """The work of a job before it is entered.
+
+    Attributes
+    ----------
+    key, inputs
+        What to do; its name.
+    stored : bool
+        Whether the store was seen to have the result.
+    cost : float
+        What it is predicted to cost beside the others of a batch.
+    """
+
+    key: str
+    inputs: dict[str, Any]
+    stored: bool = False
+    cost: float = 1.0
+
+
+class Entry:
+    """Enters jobs of one caller, alone or in batches. Equal work that waits, runs or is stored is shared.
+
+    Parameters
+    ----------
+    engine : Engine
+    queue_limit : int
+        Computations that may wait.
+    project : str
+        In which the jobs are.
+    caller : Holder
+    terms : Terms
+        Of a batch the label is that of the whole, the rest holds for its jobs.
+    """
+
+    def __init__(
+        self, engine: Engine, queue_limit: int, project: str, caller: Holder = ANYBODY, terms: Terms = USUAL
+    ) -> None:
+        self._engine, self._queue_limit = engine, queue_limit
+        self._project, self._caller, self._terms = project, caller, terms
+
+    def job(self, process: str, work: BatchCase, looked: str, name: str | None = None) -> str:
+        """Enter a job; return its identifier, or that of the equal one that answers.
+
+        Parameters and errors as of `batch`.
+        """
+        return self._job(self._identifier(process, name), process, self._addressed(work), looked)
+
+    def batch(self, process: str, cases: Sequence[BatchCase], looked: str, name: str | None = None) -> str:
+        """Enter a batch with its jobs, all or none; return its identifier.
+
+        Parameters
+        ----------
+        process : str
+        cases : sequence of BatchCase
+        looked : str
+            When the store was asked for results: work that has ended since is shared too.
+        name : str, optional
+            The caller's name for this request (``Idempotency-Key``): sent again, it is the same.
+
+        Raises
+        ------
+        BadInput
+            The name stands for other work, or there are more new cases than may ever wait.
+        QueueFull
+            There is no room for all of them now, or the caller has as many unfinished jobs as it may.
+        """
+        identifier = self._identifier(f"batch of {process}", name)
+        self._batch(identifier, process, [self._addressed(case) for case in cases], looked)
+        return identifier
+
+    def _identifier(self, what: str, name: str | None) -> str:
+        return str(uuid.uuid4() if name is None else _identifier_of(self._project, self._caller, what, name))
+
+    def _addressed(self, work: BatchCase) -> BatchCase:
+        return replace(work, key=address_of(self._project, work.key))
+
+    @retried
+    def _job(self, identifier: str, process: str, work: BatchCase, looked: str) -> str:
+        """Enter a job of this identifier, unless it is in already or an equal one answers; return which."""
+        with writing(self._engine, in_turn=True) as connection:
+            if _is_entered(connection, jobs.c.id == identifier, [work]):
+                return identifier
+            ended, terms = _ended_since(work, looked), self._terms
+            if terms.reuse:
+                equal = _equal_job(connection, work.key, ended, self._caller, terms.stated)
+                if equal is not None:
+                    return equal
+            if not work.stored:
+                _refuse_if_busy(connection, self._caller)
+            computation = _shared_computation(connection, work.key, ended)
+            if computation is None and not work.stored:
+                _refuse_if_full(connection, self._queue_limit)
+            row = {"id": identifier, "computation_id": self._joined(connection, process, work, computation)}
+            row |= {"created": now(), "caller": self._caller.name, "project": self._project}
+            connection.execute(insert(jobs).values(**row, **terms.columns()))
+        return identifier
+
+    def _joined(self, connection: Connection, process: str, work: BatchCase, shared: str | None) -> str:
+        """Return the computation of a job: the shared one, to these terms, or a new one."""
+        if shared is None:
+            return _enter_computation(connection, process, work, self._terms)
+        connection.execute(raised(shared, self._terms.priority))
+        connection.execute(extended(shared, self._terms.max_cost_s))
+        return shared
+
+    @retried
+    def _batch(self, identifier: str, process: str, cases: Sequence[BatchCase], looked: str) -> None:
+        with writing(self._engine, in_turn=True) as connection:
+            if _is_entered(connection, jobs.c.parent == identifier, cases):
+                return
+            shared = {
+                case.key: _shared_computation(connection, case.key, _ended_since(case, looked))
+                for case in cases
+            }
+            self._refuse_beyond_limits(connection, cases, shared)
+            self._enter(connection, identifier, process, cases, shared)
+            for step in batch_steps(connection):
+                connection.execute(step)
+
+    def _refuse_beyond_limits(
+        self, connection: Connection, cases: Sequence[BatchCase], shared: dict[str, str | None]
+    ) -> None:
+        """Raise if there is no room for the batch, now or ever."""
+        waiting = {case.key for case in cases if shared[case.key] is None and not case.stored}
+        unfinished = sum(not case.stored for case in cases)
+        _refuse_more(len(waiting), self._queue_limit, "new cases: so many may wait (LOA_QUEUE_LIMIT)")
+        most = self._caller.unfinished_jobs
+        if most is not None:
+            _refuse_more(unfinished, most, "unfinished jobs of this key")
+        if unfinished:
+            _refuse_if_busy(connection, self._caller, unfinished)
+        if waiting:
+            _refuse_if_full(connection, self._queue_limit, len(waiting))
+
+    def _enter(
+        self,
+        connection: Connection,
+        identifier: str,
+        process: str,
+        cases: Sequence[BatchCase],
+        shared: dict[str, str | None],
+    ) -> None:
+        """Enter the batch and its jobs; the first of equal ones bears their cost."""
+        common = {"created": now(), "caller": self._caller.name, "delivery": str(AS_IT_IS)}
+        common |= {"project": self._project, "differences": str(NOT_COMPARED), **NO_LABEL.columns()}
+        rows = [
+            _entered_batch(connection, identifier, process, len(cases)) | common | self._terms.label.columns()
+        ]
+        names, counted = [str(uuid.uuid4()) for _ in cases], set[str]()
+        for place, (case, apart) in enumerate(zip(cases, _differences(cases, names), strict=True)):
+            if case.key not in counted:
+                shared[case.key] = self._joined(connection, process, case, shared[case.key])
+            weight = 0.0 if case.stored or case.key in counted else case.cost
+            counted.add(case.key)
+            row: dict[str, Any] = {"id": names[place], "computation_id": shared[case.key]}
+            row |= {"parent": identifier, "place": place, "children": 0}
+            row |= {"weight": weight, "differences": str(apart)}
+            rows.append(common | row)
+        connection.execute(insert(jobs), rows)
+
+
+def _is_entered(connection: Connection, which: ColumnElement[bool], works: Sequence[BatchCase]) -> bool:
+    """Whether jobs are in already; raises if they are other work than that of this program's name."""
+    known = select(computations.c.key, computations.c.program).join(jobs)
+    entered = connection.execute(known.where(which).order_by(jobs.c.place)).all()
+    if entered and all(row.program == solver_version() for row in entered):  # others name work differently
+        _refuse_unless_same(" ".join(row.key for row in entered), " ".join(work.key for work in works))
+    return entered != []
+
+
+def _entered_batch(connection: Connection, identifier: str, process: str, children: int) -> dict[str, Any]:
+    """Enter what stands for the computation of a batch; return the row of its job."""
+    instant, computation = now(), str(uuid.uuid4())
+    row = {"id": computation, "process": process, "key": f"batch {identifier}", "inputs": json.dumps({})}
+    row |= {"state": "running", "lease": HELD, "message": "", "stage": "jobs"}
+    row |= {"created": instant, "started": instant, "updated": instant}
+    connection.execute(insert(computations).values(**row, leased_until=FOR_EVER))
+    job = {"id": identifier, "computation_id": computation, "parent": None, "place": 0}
+    return job | {"children": children, "weight": 0.0}
+
+
+def _differences(cases: Sequence[BatchCase], names: Sequence[str]) -> Iterator[Differences]:
+    """Yield what sets each job of a batch apart from the one before it."""
+    yield NOT_COMPARED
+    for (before, case), name in zip(pairwise(cases), names, strict=False):
+        yield Differences.between(before.inputs, case.inputs, name)
+
+
+def _refuse_more(number: int, most: int, of_what: str) -> None:
+    if number > most:
+        raise BadInput.of("jobs", f"{number} jobs", f"at most {most} {of_what}", "Split the batch.")
+
+
+def _identifier_of(project: str, caller: Holder, process: str, name: str) -> uuid.UUID:
     """Return the identifier of the job that a caller gives a name; another caller's is another."""
     named = [caller.name, process, name]
     return uuid.uuid5(_NAMES, json.dumps(named if project == COMMON else [project, *named]))
 
 
-def refuse_unless_same(entered: str, key: str) -> None:
+def _refuse_unless_same(entered: str, key: str) -> None:
     """Raise if a name that stands for some work is used for other work."""
     if entered != key:
         raise BadInput.of(
@@ -35,7 +236,7 @@ def refuse_unless_same(entered: str, key: str) -> None:
         )
 
 
-def refuse_if_full(connection: Connection, limit: int, further: int = 1) -> None:
+def _refuse_if_full(connection: Connection, limit: int, further: int = 1) -> None:
     """Raise if more computations wait than the queue may hold with so many `further` ones."""
     count = select(func.count()).select_from(computations).where(computations.c.state == "accepted")
     waiting = connection.execute(count).scalar_one()
@@ -43,7 +244,7 @@ def refuse_if_full(connection: Connection, limit: int, further: int = 1) -> None
         raise QueueFull(f"{waiting} computations wait already. Try again later.")
 
 
-def refuse_if_busy(connection: Connection, caller: Caller, further: int = 1) -> None:
+def _refuse_if_busy(connection: Connection, caller: Holder, further: int = 1) -> None:
     """Raise if a caller has more unfinished jobs than it may with so many `further` ones."""
     if caller.unfinished_jobs is None:
         return
@@ -57,20 +258,20 @@ def refuse_if_busy(connection: Connection, caller: Caller, further: int = 1) -> 
         )
 
 
-def ended_since(key: str, looked: str, stored: bool) -> ColumnElement[bool]:
+def _ended_since(work: BatchCase, looked: str) -> ColumnElement[bool]:
     """Condition of computations that succeeded and whose result is there: all, or those of late."""
-    succeeded = (computations.c.key == key) & (computations.c.state == "successful")
-    return succeeded if stored else succeeded & (computations.c.finished >= looked)
+    succeeded = (computations.c.key == work.key) & (computations.c.state == "successful")
+    return succeeded if work.stored else succeeded & (computations.c.finished >= looked)
 
 
-def shared_computation(connection: Connection, key: str, ended: ColumnElement[bool]) -> str | None:
+def _shared_computation(connection: Connection, key: str, ended: ColumnElement[bool]) -> str | None:
     """Return the computation of `key` that waits, runs or has `ended` with a result."""
     statement = select(computations.c.id).where(_live(key) | ended)
     return connection.execute(statement.order_by(computations.c.created.desc()).limit(1)).scalar()
 
 
-def equal_job(
-    connection: Connection, key: str, ended: ColumnElement[bool], caller: Caller, stated: str
+def _equal_job(
+    connection: Connection, key: str, ended: ColumnElement[bool], caller: Holder, stated: str
 ) -> str | None:
     """Return the caller's newest job of the `stated` inputs that waits, runs or has `ended` with a result."""
     theirs = (jobs.c.caller == caller.name, jobs.c.dismissed.is_(None), jobs.c.stated == stated)
@@ -82,26 +283,24 @@ def _live(key: str) -> ColumnElement[bool]:
     return (computations.c.key == key) & computations.c.state.in_(LIVE)
 
 
-def enter_computation(
-    connection: Connection, process: str, key: str, inputs: dict[str, Any], stored: bool, terms: Terms
-) -> str:
+def _enter_computation(connection: Connection, process: str, work: BatchCase, terms: Terms) -> str:
     """Enter a computation, ended at once if its result is stored."""
     identifier, instant = str(uuid.uuid4()), now()
     row: dict[str, Any] = {
         "id": identifier,
         "process": process,
-        "key": key,
-        "inputs": json.dumps(inputs),
+        "key": work.key,
+        "inputs": json.dumps(work.inputs),
         "priority": terms.priority,
         "max_cost_s": terms.max_cost_s,
-        "state": "successful" if stored else "accepted",
-        "message": "Taken from the store." if stored else "Waits for a worker.",
-        "fraction": 1.0 if stored else 0.0,
+        "state": "successful" if work.stored else "accepted",
+        "message": "Taken from the store." if work.stored else "Waits for a worker.",
+        "fraction": 1.0 if work.stored else 0.0,
         "created": instant,
         "updated": instant,
         "traceparent": TRACEPARENT.get(),
     }
-    if stored:
+    if work.stored:
         row |= {"started": instant, "finished": instant}
     connection.execute(insert(computations).values(**row))
     return identifier

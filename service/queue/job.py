@@ -165,7 +165,7 @@ def job_of(row: Any) -> Job:
     )
 
 
-class Timed(Protocol):
+class _Timed(Protocol):
     """A computation that has begun or ended, RFC 3339."""
 
     @property
@@ -224,7 +224,7 @@ class JobFilter:
         """Whether jobs have to be looked at one by one."""
         return self.shortest_s is not None or self.longest_s is not None
 
-    def lasted(self, job: Timed) -> bool:
+    def lasted(self, job: _Timed) -> bool:
         """Whether the time a job has run is within bounds."""
         if not self.asks_duration:
             return True

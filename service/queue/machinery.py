@@ -13,7 +13,7 @@ from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
 from service.settings import Settings
 from service.store import DATABASE_FILE, ResultStore, identity_of, open_database, result_store
-from service.store.schema import Schema
+from service.store.database import Schema
 from service.worker.cluster import RemoteWork
 from service.worker.process import Registry
 

@@ -118,7 +118,6 @@ class Retention:
                 yield Leftover("log", f"log/{path.name}", size)
 
     def _old(self, folder: str) -> list[Path]:
-        """Return what is in a folder of the data directory and not quite new."""
         directory = self._data_directory / folder
         paths = sorted(directory.iterdir()) if directory.is_dir() else []
         return [path for path in paths if time.time() - path.stat().st_mtime > GRACE_S]
@@ -164,7 +163,6 @@ class Housekeeper:
             self._thread.join()
 
     def _loop(self) -> None:
-        """Until stopped: collect, and wait."""
         pause = FIRST_S
         while not self._stopping.wait(pause):
             pause = EVERY_S

@@ -14,12 +14,9 @@ import structlog
 
 from host import never_wait_at
 from lineofaction.gearbox.problems import DatabaseUnavailable, ServiceError, StoreUnavailable
-from service.queue.attempt import Attempt, WorkerFigures, begun
-from service.queue.claims import Claim, Claims
-from service.queue.cost_limit import reached
-from service.queue.leases import RENEWALS, Leases
+from service.queue.attempt import Attempt, Ended, Settlement, WorkerFigures, begun
+from service.queue.claims import RENEWALS, Claim, Claims, Leases
 from service.queue.retention import Housekeeper
-from service.queue.settlement import Ended, Settlement
 from service.settings import Settings
 from service.store import ResultStore
 from service.worker.forks import Forks
@@ -173,7 +170,6 @@ class Scheduler:
                 self._listen(self._running[key.fd])
 
     def _begin(self, claim: Claim) -> None:
-        """Start a worker for a claim."""
         try:
             process = self._registry[claim.process]
             attempt = begun(self._settings, process, claim, self._forks.launch, self.figures)
@@ -205,7 +201,6 @@ class Scheduler:
         self._unsettled.append(Ended(running.claim, outcome, running.workspace, running.log))
 
     def _forget(self, running: Attempt, *, keep_lease: bool = False) -> Worker:
-        """Stop listening to a worker."""
         self._selector.unregister(running.worker.channel)
         del self._running[running.worker.channel]
         if not keep_lease:
@@ -215,7 +210,6 @@ class Scheduler:
     def _kill(
         self, running: Attempt, why: str, *, keep_lease: bool = False, patience_s: float | None = None
     ) -> None:
-        """End a worker that has not ended."""
         self._forget(running, keep_lease=keep_lease).kill(patience_s)
         running.note_end(why)
 
@@ -259,7 +253,6 @@ class Scheduler:
                     self._claims.put_back(running.claim, "Waits: the database was lost.", counted=False)
 
     def _enforce_deadline(self) -> None:
-        """End workers that are past the deadline."""
         for running in list(self._running.values()):
             if running.worker.age > self._settings.deadline_s:
                 self._kill(running, "too late", keep_lease=True)
@@ -268,7 +261,7 @@ class Scheduler:
     def _enforce_costs(self) -> None:
         """End workers that have used the CPU time that their computation may take."""
         for running in list(self._running.values()):
-            why = reached(running, self._claims)
+            why = running.too_costly(self._claims)
             if why is not None:
                 self._kill(running, "too costly", keep_lease=True)
                 self._end(running, Outcome(failure=why))
@@ -283,7 +276,6 @@ class Scheduler:
 
 
 def _too_late(deadline_s: float) -> str:
-    """Return the message of a job that took too long."""
     return (
         f"The deadline of {deadline_s:g} s (LOA_DEADLINE_S) passed. Select a coarser level or fewer "
         "positions, of a run for a shorter one, or start the service with a later deadline."

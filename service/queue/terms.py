@@ -8,38 +8,18 @@ from typing import Any, Literal, Self
 
 from sqlalchemy import ColumnElement, Update, update
 
+from bounds import engineering
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import NETCDF
+from service.access.keyring import Holder
 from service.queue.differences import NOT_COMPARED, Differences
 from service.queue.tables import computations, jobs
 
-
-@dataclass(frozen=True)
-class Caller:
-    """The caller who submits.
-
-    Attributes
-    ----------
-    name : str
-        Of the access key; empty without one.
-    unfinished_jobs : int or None
-        Jobs that may wait or run at the same time; None: no limit but the queue's.
-    highest_priority : int or None
-        Of its jobs; None: any.
-    max_cost_s : float or None
-        CPU seconds that each of its jobs may take; None: no limit.
-    """
-
-    name: str = ""
-    unfinished_jobs: int | None = None
-    highest_priority: int | None = None
-    max_cost_s: float | None = None
+ANYBODY = Holder(name="")
+"""The caller of a service without keys."""
 
 
-ANYBODY = Caller()
-
-
-def check_priority(priority: int, caller: Caller) -> None:
+def check_priority(priority: int, caller: Holder) -> None:
     """Raise `BadInput` if a caller may not have this priority."""
     highest = caller.highest_priority
     if highest is not None and priority > highest:
@@ -52,6 +32,36 @@ def raised(computation: str, priority: int) -> Update:
     lower = computations.c.priority < priority
     waits = (computations.c.id == computation) & (computations.c.state == "accepted")
     return update(computations).where(waits & lower).values(priority=priority)
+
+
+LOWER_COST = (
+    "Select a coarser level, fewer positions, loads or samples, of a run a shorter one; or raise the limit."
+)
+
+
+def cost_limit(requested: float | None, caller: Holder) -> float | None:
+    """Return the CPU seconds that a job may take: as requested, and no more than its caller's key allows."""
+    return min((limit for limit in (requested, caller.max_cost_s) if limit is not None), default=None)
+
+
+def refuse_beyond(limit: float, stages: dict[str, float]) -> None:
+    """Raise `BadInput` if the predicted CPU seconds, by stage, are beyond a limit."""
+    predicted = sum(stages.values())
+    if predicted <= limit:
+        return
+    largest = sorted(stages.items(), key=lambda stage: -stage[1])[:2]
+    parts = ", ".join(f"{name} {engineering(seconds, 2)} s" for name, seconds in largest)
+    bound = f"at least the predicted cost, {engineering(predicted, 3)} CPU s ({parts})"
+    raise BadInput.of("max_cost_s", limit, bound, LOWER_COST)
+
+
+def extended(computation: str, limit: float | None) -> Update:
+    """Return the statement that lets a computation cost what one more job of it may; None: there is no limit.
+
+    A computation costs as much as the most generous of its jobs allows.
+    """
+    lower = computations.c.max_cost_s < limit if limit is not None else computations.c.max_cost_s.is_not(None)
+    return update(computations).where(computations.c.id == computation, lower).values(max_cost_s=limit)
 
 
 @dataclass(frozen=True)

@@ -133,14 +133,12 @@ class Watcher(Generic[T]):
                     told(shown)
 
     def _updated(self, identifiers: Collection[str]) -> dict[str, str]:
-        """Return when jobs changed last, without their inputs."""
         instant = func.coalesce(jobs.c.dismissed, computations.c.updated)
         statement = select(jobs.c.id, instant).join(computations).where(jobs.c.id.in_(identifiers))
         with reading(self._engine) as connection:
             return {row[0]: row[1] for row in connection.execute(statement)}
 
     def _read(self, identifiers: Collection[str]) -> list[Job]:
-        """Return jobs."""
         if not identifiers:
             return []
         statement = jobs_of_all_projects().where(jobs.c.id.in_(identifiers))

@@ -181,12 +181,7 @@ class Workload:
 
 
 class WorkloadReader:
-    """Reads the load.
-
-    Parameters
-    ----------
-    engine : Engine
-    """
+    """Reads the load."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
@@ -214,7 +209,6 @@ def states_of(connection: Connection) -> dict[str, int]:
 
 
 def _queue(connection: Connection) -> dict[tuple[str, str], int]:
-    """Count computations that wait or run by state and process."""
     facts = (computations.c.state, computations.c.process)
     live = computations.c.state.in_(("accepted", "running")) & (computations.c.lease != HELD)
     rows = connection.execute(select(*facts, func.count()).where(live).group_by(*facts))
@@ -222,7 +216,6 @@ def _queue(connection: Connection) -> dict[tuple[str, str], int]:
 
 
 def _oldest_waiting_s(connection: Connection) -> float:
-    """Return the age of the oldest computation that waits."""
     waiting = select(func.min(computations.c.created)).where(computations.c.state == "accepted")
     oldest = connection.execute(waiting).scalar()
     if oldest is None:
@@ -231,7 +224,6 @@ def _oldest_waiting_s(connection: Connection) -> float:
 
 
 def _durations(connection: Connection) -> tuple[Durations, ...]:
-    """Add classes up to histograms."""
     rows = connection.execute(select(durations).order_by(durations.c.process, durations.c.outcome)).all()
     names = dict.fromkeys((row.process, row.outcome) for row in rows)
     histograms = []

@@ -18,7 +18,7 @@ from lineofaction.gearbox.schemas.toml_table import toml_table
 # The files that a caller sends together with a text: written into a folder, found there by their names.
 
 
-def sent_files(files: Sequence[FileContentInput], folder: Path) -> Find:
+def _sent_files(files: Sequence[FileContentInput], folder: Path) -> Find:
     """Write files into folders of their own; what is returned finds them by their own names, and no others.
 
     Raises
@@ -87,7 +87,7 @@ def scene_of_toml(inputs: Json, folder: Path) -> Json:
 
 
 def _table(inputs: Json, folder: Path, with_files: Callable[[Json, Find], Json]) -> Json:
-    find = sent_files([validated(FileContentInput, file) for file in inputs["files"]], folder)
+    find = _sent_files([validated(FileContentInput, file) for file in inputs["files"]], folder)
     return with_files(toml_table(inputs["toml"], "toml"), find)
 
 

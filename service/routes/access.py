@@ -3,16 +3,142 @@
 from __future__ import annotations
 
 import ipaddress
-from contextlib import ExitStack
+import re
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from typing import Any
 
-from starlette.types import ASGIApp, Receive, Scope, Send
+import structlog
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars
 
 from lineofaction.gearbox.problems import KeyExpired, NotForUs, RateExceeded, ServiceError
-from service.access import NOBODY, Held, Identities, RateLimits
-from service.routes.admission import Admission
-from service.routes.audit import Visit
+from service.access import NOBODY, Held, Holder, Identities, RateLimits
+from service.access.capacity import Capacity
 from service.routes.media_types import for_one_caller
+
+# How many requests are answered at once, and how many bodies are awaited: of one caller and in all.
+
+
+class Admission:
+    """The requests of all callers of one server process.
+
+    A body that is under way holds none of the places of requests that are answered: whoever sends bodies
+    slowly takes room from slow bodies alone, and from those of others no more than a share.
+
+    Attributes
+    ----------
+    share : int
+        Requests of one caller, and bodies, where nothing else is said.
+    """
+
+    def __init__(self, capacity: Capacity) -> None:
+        self.share = capacity.share
+        self._answered = Held("requests under way", capacity.requests)
+        self._awaited = Held("bodies under way", capacity.requests)
+
+    @contextmanager
+    def admitted(self, scope: Scope, receive: Receive, name: str, most: int | None) -> Iterator[Receive]:
+        """Hold a place among bodies until there is no more of it to come, then one among requests.
+
+        Parameters
+        ----------
+        scope, receive : Scope, Receive
+            Of the request.
+        name : str
+            Whose it is.
+        most : int or None
+            Requests of this caller, and bodies; None: as many as of all.
+
+        Yields
+        ------
+        Receive
+            What the request is to be read with.
+
+        Raises
+        ------
+        TooManyHeld, TooManyRequests
+            The caller has as many as it may, or all together have; nothing was read then.
+        """
+        self._answered.refuse_beyond(name, most)
+        with ExitStack() as place:
+            if not _announces_body(scope):
+                place.enter_context(self._answered.one(name))
+                yield receive
+                return
+            self._awaited.refuse_beyond(name, most)
+            place.enter_context(self._awaited.one(name))
+            whole = False
+
+            async def received() -> Message:
+                nonlocal whole
+                message = await receive()
+                if not whole and not message.get("more_body", False):
+                    whole = True
+                    place.close()
+                    place.enter_context(self._answered.one(name))
+                return message
+
+            yield received
+
+
+def _announces_body(scope: Scope) -> bool:
+    """Whether a body follows the head (RFC 9112, section 6.3)."""
+    headers = dict(scope["headers"])
+    return b"transfer-encoding" in headers or headers.get(b"content-length", b"0") != b"0"
+
+
+# The line of every access in the log: who did what to what, under which scope, and what came of it.
+
+
+_KEY = re.compile(r"loa_[A-Za-z0-9_-]+")
+_LONGEST = 200
+
+logger = structlog.get_logger(__name__)
+
+
+class _Visit:
+    """One access to a service with keys, until it is noted.
+
+    Attributes
+    ----------
+    holder : Holder or None
+        Who it is, once that is known.
+    """
+
+    def __init__(self, scope: Scope, send: Send) -> None:
+        self._scope, self._send = scope, send
+        self.holder: Holder | None = None
+        self._status = 500
+        self._problem: str | None = None
+
+    async def send(self, message: Message) -> None:
+        """Pass on a piece of the answer."""
+        if message["type"] == "http.response.start":
+            self._status = message["status"]
+        await self._send(message)
+
+    def refused(self, error: ServiceError) -> None:
+        """Note why there is no answer but a problem."""
+        self._status, self._problem = error.status, error.kind
+
+    def note(self) -> None:
+        """Write the line; the key is in none of its fields, not even of who has it in the path."""
+        problem = self._problem or self._scope["state"].get("problem")
+        logger.info(
+            "access",
+            **self._who(),
+            scope=getattr(self._scope.get("endpoint"), "scope", None),
+            operation=getattr(self._scope.get("route"), "name", None),
+            target=f"{self._scope['method']} {_KEY.sub('(key)', self._scope['path'])[:_LONGEST]}",
+            outcome=problem or "granted",
+            status=self._status,
+        )
+
+    def _who(self) -> dict[str, Any]:
+        holder = self.holder
+        return {"caller": holder and holder.name, "project": holder and holder.project}
+
 
 # Whether a request was meant for this machine: what protects a service without keys from pages of others.
 
@@ -32,14 +158,12 @@ def _meant_for_us(scope: Scope) -> bool:
 
 
 def _without_port(host: str) -> str:
-    """Return a name or address without its port, and an IPv6 address without its brackets."""
     if host.startswith("["):
         return host[1:].partition("]")[0]
     return host.partition(":")[0]
 
 
 def _is_loopback(host: str) -> bool:
-    """Whether an address is of this machine alone."""
     try:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:
@@ -90,7 +214,7 @@ class Access:
             with self._admission.admitted(scope, receive, NOBODY, most) as received:
                 await self._app(scope, received, send)
             return
-        visit = Visit(scope, send)
+        visit = _Visit(scope, send)
         try:
             await self._serve(scope, receive, visit)
         except ServiceError as error:
@@ -99,7 +223,7 @@ class Access:
         finally:
             visit.note()
 
-    async def _serve(self, scope: Scope, receive: Receive, visit: Visit) -> None:
+    async def _serve(self, scope: Scope, receive: Receive, visit: _Visit) -> None:
         """Find out who calls, and serve the request within the limits of that caller."""
         visit.holder = key = await self._identities.holder(_presented(scope))
         bind_contextvars(caller=key.name)
@@ -117,7 +241,6 @@ class Access:
 
 
 def _open(path: str) -> bool:
-    """Whether a path is answered without a key."""
     return path in OPEN_PATHS or path.startswith(OPEN_FOLDER)
 
 

@@ -1,4 +1,4 @@
-"""Cases before anything is computed: examples, drawing, TOML in and out."""
+"""Cases, scenes and gear units before anything is computed: examples, drawing, TOML in and out, REXS."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.named import Named
 from lineofaction.gearbox.schemas.outline import OutlineBody
 from lineofaction.gearbox.schemas.reading import validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 from service.access import Scope
 from service.live.order import LiveOrder
-from service.page.examples import Example, examples
+from service.page.files import Example, examples
 from service.routes.context import Context, Ctx, key_of
 from service.routes.media_types import JSON
-from service.routes.refusals import documented
+from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.answers import ExampleBody
-from service.worker.catalogue import ANALYZE
-from service.worker.process import on_demand
+from service.schemas.answers import ExampleBody, UnitBody, UnitFile
+from service.worker.process import ANALYZE, on_demand
 
-READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
+_READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
 """What a reader of foreign bytes answers beside faults of the bytes."""
 _MOST_FILES = 16
 
@@ -81,7 +81,7 @@ def example_cases() -> list[ExampleBody]:
 
 
 @router.post("/cases/outline", summary="Drawing of the two gears", response_model=OutlineBody)
-@needs(Scope.READ)
+@needs(Scope.READ, body=CaseRequest)
 def case_outline(body: CaseRequest) -> Response:
     """Transverse outlines of both gears in mm, the path of contact, and the figures of the pair."""
     return JSONResponse(outline_json(body.inputs.case))
@@ -91,25 +91,24 @@ def case_outline(body: CaseRequest) -> Response:
     "/cases/from-toml",
     summary="Read a case file",
     response_model=CaseBody,
-    responses=documented(*READING_FAILURES),
+    responses=documented(*_READING_FAILURES),
 )
-@needs(Scope.READ)
+@needs(Scope.READ, body=CaseText)
 async def case_from_toml(body: CaseText, context: Ctx, request: Request) -> Response:
     """Read the case in a file's text and in the files that it names, with all defaults."""
-    return await read_by(
+    return await _read_by(
         context, LiveOrder("service.reading.texts:case_of_toml", body.model_dump(mode="json")), request
     )
 
 
-async def read_by(context: Context, order: LiveOrder, request: Request) -> Response:
-    """Answer what a reader of foreign bytes finds, for the caller of a request."""
+async def _read_by(context: Context, order: LiveOrder, request: Request) -> Response:
     caller = key_of(request)
     answer = context.reader.ask(order, None if caller is None else caller.name)
     return Response(await asyncio.wrap_future(answer), media_type=JSON)
 
 
 @router.post("/cases/to-toml", summary="Write a case file")
-@needs(Scope.READ)
+@needs(Scope.READ, body=CaseRequest)
 def case_to_toml(body: CaseRequest) -> TomlBody:
     """Write the case with all defaults as a file's text."""
     return TomlBody(toml=toml_text(case_json(body.inputs.case)))
@@ -121,11 +120,71 @@ def _example(example: Example) -> ExampleBody:
     return ExampleBody(**facts, case=case, hash=ANALYZE.key({"case": case}))
 
 
-def explained(handler: Any, model: type[BaseModel]) -> None:
-    """Name the model that explains refused fields."""
-    handler.body_model = model
+scenes_router = APIRouter(tags=["scenes"], route_class=ScopedRoute)
 
 
-explained(case_outline, CaseRequest)
-explained(case_from_toml, CaseText)
-explained(case_to_toml, CaseRequest)
+class SceneInputs(BoundaryModel):
+    """A scene."""
+
+    scene: SceneInput = Field(description="The scene, as in a scene file")
+
+
+class SceneRequest(BoundaryModel):
+    """A scene, where an execution of simulate has it."""
+
+    inputs: SceneInputs = Field(description="The scene, as in an execution of simulate")
+
+
+class SceneToml(TomlBody):
+    """The text of a scene file."""
+
+
+class SceneText(CaseText):
+    """The text of a scene file, and the files that it names."""
+
+
+class SceneBody(BaseModel):
+    """A scene as it was given, without defaults."""
+
+    scene: Annotated[dict[str, Any], Named("SceneInput")]
+
+
+@scenes_router.post(
+    "/scenes/from-toml",
+    summary="Read a scene file",
+    response_model=SceneBody,
+    responses=documented(*_READING_FAILURES),
+)
+@needs(Scope.READ, body=SceneText)
+async def scene_from_toml(body: SceneText, context: Ctx, request: Request) -> Response:
+    """Read the scene in a file's text and in the files that it names; names of cases not given stay."""
+    return await _read_by(
+        context, LiveOrder("service.reading.texts:scene_of_toml", body.model_dump(mode="json")), request
+    )
+
+
+@scenes_router.post("/scenes/to-toml", summary="Write a scene file")
+@needs(Scope.READ, body=SceneRequest)
+def scene_to_toml(body: SceneRequest) -> SceneToml:
+    """Write the scene as a file's text, without defaults."""
+    return SceneToml(toml=toml_text(body.inputs.scene.model_dump(mode="json", exclude_unset=True)))
+
+
+units_router = APIRouter(tags=["units"], route_class=ScopedRoute)
+
+ENTRY = "lineofaction.gearbox.from_rexs.opened:unit_of_rexs"
+
+
+@units_router.post(
+    "/units/open",
+    summary="Open a gear unit (REXS)",
+    response_model=UnitBody,
+    responses=documented(*_READING_FAILURES),
+)
+@needs(Scope.READ, body=UnitFile)
+async def open_unit(body: UnitFile, context: Ctx, request: Request) -> Response:
+    """Open a gear unit of another tool: a case for each cylindrical stage, the scene, and the account.
+
+    A process of its own reads the file; nothing outside of it is opened.
+    """
+    return await _read_by(context, LiveOrder(ENTRY, body.model_dump()), request)

@@ -6,7 +6,7 @@ from collections import OrderedDict
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from threading import Lock
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 from fastapi import Depends, Request
 from sqlalchemy import Engine
@@ -18,19 +18,65 @@ from service.live.pool import LivePool
 from service.project import COMMON
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
-from service.queue.terms import ANYBODY, Caller
+from service.queue.terms import ANYBODY
 from service.queue.watcher import Watcher
 from service.reading.pool import ReadingPool
-from service.routes.streams import JobEvent, Streams
 from service.settings import Settings
 from service.store import ResultStore
-from service.store.write_check import WriteCheck
+from service.store.deployment import WriteCheck
 from service.worker.cluster import RemoteWork
 from service.worker.process import Registry
 
 if TYPE_CHECKING:
     from fe_contact.ste import SteDatabase
     from fe_contact.ste.compiled_force import CompiledForce
+
+
+# What event streams share: their events, and a count of those open.
+
+
+class JobEvent(NamedTuple):
+    """A state of a job as all its streams send it, made once.
+
+    Attributes
+    ----------
+    id : str
+        When the state changed last, RFC 3339: a browser that reconnects names it (``Last-Event-ID``).
+    text : bytes
+        The server-sent event.
+    last : bool
+        Whether nothing more happens to the job.
+    """
+
+    id: str
+    text: bytes
+    last: bool
+
+
+@dataclass
+class Streams:
+    """A count with a bound, of one event loop, so without a lock.
+
+    Attributes
+    ----------
+    most : int
+        Streams that may be open at once.
+    """
+
+    most: int = 256
+    _open: int = 0
+
+    def enter(self) -> bool:
+        """Count one more; False: there is no room."""
+        if self._open >= self.most:
+            return False
+        self._open += 1
+        return True
+
+    def leave(self) -> None:
+        """Count one less."""
+        self._open -= 1
+
 
 # The STE databases queried last, kept open.
 
@@ -39,7 +85,7 @@ _MOST_OPEN = 16
 
 
 @dataclass(frozen=True)
-class OpenDatabase:
+class _OpenDatabase:
     """A database and, once somebody asks for forces, its compiled law."""
 
     database: SteDatabase
@@ -60,14 +106,14 @@ class OpenDatabase:
             return CompiledForce.of(self.database)
 
 
-class OpenDatabases:
+class _OpenDatabases:
     """The databases queried last, read and verified once; they never change."""
 
     def __init__(self) -> None:
-        self._open: OrderedDict[tuple[str, str], OpenDatabase] = OrderedDict()
+        self._open: OrderedDict[tuple[str, str], _OpenDatabase] = OrderedDict()
         self._lock, self._reading = Lock(), Lock()
 
-    def at_hand(self, store: ResultStore, key: str) -> OpenDatabase | None:
+    def at_hand(self, store: ResultStore, key: str) -> _OpenDatabase | None:
         """Return the database `key` if it is open: no file is touched, nobody is waited for."""
         place = store.project, key
         with self._lock:
@@ -75,7 +121,7 @@ class OpenDatabases:
                 self._open.move_to_end(place)
             return self._open.get(place)
 
-    def get(self, store: ResultStore, key: str) -> OpenDatabase:
+    def get(self, store: ResultStore, key: str) -> _OpenDatabase:
         """Return the database `key`, read if it is not open; raises as `ResultStore.verified`."""
         opened = self.at_hand(store, key)
         if opened is not None:
@@ -83,12 +129,12 @@ class OpenDatabases:
         with self._reading:  # many ask for a new table at once: it is read once
             return self.at_hand(store, key) or self._read(store, key)
 
-    def _read(self, store: ResultStore, key: str) -> OpenDatabase:
+    def _read(self, store: ResultStore, key: str) -> _OpenDatabase:
         """Read and verify a database; the one not requested longest is closed."""
         with LOADING:
             from fe_contact.ste import SteDatabase  # noqa: PLC0415 (start-up time)
 
-        opened = OpenDatabase(SteDatabase.from_netcdf(store.verified(key, "database").path))
+        opened = _OpenDatabase(SteDatabase.from_netcdf(store.verified(key, "database").path))
         with self._lock:
             self._open[store.project, key] = opened
             while len(self._open) > _MOST_OPEN:
@@ -114,7 +160,7 @@ class Context:
     engine: Engine
     writes: WriteCheck
     watcher: Watcher[JobEvent]
-    databases: OpenDatabases = field(default_factory=OpenDatabases)
+    databases: _OpenDatabases = field(default_factory=_OpenDatabases)
     streams: Streams = field(default_factory=Streams)
     project: str = COMMON
     _projects: dict[str, Context] = field(default_factory=dict)
@@ -151,13 +197,10 @@ def key_of(request: Request) -> Holder | None:
     return getattr(request.state, "caller", None)
 
 
-def caller_of(request: Request) -> Caller:
+def caller_of(request: Request) -> Holder:
     """Return who submits by a request."""
-    key = key_of(request)
-    if key is None:
-        return ANYBODY
-    return Caller(key.name, key.unfinished_jobs, key.highest_priority, key.max_cost_s)
+    return key_of(request) or ANYBODY
 
 
-From = Annotated[Caller, Depends(caller_of)]
+From = Annotated[Holder, Depends(caller_of)]
 Ctx = Annotated[Context, Depends(context_of)]

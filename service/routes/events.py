@@ -15,16 +15,14 @@ from starlette.types import Receive, Scope, Send
 from lineofaction.gearbox.problems import NoSuchJob, QueueFull
 from service import access
 from service.queue.job import Job
-from service.routes.context import Context, Ctx
+from service.routes.context import Context, Ctx, JobEvent, Streams
 from service.routes.jobs import status_info
-from service.routes.media_types import NO_STORE, described_headers
-from service.routes.refusals import documented
+from service.routes.media_types import EVENT_STREAM, NO_STORE, described_headers
+from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
-from service.routes.streams import JobEvent, Streams
 from service.worker.process import Registry
 
 HEARTBEAT_S = 15.0
-EVENT_STREAM = "text/event-stream"
 LastEvent = Annotated[
     str | None,
     Header(description="The `id` of the last event that arrived: it is not sent again", max_length=100),
@@ -33,7 +31,7 @@ LastEvent = Annotated[
 router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
 
 
-class TooManyStreams(QueueFull):
+class _TooManyStreams(QueueFull):
     """As many callers as the service bears listen already."""
 
     type = "urn:lineofaction:problem:too-many-streams"
@@ -51,7 +49,7 @@ class TooManyStreams(QueueFull):
             "headers": described_headers("Cache-Control"),
         },
         204: {"description": "The last event was the final one: browsers connect no more"},
-        **documented(NoSuchJob, TooManyStreams),
+        **documented(NoSuchJob, _TooManyStreams),
     },
 )
 @needs(access.Scope.READ, streams=True)
@@ -66,7 +64,9 @@ async def job_events(job_id: str, context: Ctx, last_event_id: LastEvent = None)
     if event.last and event.id == last_event_id:
         return Response(status_code=204)
     if not context.streams.enter():
-        raise TooManyStreams(f"{context.streams.most} event streams are open. Poll the status, or try again.")
+        raise _TooManyStreams(
+            f"{context.streams.most} event streams are open. Poll the status, or try again."
+        )
     headers = {"Cache-Control": NO_STORE, "X-Accel-Buffering": "no"}
     return _Stream(context.streams, _changes(context, job, event, last_event_id), headers)
 

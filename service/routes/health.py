@@ -11,11 +11,10 @@ from starlette.responses import PlainTextResponse
 from host import missing_protections
 from lineofaction.gearbox.problems import ServiceError
 from service.access import Scope
-from service.management.server import METRICS_TYPE
-from service.management.vitals import Vitals
+from service.management.server import METRICS_TYPE, Vitals
 from service.routes.context import Ctx
 from service.routes.media_types import NO_STORE
-from service.routes.refusals import documented
+from service.routes.openapi import documented
 from service.routes.scopes import OPEN_TO_ALL, ScopedRoute, needs
 
 
@@ -27,7 +26,7 @@ async def _of_now(response: Response) -> None:
 router = APIRouter(tags=["operations"], dependencies=[Depends(_of_now)], route_class=ScopedRoute)
 
 
-class NotReady(ServiceError):
+class _NotReady(ServiceError):
     """The service runs but cannot work."""
 
     status = 503
@@ -63,7 +62,7 @@ async def health() -> Health:
 
 
 @router.get(
-    "/ready", response_model_exclude_none=True, summary="Readiness for jobs", responses=documented(NotReady)
+    "/ready", response_model_exclude_none=True, summary="Readiness for jobs", responses=documented(_NotReady)
 )
 @needs(OPEN_TO_ALL)
 def ready(request: Request, context: Ctx) -> Readiness:
@@ -74,10 +73,10 @@ def ready(request: Request, context: Ctx) -> Readiness:
     """
     outcome = context.writes.outcome()
     if outcome.fault:
-        raise NotReady(outcome.fault)
+        raise _NotReady(outcome.fault)
     counts = None if request.state.closed else context.submissions.counts()
     if fault := Vitals(context.scheduler, context.writes).fault_of_health():
-        raise NotReady(fault)
+        raise _NotReady(fault)
     return Readiness(computations=counts, missing_protections=missing_protections() or None)
 
 

@@ -1,38 +1,137 @@
-"""Around every request: identifier, body limit, log line, figures, a net under unknown exceptions."""
+"""Around every request: identifier, body limit, log line, figures; errors leave as problems (RFC 9457)."""
 
 from __future__ import annotations
 
 import asyncio
+import json
 import re
 import time
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
-from typing import NoReturn
+from http import HTTPStatus
+from typing import Any, NoReturn
 
 import structlog
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+from starlette.routing import compile_path
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars, clear_contextvars
 
 from lineofaction.gearbox.problems import (
+    BadInput,
+    Fault,
     ServiceError,
     TooLarge,
     TooSlow,
     Unexpected,
     UnsupportedMediaType,
 )
-from service.routes.errors import problem_of
-from service.routes.media_types import CBOR, RAW, media_type
-from service.routes.metrics import Metrics
+from lineofaction.gearbox.schemas.faults import fault_of, innermost
+from service.management.figures import Metrics
+from service.routes.media_types import CBOR, EVENT_STREAM, JSON, NO_STORE, PROBLEM, RAW, media_type
 from service.tracing.tracer import TRACEPARENT, trace_facts, tracer, valid_traceparent
+
+# Every error leaves as problem+json, in one shape.
+
+
+def _problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
+    """Return a problem, which no cache keeps, in ASCII, so that nothing a caller sent can break it."""
+    body = json.dumps(facts, allow_nan=False, ensure_ascii=True).encode()
+    fields = {"Cache-Control": NO_STORE, **(headers or {})}
+    return Response(body, int(facts["status"]), fields, media_type=PROBLEM)
+
+
+def problem_of(error: ServiceError) -> Response:
+    """Return the response to an error raised on purpose."""
+    headers = {} if error.retry_after_s is None else {"Retry-After": str(error.retry_after_s)}
+    if error.challenge is not None:
+        headers["WWW-Authenticate"] = error.challenge
+    if error.accept_post is not None:
+        headers["Accept-Post"] = error.accept_post
+    return _problem_response(error.as_json(), headers)
+
+
+def install_error_handlers(app: FastAPI) -> None:
+    """Let `app` answer every error with a problem."""
+    app.add_exception_handler(ServiceError, _raised_on_purpose)
+    app.add_exception_handler(RequestValidationError, _invalid_request)
+    app.add_exception_handler(HTTPException, _refused_by_framework)
+
+
+def _raised_on_purpose(request: Request, error: Exception) -> Response:
+    assert isinstance(error, ServiceError)
+    request.state.problem = error.kind
+    return problem_of(error)
+
+
+def _invalid_request(request: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    sent = media_type(request.headers.get("content-type", ""))
+    unread = any(item["loc"][0] == "body" and item["type"] != "missing" for item in error.errors())
+    if unread and not _is_json(sent):
+        return _raised_on_purpose(request, UnsupportedMediaType.of(sent, JSON))
+    model = getattr(request.scope.get("endpoint"), "body_model", None)
+    faults = (_request_fault(item, model) for item in innermost(error.errors()))
+    return _raised_on_purpose(request, BadInput(faults))
+
+
+def _is_json(kind: str) -> bool:
+    return kind == JSON or (kind.startswith("application/") and kind.endswith("+json"))
+
+
+def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fault:
+    """One fault, named as in the case or scene file where it lies inside one."""
+    part, *loc = item["loc"]
+    if part != "body":
+        return fault_of(item, None, loc)
+    if item["type"] == "json_invalid":
+        return Fault("body", None, "valid JSON", f"{item.get('ctx', {}).get('error', '')}.")
+    if loc[:1] == ["inputs"] and loc[1:2] in (["case"], ["scene"]) and len(loc) > 2 and model is not None:
+        inner = model.model_fields["inputs"].annotation
+        named = (
+            inner.model_fields.get(loc[1])
+            if isinstance(inner, type) and issubclass(inner, BaseModel)
+            else None
+        )
+        if named is not None and isinstance(named.annotation, type):
+            return fault_of(item, named.annotation, loc[2:])
+    return fault_of(item, model, loc if loc or item["type"] == "refused" else ["body"])
+
+
+def _refused_by_framework(request: Request, error: Exception) -> Response:
+    """Answer what routing refuses: unknown path, wrong method, unreadable body."""
+    assert isinstance(error, HTTPException)
+    phrase = HTTPStatus(error.status_code).phrase
+    request.state.problem = phrase.lower().replace(" ", "-")
+    facts = {
+        "type": "about:blank",
+        "title": phrase,
+        "status": error.status_code,
+        "detail": str(error.detail),
+        "errors": [],
+    }
+    headers = dict(error.headers or {})
+    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
+        headers["Allow"] = ", ".join(_methods(request))
+    return _problem_response(facts, headers)
+
+
+def _methods(request: Request) -> list[str]:
+    """Methods of a path, whichever routes hold them (the framework names those of one route only)."""
+    paths = request.app.openapi()["paths"]
+    matching = [path for path in paths if compile_path(path)[0].match(request.url.path)]
+    return sorted({method.upper() for path in matching for method in paths[path]})
+
 
 # Event streams as they are sent: how many are open, and how many events went out.
 
 
-_EVENT_STREAM = b"text/event-stream"
-
-
-class StreamFigures:
+class _StreamFigures:
     """Watches the answer to one request; anything but an event stream leaves no trace.
 
     Parameters
@@ -54,7 +153,7 @@ class StreamFigures:
     def see(self, message: Message) -> None:
         """Look at a piece of the answer; the pieces of a stream are whole events or comments."""
         if message["type"] == "http.response.start":
-            if dict(message.get("headers", ())).get(b"content-type", b"").startswith(_EVENT_STREAM):
+            if dict(message.get("headers", ())).get(b"content-type", b"").startswith(EVENT_STREAM.encode()):
                 self.route = self._template()
                 self._metrics.streams(self.route, 1)
         elif self.route:
@@ -79,7 +178,7 @@ housing six thousand. Numbers are not counted: a flank may have 250 000.
 """
 
 
-class Extent:
+class _Extent:
     """The parts of one body, counted as its pieces come; of binary bodies nothing is counted."""
 
     def __init__(self, content_type: str) -> None:
@@ -116,7 +215,7 @@ class Guard:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        stream = StreamFigures(self._metrics, partial(_template, scope))
+        stream = _StreamFigures(self._metrics, partial(_template, scope))
         exchange = _Exchange(scope, receive, send, self._body_limit, stream)
         clear_contextvars()
         TRACEPARENT.set(exchange.traceparent)
@@ -173,13 +272,13 @@ class _Exchange:
     """One request and its answer, watched."""
 
     def __init__(
-        self, scope: Scope, receive: Receive, send: Send, body_limit: int, stream: StreamFigures
+        self, scope: Scope, receive: Receive, send: Send, body_limit: int, stream: _StreamFigures
     ) -> None:
         self.stream = stream
         self._scope, self._receive, self._send, self._body_limit = scope, receive, send, body_limit
         self._received, self._whole, self._begin = 0, False, time.perf_counter()
         self._headers = dict(scope["headers"])
-        self._extent = Extent(self._headers.get(b"content-type", b"").decode("latin-1"))
+        self._extent = _Extent(self._headers.get(b"content-type", b"").decode("latin-1"))
         self.refusal: ServiceError | None = None
         self.status: int | None = None
         self.identifier = _identifier(self._headers.get(b"x-request-id", b""))

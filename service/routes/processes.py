@@ -1,9 +1,10 @@
-"""Processes and their execution (OGC API - Processes 1.0, clauses 7.8 to 7.11)."""
+"""Processes, executions, batches and webhooks (OGC API - Processes 1.0, clauses 7.8 to 7.11)."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+import time
+from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Annotated, Any, cast
 
@@ -11,24 +12,22 @@ import structlog
 from fastapi import APIRouter, Header, Query, Response
 from pydantic import BaseModel, create_model
 
-from lineofaction.gearbox.problems import LiveUnavailable, NoSuchProcess, QueueFull
+from lineofaction.gearbox.problems import BadInput, Fault, LiveUnavailable, NoSuchProcess, QueueFull
 from lineofaction.gearbox.registry import NETCDF
-from lineofaction.gearbox.schemas.model import BoundaryModel
-from service.access import Scope
+from lineofaction.gearbox.schemas.model import MOST_FAULTS, BoundaryModel
+from lineofaction.gearbox.schemas.reading import validated
+from service.access import Holder, Scope
 from service.live.order import LiveOrder
-from service.queue.cost_limit import cost_limit, refuse_beyond
+from service.origin import Origin
 from service.queue.differences import Differences
-from service.queue.former_jobs import FormerJobs
-from service.queue.terms import Caller, Label, Terms, check_priority, delivery
+from service.queue.entry import BatchCase
+from service.queue.terms import Label, Terms, check_priority, cost_limit, delivery, refuse_beyond
 from service.routes.context import Context, Ctx, From
-from service.routes.cursor import Limit
-from service.routes.jobs import status_info
-from service.routes.media_types import described_headers
-from service.routes.refusals import documented
+from service.routes.jobs import batch_results, problem_of, reference_of, status_info
+from service.routes.media_types import Limit, described_headers
+from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
-from service.routes.webhooks import checked_uris, enter_calls
-from service.schemas.execute import execute_model
-from service.schemas.ogc import (
+from service.schemas.answers import (
     AdditionalParameters,
     Link,
     Parameter,
@@ -36,10 +35,73 @@ from service.schemas.ogc import (
     ProcessList,
     ProcessSummary,
     StatusInfo,
+    Subscriber,
     ValueDescription,
 )
+from service.schemas.execute import BatchRequest, execute_model
+from service.settings import Settings
 from service.store import now
-from service.worker.process import Process, Registry
+from service.webhooks.calls import Calls
+from service.webhooks.deliverer import Deliverer, Outbox
+from service.worker.process import Process, Registry, on_demand
+
+# Whom a request may have called, and what is told.
+
+
+def _checked_uris(settings: Settings, subscriber: Subscriber | None) -> dict[str, str]:
+    """Return the addresses to call, by event; raises `BadInput` for any that is not listed."""
+    if subscriber is None:
+        return {}
+    listed = settings.origins
+    if not listed:
+        bound = "left out: this service sends no requests to addresses that its callers name"
+        raise BadInput.of("subscriber", None, bound, "Follow /v1/jobs/{id}/events.")
+    for event, uri in subscriber.uris.items():
+        if _origin(uri) not in listed:
+            bound = f"an address at {' or '.join(map(str, sorted(listed, key=str)))}"
+            raise BadInput.of(f"subscriber.{event}Uri", uri, bound)
+    return subscriber.uris
+
+
+def _enter_calls(context: Context, job: str, uris: dict[str, str]) -> None:
+    if uris:
+        Calls(context.engine).enter(job, uris)
+
+
+def deliverer_of(context: Context) -> Deliverer | None:
+    """Return what makes the calls, None where none are allowed."""
+    settings = context.settings
+    if not settings.origins:
+        return None
+    calls = Calls(context.engine)
+    outbox = Outbox(
+        calls,
+        settings.origins,
+        settings.webhook_key,
+        lambda job, event: _message(context.within(calls.project_of(job)), job, event),
+    )
+    return Deliverer(outbox)
+
+
+def _message(context: Context, identifier: str, event: str) -> Any:
+    """Return what is told: the status, the document of the results, or the problem."""
+    job = context.submissions.find(identifier)
+    problem = problem_of(job)
+    if event == "inProgress":
+        return status_info(job, context.registry).model_dump()
+    if event == "failed" and problem is not None:
+        return problem.as_json()
+    if job.children:
+        return batch_results(context, job).model_dump()
+    return {context.registry[job.process].output: reference_of(job).model_dump()}
+
+
+def _origin(uri: str) -> Origin | None:
+    try:
+        return Origin.of(uri)
+    except ValueError:
+        return None
+
 
 logger = structlog.get_logger(__name__)
 
@@ -109,7 +171,7 @@ def _other_name(registry: Registry) -> Any:
 def _add_execution(router: APIRouter, process: Process) -> None:
     body = execute_model(process.id, process.inputs, process.output)
 
-    @needs(Scope.SUBMIT)
+    @needs(Scope.SUBMIT, body=body)
     def execute(
         request: Any,
         response: Response,
@@ -122,7 +184,7 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         output = getattr(request.outputs, process.output)
         field = f"outputs.{process.output}.transmissionMode"
         form = delivery(request.response, output and output.transmissionMode, field)
-        uris = checked_uris(context.settings, request.subscriber)
+        uris = _checked_uris(context.settings, request.subscriber)
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
         since = _differences(context, process, caller, inputs, request.inputs)
         check_priority(request.priority, caller)
@@ -130,14 +192,13 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         label, stated = Label.of(request.title, request.tags), _stated(request.inputs)
         terms = Terms(form, label, since, request.priority, limit, stated, request.reuse)
         status = _submit(context, process, inputs, caller, terms, idempotency_key)
-        enter_calls(context, status.jobID, uris)
+        _enter_calls(context, status.jobID, uris)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
         if "respond-async" in [item.partition(";")[0].strip().lower() for item in prefer.split(",")]:
             response.headers["Preference-Applied"] = "respond-async"
         return status
 
     execute.__annotations__["request"] = body
-    execute.body_model = body  # type: ignore[attr-defined]
     router.add_api_route(
         f"/{process.id}/execution",
         execute,
@@ -158,10 +219,10 @@ def _stated(inputs: BoundaryModel) -> str:
 
 
 def _differences(
-    context: Context, process: Process, caller: Caller, inputs: dict[str, Any], stated: BoundaryModel
+    context: Context, process: Process, caller: Holder, inputs: dict[str, Any], stated: BoundaryModel
 ) -> Differences:
     """Return what sets normalized inputs apart from the caller's job before, or else from the defaults."""
-    former = FormerJobs(context.engine, context.project).newest(caller, process.id)
+    former = context.submissions.newest(caller, process.id)
     if former is None:
         return Differences.between({}, stated.model_dump(mode="json", exclude_defaults=True))
     return Differences.between(former[1], inputs, former[0])
@@ -171,11 +232,10 @@ def _submit(
     context: Context,
     process: Process,
     inputs: dict[str, Any],
-    caller: Caller,
+    caller: Holder,
     terms: Terms,
     name: str | None,
 ) -> StatusInfo:
-    """Enter a job and wake the scheduler."""
     key = process.key(inputs)
     looked = now()
     stored = context.store.find(key, process.kind) is not None
@@ -259,3 +319,108 @@ def _description(process: Process) -> ProcessDescription:
         process.output: ValueDescription(title=process.output, description=process.title, schema=output)
     }
     return ProcessDescription(**_summary(process), inputs=inputs, outputs=outputs)
+
+
+# Batches: one request, many jobs of one process, all entered or none.
+
+
+Json = dict[str, Any]
+_PREDICTING_S = 1.0
+"""CPU time for the predicted costs of one batch: 6 ms a case in the plane, 0.1 s over the face."""
+router = APIRouter(prefix="/batches", tags=["jobs"], route_class=ScopedRoute)
+predicted_seconds = on_demand("service.worker.predicted_cost:predicted_seconds")
+
+
+@router.post(
+    "",
+    summary="Submit a batch",
+    status_code=201,
+    responses=documented(QueueFull)
+    | {201: {"description": "The batch, a job like others", "headers": described_headers("Location")}},
+)
+@needs(Scope.SUBMIT, body=BatchRequest)
+def submit_batch(
+    request: BatchRequest,
+    response: Response,
+    context: Ctx,
+    caller: From,
+    idempotency_key: IdempotencyKey = None,
+) -> StatusInfo:
+    """Check the inputs of all jobs and enter them with the batch they are in, all or none.
+
+    The batch is a job: its status, events and dismissal are those of all jobs in it.
+    """
+    if request.process not in context.registry:
+        raise BadInput.of("process", request.process, f"one of {', '.join(context.registry)}")
+    process = context.registry[request.process]
+    check_priority(request.priority, caller)
+    terms = Terms(
+        label=Label.of(request.title, request.tags),
+        priority=request.priority,
+        max_cost_s=cost_limit(request.max_cost_s, caller),
+    )
+    uris = _checked_uris(context.settings, request.subscriber)
+    looked = now()
+    cases = _cases(context, process, _checked_inputs(context, process, request))
+    entry = context.submissions.entry(caller, terms)
+    identifier = entry.batch(process.id, cases, looked, idempotency_key)
+    _enter_calls(context, identifier, uris)
+    logger.info("batch entered", job=identifier, process=process.id, jobs=len(cases))
+    context.scheduler.wake()
+    response.headers["Location"] = f"/v1/jobs/{identifier}"
+    return status_info(context.submissions.find(identifier), context.registry)
+
+
+def _checked_inputs(context: Context, process: Process, request: BatchRequest) -> list[Json]:
+    """Return the normalized inputs of all jobs; raises `BadInput` with the faults of all, by their index."""
+    inputs, faults = [], []
+    for index in range(len(request.jobs)):
+        try:
+            model = validated(process.inputs, request.inputs_of(index))
+            inputs.append(process.prepare(model, context.store))
+        except BadInput as error:
+            faults.append(_of_job(index, error))
+    if faults:
+        raise BadInput(_few(faults))
+    return inputs
+
+
+def _of_job(index: int, error: BadInput) -> list[Fault]:
+    """Return the faults of one job, named as in its case or scene file."""
+    faults = []
+    for fault in error.faults:
+        name = fault.field.removeprefix("case.").removeprefix("scene.")
+        faults.append(Fault(f"jobs[{index}].{name}", fault.value, fault.bound, fault.suggestion))
+    return faults
+
+
+def _few(faults: Sequence[Sequence[Fault]]) -> list[Fault]:
+    """Return all faults, or of each job the first if there are too many."""
+    if sum(map(len, faults)) > MOST_FAULTS:
+        return [of_job[0] for of_job in faults]
+    return [fault for of_job in faults for fault in of_job]
+
+
+def _cases(context: Context, process: Process, inputs: Sequence[Json]) -> list[BatchCase]:
+    """Return the jobs of a batch: which results are there, and what the others cost beside each other."""
+    keys = [process.key(one) for one in inputs]
+    stored = {key: context.store.find(key, process.kind) is not None for key in set(keys)}
+    new = {key: one for key, one in zip(keys, inputs, strict=True) if not stored[key]}
+    costs = _costs(new)
+    known = [cost for cost in costs.values() if cost is not None]
+    usual = sum(known) / len(known) if known else 1.0
+    return [
+        BatchCase(key, one, stored[key], costs.get(key) or usual)
+        for key, one in zip(keys, inputs, strict=True)
+    ]
+
+
+def _costs(inputs: dict[str, Json]) -> dict[str, float | None]:
+    """Predict what jobs cost, as many as there is time for: the others cost as much as these do."""
+    costs: dict[str, float | None] = {}
+    end = time.thread_time() + _PREDICTING_S
+    for key, one in inputs.items():
+        costs[key] = predicted_seconds(one)
+        if time.thread_time() > end:
+            break
+    return costs

@@ -1,7 +1,8 @@
-"""Batches of mesh forces of a stored database."""
+"""Answers from a stored database while the caller waits: mesh forces, curves of other flanks; and plans."""
 
 from __future__ import annotations
 
+import asyncio
 import re
 from collections.abc import Callable, Sequence
 from typing import Annotated, Any, NoReturn
@@ -23,16 +24,31 @@ from lineofaction.gearbox.convert.force_query import (
     points_of_columns,
     points_of_model,
 )
-from lineofaction.gearbox.problems import BadInput, DamagedFile, NotAcceptable, NotFound, UnsupportedMediaType
+from lineofaction.gearbox.problems import (
+    BadInput,
+    DamagedFile,
+    LiveUnavailable,
+    NotAcceptable,
+    NotAnalyzed,
+    NotFound,
+    QueueFull,
+    Superseded,
+    UnsupportedMediaType,
+)
 from lineofaction.gearbox.schemas.faults import fault_of, innermost
+from lineofaction.gearbox.schemas.live import LiveInput, PlanRequest
+from lineofaction.gearbox.schemas.live_answer import LiveOutput
+from lineofaction.gearbox.schemas.plan import PlanBody
 from lineofaction.gearbox.schemas.query import LIMITS, QueryInput, QueryOutput, validity_words
 from lineofaction.gearbox.schemas.result_kinds import HASH
 from service.access import Scope
-from service.routes.context import context_of
-from service.routes.direct import DirectRoute, answered_by
+from service.live.order import LiveOrder
+from service.project import address_of
+from service.routes.context import Context, Ctx, context_of
 from service.routes.media_types import CBOR, JSON, RAW, media_type, negotiated
-from service.routes.refusals import documented
-from service.routes.scopes import needs
+from service.routes.openapi import documented
+from service.routes.results import Key
+from service.routes.scopes import DirectRoute, ScopedRoute, answered_by, needs
 
 # Bodies of force queries: JSON, CBOR, or raw columns of float64.
 
@@ -44,7 +60,6 @@ _EMPTY_LIST = b"\x80"  # also a byte of numbers, but hardly of every other one
 
 
 def _points_of_json(body: bytes, _columns: Sequence[str]) -> FloatArray:
-    """Read a query in JSON; raises `BadInput`."""
     try:
         return points_of_model(QueryInput.model_validate_json(body))
     except ValidationError as error:
@@ -106,7 +121,6 @@ WRITE: dict[str, Callable[[ForceAnswer], bytes]] = {JSON: _as_json, CBOR: _as_cb
 
 
 def _plain(answer: ForceAnswer) -> dict[str, Any]:
-    """Return an answer as lists, validities in words."""
     return {
         "force_n": answer.force_n.tolist(),
         "stiffness_n_per_um": answer.stiffness_n_per_um.tolist(),
@@ -115,7 +129,6 @@ def _plain(answer: ForceAnswer) -> dict[str, Any]:
 
 
 def _refuse(error: ValidationError, form: str) -> NoReturn:
-    """Raise what a query's model refused, a fault by fault."""
     faults = []
     for item in innermost(error.errors(include_url=False)):
         if item["type"] == "json_invalid":
@@ -210,3 +223,60 @@ def query_forces(
     accept: Annotated[str, Header(description=f"{JSON}, {CBOR} or {RAW}; default: that of the body")] = "*/*",
 ) -> None:
     """Force, tangent stiffness and validity at positions and deflections."""
+
+
+# The live worker computes curves and plans.
+
+
+live_router = APIRouter(tags=["live"], route_class=ScopedRoute)
+
+STE, PLAN = "service.live.work:live_ste", "service.live.work:live_plan"
+
+
+@live_router.post(
+    "/databases/{key}/ste",
+    summary="Transmission error with other flanks",
+    response_class=Response,
+    responses={
+        200: {"model": LiveOutput, "description": "The curves"},
+        **documented(QueueFull, Superseded, NotAnalyzed, LiveUnavailable, NotFound, DamagedFile),
+    },
+)
+@needs(Scope.READ, body=LiveInput)
+async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
+    """Curves of the gears of a database with other flanks, torques, misalignment and center distance.
+
+    They come from the compliance in the cache, without finite elements, and say what they may be wrong by.
+    """
+    stored = await run_in_threadpool(context.store.verified, key, "database")
+    question = body.model_dump(mode="json", exclude_none=True)
+    place = address_of(context.project, key)
+    inputs = {"key": place, "file": str(stored.path), "cache": _cache(context), "question": question}
+    return await _live_answer(context, LiveOrder(STE, inputs), body.caller)
+
+
+@live_router.post(
+    "/plans",
+    summary="Plan and cost of a run",
+    response_class=Response,
+    responses={
+        200: {"model": PlanBody, "description": "The plan"},
+        **documented(QueueFull, Superseded, LiveUnavailable),
+    },
+)
+@needs(Scope.READ, body=PlanRequest)
+async def plan(body: PlanRequest, context: Ctx) -> Response:
+    """Predicted time by stage, memory and error of every mesh, and the effect ledger; nothing is computed."""
+    inputs = body.inputs.model_dump(mode="json")
+    order = LiveOrder(PLAN, {**inputs, "cache": _cache(context)})
+    return await _live_answer(context, order, body.caller)
+
+
+async def _live_answer(context: Context, order: LiveOrder, caller: str | None) -> Response:
+    name = None if caller is None else f"{order.entry} {context.project} {caller}"
+    body = await asyncio.wrap_future(context.live.ask(order, name))
+    return Response(body, media_type="application/json")
+
+
+def _cache(context: Context) -> str:
+    return str(context.settings.data_directory / "compliance")

@@ -1,26 +1,76 @@
-"""Stored results as metadata or as their files."""
+"""Stored results: metadata, files, figures, sounds, and the list of STE databases."""
 
 from __future__ import annotations
 
+import asyncio
 import base64
 import hashlib
-from collections.abc import Mapping
+import json
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Header, Path, Request
+from fastapi import APIRouter, Header, Path, Query, Request
+from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, JSONResponse, Response
 
 from lineofaction.gearbox.loading import LOADING
-from lineofaction.gearbox.problems import DamagedFile, NotFound
+from lineofaction.gearbox.problems import BadInput, DamagedFile, LiveUnavailable, NotFound, QueueFull
 from lineofaction.gearbox.registry import NETCDF
-from lineofaction.gearbox.schemas.result_kinds import HASH, RESULT_KINDS, SUFFIX
+from lineofaction.gearbox.schemas.result_kinds import HASH, RESULT_KINDS, RESULTS, SUFFIX
 from service.access import Scope
+from service.live.order import LiveOrder
 from service.routes.context import Context, Ctx
-from service.routes.media_types import JSON, OF_VERSIONS, described_headers, negotiated
-from service.routes.refusals import documented
+from service.routes.media_types import (
+    JSON,
+    OF_VERSIONS,
+    WAV,
+    Cursor,
+    Limit,
+    described_headers,
+    mark_of,
+    negotiated,
+    page_links,
+)
+from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.ogc import ResultFigures
-from service.store import StoredResult
+from service.schemas.answers import DatabaseEntry, DatabaseList, ReportBody, ResultFigures
+from service.store import IndexLine, Mark, ResultStore, StoredResult
+from service.store.files import WrongContent
+from service.version import program_tag
+
+# Answers that a worker makes from stored results, kept in memory while they are asked for.
+
+
+_VERSION = ("ETag", "Cache-Control")
+"""Headers of such an answer."""
+
+
+async def _kept_answer(
+    request: Request,
+    context: Context,
+    tag: str,
+    order: LiveOrder,
+    media_type: str,
+    body_of: Callable[[bytes], bytes] = lambda answer: answer,
+) -> Response:
+    """Return the answer to an order by its tag; 304 to a caller that has it.
+
+    Parameters
+    ----------
+    tag : str
+        Names the content, in quotes.
+    body_of : callable
+        From the worker's answer to the body.
+    """
+    headers = {"ETag": tag, "Cache-Control": "no-cache"}
+    if tag in request.headers.get("if-none-match", ""):
+        return Response(status_code=304, headers=headers)
+    body = await run_in_threadpool(context.kept.find, tag)
+    if body is None:
+        body = body_of(await asyncio.wrap_future(context.live.ask(order)))
+        await run_in_threadpool(context.kept.keep, tag, body)
+    return Response(body, media_type=media_type, headers=headers)
+
 
 _IMMUTABLE = "public, max-age=31536000, immutable"
 
@@ -39,6 +89,34 @@ _ANSWERS: dict[int | str, dict[str, Any]] = {
 }
 
 router = APIRouter(tags=["results"], route_class=ScopedRoute)
+
+
+_PATH = "/v1/databases"
+
+
+@router.get("/databases", summary="STE databases")
+@needs(Scope.READ)
+def list_databases(request: Request, context: Ctx, limit: Limit = 20, cursor: Cursor = None) -> DatabaseList:
+    """List stored databases with their cases, the newest first."""
+    page = context.store.page("database", limit + 1, mark_of(cursor))
+    shown = page[:limit]
+    last = shown[-1][0] if len(page) > limit else None
+    entries = [_entry(context.store, mark, line) for mark, line in shown]
+    return DatabaseList(databases=entries, links=page_links(request, _PATH, last))
+
+
+def _entry(store: ResultStore, mark: Mark, line: IndexLine) -> DatabaseEntry:
+    """Return what the list tells of a database, which is not thereby used; of a damaged file its name."""
+    with LOADING:
+        from lineofaction.gearbox.convert.database_case import case_of_file  # noqa: PLC0415 (start-up time)
+
+    try:
+        case = case_of_file(store.files.local(line.file, line.sha256))
+    except (FileNotFoundError, WrongContent):
+        case = None
+    return DatabaseEntry(
+        hash=line.key, href=f"{RESULTS}/{line.key}", created=mark.created, size=line.size, case=case
+    )
 
 
 @router.get(
@@ -122,7 +200,6 @@ def file_response(
 
 
 def _metadata(stored: StoredResult, request: Request, facts: dict[str, Any]) -> Response:
-    """Return the figures with their digest, or 304."""
     headers = _headers(stored, "-json")
     if _known(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
@@ -144,6 +221,107 @@ def _headers(stored: StoredResult, form: str = "") -> dict[str, str]:
 
 
 def _known(request: Request, tag: str) -> bool:
-    """Whether the caller has this version already."""
     known = request.headers.get("if-none-match", "")
     return known.strip() == "*" or tag in (part.strip().removeprefix("W/") for part in known.split(","))
+
+
+# Figures and tables of stored results, as `loa report` draws them.
+
+
+FIGURES = "lineofaction.report.document.content:stored_figures"
+COMPARISON = "lineofaction.report.comparison.compare:stored_comparison"
+
+
+@router.get(
+    "/results/{key}/figures",
+    summary="Figures of a result",
+    response_class=Response,
+    responses={
+        200: {
+            "model": ReportBody,
+            "description": "The report",
+            "headers": described_headers(*_VERSION),
+        },
+        304: {"description": "Not modified", "headers": described_headers(*_VERSION)},
+        **documented(NotFound, QueueFull, LiveUnavailable, DamagedFile),
+    },
+)
+@needs(Scope.READ)
+async def result_figures(
+    key: Key,
+    request: Request,
+    context: Ctx,
+    against: Annotated[
+        str | None,
+        Query(
+            pattern=HASH,
+            description="Another result of the same kind, table or run: the report then compares both.",
+        ),
+    ] = None,
+) -> Response:
+    """Every plot as data and layout for plotly.js, with its words and numbers."""
+    stored = await run_in_threadpool(known_result, context, key)
+    tag, order = stored.sha256, LiveOrder(FIGURES, {"file": str(stored.path)})
+    if against is not None:
+        other = await run_in_threadpool(known_result, context, against)
+        tag, order = tag + other.sha256, LiveOrder(COMPARISON, {"files": [str(stored.path), str(other.path)]})
+    tag = f'"{tag}-figures-{program_tag()}"'
+    return await _kept_answer(request, context, tag, order, "application/json")
+
+
+# Stored runs and recordings to listen to, as `loa listen` writes them.
+
+
+SOUND = "lineofaction.report.runs.sound:stored_sound"
+HEARD = ("run", "recording")
+"""Kinds of results that have a sound."""
+_NAME = 200  # characters
+
+
+def _named(description: str) -> object:
+    """Return a parameter that names a part of the run; empty: it is chosen as `loa listen` does."""
+    return Query(max_length=_NAME, description=description)
+
+
+@router.get(
+    "/results/{key}/sound",
+    summary="The sound of a run or a recording",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "The WAV file: 32-bit floats, 48 kHz; its comment states quantity and full scale",
+            "content": {WAV: {"schema": FILE}},
+            "headers": described_headers(*_VERSION),
+        },
+        304: {"description": "Not modified", "headers": described_headers(*_VERSION)},
+        **documented(NotFound, BadInput, QueueFull, LiveUnavailable, DamagedFile),
+    },
+)
+@needs(Scope.READ)
+async def result_sound(
+    key: Key,
+    request: Request,
+    context: Ctx,
+    quantity: Annotated[str, _named("force, moment, acceleration, mesh_force, transmission_error")] = "",
+    bearing: Annotated[str, _named("Bearing; left out: where the quantity varies most")] = "",
+    mesh: Annotated[str, _named("Mesh; left out: the first")] = "",
+    direction: Annotated[str, _named("x, y, z; left out: in which it varies most")] = "",
+    against: Annotated[
+        str | None,
+        Query(pattern=HASH, description="Another one of its kind; both are then on one full scale"),
+    ] = None,
+) -> Response:
+    """Return a recording of `listen`, or forces or motions of a run made audible: no sound pressure."""
+    kind = (await run_in_threadpool(known_result, context, key)).kind
+    if kind not in HEARD:
+        raise NotFound(f"Result {key!r} is no run and no recording, but of the kind {kind}.")
+    stored = [await run_in_threadpool(known_result, context, one, kind) for one in (key, against) if one]
+    view = {"quantity": quantity, "bearing": bearing, "mesh": mesh, "direction": direction}
+    named = json.dumps([*(one.sha256 for one in stored), view, program_tag()])
+    tag = f'"{hashlib.sha256(named.encode()).hexdigest()}-sound"'
+    order = LiveOrder(SOUND, {"kind": kind, "files": [str(one.path) for one in stored], "view": view})
+    return await _kept_answer(request, context, tag, order, WAV, _wav)
+
+
+def _wav(answer: bytes) -> bytes:
+    return base64.b64decode(json.loads(answer)["wav"])

@@ -1,12 +1,14 @@
-"""What each operation needs: said where its route is defined, refused before its body is read."""
+"""The routes: what each operation needs is said where it is defined, and refused before its body is read."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from typing import Any, TypeVar
 
-from fastapi import Request
+from fastapi import APIRouter, Request
 from fastapi.routing import APIRoute
+from pydantic import BaseModel
+from starlette import types
 from starlette.responses import Response
 
 from lineofaction.gearbox.problems import MissingScope
@@ -20,11 +22,17 @@ OPEN_TO_ALL = None
 """In place of a scope: no key is needed; `service.routes.access.OPEN_PATHS` are the paths."""
 
 
-def needs(scope: Scope | None, *, streams: bool = False) -> Callable[[Endpoint], Endpoint]:
-    """Declare the scope that an endpoint needs, and whether it `streams` while its caller listens."""
+def needs(
+    scope: Scope | None, *, streams: bool = False, body: type[BaseModel] | None = None
+) -> Callable[[Endpoint], Endpoint]:
+    """Declare the scope that an endpoint needs, and whether it `streams` while its caller listens.
+
+    `body` is the model that explains refused fields.
+    """
 
     def declare(endpoint: Endpoint) -> Endpoint:
         endpoint.scope, endpoint.streams = scope, streams  # type: ignore[attr-defined]
+        endpoint.body_model = body  # type: ignore[attr-defined]
         return endpoint
 
     return declare
@@ -77,3 +85,62 @@ def _hold_stream(request: Request) -> None:
     if key is not None:
         request.state.streams.refuse_beyond(key.name, key.streams)
         request.state.held.enter_context(request.state.streams.one(key.name))
+
+
+# Routes that take the request as it is: no dependencies, no validation by the framework.
+
+
+Handler = Callable[[Request], Awaitable[Response]]
+
+
+def answered_by(handler: Handler) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Let a coroutine of the request answer for an endpoint, whose signature is what OpenAPI documents."""
+
+    def attach(endpoint: Callable[..., None]) -> Callable[..., None]:
+        endpoint.direct = handler  # type: ignore[attr-defined]
+        return endpoint
+
+    return attach
+
+
+class DirectRoute(ScopedRoute):
+    """A route whose endpoint is `answered_by` a coroutine.
+
+    For queries that come thousands of times a second: solving dependencies costs more there than the answer.
+    """
+
+    def answering(self) -> Callable[[Request], Any]:
+        """Return the coroutine itself."""
+        handler: Handler = self.endpoint.direct  # type: ignore[attr-defined]
+        return handler
+
+
+class DirectRoutes:
+    """In front of the framework's router, which compares a path with every route it has.
+
+    Parameters
+    ----------
+    app : ASGIApp
+        What serves all other requests, and those that a direct route refuses by their method.
+    router : APIRouter
+        Its direct routes are answered here.
+    prefix : str
+        Under which the router is included.
+    """
+
+    def __init__(self, app: types.ASGIApp, router: APIRouter, prefix: str) -> None:
+        self._app, self._prefix = app, prefix
+        self._routes = [route for route in router.routes if isinstance(route, DirectRoute)]
+
+    async def __call__(self, scope: types.Scope, receive: types.Receive, send: types.Send) -> None:
+        """Serve one request."""
+        for route in self._routes:
+            if scope["type"] == "http" and scope["method"] in (route.methods or ()):
+                path = scope["path"]
+                match = route.path_regex.match(path.removeprefix(self._prefix))
+                if match is not None and path.startswith(self._prefix):
+                    scope.update(route=route, endpoint=route.endpoint, path_params=match.groupdict())
+                    response = await route.get_route_handler()(Request(scope, receive, send))
+                    await response(scope, receive, send)
+                    return
+        await self._app(scope, receive, send)

@@ -28,7 +28,6 @@ def warm_up(modules: Sequence[str] = HEAVY) -> threading.Thread:
 
 
 def _load(modules: Sequence[str]) -> None:
-    """Import one after the other."""
     with LOADING:
         for module in modules:
             import_module(module)

@@ -12,8 +12,7 @@ from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.case_or_scene import CaseOrScene
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 from lineofaction.gearbox.schemas.scene import SceneInput
-from service.schemas.answers import ProblemBody
-from service.schemas.ogc import JobStatus, ResultReference, Subscriber, class_name
+from service.schemas.answers import JobStatus, ProblemBody, ResultReference, Subscriber, class_name
 
 Title = Annotated[str, Field(max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")]
 Tag = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._:/+-]{0,39}$")]
@@ -39,21 +38,9 @@ class SimulateInputs(BoundaryModel):
     scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
 
 
-class OfCase(BoundaryModel):
-    """The subject of a study: a case."""
-
-    case: Case = Field(description="The case, as in a case file")
-
-
-class OfScene(BoundaryModel):
-    """The subject of a study: a scene."""
-
-    scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
-
-
 _SUBJECTS: dict[str, type[BoundaryModel]] = {
-    "case": OfCase,
-    "scene": OfScene,
+    "case": AnalyzeInputs,
+    "scene": SimulateInputs,
     "case or scene": CaseOrScene,
 }
 
@@ -71,7 +58,7 @@ Cost = Annotated[float, Field(gt=0.0, le=1e9)]
 _LINK = {"href", "rel", "type", "hreflang", "title"}
 
 
-class ExecuteBody(BoundaryModel):
+class _ExecuteBody(BoundaryModel):
     """The base of the bodies of all executions: inputs may be qualified values."""
 
     @model_validator(mode="before")
@@ -113,7 +100,7 @@ def _wanted_output() -> type[BoundaryModel]:
     return create_model("WantedNcOutput", __base__=BoundaryModel, **fields)
 
 
-def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> type[ExecuteBody]:
+def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> type[_ExecuteBody]:
     """Return the model of a process' body.
 
     Parameters
@@ -149,7 +136,7 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
         bool,
         Field(False, description="Answer with the caller's equal job, if one is under way or done"),
     )
-    return create_model(f"Execute{title}", __base__=ExecuteBody, **fields)
+    return create_model(f"Execute{title}", __base__=_ExecuteBody, **fields)
 
 
 MOST_JOBS = 200

@@ -7,21 +7,26 @@ the two differ nothing is served and nothing is removed.
 from __future__ import annotations
 
 import json
+import math
+import threading
+import time
 import uuid
 from collections.abc import Callable
+from concurrent.futures import Future
+from concurrent.futures import TimeoutError as NotDone
 from dataclasses import dataclass
 from pathlib import Path
 
+import structlog
 from sqlalchemy import Column, Engine, String, Table, insert, select, update
 from sqlalchemy.exc import SQLAlchemyError
 
-from lineofaction.gearbox.problems import BadInput, NoSpace
-from service.store.database import metadata, now, reading, writing
+from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable, NoSpace, ServiceError
+from service.store.database import metadata, now, reading, shown, writing
 from service.store.dialects import dialect_of, shortage
 from service.store.files import ResultName
 from service.store.outages import outage_of, retried
 from service.store.results import ResultStore
-from service.store.schema import shown
 
 NOTE = "deployment.json"
 """Name of the note beside the files."""
@@ -180,7 +185,6 @@ class Deployment:
         self.confirm()
 
     def _owner(self) -> _Owner | None:
-        """Return whom the note names, None if there is no note."""
         text = self._files.note(NOTE)
         return None if text is None else _Owner.of(text)
 
@@ -197,7 +201,6 @@ class Deployment:
             raise self._refusal(f", where we may write: {error.strerror}", _WRITABLE) from None
 
     def _compared(self) -> _Comparison:
-        """Compare the index with the files."""
         named = {line.file for line in self._store.lines()}
         first = None
         for file in self._files.files():
@@ -208,13 +211,11 @@ class Deployment:
         return _Comparison(len(named), first, known=False)
 
     def _refusal(self, bound: str, tip: str) -> BadInput:
-        """Return the error of a place that is not ours."""
         ours = f"the place of deployment {self._named()} (database {shown(self._engine)})"
         return BadInput.of("results", self._files.address, ours + bound, tip)
 
 
 def _refuse_without_space(folder: Path | None) -> None:
-    """Raise `NoSpace` if a folder has none."""
     if fault := shortage(folder):
         raise NoSpace(fault)
 
@@ -242,3 +243,90 @@ class _Comparison:
         index = "names other files" if self.named else "is empty"
         bound = f": there are files (such as {self.file}) and the index {index}"
         raise refusal(bound, _ELSEWHERE if self.named else _REINDEX)
+
+
+# Whether a service can write: tried when somebody wants to know, in a thread of its own.
+
+
+KEPT_S = 1.0
+"""For so long an outcome is good: what was written then need not be tried now."""
+PATIENCE_S = 0.8
+"""Nobody waits for longer than this: supervisors ask for an answer within a second."""
+LATE_S = 10.0
+"""For so long after a write that succeeded one that only waits is no fault: others write, many at once. It is
+how long a submission waits for its turn."""
+
+logger = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True)
+class Writable:
+    """Faults of writing by part, empty if there is none.
+
+    `late`: the database did not answer in time, or others held it; nothing is known to be broken.
+    """
+
+    database: str = ""
+    results: str = ""
+    late: bool = False
+
+    @property
+    def fault(self) -> str:
+        """The first fault, in a sentence."""
+        return self.database or self.results
+
+
+class WriteCheck:
+    """Writes to database and place of results, at most once in `KEPT_S`, whoever asks."""
+
+    def __init__(self, deployment: Deployment) -> None:
+        self._deployment = deployment
+        self._lock = threading.Lock()
+        self._outcome: Future[Writable] | None = None
+        self._begun = 0.0
+        self._succeeded = -math.inf
+
+    def outcome(self) -> Writable:
+        """Return what can be written, within `PATIENCE_S`."""
+        with self._lock:
+            old = time.monotonic() - self._begun > KEPT_S
+            if self._outcome is None or (old and self._outcome.done()):
+                self._begun, self._outcome = time.monotonic(), Future()
+                threading.Thread(target=self._try, args=(self._outcome,), daemon=True).start()
+            outcome = self._outcome
+        try:
+            written = outcome.result(timeout=PATIENCE_S)
+        except NotDone:
+            text = f"What is written to the database and the results is not there after {PATIENCE_S:g} s."
+            written = Writable(text, text, late=True)
+        waits = written.late and time.monotonic() - self._succeeded < LATE_S
+        return Writable() if waits else written
+
+    def _try(self, outcome: Future[Writable]) -> None:
+        begun = time.monotonic()
+        results, _ = self._fault("results", self._deployment.write_place)
+        database, late = self._fault("database", self._deployment.write_database)
+        written = Writable(database, results, late=late and not results)
+        if not written.fault:
+            self._succeeded = begun
+        outcome.set_result(written)
+
+    @staticmethod
+    def _fault(part: str, step: Callable[[], None]) -> tuple[str, bool]:
+        """Return what went wrong, and whether it may be late only; names of files are for the log."""
+        try:
+            step()
+        except BadInput as error:
+            logger.warning("cannot be written", part=part, error=str(error))
+            return (
+                "The place of results belongs to another deployment or refuses writing. The log says more.",
+                False,
+            )
+        except ServiceError as error:
+            return str(error), type(error) is DatabaseUnavailable
+        except OSError as error:
+            return f"The place of results cannot be written: {error.strerror}.", False
+        except Exception:
+            logger.exception("write check failed", part=part)
+            return f"An unexpected failure occurred while the {part} was written. The log says more.", False
+        return "", False

@@ -68,7 +68,7 @@ class Commits(Protocol):
         """Close the connection."""
 
 
-class SqliteCommits:
+class _SqliteCommits:
     """The data version of a SQLite file, which changes with each commit of another connection."""
 
     def __init__(self, engine: Engine) -> None:
@@ -93,7 +93,7 @@ class SqliteCommits:
         self._connection.close()
 
 
-class PostgresCommits:
+class _PostgresCommits:
     """Notifications of a PostgreSQL server that a job changed."""
 
     def __init__(self, engine: Engine) -> None:
@@ -165,7 +165,7 @@ class Dialect(Protocol):
         """Look through the whole database where that is cheap; return what is damaged, None if nothing is."""
 
 
-class SQLite:
+class _SQLite:
     """One file with a write-ahead log, synchronous FULL, and one writer at a time."""
 
     upgrades_itself = True
@@ -193,7 +193,7 @@ class SQLite:
 
     def commits(self, engine: Engine) -> Commits:
         """Return what reads the version of the file."""
-        return SqliteCommits(engine)
+        return _SqliteCommits(engine)
 
     def lost(self, error: DBAPIError) -> bool:
         """Whether others held the file for too long."""
@@ -272,7 +272,7 @@ def _begin(connection: Connection) -> None:
     connection.exec_driver_sql("BEGIN IMMEDIATE" if options.get("immediate", False) else "BEGIN")
 
 
-class PostgreSQL:
+class _PostgreSQL:
     """A server: many writers, read committed, rows and turns locked where it matters."""
 
     upgrades_itself = False
@@ -315,7 +315,7 @@ class PostgreSQL:
 
     def commits(self, engine: Engine) -> Commits:
         """Return what the server notifies."""
-        return PostgresCommits(engine)
+        return _PostgresCommits(engine)
 
     def lost(self, error: DBAPIError) -> bool:
         """Whether the connection broke or never was, or the server asks to try again.
@@ -347,7 +347,7 @@ def _begin_on_server(connection: Connection) -> None:
         connection.exec_driver_sql(f"SET LOCAL lock_timeout = {patience_ms:d}")
 
 
-_DIALECTS: Mapping[str, Dialect] = {"sqlite": SQLite(), "postgresql": PostgreSQL()}
+_DIALECTS: Mapping[str, Dialect] = {"sqlite": _SQLite(), "postgresql": _PostgreSQL()}
 
 
 def dialect_of(database: Engine | Connection | URL) -> Dialect:

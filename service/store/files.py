@@ -185,12 +185,12 @@ class DirectoryFiles:
         try:
             draft.write_text(text, encoding="utf-8")
             draft.chmod(_PRIVATE)
-            sync(draft)
+            _sync(draft)
             if replace:
                 draft.replace(target)
             else:
                 _name_if_free(draft, target)
-            sync(self._directory)
+            _sync(self._directory)
         finally:
             draft.unlink(missing_ok=True)
 
@@ -235,10 +235,10 @@ def place_whole(file: Path, target: Path) -> None:
     except OSError:
         shutil.copyfile(file, draft)
     draft.chmod(_PRIVATE)
-    sync(draft)
+    _sync(draft)
     os.utime(draft)
     draft.replace(target)
-    sync(target.parent)
+    _sync(target.parent)
 
 
 def digest_of(file: Path) -> str:
@@ -247,7 +247,7 @@ def digest_of(file: Path) -> str:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
-def sync(path: Path) -> None:
+def _sync(path: Path) -> None:
     """Force a file or a directory to disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:

@@ -110,7 +110,6 @@ def optional(step: Callable[Concatenate[S, P], None]) -> Callable[Concatenate[S,
 
 
 def _note(state: RetryCallState) -> None:
-    """Log that a step is tried again."""
     outcome = state.outcome
     error = outcome.exception() if outcome is not None else None
     logger.warning("database lost", attempt=state.attempt_number, error=type(error).__name__)

@@ -117,7 +117,6 @@ class ObjectFiles:
             obstore.put(self._store, name, text.encode(), mode="overwrite" if replace else "create")
 
     def _pieces(self, name: str) -> Iterator[memoryview]:
-        """Read an object piece by piece."""
         import obstore  # noqa: PLC0415 (an extra)
 
         with _answering():

@@ -191,7 +191,7 @@ class ResultStore:
     def enter(self, line: IndexLine, *, made: str | None = None) -> IndexLine:
         """Enter a result, unless there is one whose file is there; return the one there is now.
 
-        With `made`, the date of its file, it is marked as entered anew: by `service.store.reindex`.
+        With `made`, the date of its file, it is marked as entered anew: by `service.store.maintenance`.
         """
         with writing(self._engine, in_turn=True) as connection:
             before = _line(connection, line.address, line.kind)
@@ -214,7 +214,6 @@ class ResultStore:
         return line
 
     def _whole(self, key: str, kind: str) -> IndexLine | None:
-        """Return the index's line if its file is there."""
         line = self._find(key, kind)
         return line if line is not None and self.files.has(line.file) else None
 
@@ -264,7 +263,6 @@ class ResultStore:
 
     @staticmethod
     def _missing(key: str, kind: str | None) -> NotFound:
-        """Return the error of a result that is not there."""
         return NotFound(f"There is no {kind or 'result'} {key!r}. Submit its case again to compute it.")
 
     def note_use(self, key: str, kind: str) -> None:
@@ -311,7 +309,6 @@ class ResultStore:
 
 
 def _is_key(key: str) -> bool:
-    """Whether `key` is a SHA-256 in hexadecimal."""
     return len(key) == hashlib.sha256().digest_size * 2 and set(key) <= set("0123456789abcdef")
 
 

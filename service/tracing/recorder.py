@@ -35,7 +35,7 @@ def recorder() -> Tracer:
     resource = Resource.create(own).merge(OTELResourceDetector().detect())
     provider = TracerProvider(resource=resource, shutdown_on_exit=False)
     provider.add_span_processor(BatchSpanProcessor(exporter))
-    return Recorder(provider)
+    return _Recorder(provider)
 
 
 def _exporter(name: str) -> SpanExporter | None:
@@ -47,7 +47,7 @@ def _exporter(name: str) -> SpanExporter | None:
     return None
 
 
-class Recorder:
+class _Recorder:
     """A tracer of OpenTelemetry.
 
     Parameters

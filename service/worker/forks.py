@@ -1,4 +1,4 @@
-"""The warm process seen from the service: started once, asked for a child per order.
+"""Child processes that work on one order each: started anew, or forked from a warm process.
 
 A child forked from it needs no imports and no compilation. It is started beside the second child; while it
 warms up, and where it cannot be had, children are started anew.
@@ -13,16 +13,88 @@ import select
 import socket
 import subprocess
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import structlog
 
-from host import Ended, child_environment, ending_signal
-from service.worker.child_process import WORK, ChildProcess, Ends, start_child
+from host import Ended, child_environment, ending_signal, has_exited, reap
 from service.worker.fork_server import MESSAGE_BYTES, READY
+
+WORK = "service.worker.child"
+"""The module that works on orders."""
+
+
+@dataclass(frozen=True)
+class Ends:
+    """What a child is given: descriptors of its ends of pipes and of its log, and where it works.
+
+    Attributes
+    ----------
+    orders, channel, log : int
+        It reads its order and renewals of its lease, writes progress and outcome, writes what it prints.
+    workspace : Path
+        Its working directory.
+    """
+
+    orders: int
+    channel: int
+    log: int
+    workspace: Path
+
+
+class ChildProcess(Protocol):
+    """The leader of a session of its own."""
+
+    @property
+    def pid(self) -> int:
+        """Process id, also of its group and session."""
+
+    def has_exited(self) -> bool:
+        """Whether it has ended. Until it is reaped no other process gets its id."""
+
+    def reap(self) -> Ended:
+        """Wait for its end."""
+
+
+Launch = Callable[[Ends], ChildProcess]
+
+
+@dataclass(frozen=True)
+class _StartedChild:
+    """A child started anew."""
+
+    pid: int
+
+    def has_exited(self) -> bool:
+        """Whether it has ended."""
+        return has_exited(self.pid)
+
+    def reap(self) -> Ended:
+        """Wait for its end."""
+        return reap(self.pid)
+
+
+def start_child(ends: Ends, work: str = WORK) -> _StartedChild:
+    """Start a child that runs a module; OSError: the system does not."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", work, str(ends.channel)],
+        stdin=ends.orders,
+        stdout=ends.log,
+        stderr=ends.log,
+        pass_fds=(ends.channel,),
+        start_new_session=True,
+        env=child_environment(),
+        cwd=ends.workspace,
+    )
+    process.returncode = 0  # `reap` waits for it, not Popen
+    return _StartedChild(process.pid)
+
+
+# The warm process seen from the service.
+
 
 logger = structlog.get_logger(__name__)
 
@@ -146,7 +218,7 @@ class _Server:
         """Whether it said that it is ready, and has answered since."""
         return self._ready and not self._gone
 
-    def fork(self, ends: Ends) -> ForkedChild:
+    def fork(self, ends: Ends) -> _ForkedChild:
         """Fork a child."""
         descriptors = [ends.orders, ends.channel, ends.log]
         pid = self.ask({"workspace": str(ends.workspace)}, descriptors)
@@ -154,7 +226,7 @@ class _Server:
             raise OSError(pid["errno"], pid["strerror"])
         self._forks += 1
         self.living += 1
-        return ForkedChild(pid, os.pidfd_open(pid), self)
+        return _ForkedChild(pid, os.pidfd_open(pid), self)
 
     def ask(self, request: dict[str, Any], descriptors: Iterable[int] = ()) -> Any:
         """Return the answer to a request; ConnectionError: the process is gone."""
@@ -176,7 +248,7 @@ class _Server:
 
 
 @dataclass(frozen=True)
-class ForkedChild:
+class _ForkedChild:
     """A child of the warm process.
 
     Attributes

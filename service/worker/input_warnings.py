@@ -33,7 +33,6 @@ def input_warnings(inputs: str) -> tuple[Json, ...]:
 
 
 def _warnings(inputs: Json) -> list[Json]:
-    """Assess a case or a scene."""
     if inputs.get("scene") is not None:
         return _of_scene(SceneInput.model_validate_json(json.dumps(inputs["scene"])))
     if inputs.get("case") is not None:

@@ -35,9 +35,9 @@ from lineofaction.gearbox.schemas.scene_meshes import MeshInput
 from lineofaction.gearbox.stages import TableFraction
 from model_studies.progress import Report, by_cost
 from service.store import ResultStore, stored_results
-from service.worker.catalogue import ANALYZE
 from service.worker.cluster import table_workers
 from service.worker.order import Product, Progress, WorkOrder
+from service.worker.process import ANALYZE
 
 # The work of the process analyze, done in a child process of its own.
 

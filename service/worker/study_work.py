@@ -45,7 +45,6 @@ def prepare(study: Study, inputs: Any, store: ResultStore) -> Json:
 
 
 def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
-    """Do a study, into a file."""
     subject, products, warnings = _subject(study, order, progress)
     varied = {name: value for name, value in order.inputs.items() if name not in ("case", "scene")}
     inputs = study.inputs.model_validate_json(json.dumps(varied))

@@ -14,7 +14,7 @@ import structlog
 
 from fe_contact.cache_reads import CacheReads
 from host import Ended, ending_signal, kill_group, never_wait_at
-from service.worker.child_process import Ends, Launch, start_child
+from service.worker.forks import Ends, Launch, start_child
 from service.worker.order import Outcome, Product, WorkOrder
 from service.worker.usage import BYTES_PER_MB, Usage
 
@@ -173,14 +173,12 @@ class Worker:
             self.channel = -1
 
     def _reap(self) -> None:
-        """Wait for the child's end, and note what it took."""
         self._ended = ended = self._process.reap()
         peak_mb = ended.peak_memory / BYTES_PER_MB if self._peak_mb is None else self._peak_mb
         self.usage = Usage(self.age, ended.cpu_seconds, peak_mb)
 
 
 def _cause(code: int) -> str:
-    """Return why a worker ended without an outcome."""
     if name := ending_signal(code):
         hint = " (it may have run out of memory)" if name in _OF_LITTLE_MEMORY else ""
         return f"The worker was ended by {name}{hint}."

@@ -25,8 +25,8 @@ from lineofaction.gearbox.studies.computation import Means
 from service.store import stored_results
 from service.store.results import IndexLine
 from service.worker import study_work
-from service.worker.catalogue import default_registry
 from service.worker.order import WorkOrder
+from service.worker.process import default_registry
 
 ABLATE = default_registry()["ablate"]
 OLD = "0d" * 32

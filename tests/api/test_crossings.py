@@ -19,7 +19,6 @@ from walked_routes import WalkedRoute, walked_routes
 
 from lineofaction.gearbox.problems import KeyExpired, MissingScope, NotFound, Unauthorised
 from service.access import KeyFile, Scope
-from service.access.keyring import written
 from service.app import create_app
 from service.routes.access import OPEN_FOLDER, OPEN_PATHS
 from service.routes.scopes import OPEN_TO_ALL, ScopedRoute
@@ -110,7 +109,7 @@ def _let_expire(name: str) -> None:
     content = json.loads(_settings.key_file.read_text())
     for entry in content["keys"]:
         if entry["name"] == name:
-            entry["expires"] = written(datetime.now(UTC) - timedelta(seconds=1))
+            entry["expires"] = (datetime.now(UTC) - timedelta(seconds=1)).isoformat()
     _settings.key_file.write_text(json.dumps(content))
 
 

@@ -16,8 +16,8 @@ from lineofaction.gearbox import problems
 from lineofaction.gearbox.problems import ServiceError
 from lineofaction.gearbox.registry import STUDIES
 from service.routes.media_types import OF_STATUS
-from service.schemas.ogc import class_name
-from service.worker.catalogue import default_registry
+from service.schemas.answers import class_name
+from service.worker.process import default_registry
 
 OPERATIONS = {
     operation["operationId"]: operation

@@ -14,7 +14,7 @@ from lineofaction.client import LineOfActionClient
 from service.access import KeyFile
 from service.app import create_app
 from service.queue.tables import jobs
-from service.schemas.request_examples import CASE
+from service.schemas.examples import CASE
 from service.settings import Settings
 from service.store import writing
 

@@ -25,7 +25,7 @@ from lineofaction.report.drawing.figure import Figure
 from service.app import create_app
 from service.settings import Settings
 from service.store import StoredResult
-from service.worker.catalogue import default_registry
+from service.worker.process import default_registry
 
 PROCESSES = tuple(default_registry())
 FEW, MANY = 1, -(-500 // len(PROCESSES))

@@ -26,9 +26,9 @@ from written_service import Service, running_service, written_service
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.registry import NETCDF
 from service.routes.media_types import RAW, WAV
-from service.schemas.ogc import class_name
-from service.schemas.request_examples import INPUTS
-from service.worker.catalogue import default_registry
+from service.schemas.answers import class_name
+from service.schemas.examples import INPUTS
+from service.worker.process import default_registry
 
 Json = dict[str, Any]
 

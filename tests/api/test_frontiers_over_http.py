@@ -26,8 +26,8 @@ from lineofaction.gearbox.studies.frontier import Inputs
 from lineofaction.gearbox.studies.frontier.run import frontier_of
 from service.store import stored_results
 from service.worker import study_work
-from service.worker.catalogue import default_registry
 from service.worker.order import WorkOrder
+from service.worker.process import default_registry
 
 FRONTIER = default_registry()["frontier"]
 CLOSED = ["iso6336", "thin_slices"]

@@ -20,7 +20,7 @@ from lineofaction.gearbox.schemas.toml_table import toml_table
 from service.access import KeyFile
 from service.access.capacity import Capacity
 from service.app import create_app
-from service.schemas.request_examples import CASE, SCENE
+from service.schemas.examples import CASE, SCENE
 from service.settings import Settings, load_settings
 from service.store.places import result_files
 

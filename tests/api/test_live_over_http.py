@@ -22,7 +22,7 @@ from lineofaction.gearbox.schemas.live_answer import LiveOutput
 from lineofaction.gearbox.schemas.reading import validated
 from service.app import create_app
 from service.live.order import LiveOrder
-from service.routes.live import STE
+from service.routes.queries import STE
 from service.settings import Settings
 
 GEAR: dict[str, Any] = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}

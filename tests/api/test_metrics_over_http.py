@@ -18,8 +18,7 @@ from service_fakes import REGISTRY
 from fe_contact.solver_version import SOLVER_VERSION
 from service.app import create_app
 from service.settings import Settings
-from service.store.database import database_engine
-from service.store.schema import Schema
+from service.store.database import Schema, database_engine
 
 EXECUTION = "/v1/processes/fake/execution"
 

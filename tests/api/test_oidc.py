@@ -13,8 +13,8 @@ from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import BadInput, IssuerUnavailable, KeyExpired, MissingScope, Unauthorised
 from service.access import KeyFile, open_identities
-from service.access import issuer as issuer_module
-from service.access.issuer import FRESH_S, PAUSE_S, STALE_S
+from service.access import identities as issuer_module
+from service.access.identities import FRESH_S, PAUSE_S, STALE_S
 from service.app import create_app
 from service.settings import Settings
 

@@ -19,7 +19,7 @@ from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.optimize import Inputs
 from lineofaction.gearbox.studies.optimize.run import optimization_json, optimization_of, worse_loads
-from service.worker.catalogue import default_registry
+from service.worker.process import default_registry
 
 OPTIMISE = default_registry()["optimize"]
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}

@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 from service_fakes import REGISTRY
 
 from service.app import create_app
-from service.schemas.request_examples import BODIES
+from service.schemas.examples import BODIES
 from service.settings import Settings
 
 _directory = tempfile.TemporaryDirectory(prefix="loa-problems-")

@@ -18,7 +18,7 @@ from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.scatter import Inputs
 from lineofaction.gearbox.studies.scatter.run import draw, facts
-from service.worker.catalogue import default_registry
+from service.worker.process import default_registry
 
 SCATTER = default_registry()["scatter"]
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}

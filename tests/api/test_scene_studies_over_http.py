@@ -35,8 +35,8 @@ from lineofaction.gearbox.subjects import scene_inputs
 from service.app import create_app
 from service.settings import Settings
 from service.store import stored_results
-from service.worker.catalogue import default_registry
 from service.worker.order import WorkOrder
+from service.worker.process import default_registry
 
 KEY = "ab" * 32
 STUDY = {

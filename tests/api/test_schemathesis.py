@@ -33,7 +33,7 @@ from whole_service import WholeService, whole_service
 
 from service.app import create_app
 from service.settings import Settings
-from service.worker.catalogue import default_registry
+from service.worker.process import default_registry
 
 Operation = schemathesis.schemas.APIOperation
 

@@ -23,7 +23,7 @@ from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.flank.run import flank_json, flanks_of
 from lineofaction.gearbox.studies.root_stress import Inputs
 from lineofaction.gearbox.studies.root_stress.run import root_stress_json, root_stress_of
-from service.worker.catalogue import default_registry
+from service.worker.process import default_registry
 
 FLANK = default_registry()["flank"]
 

@@ -16,7 +16,7 @@ from webhook_receiver import SECRET, Receiver, receiver
 
 from service.app import create_app
 from service.settings import Settings
-from service.webhooks import calls, deliverer, sending
+from service.webhooks import calls, deliverer
 
 EXECUTION = "/v1/processes/fake/execution"
 
@@ -27,7 +27,7 @@ def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(calls, "FIRST_PAUSE_S", 0.05)
     monkeypatch.setattr(calls, "MOST_ATTEMPTS", 3)
     monkeypatch.setattr(deliverer, "LOOK_S", 0.1)
-    monkeypatch.setattr(sending, "WHOLE_S", 1.0)
+    monkeypatch.setattr(deliverer, "WHOLE_S", 1.0)
 
 
 @pytest.fixture

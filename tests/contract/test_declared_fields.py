@@ -25,7 +25,7 @@ from lineofaction.gearbox.schemas.declared import Figure, figures
 from lineofaction.gearbox.schemas.gear import SHARED
 from lineofaction.gearbox.schemas.live import LiveInput
 from lineofaction.gearbox.studies.optimize import GearScatterInput, GearVariablesInput
-from service.schemas.request_examples import CASE
+from service.schemas.examples import CASE
 
 FIGURES = figures(FlankModification)
 EVERY = pytest.mark.parametrize("figure", FIGURES, ids=[figure.name for figure in FIGURES])

@@ -29,7 +29,7 @@ from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.declared import figures
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.app import create_app
-from service.schemas.request_examples import SCENE
+from service.schemas.examples import SCENE
 from service.settings import Settings
 
 Table = dict[str, Any]

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from plausible_values import Fields
 from toml_text import toml_text
 
-from service.schemas.request_examples import request_example
+from service.schemas.examples import request_example
 
 Json = dict[str, Any]
 

@@ -10,8 +10,8 @@ from typing import Any
 
 from lineofaction.gearbox.convert.stamp import stamp
 from service.store import StoredResult, stored_results
-from service.worker.catalogue import default_registry
 from service.worker.order import WorkOrder
+from service.worker.process import default_registry
 
 Json = dict[str, Any]
 

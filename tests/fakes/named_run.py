@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from service.schemas.request_examples import INPUTS
+from service.schemas.examples import INPUTS
 from service.store import ResultStore
 
 RUN: str = INPUTS["listen"]["run"]

@@ -193,8 +193,7 @@ def database_url(request: pytest.FixtureRequest) -> str | None:
 
 def migrated(url: str) -> str:
     """Return the URL of a database after its tables were made."""
-    from service.store.database import database_engine  # noqa: PLC0415 (skipped tests need none of it)
-    from service.store.schema import Schema  # noqa: PLC0415
+    from service.store.database import Schema, database_engine  # noqa: PLC0415 (skipped tests need none)
 
     engine = database_engine(url)
     Schema(engine).upgrade()

@@ -11,7 +11,7 @@ from typing import Any
 from housing_solid import write_block
 
 from lineofaction.gearbox.schemas.file_content import FileContentInput
-from service.schemas.request_examples import INPUTS
+from service.schemas.examples import INPUTS
 
 Json = dict[str, Any]
 

@@ -18,8 +18,7 @@ from condensed_once import FOLDER
 from running_service import until
 from service_surroundings import FAKES
 
-from service.worker.child_process import ChildProcess, Ends
-from service.worker.forks import Forks, _Server
+from service.worker.forks import ChildProcess, Ends, Forks, _Server
 
 _ANALYSIS = "service.worker.simulation_work"
 

@@ -17,8 +17,7 @@ from service.access import KeyFile
 from service.app import create_app
 from service.settings import Settings
 from service.store import stored_results
-from service.worker.catalogue import default_registry
-from service.worker.process import Registry
+from service.worker.process import Registry, default_registry
 
 
 @dataclass(frozen=True)

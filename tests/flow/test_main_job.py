@@ -15,7 +15,7 @@ import pytest
 from condensed_once import find_condensed
 from running_service import PATIENCE_S, until
 
-from service.page.examples import examples
+from service.page.files import examples
 
 ROOT = Path(__file__).parents[2]
 JOB = ROOT / "examples" / "main_job.py"

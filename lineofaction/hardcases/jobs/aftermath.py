@@ -27,8 +27,8 @@ from service.queue.submissions import Submissions
 from service.schemas.execute import AnalyzeInputs
 from service.settings import Settings
 from service.store import DATABASE_FILE, ResultStore
-from service.worker.catalogue import ANALYZE, default_registry
 from service.worker.cluster import RemoteWork
+from service.worker.process import ANALYZE, default_registry
 
 LOOK_S = 0.02
 """Between two looks at a job: a mesher needs several times as long to load."""

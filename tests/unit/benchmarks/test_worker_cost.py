@@ -10,7 +10,7 @@ from named_run import RUN, put_named_run
 from benchmarks.worker_cost import orders
 from service.queue.machinery import job_machinery
 from service.settings import Settings
-from service.worker.catalogue import default_registry
+from service.worker.process import default_registry
 
 
 def test_every_process_has_an_order_that_its_checks_pass(tmp_path: Path) -> None:

@@ -13,9 +13,9 @@ from sqlalchemy import select, update
 
 from service.project import COMMON
 from service.queue.claims import Claim
+from service.queue.entry import BatchCase, Entry
 from service.queue.job import Job, JobFilter
 from service.queue.retention import Retention
-from service.queue.submissions import BatchCase, BatchEntry
 from service.queue.tables import computations, durations, jobs
 from service.store import now, reading, writing
 
@@ -33,7 +33,7 @@ def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
 def entered(machine: Bench, costs: dict[str, float], name: str | None = None) -> str:
     """Enter a batch of jobs of these keys and costs."""
     cases = [BatchCase(key, {"wish": {"text": key}}, cost=cost) for key, cost in costs.items()]
-    return BatchEntry(machine.engine, 50, COMMON).submit("fake", cases, now(), name)
+    return Entry(machine.engine, 50, COMMON).batch("fake", cases, now(), name)
 
 
 def claimed(machine: Bench) -> Claim:

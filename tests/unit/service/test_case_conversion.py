@@ -20,7 +20,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.declared import figures
 from lineofaction.gearbox.units import factor
-from service.schemas.request_examples import CASE
+from service.schemas.examples import CASE
 from service.worker.process import content_key
 
 ROOT = Path(__file__).parents[3]

@@ -23,9 +23,8 @@ from lineofaction.gearbox.problems import BadInput
 from service.queue.claims import Claim
 from service.settings import Settings, load_settings
 from service.worker import cluster
-from service.worker.catalogue import ANALYZE, default_registry
 from service.worker.order import WorkOrder
-from service.worker.process import Process
+from service.worker.process import ANALYZE, Process, default_registry
 
 ADDRESS = "tcp://127.0.0.1:1"  # nobody may listen there
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 60.0}

@@ -14,12 +14,11 @@ from service_fakes import REGISTRY
 
 from host import family_cpu_seconds
 from lineofaction.gearbox.problems import BadInput
-from service.access import KeyFile
+from service.access import Holder, KeyFile
 from service.app import create_app
-from service.queue.cost_limit import cost_limit, refuse_beyond
 from service.queue.job import Job
-from service.queue.terms import ANYBODY, Caller, Terms
-from service.schemas.request_examples import CASE
+from service.queue.terms import ANYBODY, Terms, cost_limit, refuse_beyond
+from service.schemas.examples import CASE
 from service.settings import Settings
 
 
@@ -65,7 +64,7 @@ def test_work_may_cost_what_the_most_generous_of_its_jobs_allows(machine: Bench)
 
 
 def test_the_lower_of_both_limits_holds() -> None:
-    bounded = Caller("ann", max_cost_s=60)
+    bounded = Holder(name="ann", max_cost_s=60)
     assert cost_limit(None, ANYBODY) is None
     assert cost_limit(5.0, ANYBODY) == cost_limit(5.0, bounded) == 5.0
     assert cost_limit(None, bounded) == cost_limit(100.0, bounded) == 60

@@ -51,7 +51,7 @@ def directory(tmp_path: Path, sound: Path) -> Path:
 @pytest.fixture
 def client(directory: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestClient]:
     """A client of an app on it, which tries at each question whether it can write."""
-    monkeypatch.setattr("service.store.write_check.KEPT_S", 0.0)
+    monkeypatch.setattr("service.store.deployment.KEPT_S", 0.0)
     with TestClient(create_app(Settings(data_directory=directory), REGISTRY)) as found:
         yield found
 

@@ -22,8 +22,7 @@ from service.app import create_app
 from service.queue.terms import ANYBODY, USUAL
 from service.settings import Settings, load_settings
 from service.store import open_database
-from service.store.database import database_engine
-from service.store.schema import Schema
+from service.store.database import Schema, database_engine
 
 KEEPALIVE = (socket.TCP_KEEPIDLE, socket.TCP_KEEPINTVL, socket.TCP_KEEPCNT)
 

@@ -27,8 +27,7 @@ from service.settings import Settings
 from service.store import ResultStore, open_database, writing
 from service.store.deployment import NOTE, Deployment, deployments
 from service.store.files import DirectoryFiles
-from service.store.maintenance import verify_store
-from service.store.reindex import reindex
+from service.store.maintenance import reindex, verify_store
 from service.store.results import results
 
 LONG_AGO = "2016-01-01T00:00:00.000000Z"

@@ -9,7 +9,7 @@ import pytest
 
 from service.queue.differences import Difference, Differences
 from service.queue.job import subject_of
-from service.schemas.request_examples import CASE, SCENE
+from service.schemas.examples import CASE, SCENE
 
 
 def between(before: Any, now: Any) -> list[tuple[str, Any, Any]]:

@@ -12,7 +12,7 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
-from service.schemas.request_examples import CASE, SCENE
+from service.schemas.examples import CASE, SCENE
 
 MANY = 100_000
 SPOILED: dict[str, tuple[type[BoundaryModel], dict[str, Any]]] = {

@@ -17,8 +17,7 @@ from host.directories import cache_home, data_home
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.store import ResultStore
 from service.store.results import StoredResult
-from service.worker.child_process import start_child
-from service.worker.forks import Forks
+from service.worker.forks import Forks, start_child
 from service.worker.usage import machine_memory_mb
 
 

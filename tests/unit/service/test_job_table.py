@@ -14,8 +14,9 @@ from running_service import Bench, bench
 from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import NoSuchJob, QueueFull
+from service.access import Holder
 from service.queue.job import Job
-from service.queue.terms import ANYBODY, Caller, Terms
+from service.queue.terms import ANYBODY, Terms
 from service.store import Mark, instant, now
 
 
@@ -42,7 +43,7 @@ def test_equal_work_submitted_at_once_from_many_threads_is_one_computation(machi
     assert machine.submissions.counts() == {"accepted": 1}
 
 
-def reused(machine: Bench, stated: str = "{}", caller: Caller = ANYBODY, key: str = "ab" * 32) -> Job:
+def reused(machine: Bench, stated: str = "{}", caller: Holder = ANYBODY, key: str = "ab" * 32) -> Job:
     """Enter work unless the caller has an equal job."""
     terms = Terms(stated=stated, reuse=True)
     stored = machine.store.find(key, "database") is not None
@@ -52,7 +53,7 @@ def reused(machine: Bench, stated: str = "{}", caller: Caller = ANYBODY, key: st
 def test_an_equal_job_of_the_caller_answers_in_place_of_a_new_one(machine: Bench) -> None:
     with ThreadPoolExecutor(16) as pool:
         (first,) = {job.id for job in pool.map(lambda _: reused(machine), range(32))}
-    others = [reused(machine, stated='{"wish": {}}'), reused(machine, caller=Caller("bench-3"))]
+    others = [reused(machine, stated='{"wish": {}}'), reused(machine, caller=Holder(name="bench-3"))]
     assert len({first, *(job.id for job in others)}) == 3
     assert machine.submissions.counts() == {"accepted": 1}
     machine.submissions.dismiss(first)

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from lineofaction.gearbox.problems import BadInput
-from service.page.examples import examples
+from service.page.files import examples
 from service.schemas.execute import AnalyzeInputs
 from service.store import stored_results
 from service.worker import preparations

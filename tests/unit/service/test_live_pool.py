@@ -138,7 +138,7 @@ def test_sixteen_at_once_get_their_own_answers_and_the_seventeenth_is_refused(tm
 SERVE = """
 import sys
 from pathlib import Path
-import service.routes.live as live
+import service.routes.queries as live
 from lineofaction.cli.serve import run_serve
 live.PLAN = "live_fake_work:hang"
 run_serve(data_directory=Path(sys.argv[1]), port=0)
@@ -189,7 +189,7 @@ def test_one_that_dies_unseen_after_an_answer_is_replaced_once(
     first = answer(pool.ask(order("echo", word="a")))["pid"]
     os.kill(first, signal.SIGKILL)
     until(lambda: not lives(first))
-    monkeypatch.setattr("service.live.pool.LiveWorker.alive", True)
+    monkeypatch.setattr("service.live.pool._LiveWorker.alive", True)
     assert answer(pool.ask(order("echo", word="b")))["pid"] != first
 
 

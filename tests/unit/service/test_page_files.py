@@ -22,7 +22,7 @@ from lineofaction.gearbox.schemas.file_content import FileContentInput
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.app import create_app
-from service.page.examples import examples
+from service.page.files import examples
 from service.settings import Settings
 
 ROOT = Path(__file__).parents[3]

@@ -10,9 +10,9 @@ from running_service import Bench, bench
 from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import BadInput
-from service.access import KeyFile
+from service.access import Holder, KeyFile
 from service.queue.job import Job
-from service.queue.terms import ANYBODY, Caller, Terms, check_priority
+from service.queue.terms import ANYBODY, Terms, check_priority
 
 
 @pytest.fixture
@@ -64,7 +64,7 @@ def test_a_key_bounds_the_priority(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="at least -9"):
         file.add("ben", highest_priority=-10)
     (key,) = file.read()
-    caller = Caller(key.name, highest_priority=key.highest_priority)
+    caller = Holder(name=key.name, highest_priority=key.highest_priority)
     check_priority(-2, caller)
     check_priority(9, ANYBODY)
     with pytest.raises(BadInput, match="at most -2, the limit of key 'ann'"):

@@ -15,15 +15,13 @@ from small_table import small_table
 from sqlalchemy import text
 
 from lineofaction.gearbox.problems import NoSuchJob, NotFound
+from service.access import Holder
 from service.project import COMMON, PROJECT, address_of, at_address
-from service.queue.former_jobs import FormerJobs
 from service.queue.job import Job
-from service.queue.terms import Caller
 from service.store import Mark, ResultStore, writing
 from service.store.deployment import Deployment
 from service.store.files import ResultName, new_name
-from service.store.maintenance import verify_store
-from service.store.reindex import reindex
+from service.store.maintenance import reindex, verify_store
 from service.worker.order import WorkOrder
 from service.worker.simulation_work import _table
 
@@ -44,7 +42,7 @@ def enter(machine: Bench, project: str, name: str | None = None, wish: str = "sa
     inputs = {"wish": {"mode": "write", "text": wish, "number": 0.0}}
     key = REGISTRY["fake"].key(inputs)
     stored = machine.store.within(project).find(key, "database") is not None
-    jobs, bench_3 = machine.submissions.within(project), Caller("bench-3")
+    jobs, bench_3 = machine.submissions.within(project), Holder(name="bench-3")
     return jobs.submit("fake", key, inputs, stored=stored, name=name, caller=bench_3)
 
 
@@ -161,7 +159,9 @@ def test_upkeep_is_of_all_projects(machine: Bench) -> None:
 
 def test_a_job_is_compared_with_former_ones_of_its_project(machine: Bench) -> None:
     job = enter(machine, "axle")
-    found = [FormerJobs(machine.engine, project).newest(Caller("bench-3"), "fake") for project in PROJECTS]
+    found = [
+        machine.submissions.within(project).newest(Holder(name="bench-3"), "fake") for project in PROJECTS
+    ]
     assert [former and former[0] for former in found] == [None, job.id, None]
 
 

@@ -19,9 +19,8 @@ from sqlalchemy import Engine, inspect, text
 
 from lineofaction.gearbox.problems import BadInput
 from service.store import migrations, open_database, writing
-from service.store.database import database_engine, metadata
+from service.store.database import Schema, database_engine, metadata
 from service.store.migrations import REVISIONS, STEPS, USABLE_SINCE
-from service.store.schema import Schema
 
 OLD = """
 CREATE TABLE computation (

@@ -9,8 +9,7 @@ from importlib import import_module
 import pytest
 
 from service.routes.warm_up import HEAVY, warm_up
-from service.worker.catalogue import default_registry
-from service.worker.process import on_demand
+from service.worker.process import default_registry, on_demand
 
 HEAVY_PACKAGES = {"gmsh", "skfem", "numba", "scipy", "xarray", "h5py", "matplotlib", "plotly"}
 

@@ -19,8 +19,8 @@ from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS
 from lineofaction.gearbox.studies.computation import Computation
 from lineofaction.report.document.inputs import stored_study
 from lineofaction.report.presentation import Presentation, presentation_of
-from service.schemas.request_examples import INPUTS
-from service.worker.catalogue import default_registry
+from service.schemas.examples import INPUTS
+from service.worker.process import default_registry
 
 LOA = get_command(app)
 EVERY = pytest.mark.parametrize("study", STUDIES.values(), ids=list(STUDIES))

@@ -15,10 +15,10 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.reading import validated
 from service.queue.claims import Claims
 from service.queue.tables import computations
-from service.schemas.request_examples import INPUTS, SCENE
+from service.schemas.examples import INPUTS, SCENE
 from service.store import writing
 from service.version import solver_version
-from service.worker.catalogue import default_registry
+from service.worker.process import default_registry
 
 NEWER, OLDER = "9.0.0", "0.0.9"
 

@@ -8,7 +8,7 @@ from fe_contact import SteDatabase, analyze
 from lineofaction.gearbox.convert.answers import metadata_json, summary_json
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.schemas import Case
-from service.schemas.request_examples import CASE
+from service.schemas.examples import CASE
 
 TORQUES = [30.0, 60.0, 110.0, 230.0]
 

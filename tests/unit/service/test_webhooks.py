@@ -17,7 +17,7 @@ from lineofaction.gearbox.problems import BadInput
 from service.origin import Origin
 from service.settings import Settings, load_settings
 from service.signature import secret_bytes, signed_headers
-from service.webhooks import calls, sending
+from service.webhooks import calls, deliverer
 from service.webhooks.calls import Calls
 
 SECRET = "whsec_" + base64.b64encode(bytes(32)).decode()
@@ -122,16 +122,16 @@ PRIVATE = [
 
 @pytest.mark.parametrize("address", PRIVATE)
 def test_no_name_leads_to_a_private_address(monkeypatch: pytest.MonkeyPatch, address: str) -> None:
-    assert not sending.is_public(address)
+    assert not deliverer.is_public(address)
     entry = (socket.AF_INET, socket.SOCK_STREAM, 0, "", (address, 80))
     monkeypatch.setattr(socket, "getaddrinfo", lambda *_args, **_more: [entry])
-    with pytest.raises(sending.NotCalled, match="no public address"):
-        sending.send("http://hooks.example.com/", b"", {})
+    with pytest.raises(deliverer.NotCalled, match="no public address"):
+        deliverer.send("http://hooks.example.com/", b"", {})
 
 
 @pytest.mark.parametrize("address", ["93.184.216.34", "2606:2800:220:1::1", "::ffff:93.184.216.34"])
 def test_public_addresses_are_called(address: str) -> None:
-    assert sending.is_public(address)
+    assert deliverer.is_public(address)
 
 
 def test_the_address_that_was_looked_at_is_the_one_connected_to(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -149,8 +149,8 @@ def test_the_address_that_was_looked_at_is_the_one_connected_to(monkeypatch: pyt
 
     monkeypatch.setattr(socket, "getaddrinfo", resolved)
     monkeypatch.setattr(socket, "socket", Recorded)
-    with pytest.raises(sending.NotCalled, match="ConnectionRefusedError"):
-        sending.send("http://hooks.example.com/", b"", {})
+    with pytest.raises(deliverer.NotCalled, match="ConnectionRefusedError"):
+        deliverer.send("http://hooks.example.com/", b"", {})
     assert connected == [("93.184.216.34", 80)]
     assert next(answers) == "127.0.0.1"
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import pytest
 
 from lineofaction.gearbox.problems import DatabaseDamaged, DatabaseUnavailable
-from service.store import write_check
-from service.store.write_check import WriteCheck
+from service.store import deployment
+from service.store.deployment import WriteCheck
 
 
 class Place:
@@ -33,7 +33,7 @@ def failing(error: Exception) -> Callable[[], None]:
 
 @pytest.fixture
 def place(monkeypatch: pytest.MonkeyPatch) -> Place:
-    monkeypatch.setattr(write_check, "KEPT_S", -1.0)
+    monkeypatch.setattr(deployment, "KEPT_S", -1.0)
     return Place()
 
 
@@ -49,7 +49,7 @@ def test_one_that_waits_for_its_turn_is_ready_until_it_has_waited_too_long(
     assert fault(check) == ""
     place.database = failing(DatabaseUnavailable("Others hold it."))
     assert fault(check) == ""
-    monkeypatch.setattr(write_check, "LATE_S", -1.0)
+    monkeypatch.setattr(deployment, "LATE_S", -1.0)
     assert fault(check) == "Others hold it."
 
 
