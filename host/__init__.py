@@ -13,7 +13,6 @@ from importlib.util import find_spec
 
 from host.confinement import READING, Limits, confine, limit_file_size, limit_memory, missing_protections
 from host.directories import default_cache_directory
-from host.ending import Ended, ending_signal
 from host.extras import MissingExtra, Unavailable, missing_extra, require
 from host.json_child import (
     ONE_THREAD,
@@ -25,6 +24,9 @@ from host.json_child import (
 )
 from host.proc import family_cpu_seconds, memory_figure, processes_in
 from host.sessions import (
+    Ended,
+    ending_signal,
+    handlers_kept,
     has_exited,
     kill,
     kill_group,
@@ -35,7 +37,6 @@ from host.sessions import (
     reap,
     require_sessions,
 )
-from host.signal_handlers import handlers_kept
 
 if sys.platform == "win32" or find_spec("fcntl") is None or find_spec("resource") is None:
     from host.windows import (

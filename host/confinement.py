@@ -7,12 +7,17 @@ lacks is missing by name: `missing_protections`.
 
 from __future__ import annotations
 
+import ctypes
+import errno
+import os
+import platform
+import stat
+import struct
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from host import landlock, socket_filter
 from host.extras import Unavailable
 
 # Limits on what processes may take: POSIX systems alone have them, elsewhere each raises `Unavailable`.
@@ -75,8 +80,8 @@ READING = Limits()
 def missing_protections() -> tuple[str, ...]:
     """Return the protections that this system lacks, by name."""
     present = {
-        FILES: landlock.version() > 0,
-        NETWORK: socket_filter.available(),
+        FILES: _landlock() > 0,
+        NETWORK: _filters_calls(),
         LIMITS: sys.platform == "linux",
     }
     return tuple(name for name, has in present.items() if not has)
@@ -100,9 +105,9 @@ def confine(folder: Path, limits: Limits = READING) -> None:
     if LIMITS not in missing:
         _limit(limits)
     if FILES not in missing:
-        landlock.restrict(_readable(), folder)
+        _restrict(_readable(), folder)
     if NETWORK not in missing:
-        socket_filter.refuse_sockets()
+        _refuse_sockets()
 
 
 def _limit(limits: Limits) -> None:
@@ -141,3 +146,161 @@ def _readable() -> Iterator[Path]:
         elif folder.is_dir():
             yield from (path.parent for path in folder.glob("*/__init__.py"))
             yield from folder.glob("*.py")
+
+
+# Landlock, by which a process of Linux gives up files, connections and signals for good, as any user.
+
+
+_CREATE, _ADD, _RESTRICT = 444, 445, 446
+"""Numbers of the system calls, on every processor."""
+_VERSION = 1
+_PATH_BENEATH = 1
+_NO_NEW_PRIVILEGES = 38
+_READ_FILE, _READ_FOLDER = 1 << 2, 1 << 3
+_OF_FILES = (1 << 1) | _READ_FILE | (1 << 14)  # write, read, truncate
+_RIGHTS = {1: (1 << 13) - 1, 2: 1 << 13, 3: 1 << 14, 5: 1 << 15}
+"""Rights to files by the version that brought them."""
+_BIND_AND_CONNECT = 0b11
+_NETWORK_SINCE, _SCOPES_SINCE = 4, 6
+_ABSTRACT_SOCKETS_AND_SIGNALS = 0b11
+
+
+class _Beneath(ctypes.Structure):
+    """What is allowed beneath an open file or folder."""
+
+    _pack_ = 1
+    _fields_ = (("rights", ctypes.c_uint64), ("descriptor", ctypes.c_int32))
+
+
+def _landlock() -> int:
+    """Return the version of Landlock that the system has, 0 if it has none."""
+    return 0 if sys.platform != "linux" else max(_call(_CREATE, None, 0, _VERSION), 0)
+
+
+def _restrict(readable: Iterable[Path], folder: Path) -> None:
+    """Leave this thread, and what it starts, some files to read and one folder to write in.
+
+    Connections by TCP, signals to other processes and sockets by name go with the files, where the system's
+    version has that.
+
+    Parameters
+    ----------
+    readable : iterable of Path
+        Files and folders with all beneath them; those that do not exist are passed over.
+    folder : Path
+
+    Raises
+    ------
+    OSError
+        The system refuses, or has no Landlock.
+    """
+    handled = _handled(_landlock())
+    rules = (ctypes.c_uint64 * len(handled))(*handled)
+    descriptor = _checked(_call(_CREATE, ctypes.byref(rules), ctypes.sizeof(rules), 0))
+    try:
+        for path in readable:
+            _allow(descriptor, path, handled[0] & (_READ_FILE | _READ_FOLDER))
+        _allow(descriptor, folder, handled[0] & ~1)  # all but to execute
+        _checked(ctypes.CDLL(None, use_errno=True).prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0))
+        _checked(_call(_RESTRICT, descriptor, 0))
+    finally:
+        os.close(descriptor)
+
+
+def _handled(present: int) -> list[int]:
+    """Return the rights that a version takes: to files, to the network, to other processes."""
+    handled = [sum(right for since, right in _RIGHTS.items() if since <= present)]
+    if present >= _NETWORK_SINCE:
+        handled.append(_BIND_AND_CONNECT)
+    if present >= _SCOPES_SINCE:
+        handled.append(_ABSTRACT_SOCKETS_AND_SIGNALS)
+    return handled
+
+
+def _allow(ruleset: int, path: Path, rights: int) -> None:
+    try:
+        descriptor = os.open(path, os.O_PATH | os.O_CLOEXEC)  # type: ignore[attr-defined, unused-ignore]
+    except OSError:
+        return
+    try:
+        of_kind = rights if stat.S_ISDIR(os.fstat(descriptor).st_mode) else rights & _OF_FILES
+        beneath = _Beneath(of_kind, descriptor)
+        _checked(_call(_ADD, ruleset, _PATH_BENEATH, ctypes.byref(beneath), 0))
+    finally:
+        os.close(descriptor)
+
+
+def _call(number: int, *arguments: object) -> int:
+    return int(ctypes.CDLL(None, use_errno=True).syscall(number, *arguments))
+
+
+def _checked(outcome: int) -> int:
+    """Return the outcome of a call; raise OSError if it failed."""
+    if outcome < 0:
+        raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
+    return outcome
+
+
+# A filter of system calls (seccomp) by which a process of Linux gives up sockets for good.
+
+
+_SET_SECCOMP, _FILTER = 22, 2
+_ACTION_AVAILABLE = 2
+_ALLOW, _REFUSE = 0x7FFF_0000, 0x0005_0000 | errno.EPERM
+_LOAD, _IF_EQUAL, _IF_AT_LEAST, _RETURN = 0x20, 0x15, 0x35, 0x06
+_NUMBER, _ARCHITECTURE = 0, 4
+"""Offsets of the number of a call and of its architecture."""
+_IO_URING_SETUP = 425
+_OTHER_TABLE = 0x4000_0000
+"""Numbers from here on name the same calls a second time (x32)."""
+_PROCESSORS = {"x86_64": (0xC000_003E, 41, 317), "aarch64": (0xC000_00B7, 198, 277)}
+"""Architecture, numbers of ``socket`` and ``seccomp``."""
+
+
+class _Program(ctypes.Structure):
+    """A filter: the number of its instructions, and where they are."""
+
+    _fields_ = (("length", ctypes.c_ushort), ("instructions", ctypes.c_char_p))
+
+
+def _filters_calls() -> bool:
+    """Whether the system filters calls on this processor."""
+    if sys.platform != "linux" or platform.machine() not in _PROCESSORS:
+        return False
+    action = ctypes.c_uint32(_REFUSE & 0xFFFF_0000)
+    seccomp = _PROCESSORS[platform.machine()][2]
+    return bool(ctypes.CDLL(None).syscall(seccomp, _ACTION_AVAILABLE, 0, ctypes.byref(action)) == 0)
+
+
+def _refuse_sockets() -> None:
+    """Let this thread, and what it starts, make no socket of any family.
+
+    Raises
+    ------
+    OSError
+        The system refuses.
+    """
+    instructions = _instructions(*_PROCESSORS[platform.machine()][:2])
+    program = _Program(len(instructions) // 8, instructions)
+    library = ctypes.CDLL(None, use_errno=True)
+    for arguments in ((_NO_NEW_PRIVILEGES, 1, 0, 0, 0), (_SET_SECCOMP, _FILTER, ctypes.byref(program), 0, 0)):
+        if library.prctl(*arguments) != 0:
+            raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
+
+
+def _instructions(architecture: int, socket: int) -> bytes:
+    """Return the filter: calls of another architecture or table are refused like those for sockets.
+
+    A jump counts the instructions that follow it; the last is the refusal.
+    """
+    steps = [
+        (_LOAD, 0, 0, _ARCHITECTURE),
+        (_IF_EQUAL, 0, 5, architecture),
+        (_LOAD, 0, 0, _NUMBER),
+        (_IF_AT_LEAST, 3, 0, _OTHER_TABLE),
+        (_IF_EQUAL, 2, 0, socket),
+        (_IF_EQUAL, 1, 0, _IO_URING_SETUP),
+        (_RETURN, 0, 0, _ALLOW),
+        (_RETURN, 0, 0, _REFUSE),
+    ]
+    return b"".join(struct.pack("HBBI", *step) for step in steps)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from host.directories import ENVIRONMENT
-from host.ending import ending_signal
+from host.sessions import ending_signal
 
 # The threads that libraries of linear algebra start in a process.
 

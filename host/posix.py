@@ -10,8 +10,8 @@ import signal
 import sys
 import time
 
-from host.ending import RESIDENT_UNIT
 from host.proc import memory_figure
+from host.sessions import RESIDENT_UNIT
 
 assert sys.platform != "win32"
 

@@ -6,9 +6,37 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import NamedTuple
 
-from host.ending import RESIDENT_UNIT, Ended
 from host.extras import Unavailable
+
+RESIDENT_UNIT = 1 if sys.platform == "darwin" else 1024
+"""Bytes in which POSIX systems report resident memory: macOS in 1, Linux in 1024."""
+
+
+class Ended(NamedTuple):
+    """An ended child.
+
+    Attributes
+    ----------
+    code : int
+        Exit code, or the negative number of the signal that ended it.
+    cpu_seconds : float
+        Of the child and of those it has waited for.
+    peak_memory : int
+        Most resident memory, bytes.
+    """
+
+    code: int
+    cpu_seconds: float
+    peak_memory: int
+
+
+def ending_signal(code: int) -> str:
+    """Return the name of the signal that ended a process with this code, "" if none did."""
+    return signal.Signals(-code).name if code < 0 else ""
 
 
 def require_sessions() -> None:
@@ -78,3 +106,12 @@ def reap(child: int) -> Ended:
     _, status, usage = os.wait4(child, 0)
     cpu_seconds, code = usage.ru_utime + usage.ru_stime, os.waitstatus_to_exitcode(status)
     return Ended(code, cpu_seconds, RESIDENT_UNIT * usage.ru_maxrss)
+
+
+@contextmanager
+def handlers_kept(names: Sequence[str]) -> Iterator[None]:
+    """Restore the handlers of signals afterwards, by their names; a system may lack some of them."""
+    handlers = {name: signal.getsignal(getattr(signal, name)) for name in names if hasattr(signal, name)}
+    yield
+    for name, handler in handlers.items():
+        signal.signal(getattr(signal, name), handler)
