@@ -35,8 +35,7 @@ from lineofaction.gearbox.rexs.model import Attribute, Document
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.flank import FlankPoint
 from lineofaction.gearbox.schemas.warning import left_out_warnings
-from lineofaction.gearbox.to_rexs.deflected import deflected, left_out
-from lineofaction.gearbox.to_rexs.exported import CALCULATED, exported
+from lineofaction.gearbox.to_rexs import CALCULATED, deflected, exported, left_out
 from lineofaction.gearbox.units import UM
 from lineofaction.report.document.inputs import file_attributes, read_run, read_stored, stored_study
 

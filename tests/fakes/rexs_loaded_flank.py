@@ -7,10 +7,10 @@ from rexs_stage import (
 )
 
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, loaded_flank, meshing_of
+from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, Meshing
 
 
 def loaded(unit: GearUnit, gear: int, torque: float) -> LoadedFlank:
     """Return the loaded flank of a gear under a torque on the driver."""
-    meshing = meshing_of(unit.part(STAGE), torques=(torque,))
-    return loaded_flank(meshing, unit.part(gear))
+    meshing = Meshing.of(unit.part(STAGE), torques=(torque,))
+    return LoadedFlank.of(meshing, unit.part(gear))

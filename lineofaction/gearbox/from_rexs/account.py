@@ -67,7 +67,7 @@ def assumed(model: Model, assumptions: Iterable[Assumption]) -> Model:
     return model
 
 
-def shown(attribute: Attribute) -> str:
+def _shown(attribute: Attribute) -> str:
     """Return value and unit of an attribute."""
     unit = "" if attribute.unit in (None, "none", "-") else f" {attribute.unit}"
     return ", ".join(texts_of(attribute.value)) + unit
@@ -87,33 +87,15 @@ def mend(error: BadInput) -> str:
 
 
 def _with(model: Model, assumption: Assumption) -> Model:
-    spectra = tuple(
-        replace(
-            spectrum,
-            cases=tuple(
-                replace(case, components=tuple(_stating(part, assumption) for part in case.components))
-                for case in spectrum.cases
-            ),
-        )
-        for spectrum in model.spectra
-    )
-    parts = tuple(
-        _changed(part, assumption) if part.id == assumption.component else part for part in model.components
-    )
-    return replace(model, components=parts, spectra=spectra)
+    def changed(place: str, part: Component) -> Component:
+        former = part.attribute(assumption.attribute)
+        is_own, in_case = place == f"component {part.id}", "load case" in place and former is not None
+        if part.id != assumption.component or not (is_own or in_case):
+            return part
+        kept = tuple(entry for entry in part.attributes if entry.id != assumption.attribute)
+        return replace(part, attributes=(*kept, _attribute(assumption, former)))
 
-
-def _stating(part: Component, assumption: Assumption) -> Component:
-    """Return what a load case sets of a component, with the value if it states the attribute."""
-    states = part.id == assumption.component and part.attribute(assumption.attribute) is not None
-    return _changed(part, assumption) if states else part
-
-
-def _changed(part: Component, assumption: Assumption) -> Component:
-    """Return a component with the value in place of the file's."""
-    former = part.attribute(assumption.attribute)
-    kept = tuple(entry for entry in part.attributes if entry.id != assumption.attribute)
-    return replace(part, attributes=(*kept, _attribute(assumption, former)))
+    return model.mapped(changed)
 
 
 def _attribute(assumption: Assumption, former: Attribute | None) -> Attribute:
@@ -123,7 +105,7 @@ def _attribute(assumption: Assumption, former: Attribute | None) -> Attribute:
     texts = _SEVERAL.split(assumption.value.strip("[] ")) if several else [assumption.value]
     kind = kind_of(name, texts) if former is None else entry_kind(former.kind)
     values = tuple(scalar_of(kind, text, place) for text in texts)
-    before = "no value" if former is None or former.value is None else shown(former)
+    before = "no value" if former is None or former.value is None else _shown(former)
     return Attribute(
         name,
         f"{kind}_array" if several else kind,
@@ -231,6 +213,6 @@ class Account:
 def _assumed(attribute: Attribute, fate: Fate, words: str) -> tuple[Fate, str]:
     """Return what became of an assumed value: one that nothing reads is refused."""
     if fate == "ignored":
-        return "refused", f"assumed to be {shown(attribute)}, and {words}"
+        return "refused", f"assumed to be {_shown(attribute)}, and {words}"
     former = dict(attribute.extra)[FORMER]
-    return "assumed", f"{shown(attribute)} instead of {former}: {words}"
+    return "assumed", f"{_shown(attribute)} instead of {former}: {words}"

@@ -128,7 +128,6 @@ def _bearing_type(part: Part) -> str:
 
 
 def _catalog_bearing(part: Part) -> BearingGeometry | str:
-    """Return a deep groove ball bearing by its line in a catalog."""
     names = ("inner_diameter", "outer_diameter", _RATING)
     words = ("bore, mm", "outside diameter, mm", "static load rating, kN")
     bore, outside, rating = (part.number(name, word) for name, word in zip(names, words, strict=True))
@@ -249,19 +248,21 @@ class BearingStiffness:
     tilt: float
     matrix: FloatArray | None = None
 
+    @classmethod
+    def of(cls, part: Part) -> BearingStiffness:
+        """Return the stiffness of a bearing; the account says where each value comes from.
 
-def bearing_stiffness(part: Part) -> BearingStiffness:
-    """Return the stiffness of a bearing; the account says where each value comes from.
-
-    The stiffness at an operating point counts first, then finite stated values, then the tangent of the
-    bearing by its geometry or its catalog line, then what the file calls rigid, then a default.
-    """
-    matrix = operating_point(part)
-    if matrix is not None:
-        return BearingStiffness(0.0, 0.0, 0.0, matrix)
-    tangent = _by_geometry(part)
-    radial = _radial(part, tangent)
-    return BearingStiffness(radial, _axial(part, tangent, radial), _tilt(part, tangent))
+        The stiffness at an operating point counts first, then finite stated values, then the tangent of the
+        bearing by its geometry or its catalog line, then what the file calls rigid, then a default.
+        """
+        matrix = operating_point(part)
+        if matrix is not None:
+            return cls(0.0, 0.0, 0.0, matrix)
+        tangent = _by_geometry(part)
+        radial = _radial(part, tangent)
+        tilt = None if tangent is None else 0.5 * (tangent[3, 3] + tangent[4, 4])
+        axial = _axial(part, tangent, radial)
+        return cls(radial, axial, _own_stiffness(part, "bending_stiffness", tilt) or 0.0)
 
 
 def _radial(part: Part, tangent: FloatArray | None) -> float:
@@ -292,11 +293,6 @@ def _axial(part: Part, tangent: FloatArray | None, radial: float) -> float:
         return value or 0.0
     part.say(item, "defaulted", f"{AXIAL_SHARE:g} of the radial stiffness: a fixed bearing without a value")
     return AXIAL_SHARE * radial
-
-
-def _tilt(part: Part, tangent: FloatArray | None) -> float:
-    derived = None if tangent is None else 0.5 * (tangent[3, 3] + tangent[4, 4])
-    return _own_stiffness(part, "bending_stiffness", derived) or 0.0
 
 
 def stated_stiffness(part: Part, item: str) -> float | None:

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from fe_contact.errors import FeContactError
 from fe_contact.geometry import Gear
 from lineofaction.gearbox.convert.checks import check_plain_case
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
-from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, Meshing
 from lineofaction.gearbox.from_rexs.micro_geometry import micro_geometry
 from lineofaction.gearbox.from_rexs.placement import u_on_shaft
 from lineofaction.gearbox.from_rexs.toothing import (
     ToothDepth,
     ToothedPair,
     ToothingData,
-    tooth_depth,
 )
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
@@ -32,17 +30,6 @@ _RING_RIM = 3.5  # normal modules: from there on the rim of a ring gear has no i
 _THINNEST = 1.0  # normal modules between bore and root circle; less is one piece with the shaft
 _INTEGRAL = 0.5  # of the root diameter
 STEEL = (210e9, 0.3)
-
-
-def _root_diameter(gear: ToothingData, depth: ToothDepth, shift: float) -> float:
-    """Return d_f = d - 2 m_n (h_fP - x) in m, of a ring gear d + 2 m_n (h_fP - x)."""
-    height = depth.dedendum_coefficient - shift
-    return gear.reference_diameter - 2.0 * gear.sign * gear.normal_module * height
-
-
-def _held_diameter(gear: ToothingData, root: float) -> float:
-    """Return the bore of a gear of a root diameter, the outside of a ring gear's rim, m."""
-    return _rim_diameter(gear, root) if gear.sign < 0 else _bore(gear, root)
 
 
 def _rim_diameter(gear: ToothingData, root: float) -> float:
@@ -83,20 +70,18 @@ def _shaft_diameter(gear: Part) -> float | None:
     start = 0.0
     for section in shaft.children("shaft_section"):
         length = section.number("length", "length of the section") or 0.0
-        begin = section.number("u_coordinate_on_shaft", "begin of the section")
-        start = start if begin is None else begin
+        left = section.number("u_coordinate_on_shaft", "begin of the section")
+        start = start if left is None else left
         if start <= place <= start + length:
-            return _section_diameter(section, 0.0 if length == 0.0 else (place - start) / length)
+            begin, end = (
+                section.number(f"outer_diameter_{side}", "outer diameter of the section")
+                for side in ("begin", "end")
+            )
+            if begin is None or end is None:
+                return begin if end is None else end
+            return begin + (0.0 if length == 0.0 else (place - start) / length) * (end - begin)
         start += length
     return None
-
-
-def _section_diameter(section: Part, fraction: float) -> float | None:
-    begin = section.number("outer_diameter_begin", "outer diameter of the section")
-    end = section.number("outer_diameter_end", "outer diameter of the section")
-    if begin is None or end is None:
-        return begin if end is None else end
-    return begin + fraction * (end - begin)
 
 
 def _elasticity(gear: Part) -> tuple[float, float]:
@@ -114,9 +99,6 @@ def _elasticity(gear: Part) -> tuple[float, float]:
             return young, STEEL[1] if poisson is None else poisson
     gear.say("material", "defaulted", f"steel, {STEEL[0] / GPA:g} GPa, {STEEL[1]:g}: the file names none")
     return STEEL
-
-
-# The case of a pair of gears, from the numbers of its stage.
 
 
 # A ring gear's tip that the file leaves out, clear of the mate's fillet.
@@ -203,53 +185,27 @@ _SAME_ANGLE = 1e-6  # rad
 _HELIX = "helix_angle_reference_diameter"
 
 
-@dataclass(frozen=True)
-class PairData:
-    """What the file says of a stage's two gears.
-
-    Attributes
-    ----------
-    loaded : tuple of LoadedFlank
-        The flanks that carry: of pinion and wheel.
-    axial_offset : float
-        Of the wheel's mid-face from the pinion's towards +z, m.
-    torques : tuple of float
-        On the driving gear, N m; of one sign.
-    """
-
-    meshing: Meshing
-    toothed: ToothedPair
-    loaded: tuple[LoadedFlank, LoadedFlank]
-    axial_offset: float
-    torques: tuple[float, ...]
-
-    @property
-    def gears(self) -> tuple[tuple[ToothingData, LoadedFlank], ...]:
-        """Pinion and wheel, each with its loaded flank."""
-        return (self.toothed.pinion, self.loaded[0]), (self.toothed.wheel, self.loaded[1])
-
-
-def case_of(pair: PairData, pairs: Sequence[PairData], shifts: Mapping[int, float]) -> Case:
+def case_of(pair: ToothedPair, pairs: Sequence[ToothedPair], shifts: Mapping[int, float]) -> Case:
     """Return the case of a pair that can be computed.
 
     Parameters
     ----------
-    pairs : sequence of PairData
+    pairs : sequence of ToothedPair
         All of the unit; a gear's tip clears all its mates.
     shifts : mapping of int to float
         Profile shift coefficients by gear.
     """
     _refuse_strangers(pair)
-    depths = [_depth(gear, loaded, pairs, shifts) for gear, loaded in pair.gears]
+    depths = [_depth(gear, pairs, shifts) for gear in pair.gears]
     if pair.meshing.internal and not depths[1].tip_stated:
-        depths[1] = _clearing_tip(pair.toothed, depths, shifts)
+        depths[1] = _clearing_tip(pair, depths, shifts)
     first, second = (
-        _gear(gear, depth, shifts[gear.part.id]) for (gear, _), depth in zip(pair.gears, depths, strict=True)
+        _gear(gear, depth, shifts[gear.part.id]) for gear, depth in zip(pair.gears, depths, strict=True)
     )
-    stiff = tuple(_elasticity(gear.part) for gear, _ in pair.gears)
+    stiff = tuple(_elasticity(gear.part) for gear in pair.gears)
     if stiff[0] != stiff[1]:
         second["material"] = _material(stiff[1])
-    pinion = pair.toothed.pinion
+    pinion = pair.pinion
     if pair.meshing.internal:
         second["internal"] = True
     table = {
@@ -257,28 +213,30 @@ def case_of(pair: PairData, pairs: Sequence[PairData], shifts: Mapping[int, floa
             "normal_module_mm": rounded(pinion.normal_module / MM),
             "normal_pressure_angle_deg": rounded(pinion.pressure_angle / DEGREE),
             "helix_angle_deg": rounded(pinion.helix_angle / DEGREE),
-            "center_distance_mm": rounded(pair.toothed.center_distance / MM),
+            "center_distance_mm": rounded(pair.center_distance / MM),
             "pinion": first,
             "wheel": second,
         },
         "material": _material(stiff[0]),
         "load": {"torque_n_m": _torques(pair)},
     }
-    _say_axial_offset(pair)
+    if abs(pair.axial_offset) > 1e-9:
+        words = f"{pair.axial_offset / MM:.4g} mm between the mid-faces: the case puts them together"
+        pair.stage.say("axial_offset", "ignored", words)
     plain = check_plain_case(validated(Case, table))
-    first.update(micro_geometry(plain.pinion, pair.loaded[0]))
-    second.update(micro_geometry(plain.wheel, pair.loaded[1]))
+    first.update(micro_geometry(plain.pinion, pinion.loaded))
+    second.update(micro_geometry(plain.wheel, pair.wheel.loaded))
     case = validated(Case, table)
     check_plain_case(case)
     return case
 
 
-def _refuse_strangers(pair: PairData) -> None:
+def _refuse_strangers(pair: ToothedPair) -> None:
     """Refuse gears of different module or pressure angle, or of helix angles that do not mate.
 
     The sign of a ring gear's helix angle depends on the writer's sign of its teeth; its size must fit.
     """
-    gears = pinion, wheel = pair.toothed.pinion, pair.toothed.wheel
+    gears = pinion, wheel = pair.gears
     if not math.isclose(pinion.normal_module, wheel.normal_module, rel_tol=1e-9):
         modules = [f"module {gear.normal_module / MM:.9g} mm" for gear in gears]
         raise _strangers(pair, modules, "of one normal module", "normal_module")
@@ -290,9 +248,9 @@ def _refuse_strangers(pair: PairData) -> None:
         wheel.part.say(_HELIX, "derived", "the hand is that of its mate")
 
 
-def _refuse_hands(pair: PairData) -> None:
+def _refuse_hands(pair: ToothedPair) -> None:
     """Refuse helix angles of different size, or of one hand where they must be opposite."""
-    gears = pair.toothed.pinion, pair.toothed.wheel
+    gears = pair.gears
     hands = [
         f"{'right' if gear.helix_angle > 0.0 else 'left'} hand, {abs(gear.helix_angle) / DEGREE:.9g} deg"
         for gear in gears
@@ -304,9 +262,11 @@ def _refuse_hands(pair: PairData) -> None:
         raise _strangers(pair, hands, "of helix angles of one size", _HELIX)
 
 
-def _strangers(pair: PairData, facts: Sequence[str], bound: str, item: str = "", factor: int = 1) -> BadInput:
+def _strangers(
+    pair: ToothedPair, facts: Sequence[str], bound: str, item: str = "", factor: int = 1
+) -> BadInput:
     """Return the error of gears that do not mate: what each is, and its mate's value as an assumption."""
-    parts = pair.toothed.pinion.part, pair.toothed.wheel.part
+    parts = [gear.part for gear in pair.gears]
     named = [f"{part.id} {part.name}: {fact}" for part, fact in zip(parts, facts, strict=True)]
     stated = [None if (entry := part.attribute(item)) is None else entry.value for part in parts]
     mends = [
@@ -315,13 +275,12 @@ def _strangers(pair: PairData, facts: Sequence[str], bound: str, item: str = "",
         if isinstance(mate, (int, float))
     ]
     advice = f"Open it with {' or '.join(mends)}." if mends else ""
-    return BadInput.of(f"{pair.meshing.stage.place}, gears", named, bound, advice)
+    return BadInput.of(f"{pair.stage.place}, gears", named, bound, advice)
 
 
 def _depth(
     gear: ToothingData,
-    loaded: LoadedFlank,
-    pairs: Sequence[PairData],
+    pairs: Sequence[ToothedPair],
     shifts: Mapping[int, float],
 ) -> ToothDepth:
     """Return tip and root of a gear; raises `BadInput` without a profile shift."""
@@ -329,11 +288,14 @@ def _depth(
     if shift is None:
         field = f"{gear.part.place}, addendum_modification_coefficient"
         raise BadInput.of(field, None, "given for this gear or for its mate")
-    return tooth_depth(gear, loaded, shift, _tip_alteration(gear, pairs, shifts))
+    return ToothDepth.of(gear, shift, _tip_alteration(gear, pairs, shifts))
 
 
 def _gear(gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
-    held = "rim_diameter_mm" if gear.sign < 0 else "bore_diameter_mm"
+    # d_f = d - 2 m_n (h_fP - x), of a ring gear d + 2 m_n (h_fP - x)
+    height = depth.dedendum_coefficient - shift
+    root = gear.reference_diameter - 2.0 * gear.sign * gear.normal_module * height
+    held, diameter = ("rim_diameter_mm", _rim_diameter) if gear.sign < 0 else ("bore_diameter_mm", _bore)
     return {
         "teeth": gear.teeth,
         "face_width_mm": rounded(gear.face_width / MM),
@@ -342,21 +304,21 @@ def _gear(gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
         "dedendum_coefficient": rounded(depth.dedendum_coefficient),
         "root_radius_coefficient": rounded(depth.root_radius_coefficient),
         "thickness_allowance_um": rounded(_thickness_allowance(gear) / UM),
-        held: rounded(_held_diameter(gear, _root_diameter(gear, depth, shift)) / MM),
+        held: rounded(diameter(gear, root) / MM),
         **depth.cutter,
         **_blank(gear),
     }
 
 
-def _tip_alteration(gear: ToothingData, pairs: Sequence[PairData], shifts: Mapping[int, float]) -> float:
+def _tip_alteration(gear: ToothingData, pairs: Sequence[ToothedPair], shifts: Mapping[int, float]) -> float:
     """Return the tip alteration coefficient of an external gear that suits all its external mates."""
     if gear.sign < 0:
         return 0.0
     return min(
         (
-            _alteration(pair.toothed, shifts)
+            _alteration(pair, shifts)
             for pair in pairs
-            if gear.part.id in (pair.toothed.pinion.part.id, pair.toothed.wheel.part.id)
+            if gear.part.id in {part.part.id for part in pair.gears}
         ),
         default=0.0,
     )
@@ -364,7 +326,7 @@ def _tip_alteration(gear: ToothingData, pairs: Sequence[PairData], shifts: Mappi
 
 def _alteration(pair: ToothedPair, shifts: Mapping[int, float]) -> float:
     """Return k = (a - a_d) / m_n - (x_1 + x_2) of an external pair, at most 0 (ISO 21771-1); else 0."""
-    first, second = (shifts.get(gear.part.id) for gear in (pair.pinion, pair.wheel))
+    first, second = (shifts.get(gear.part.id) for gear in pair.gears)
     if pair.wheel.sign < 0 or first is None or second is None:
         return 0.0
     reference = 0.5 * (pair.pinion.reference_diameter + pair.wheel.reference_diameter)
@@ -389,9 +351,9 @@ def _material(stiffness: tuple[float, float]) -> Table:
     return {"youngs_modulus_gpa": rounded(stiffness[0] / GPA), "poissons_ratio": rounded(stiffness[1])}
 
 
-def _torques(pair: PairData) -> list[float]:
+def _torques(pair: ToothedPair) -> list[float]:
     """Return the torques on the pinion in N m, increasing; of a driving ring gear z_1 / z_2 of its own."""
-    pinion, wheel = pair.toothed.pinion, pair.toothed.wheel
+    pinion, wheel = pair.gears
     ratio = pinion.teeth / wheel.teeth if pair.meshing.wheel_drives else 1.0
     torques = sorted({rounded(abs(torque) * ratio) for torque in pair.torques if torque})
     if torques:
@@ -401,11 +363,5 @@ def _torques(pair: PairData) -> list[float]:
     torques = [float(f"{intensity * arm:.3g}") for intensity in LOAD_INTENSITIES]
     intensities = ", ".join(f"{1e-6 * intensity:g}" for intensity in LOAD_INTENSITIES)
     words = f"{torques} N m on {pinion.part.name}: F_t / (b m_n) = {intensities} N/mm^2, for want of a torque"
-    pair.meshing.stage.say("torque", "defaulted", words)
+    pair.stage.say("torque", "defaulted", words)
     return torques
-
-
-def _say_axial_offset(pair: PairData) -> None:
-    if abs(pair.axial_offset) > 1e-9:
-        words = f"{pair.axial_offset / MM:.4g} mm between the mid-faces: the case puts them together"
-        pair.meshing.stage.say("axial_offset", "ignored", words)

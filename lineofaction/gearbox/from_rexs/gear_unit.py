@@ -217,6 +217,16 @@ class GearUnit:
         """The couplings that are engaged, in the order of the file."""
         return tuple(entry for entry in _connections(self, COUPLINGS) if _engaged(entry.part))
 
+    @property
+    def stages(self) -> tuple[GearStage, ...]:
+        """The stages whose gears, teeth and shafts the file states, in the order of their relations."""
+        return tuple(_gear_stages(self))
+
+    @property
+    def planetary_sets(self) -> tuple[PlanetarySet, ...]:
+        """The planetary sets that have a carrier and planets; the account says what the others lack."""
+        return tuple(_planetary_sets(self))
+
     def say(self, item: str, fate: Fate, words: str) -> None:
         """State something of the whole unit."""
         for part in self.of_type("gear_unit")[:1]:
@@ -300,7 +310,6 @@ class Connection:
 
 
 def _connections(unit: GearUnit, types: tuple[str, ...]) -> Iterator[Connection]:
-    """Yield components of these types that have both sides."""
     for part in unit.of_type(*types):
         inner = part.related("side", "assembly", "inner_part")
         outer = part.related("side", "assembly", "outer_part")
@@ -370,8 +379,7 @@ class GearStage:
         return self.stage.type == "cylindrical_stage"
 
 
-def gear_stages(unit: GearUnit) -> Iterator[GearStage]:
-    """Yield the stages whose gears, teeth and shafts the file states, in the order of their relations."""
+def _gear_stages(unit: GearUnit) -> Iterator[GearStage]:
     for relation in unit.relations("stage"):
         number = relation.of_role("stage")
         ends = [relation.of_role(role) for role in _GEARS]
@@ -419,9 +427,7 @@ class PlanetarySet:
         return self.stage.related("planet_pin", "planetary_stage", "shaft")
 
 
-def planetary_sets(unit: GearUnit) -> tuple[PlanetarySet, ...]:
-    """Return the planetary sets that have a carrier and planets; the account says what the others lack."""
-    sets = []
+def _planetary_sets(unit: GearUnit) -> Iterator[PlanetarySet]:
     for stage in unit.of_type("planetary_stage"):
         planetary = PlanetarySet(
             stage,
@@ -430,11 +436,10 @@ def planetary_sets(unit: GearUnit) -> tuple[PlanetarySet, ...]:
             tuple({part.id: part for part in _carrier(stage)}.values()),
         )
         if planetary.planets and planetary.carrier:
-            sets.append(planetary)
             stage.say("", "taken", f"planetary set of {len(planetary.planets)} planets")
+            yield planetary
         else:
             stage.say("", "refused", "relations `planet_shaft` and `planet_carrier_shaft` are needed")
-    return tuple(sets)
 
 
 def _carrier(stage: Part) -> Iterator[Part]:

@@ -5,53 +5,26 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
 
+from bounds.types import FloatArray
 from dynamics.shafts import Inertia, hollow_cylinder
 from lineofaction.gearbox.from_rexs.account import mend
-from lineofaction.gearbox.from_rexs.case_table import PairData, case_of
+from lineofaction.gearbox.from_rexs.case_table import case_of
 from lineofaction.gearbox.from_rexs.gear_unit import GearStage, GearUnit, Names, Part
 from lineofaction.gearbox.from_rexs.layout import Layout
-from lineofaction.gearbox.from_rexs.meshing import OTHER_STAGES, STAGES, Meshing, loaded_flank, meshing_of
+from lineofaction.gearbox.from_rexs.meshing import OTHER_STAGES, STAGES, LoadedFlank, Meshing
 from lineofaction.gearbox.from_rexs.placement import frame_of
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShaft, SceneShafts, inertia_table
-from lineofaction.gearbox.from_rexs.toothing import ToothedPair, derived_shifts, toothing_of
+from lineofaction.gearbox.from_rexs.toothing import ToothedPair, ToothingData, derived_shifts
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.units import MM
-
-# The cases of a gear unit: one for each of its cylindrical stages.
-
-
-# Center distance and axial offset of a stage.
-
-
-def _center_distance_of(stage: Part, meshing: Meshing) -> float:
-    """Return the center distance in m: the stage's own, else the distance of the gears' axes."""
-    value = stage.number("center_distance", "center_distance_mm")
-    if value:
-        return abs(value)
-    apart = _apart(meshing)
-    distance = float(np.linalg.norm(apart - (apart @ meshing.z) * meshing.z))
-    if not distance > 0.0:
-        raise BadInput.of(f"{stage.place}, center_distance", value, "given, or gears on axes apart")
-    stage.say("center_distance", "derived", f"{distance / MM:.7g} mm, the distance of the gears' axes")
-    return distance
-
-
-def _axial_offset_of(meshing: Meshing) -> float:
-    return float(_apart(meshing) @ meshing.z)
-
-
-def _apart(meshing: Meshing) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    """Return the way from the pinion's middle to the wheel's, m."""
-    return frame_of(meshing.wheel).origin - frame_of(meshing.pinion).origin
-
 
 T = TypeVar("T")
 _LONGEST_NAME = 60
@@ -88,6 +61,17 @@ class StageCase:
     center_distance: float
     equal: tuple[int, ...] = ()
 
+    def driving(self, stage: GearStage) -> tuple[Part, Part]:
+        """Return driver and driven gear of a stage, which may be that of an equal planet."""
+        first = {gear.id: gear for gear in stage.gears}
+        if self.driver in first:
+            driver = first[self.driver]
+        elif self.driven in first:
+            driver = next(gear for gear in stage.gears if gear.id != self.driven)
+        else:
+            driver = stage.gears[0]
+        return driver, next(gear for gear in stage.gears if gear is not driver)
+
 
 def stage_cases(
     unit: GearUnit, torques: Mapping[int, tuple[float, ...]], drivers: Mapping[int, int] | None = None
@@ -108,10 +92,10 @@ def stage_cases(
     for stage in unit.of_type(*OTHER_STAGES):
         stage.say("", "refused", "no cylindrical stage: its loads stand in its place")
     pairs = list(_pairs(unit, torques, drivers or {}))
-    shifts = derived_shifts([pair.toothed for pair in pairs])
+    shifts = derived_shifts(pairs)
     cases: list[StageCase] = []
     for pair in pairs:
-        case = _attempt(pair.toothed.stage, partial(case_of, pair, pairs, shifts))
+        case = _attempt(pair.stage, partial(case_of, pair, pairs, shifts))
         if case is not None:
             _enter(cases, pair, case)
     return tuple(cases)
@@ -119,7 +103,7 @@ def stage_cases(
 
 def _pairs(
     unit: GearUnit, torques: Mapping[int, tuple[float, ...]], drivers: Mapping[int, int]
-) -> Iterator[PairData]:
+) -> Iterator[ToothedPair]:
     """Yield the pairs of the cylindrical stages that are not refused."""
     for stage in unit.of_type(*STAGES):
         make = partial(_pair, stage, torques.get(stage.id, ()), drivers.get(stage.id))
@@ -137,19 +121,33 @@ def _attempt(stage: Part, make: Callable[[], T]) -> T | None:
         return None
 
 
-def _pair(stage: Part, torques: tuple[float, ...], driver: int | None) -> PairData:
-    """Return what the file says of a stage's gears; raises `BadInput`."""
-    meshing = meshing_of(stage, driver, torques)
-    loaded = (loaded_flank(meshing, meshing.pinion), loaded_flank(meshing, meshing.wheel))
-    gears = (toothing_of(meshing.pinion, loaded[0]), toothing_of(meshing.wheel, loaded[1]))
-    toothed = ToothedPair(stage, *gears, _center_distance_of(stage, meshing))
-    _ = toothed.working_pressure_angle  # raises if there is none
-    return PairData(meshing, toothed, loaded, _axial_offset_of(meshing), torques)
+def _pair(stage: Part, torques: tuple[float, ...], driver: int | None) -> ToothedPair:
+    meshing = Meshing.of(stage, driver, torques)
+    loaded = [LoadedFlank.of(meshing, gear) for gear in (meshing.pinion, meshing.wheel)]
+    gears = [ToothingData.of(flank) for flank in loaded]
+    apart = frame_of(meshing.wheel).origin - frame_of(meshing.pinion).origin
+    offset = float(apart @ meshing.z)
+    distance = _center_distance(stage, apart - offset * meshing.z)
+    pair = ToothedPair(meshing, gears[0], gears[1], distance, offset, torques)
+    _ = pair.working_pressure_angle  # raises if there is none
+    return pair
 
 
-def _enter(cases: list[StageCase], pair: PairData, case: Case) -> None:
+def _center_distance(stage: Part, across: FloatArray) -> float:
+    """Return the center distance in m: the stage's own, else the distance of the gears' axes."""
+    value = stage.number("center_distance", "center_distance_mm")
+    if value:
+        return abs(value)
+    distance = float(np.linalg.norm(across))
+    if not distance > 0.0:
+        raise BadInput.of(f"{stage.place}, center_distance", value, "given, or gears on axes apart")
+    stage.say("center_distance", "derived", f"{distance / MM:.7g} mm, the distance of the gears' axes")
+    return distance
+
+
+def _enter(cases: list[StageCase], pair: ToothedPair, case: Case) -> None:
     """Enter a case, or the stage beside an equal case of the same planetary stage."""
-    meshing, stage = pair.meshing, pair.toothed.stage
+    meshing, stage = pair.meshing, pair.stage
     for index, present in enumerate(cases):
         shared = {present.driver, present.driven} & {meshing.driver.id, meshing.driven.id}
         if present.case == case and present.wheel_drives == meshing.wheel_drives and shared:
@@ -158,7 +156,7 @@ def _enter(cases: list[StageCase], pair: PairData, case: Case) -> None:
             return
     name = _name(stage, {present.name for present in cases})
     stage.say("", "taken", f"case {name}")
-    distance, gears = pair.toothed.center_distance, (meshing.driver.id, meshing.driven.id)
+    distance, gears = pair.center_distance, (meshing.driver.id, meshing.driven.id)
     cases.append(StageCase(stage.id, name, case, *gears, meshing.wheel_drives, distance))
 
 
@@ -181,18 +179,18 @@ INTEGRAL = 0.95
 
 
 def scene_gears(
-    layout: Layout, shafts: SceneShafts, cases: Mapping[int, StageCase], names: Names
+    layout: Layout, shafts: SceneShafts, cases: Mapping[int, StageCase]
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """Return the tables of gears and meshes; `cases` are by stage, `names` those of the gears."""
+    """Return the tables of gears and meshes; `cases` are by stage."""
     gears: dict[int, dict[str, Any]] = {}
-    meshes, mesh_names = [], Names()
+    meshes, names, mesh_names = [], Names(), Names()
     for stage in shafts.stages:
         case = cases[stage.stage.id]
         for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
             if gear.id not in gears:
                 gears[gear.id] = _gear(layout, shafts, gear, shaft, names)
         _say_apart(layout, stage, case)
-        driver, driven = driving_gears(stage, case)
+        driver, driven = case.driving(stage)
         mesh: dict[str, Any] = {
             "name": mesh_names.of(stage.stage),
             "driver": gears[driver.id]["name"],
@@ -216,46 +214,27 @@ def _say_apart(layout: Layout, stage: GearStage, case: StageCase) -> None:
         stage.stage.say("center_distance", "refused", words)
 
 
-def driving_gears(stage: GearStage, case: StageCase) -> tuple[Part, Part]:
-    """Return driver and driven gear of a stage: as in its case, which may be that of an equal planet."""
-    first = {gear.id: gear for gear in stage.gears}
-    if case.driver in first:
-        driver = first[case.driver]
-    elif case.driven in first:
-        driver = next(gear for gear in stage.gears if gear.id != case.driven)
-    else:
-        driver = stage.gears[0]
-    return driver, next(gear for gear in stage.gears if gear is not driver)
-
-
 def _offset(layout: Layout, stage: GearStage) -> dict[str, float]:
     """Return the position of planet and ring at the start: half a pitch if the planet's teeth are even.
 
     A planet's flanks at sun and ring are opposite: half a turn apart, and an even number of teeth is then a
     whole number of pitches, of which tooth meets space.
     """
-    if layout.carrier(stage) is None or not stage.internal:
-        return {}
-    if min(stage.teeth) % 2:
+    if layout.carrier(stage) is None or not stage.internal or min(stage.teeth) % 2:
         return {}
     stage.stage.say("position_offset", "derived", "0.5: the planet's number of teeth is even")
     return {"position_offset": 0.5}
 
 
 def _gear(layout: Layout, shafts: SceneShafts, gear: Part, shaft: Part, names: Names) -> dict[str, Any]:
-    """Return a gear at its mid-face."""
     placed = layout.shafts[shaft.id]
     u = layout.u_on(placed, gear)
     on = shafts.stubs.get(gear.id) or shafts.by_rotor[layout.rotor(shaft.id)]
     z = float(placed.start[2]) + placed.sense * u
     if gear.id not in shafts.stubs:
         gear.say("", "taken", f"gear on shaft {on.name}")
-    return {
-        "name": names.of(gear),
-        "shaft": on.name,
-        "position_mm": on.position_mm(z),
-        **_body(gear, placed.outer_diameter(u), is_shaft_massless=not placed.sections),
-    }
+    body = _body(gear, placed.outer_diameter(u), is_shaft_massless=not placed.sections)
+    return on.seat(names.of(gear), z) | body
 
 
 def _body(gear: Part, shaft_diameter: float, *, is_shaft_massless: bool) -> dict[str, Any]:
@@ -293,15 +272,12 @@ def scene_discs(layout: Layout, shafts: SceneShafts) -> list[dict[str, Any]]:
         if owner is None or on is None or owner.id not in layout.shafts:
             part.say("", "refused", "on no shaft of the scene")
             continue
-        placed = layout.shafts[owner.id]
-        z = layout.z_on(placed, part)
-        table = _disc(part, on, z, names)
+        table = _disc(part, on, layout.z_on(layout.shafts[owner.id], part), names)
         discs += [] if table is None else [table]
     return discs
 
 
 def _disc(part: Part, on: SceneShaft, z: float, names: Names) -> dict[str, Any] | None:
-    """Return a disc; moments of inertia that are not stated are 0."""
     mass = part.number("mass_of_component", "mass of a disc, kg")
     if not mass or mass < 0.0:
         part.say("", "refused", "no mass is stated")
@@ -316,14 +292,4 @@ def _disc(part: Part, on: SceneShaft, z: float, names: Names) -> dict[str, Any] 
         part.say("moment_of_inertia_w_axis", "derived", "mean of v and w: a disc is a body of revolution")
     inertia = Inertia(mass, moments[0], 0.5 * (moments[1] + moments[2]))
     part.say("", "taken", f"disc on shaft {on.name}")
-    return {
-        "name": names.of(part),
-        "shaft": on.name,
-        "position_mm": on.position_mm(z),
-        "inertia": inertia_table(inertia),
-    }
-
-
-def cases_by_stage(cases: Sequence[StageCase]) -> dict[int, StageCase]:
-    """Return the case of each stage, of equal ones too."""
-    return {stage: case for case in cases for stage in (case.stage, *case.equal)}
+    return on.seat(names.of(part), z) | {"inertia": inertia_table(inertia)}

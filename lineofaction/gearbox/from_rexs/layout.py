@@ -15,8 +15,6 @@ from lineofaction.gearbox.from_rexs.gear_unit import (
     GearUnit,
     Part,
     PlanetarySet,
-    gear_stages,
-    planetary_sets,
 )
 from lineofaction.gearbox.from_rexs.placement import (
     FIXED,
@@ -71,7 +69,11 @@ class _Rotors:
 def _rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> _Rotors:
     """Return the rotors: the parts of a carrier are one, with what is rigidly coupled to them."""
     of = {part.id: part.id for part in unit.of_type("shaft", "side_plate")}
-    joined = [entry for entry in unit.couplings if entry.on_ground is None and _turn(entry, of)]
+    joined = [
+        entry
+        for entry in unit.couplings
+        if entry.on_ground is None and {entry.inner.id, entry.outer.id} <= of.keys()
+    ]
     for planets in sets:
         _merge(of, [part.id for part in planets.carrier])
     carriers = {of[planets.carrier[0].id] for planets in sets}
@@ -92,12 +94,7 @@ def _rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> _Rotors:
     return _Rotors(of, held, between, tuple(sets))
 
 
-def _turn(entry: Connection, of: Mapping[int, int]) -> bool:
-    return entry.inner.id in of and entry.outer.id in of
-
-
 def _merge(of: dict[int, int], parts: list[int]) -> int:
-    """Make one rotor of several, and return it."""
     rotors = {of[part] for part in parts}
     lowest = min(rotors)
     for part, rotor in of.items():
@@ -110,9 +107,6 @@ def _rotation(entry: Connection) -> float:
     """Return the torsional stiffness of a coupling, N m/rad; rigid where the file says none."""
     item, words = "rotational_stiffness", "torsional stiffness, N mm/rad"
     return entry.part.number(item, words, _RIGID_ROTATION, "rigid: the file gives none")
-
-
-# The layout of a gear unit: its shafts along the axes of the scene, its stages, what turns together.
 
 
 # Where shafts stand: as the file says, else by the angles of the stages and by couplings.
@@ -150,7 +144,6 @@ def _shaft_places(
 
 
 def _spread(unit: GearUnit, stages: Sequence[GearStage], places: dict[int, Placement]) -> None:
-    """Place what stages, couplings and bearings join to placed shafts."""
     joined = (*unit.couplings, *unit.bearings)
     while True:
         before = len(places)
@@ -239,7 +232,7 @@ class Layout:
     @classmethod
     def of(cls, unit: GearUnit) -> Layout:
         """Return the layout; the account says what is left out."""
-        stages, sets = tuple(gear_stages(unit)), planetary_sets(unit)
+        stages, sets = unit.stages, unit.planetary_sets
         places = _shaft_places(unit, stages, sets)
         root = next(iter(unit.of_type("gear_unit")), None)
         first = [shaft.id for stage in stages if stage.is_cylindrical for shaft in stage.shafts]

@@ -122,7 +122,10 @@ class SceneMotion:
         drives, loads = [], []
         for driver in self.drivers:
             speed = self._flow.speed(driver.rotor) / RPM
-            drives.append(self._placed(driver, names) | {"speed_rpm": [rounded(speed)]})
+            drives.append(
+                self._shafts.by_rotor[driver.rotor].seat(names.of(driver.part), driver.z)
+                | {"speed_rpm": [rounded(speed)]}
+            )
         for rotor in sorted(self._layout.rotors.held & set(self._shafts.by_rotor)):
             name = names.of(self._layout.unit.part(rotor), " held")
             drives.append({"name": name, "shaft": self._shafts.by_rotor[rotor].name, "speed_rpm": [0.0]})
@@ -132,13 +135,11 @@ class SceneMotion:
             if torque in self.drivers or speed == 0.0 or abs(torque.torque) <= _HELD_TORQUE * most:
                 continue
             value = rounded(-torque.torque * math.copysign(1.0, speed))
-            loads.append(self._placed(torque, names) | {"torque_n_m": [value]})
+            loads.append(
+                self._shafts.by_rotor[torque.rotor].seat(names.of(torque.part), torque.z)
+                | {"torque_n_m": [value]}
+            )
         return {"drives": drives, "loads": loads}
-
-    def _placed(self, torque: AppliedTorque, names: Names) -> dict[str, Any]:
-        shaft = self._shafts.by_rotor[torque.rotor]
-        position = shaft.position_mm(torque.z)
-        return {"name": names.of(torque.part), "shaft": shaft.name, "position_mm": position}
 
     def slowest_mesh(self) -> float:
         """Return the lowest mesh frequency of the scene, Hz; 0 where nothing turns."""

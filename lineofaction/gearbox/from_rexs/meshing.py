@@ -67,7 +67,6 @@ def _on_shafts(unit: GearUnit) -> list[tuple[Part, Part, float]]:
 
 
 def _in_mesh(unit: GearUnit) -> list[tuple[Part, Part, float]]:
-    """Return mating gears with the ratio of their senses."""
     links = []
     for stage in unit.of_type(*STAGES):
         gears = _stage_gears(stage)
@@ -103,6 +102,29 @@ class Meshing:
     wheel_drives: bool
     z: FloatArray
 
+    @classmethod
+    def of(cls, stage: Part, driver: int | None = None, torques: tuple[float, ...] = ()) -> Meshing:
+        """Return the meshing gears of a stage.
+
+        Parameters
+        ----------
+        driver : int, optional
+            Id of the driving gear; else the file's `is_driving_gear`, else gear 1.
+        torques : tuple of float, optional
+            On the driving gear about its u axis, N m; their sign is its sense of rotation.
+        """
+        gears = _stage_gears(stage)
+        if gears is None or all(gear.type == "ring_gear" for gear in gears):
+            raise BadInput.of(f"{stage.place}, stage", None, "a relation to two gears, one of them external")
+        driving = _driver(stage, gears, driver)
+        sense = _sense(stage, driving, torques)
+        ring = next((gear for gear in gears if gear.type == "ring_gear"), None)
+        pinion = driving if ring is None else _other(gears, ring)
+        wheel_drives = driving is ring
+        # The driver turns with the torque of its shaft, the pinion of a driving ring gear against it.
+        z = sense * frame_of(driving).u * (1.0 if wheel_drives else -1.0)
+        return cls(stage, pinion, _other(gears, pinion), wheel_drives, z)
+
     @property
     def internal(self) -> bool:
         """Whether the wheel is a ring gear."""
@@ -117,29 +139,6 @@ class Meshing:
     def driven(self) -> Part:
         """The driven gear."""
         return self.pinion if self.wheel_drives else self.wheel
-
-
-def meshing_of(stage: Part, driver: int | None = None, torques: tuple[float, ...] = ()) -> Meshing:
-    """Return the meshing gears of a stage.
-
-    Parameters
-    ----------
-    driver : int, optional
-        Id of the driving gear; else the file's `is_driving_gear`, else gear 1.
-    torques : tuple of float, optional
-        On the driving gear about its u axis, N m; their sign is its sense of rotation.
-    """
-    gears = _stage_gears(stage)
-    if gears is None or all(gear.type == "ring_gear" for gear in gears):
-        raise BadInput.of(f"{stage.place}, stage", None, "a relation to two gears, one of them external")
-    driving = _driver(stage, gears, driver)
-    sense = _sense(stage, driving, torques)
-    ring = next((gear for gear in gears if gear.type == "ring_gear"), None)
-    pinion = driving if ring is None else _other(gears, ring)
-    wheel_drives = driving is ring
-    # The driver turns with the torque of its shaft, the pinion of a driving ring gear against it.
-    z = sense * frame_of(driving).u * (1.0 if wheel_drives else -1.0)
-    return Meshing(stage, pinion, _other(gears, pinion), wheel_drives, z)
 
 
 def _other(gears: tuple[Part, Part], gear: Part) -> Part:
@@ -160,7 +159,6 @@ def _driver(stage: Part, gears: tuple[Part, Part], driver: int | None) -> Part:
 
 
 def _is_marked(stage: Part, gear: Part) -> bool:
-    """Return whether the stage's data of a gear mark it as driving."""
     for relation in stage.unit.relations("stage_gear_data"):
         if relation.of_role("stage") == stage.id and relation.of_role("gear") == gear.id:
             number = relation.of_role("stage_gear_data")
@@ -212,19 +210,19 @@ class LoadedFlank:
     other: Part | None
     datum: float
 
+    @classmethod
+    def of(cls, meshing: Meshing, gear: Part) -> LoadedFlank:
+        """Return the flank of a gear that carries in a stage."""
+        u_along_z = 1.0 if float(np.dot(frame_of(gear).u, meshing.z)) > 0.0 else -1.0
+        datum = u_along_z * _datum_along_u(gear)
+        sides = ("right", "left") if datum > 0.0 else ("left", "right")
+        flank, other = (next(iter(gear.related("flank", "gear", side)), None) for side in sides)
+        return cls(gear, sides[0], flank, other, datum)
+
     @property
     def flanks(self) -> Iterator[Part]:
         """The flanks that the file has, the loaded one first."""
         return (flank for flank in (self.flank, self.other) if flank is not None)
-
-
-def loaded_flank(meshing: Meshing, gear: Part) -> LoadedFlank:
-    """Return the flank of a gear that carries in a stage."""
-    u_along_z = 1.0 if float(np.dot(frame_of(gear).u, meshing.z)) > 0.0 else -1.0
-    datum = u_along_z * _datum_along_u(gear)
-    sides = ("right", "left") if datum > 0.0 else ("left", "right")
-    flank, other = (next(iter(gear.related("flank", "gear", side)), None) for side in sides)
-    return LoadedFlank(gear, sides[0], flank, other, datum)
 
 
 def _datum_along_u(gear: Part) -> float:

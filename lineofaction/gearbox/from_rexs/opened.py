@@ -43,7 +43,6 @@ _OF_TYPE = {
 
 
 def _say_left_out(unit: GearUnit) -> None:
-    """State of every part of which nothing is said that the scene has not got it."""
     descriptive = words("descriptive_components")
     for component in unit.model.components:
         if component.type not in descriptive and not unit.account.is_stated(component):
@@ -55,7 +54,8 @@ def headline(lines: Iterable[Line]) -> str:
     parts: dict[str, list[str]] = {}
     for line in _refused(lines):
         parts.setdefault(_named(line), []).append(line.item)
-    texts = [f"{named}{_brackets(filter(None, items))}" for named, items in parts.items()]
+    brackets = {named: ", ".join(dict.fromkeys(filter(None, items))) for named, items in parts.items()}
+    texts = [f"{named} ({items})" if items else named for named, items in brackets.items()]
     return f"left out of the scene: {'; '.join(texts)}" if parts else ""
 
 
@@ -80,7 +80,6 @@ def _refused(lines: Iterable[Line]) -> list[Line]:
 
 
 def _statement(group: list[Line], reason: str) -> str:
-    """Return what is left out for one reason, with the lines of the file if it has lines."""
     lines = {line: "" if line.line is None else f" (line {line.line})" for line in group}
     named = "; ".join(
         f"{_named(line)}{place}{f', {line.item}' if line.item else ''}" for line, place in lines.items()
@@ -92,11 +91,6 @@ def _statement(group: list[Line], reason: str) -> str:
 
 def _named(line: Line) -> str:
     return f"{line.kind} {line.component}" + (f' "{line.name}"' if line.name else "")
-
-
-def _brackets(items: Iterable[str]) -> str:
-    text = ", ".join(dict.fromkeys(items))
-    return f" ({text})" if text else ""
 
 
 # Open a gear unit: from a REXS document to cases, a scene, load cases and the account of the import.
@@ -161,7 +155,8 @@ def opened(document: Document, assumptions: Iterable[Assumption] = ()) -> Opened
     unit = GearUnit(assumed(model, assumptions))
     layout = Layout.of(unit)
     flows = _flows(layout)
-    cases = stage_cases(unit, _torques(layout, flows), _drivers(layout, flows))
+    drivers = {s.stage.id: s.gears[flows[0].driver(s)].id for s in layout.stages if flows}
+    cases = stage_cases(unit, _torques(layout, flows), drivers)
     table = scene_table(layout, flows, cases) if flows and cases else None
     if not flows:
         unit.say("scene", "refused", "no load case fits the train")
@@ -192,10 +187,6 @@ def _flows(layout: Layout) -> list[PowerFlow]:
         flows.append(flow)
     first = max(range(len(flows)), key=lambda index: flows[index].point.share, default=0)
     return [*flows[first : first + 1], *flows[:first], *flows[first + 1 :]]
-
-
-def _drivers(layout: Layout, flows: Sequence[PowerFlow]) -> dict[int, int]:
-    return {s.stage.id: s.gears[flows[0].driver(s)].id for s in layout.stages} if flows else {}
 
 
 def _torques(layout: Layout, flows: Sequence[PowerFlow]) -> Mapping[int, tuple[float, ...]]:
@@ -344,7 +335,6 @@ def unit_json(unit: OpenedUnit) -> Json:
 
 
 def _whole(unit: OpenedUnit, cases: dict[str, Json]) -> Json:
-    """Return the scene, its case files written out."""
     assert unit.scene is not None
     scene: Json = unit.scene.model_dump(mode="json", exclude_unset=True)
     for mesh in scene["meshes"]:

@@ -93,7 +93,6 @@ def u_on_shaft(part: Part) -> float | None:
 
 
 def _stated(part: Part, inner: tuple[int, ...]) -> Placement | None:
-    """Return a place as stated, None for none."""
     origin = _vector(part, "support_vector", "place")
     return None if origin is None else _in_reference(part, origin, inner)
 
@@ -125,7 +124,6 @@ def _across(part: Part, u: FloatArray) -> FloatArray:
 
 
 def _unit(part: Part, item: str, usual: FloatArray) -> FloatArray:
-    """Return a stated direction of length 1."""
     vector = _vector(part, item, "axis")
     if vector is None:
         attribute = part.attribute(item)
@@ -139,7 +137,6 @@ def _unit(part: Part, item: str, usual: FloatArray) -> FloatArray:
 
 
 def _vector(part: Part, item: str, words: str) -> FloatArray | None:
-    """Return three finite numbers, None where the file gives none."""
     numbers = part.vector(item, words)
     if numbers is None:
         return None
@@ -301,7 +298,6 @@ def _say_place(part: Part, at: float) -> None:
 
 
 def _section(shaft: Part, part: Part) -> BeamSection:
-    """Return a section in the order of u."""
     length, begin, end = (_size(part, name) for name in _LENGTHS)
     bore = part.number("inner_diameter_begin", "bore of the section, mm") or 0.0
     end_bore = part.number("inner_diameter_end", "bore at the end of the section, mm")
@@ -320,7 +316,6 @@ def _section(shaft: Part, part: Part) -> BeamSection:
 
 
 def _size(part: Part, item: str) -> float:
-    """Return a length of a section, m."""
     value = part.number(item, f"{item} of the section, mm")
     if value is None and item == "outer_diameter_end":
         value = part.number("outer_diameter_begin", "outer diameter of the section, mm")

@@ -20,18 +20,15 @@ from lineofaction.gearbox.from_rexs.gear_unit import (
 )
 from lineofaction.gearbox.from_rexs.gears import (
     StageCase,
-    cases_by_stage,
-    driving_gears,
     scene_discs,
     scene_gears,
 )
-from lineofaction.gearbox.from_rexs.housing import scene_housings
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.loads import AppliedTorque, SceneMotion
 from lineofaction.gearbox.from_rexs.placement import FIXED, SAME_PLACE, PlacedShaft, placement
 from lineofaction.gearbox.from_rexs.power_flow import FORCES, OperatingPoint, PowerFlow
-from lineofaction.gearbox.from_rexs.scene_bearings import SceneBearings, stub_couplings
-from lineofaction.gearbox.from_rexs.scene_shafts import SceneShaft, SceneShafts, scene_shafts
+from lineofaction.gearbox.from_rexs.scene_bearings import SceneBearings
+from lineofaction.gearbox.from_rexs.scene_shafts import SceneShaft, SceneShafts
 from lineofaction.gearbox.units import MM
 
 # Which component each part of a scene is, and how its axes u, v, w lie in the scene.
@@ -132,7 +129,6 @@ def _shafts(layout: Layout, shafts: SceneShafts) -> Iterator[tuple[str, ShaftPar
 
 
 def _bearings(layout: Layout, seats: Mapping[int, str]) -> Iterator[tuple[str, BearingPart]]:
-    """Yield what holds shafts on the ground."""
     entries: tuple[Connection, ...] = (*layout.unit.bearings, *layout.unit.couplings)
     for entry in entries:
         if entry.part.id in seats and entry.held.id in layout.shafts:
@@ -146,13 +142,10 @@ def _face_sense(layout: Layout, flow: PowerFlow, stage: GearStage, case: StageCa
     They count against the scene's z if the case's driving gear turns about +z; a ring gear that drives is
     pushed back by it.
     """
-    driver, _ = driving_gears(stage, case)
+    driver, _ = case.driving(stage)
     relative = flow.relative_speed(stage, 0 if driver.id == stage.gears[0].id else 1)
     pushed = -relative if case.wheel_drives else relative
     return -int(np.sign(pushed)) * layout.sense(stage.shafts[0].id)
-
-
-# The scene of a gear unit: shafts, gears, bearings, housing and loads, put together and validated.
 
 
 # Forces of the scene: what acts on shafts from outside across and along their axes, by load case.
@@ -163,7 +156,7 @@ ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class SceneForce:
+class _SceneForce:
     """A force and moment on a shaft of the scene, fixed in space.
 
     Attributes
@@ -205,7 +198,7 @@ class SceneForce:
 
 def _scene_forces(
     layout: Layout, points: Sequence[OperatingPoint], shafts: SceneShafts
-) -> tuple[SceneForce, ...]:
+) -> tuple[_SceneForce, ...]:
     """Return the external loads that push or tilt a shaft at any of some operating points.
 
     The account says which are left out, and why.
@@ -214,7 +207,7 @@ def _scene_forces(
     return tuple(_forces(layout, [p for p in layout.unit.of_type("external_load") if p.id in acting], shafts))
 
 
-def _forces(layout: Layout, loads: Sequence[Part], shafts: SceneShafts) -> Iterator[SceneForce]:
+def _forces(layout: Layout, loads: Sequence[Part], shafts: SceneShafts) -> Iterator[_SceneForce]:
     names = Names()
     for part in loads:
         placed, reason = _placed(layout, part, shafts)
@@ -229,7 +222,7 @@ def _forces(layout: Layout, loads: Sequence[Part], shafts: SceneShafts) -> Itera
         if part.number("width_of_external_load", "width of a line load, mm"):
             words = "a line load is not spread: its force acts at u_coordinate_on_shaft"
             part.say("width_of_external_load", "ignored", words)
-        yield SceneForce(names.of(part), shaft.name, position, part.id, turn, _beyond(part, lever))
+        yield _SceneForce(names.of(part), shaft.name, position, part.id, turn, _beyond(part, lever))
 
 
 def _placed(layout: Layout, load: Part, shafts: SceneShafts) -> tuple[PlacedShaft | None, str]:
@@ -292,7 +285,7 @@ class SceneTable:
         Tables of a scene file; meshes name their case files.
     leader : AppliedTorque or None
         What drives it first.
-    forces : tuple of SceneForce
+    forces : tuple of _SceneForce
         The external loads that its forces are.
     parts : SceneParts
         The components that its parts are.
@@ -300,22 +293,22 @@ class SceneTable:
 
     table: dict[str, Any]
     leader: AppliedTorque | None
-    forces: tuple[SceneForce, ...]
+    forces: tuple[_SceneForce, ...]
     parts: SceneParts
 
 
 def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> SceneTable:
     """Return the scene at the operating point of the first flow; stages without a case are cut off."""
     flow = flows[0]
-    by_stage, names = cases_by_stage(cases), Names()
+    by_stage, names = _by_stage(cases), Names()
     computed = [
         s for s in layout.stages if s.stage.id in by_stage and layout.is_computed(s) and flow.moves(s)
     ]
     cut = [stage for stage in layout.stages if stage not in computed]
-    shafts = scene_shafts(layout, computed, names)
+    shafts = SceneShafts.of(layout, computed, names)
     _say_without_mesh(layout, cases, computed, shafts)
     bearings = SceneBearings(layout, shafts)
-    gears, meshes = scene_gears(layout, shafts, by_stage, Names())
+    gears, meshes = scene_gears(layout, shafts, by_stage)
     motion = SceneMotion(flow, shafts, cut)
     forces = _scene_forces(layout, [each.point for each in flows], shafts)
     table: dict[str, Any] = {
@@ -327,8 +320,8 @@ def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[Stag
         "bushings": bearings.bushings,
         "rolling_bearings": bearings.rolling_bearings,
         "planet_bearings": bearings.planet_bearings,
-        "couplings": [*bearings.couplings, *stub_couplings(shafts)],
-        "housings": scene_housings(layout, bearings.seats),
+        "couplings": bearings.couplings,
+        "housings": bearings.housings,
         "planets": _planets(layout, {shaft.rotor: shaft.name for shaft in shafts.by_rotor.values()}),
         "meshes": meshes,
         **motion.tables(),
@@ -345,6 +338,11 @@ def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[Stag
     )
 
 
+def _by_stage(cases: Sequence[StageCase]) -> dict[int, StageCase]:
+    """Return the case of each stage, of equal ones too."""
+    return {stage: case for case in cases for stage in (case.stage, *case.equal)}
+
+
 def _say_without_mesh(
     layout: Layout, cases: Sequence[StageCase], computed: Sequence[GearStage], shafts: SceneShafts
 ) -> None:
@@ -352,14 +350,13 @@ def _say_without_mesh(
     meshed = {stage.stage.id for stage in shafts.stages}
     meshed |= {s.stage.id for s in computed} & {equal for case in cases for equal in case.equal}
     on_shafts = {stage.stage.id for stage in layout.stages}
-    for number in cases_by_stage(cases).keys() - meshed:
+    for number in _by_stage(cases).keys() - meshed:
         words = "it has a case and no mesh: its shafts are not parallel to those of the first stage, nothing "
         words += "places them or joins them to a speed, or they carry a planet unlike the first"
         layout.unit.part(number).say("", "refused", words if number in on_shafts else NO_STAGE)
 
 
 def _duration(layout: Layout, rate: float) -> float:
-    """Return the duration of the run, s."""
     duration = float(f"{PERIODS / rate:.2g}") if rate > 0.0 else 1.0
     for part in layout.unit.of_type("gear_unit"):
         words = f"{duration:g} s, {PERIODS} periods of the slowest mesh: a REXS file states no run"

@@ -1,4 +1,4 @@
-"""The bearings of the scene: rolling bearings and bushings, planet bearings, couplings between shafts."""
+"""What holds the shafts of the scene: bearings, couplings between shafts, and the elastic housing."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ import numpy as np
 
 from bounds.types import FloatArray
 from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
+from dynamics.bearings.matrix import least_share
 from dynamics.bearings.roller_bearing import BOTH, NEGATIVE, NONE, POSITIVE
 from dynamics.bearings.rolling_bearing import AXIAL_PRELOAD, DYNAMIC_CAPACITY
+from dynamics.joints.housing import DEFINITE
 from lineofaction.gearbox.from_rexs.bearings import (
     BearingGeometry,
+    BearingStiffness,
     bearing_geometry,
-    bearing_stiffness,
     operating_point,
     stated_stiffness,
 )
 from lineofaction.gearbox.from_rexs.gear_unit import Connection, Names, Part, rounded
-from lineofaction.gearbox.from_rexs.housing import loosely_housed
 from lineofaction.gearbox.from_rexs.layout import Layout
-from lineofaction.gearbox.from_rexs.placement import placement
+from lineofaction.gearbox.from_rexs.placement import FIXED, placement
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.schemas.declared import figures
 
@@ -50,7 +51,7 @@ class SceneBearings:
 
     def __init__(self, layout: Layout, shafts: SceneShafts) -> None:
         self._layout, self._shafts, self._names = layout, shafts, Names()
-        self._loose = loosely_housed(layout)
+        self._loose = _loosely_housed(layout)
         self.bushings: list[Table] = []
         self.rolling_bearings: list[Table] = []
         self.planet_bearings: list[Table] = []
@@ -63,6 +64,8 @@ class SceneBearings:
                 self._enter(entry)
         for entry in layout.rotors.couplings:
             self._enter_coupling(entry)
+        self.couplings += _stub_couplings(shafts)
+        self.housings = _scene_housings(layout, self.seats)
 
     def _enter(self, entry: Connection) -> None:
         """Enter a bearing, or a coupling on the ground, by what it joins."""
@@ -124,18 +127,12 @@ class SceneBearings:
         return located if isinstance(located, str) else located | _further(part)
 
     def _seat(self, entry: Connection, held: Part) -> Table:
-        """Return name, shaft and position of a bearing on a shaft."""
         shaft = self._shafts.by_rotor[self._layout.rotor(held.id)]
         side = "inner" if held.id == entry.inner.id else "outer"
-        return {
-            "name": self._names.of(entry.part),
-            "shaft": shaft.name,
-            "position_mm": shaft.position_mm(self._z(entry.part, held, side)),
-        }
+        return shaft.seat(self._names.of(entry.part), self._z(entry.part, held, side))
 
     def _bushing(self, entry: Connection, held: Part) -> Table:
-        """Return the stiffness of a bearing on a shaft as a bushing states it."""
-        stiffness = bearing_stiffness(entry.part)
+        stiffness = BearingStiffness.of(entry.part)
         if stiffness.matrix is not None:
             return {"stiffness_matrix": self._turned(entry.part, held, stiffness.matrix).tolist()}
         linear = {"radial_stiffness_n_per_m": stiffness.radial, "axial_stiffness_n_per_m": stiffness.axial}
@@ -151,7 +148,6 @@ class SceneBearings:
         return np.asarray((both @ full @ both.T)[:5, :5])
 
     def _z(self, part: Part, held: Part, side: str) -> float:
-        """Return z of a bearing, m."""
         if held.id not in self._layout.shafts:
             place = placement(part)
             return 0.0 if place is None else float(self._layout.axes.point(place.origin)[2])
@@ -159,7 +155,7 @@ class SceneBearings:
 
     def _between(self, entry: Connection) -> Table:
         """Return a bearing between two shafts: a coupling that leaves their rotations free."""
-        stiffness = bearing_stiffness(entry.part)
+        stiffness = BearingStiffness.of(entry.part)
         if stiffness.matrix is None:
             rows = [stiffness.radial, stiffness.radial, stiffness.axial, stiffness.tilt, stiffness.tilt, 0.0]
             full = np.diag(np.minimum(rows, RIGID_COUPLING))
@@ -170,7 +166,6 @@ class SceneBearings:
         return self._joint(entry) | _coupled(0.0, full)
 
     def _joint(self, entry: Connection) -> Table:
-        """Return what every coupling states."""
         sides = (entry.inner, entry.outer)
         first, second = (self._shafts.by_rotor[self._layout.rotor(side.id)] for side in sides)
         z = self._z(entry.part, entry.inner, "inner")
@@ -211,7 +206,7 @@ def _say_clearances(part: Part) -> None:
             part.say(item, "refused", "a linear bushing has neither clearance nor preload")
 
 
-def stub_couplings(shafts: SceneShafts) -> Iterator[Table]:
+def _stub_couplings(shafts: SceneShafts) -> Iterator[Table]:
     """Yield the couplings that fix the stubs of planetary sets on their shafts."""
     matrix = np.diag([*[RIGID_COUPLING] * 3, *[RIGID_TORSION] * 2, 0.0])
     for number, stub in enumerate(shafts.stubs.values(), 1):
@@ -298,3 +293,119 @@ def _table(row: BallBearing | RollerBearing | CatalogLine) -> Table:
         if (value := getattr(row, figure.name)) != figure.default
     }
     return {names[type(row)]: values}
+
+
+# The elastic housing: the reduced stiffness matrix of the casing's assembly group.
+
+
+_MATRIX = "reduced_static_stiffness_matrix"
+_PER_POINT = 6
+_SYMMETRIC = 1e-6
+"""Relative; a finite-element program writes its matrices with that many digits."""
+
+
+def _scene_housings(layout: Layout, seats: dict[int, str]) -> list[Table]:
+    """Return the housings whose points carry bearings.
+
+    The matrix of the file has six rows a point, motions along and rotations about u, v, w of its assembly
+    group, in N, mm, rad, and the order of the points. Points that carry no bearing of the scene follow free
+    of force (static condensation). `seats` has the names of the bushings by component.
+    """
+    names = Names()
+    tables = (_housing_table(layout, group, seats, names) for group in _groups(layout))
+    return [table for table in tables if table is not None]
+
+
+def _loosely_housed(layout: Layout) -> set[int]:
+    """Return the components in an elastic housing that is not held in all directions: its matrix is singular.
+
+    Only linear bearings sit in such a housing.
+    """
+    loose: set[int] = set()
+    for group in _groups(layout):
+        points = group.children("reduction_point")
+        matrix = _stiffness(group, len(points))
+        if matrix is not None and least_share(matrix) <= DEFINITE:
+            seats = (point.referenced for point in points)
+            loose |= {part.id for parts in seats for part in parts}
+    return loose
+
+
+def _groups(layout: Layout) -> list[Part]:
+    return [
+        group
+        for casing in layout.unit.of_type("gear_casing")
+        for group in casing.referenced
+        if group.type == "assembly_group"
+    ]
+
+
+def _housing_table(layout: Layout, group: Part, seats: dict[int, str], names: Names) -> Table | None:
+    points = group.children("reduction_point")
+    bearings = [_seat_of(layout, point, seats) for point in points]
+    matrix = _stiffness(group, len(points))
+    if matrix is None:
+        return None
+    if not any(bearings):
+        group.say("", "refused", "no reduction point refers to a bearing of the scene")
+        return None
+    place = placement(group) or FIXED
+    turn = np.kron(np.eye(2 * len(points)), layout.axes.turn(place))
+    turned = turn @ matrix @ turn.T
+    kept = [index for index, name in enumerate(bearings) if name]
+    group.say("", "taken", "elastic housing")
+    group.say(_MATRIX, "taken", f"stiffness under {len(kept)} bearings; u, v, w turned to x, y, z, mm to m")
+    return {
+        "name": names.of(group),
+        "bushings": [name for name in bearings if name],
+        "stiffness_matrix": _condensed(turned, kept).tolist(),
+    }
+
+
+def _seat_of(layout: Layout, point: Part, seats: dict[int, str]) -> str | None:
+    for part in point.referenced:
+        if part.id in seats:
+            point.say("", "taken", f"seat of {seats[part.id]}")
+            return seats[part.id]
+    point.say("", "derived", "carries no bearing of the scene: it follows free of force")
+    return None
+
+
+def _stiffness(group: Part, points: int) -> FloatArray | None:
+    """Return the matrix in N, m, rad, None if the account says why there is none."""
+    rows = group.value(_MATRIX)
+    if rows is None:
+        group.say("", "refused", f"no {_MATRIX}: files of finite-element programs are not read")
+        return None
+    size = _PER_POINT * points
+    if (
+        not isinstance(rows, tuple)
+        or len(rows) != size
+        or any(not isinstance(row, tuple) or len(row) != size for row in rows)
+    ):
+        group.say(
+            _MATRIX, "refused", f"{size} rows of {size} numbers are needed: six for each reduction point"
+        )
+        return None
+    try:
+        matrix = np.array(rows, dtype=float)
+    except (TypeError, ValueError):
+        group.say(_MATRIX, "refused", "not all of its entries are numbers")
+        return None
+    scale = np.tile([1e3**0.5] * 3 + [1e-3**0.5] * 3, points)
+    matrix *= scale[:, None] * scale
+    most = float(np.max(np.abs(matrix)))
+    if not np.isfinite(most) or np.any(np.abs(matrix - matrix.T) > _SYMMETRIC * most):
+        group.say(_MATRIX, "refused", "not symmetric, or not finite")
+        return None
+    return np.asarray(0.5 * (matrix + matrix.T))
+
+
+def _condensed(matrix: FloatArray, kept: list[int]) -> FloatArray:
+    """Return the stiffness over some points, the others free of force."""
+    rows = np.concatenate([np.arange(_PER_POINT * index, _PER_POINT * (index + 1)) for index in kept])
+    free = np.setdiff1d(np.arange(len(matrix)), rows)
+    if not free.size:
+        return matrix
+    follow = np.linalg.pinv(matrix[np.ix_(free, free)]) @ matrix[np.ix_(free, rows)]
+    return np.asarray(matrix[np.ix_(rows, rows)] - matrix[np.ix_(rows, free)] @ follow)

@@ -72,7 +72,6 @@ def _axis(layout: Layout, rotor: int) -> int:
 
 
 def _pieces(layout: Layout, part: Part, axis: tuple[float, float]) -> Iterator[_Piece]:
-    """Yield the pieces of a shaft or a side plate."""
     if part.id in layout.shafts:
         shaft = layout.shafts[part.id]
         radius = math.hypot(shaft.origin[0] - axis[0], shaft.origin[1] - axis[1])
@@ -120,6 +119,10 @@ class SceneShaft:
         """Left end in z, m."""
         return float(self.table["origin_mm"][2]) * MM
 
+    def seat(self, name: str, z: float) -> dict[str, Any]:
+        """Return the table of what stands on the shaft at a z, m."""
+        return {"name": name, "shaft": self.name, "position_mm": self.position_mm(z)}
+
     def position_mm(self, z: float) -> float:
         """Return the position of a z from the left end, mm; within the shaft."""
         return min(max((z - self.begin) / MM, 0.0), float(self.table["length_mm"]))
@@ -143,29 +146,29 @@ class SceneShafts:
     stages: tuple[GearStage, ...]
     stubs: dict[int, SceneShaft] = field(default_factory=dict)
 
+    @classmethod
+    def of(cls, layout: Layout, stages: Sequence[GearStage], names: Names) -> SceneShafts:
+        """Return the shafts that computed stages and couplings make parts of one train."""
+        first = {planets.planets[0].id for planets in layout.rotors.sets}
+        others = {shaft.id for planets in layout.rotors.sets for shaft in planets.planets} - first
+        kept = tuple(s for s in stages if not others & {shaft.id for shaft in s.shafts})
+        rotors = _joined(layout, kept)
+        bodies = cls({rotor: _shaft(layout, rotor, names) for rotor in sorted(rotors)}, kept)
+        for placed in layout.shafts.values():
+            if placed.part.id not in others and layout.rotor(placed.part.id) not in rotors:
+                placed.part.say("", "refused", "no computed stage or coupling joins it to the train")
+        for stage in kept:
+            for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
+                carrier = layout.carrier(stage)
+                if carrier is not None and _meshes_outside(layout, kept, shaft, carrier):
+                    bodies.stubs[gear.id] = _stub(layout, shaft, gear, names)
+        _enter_frames(layout, bodies)
+        return bodies
+
     @property
     def all(self) -> tuple[SceneShaft, ...]:
         """Shafts and stubs."""
         return (*self.by_rotor.values(), *self.stubs.values())
-
-
-def scene_shafts(layout: Layout, stages: Sequence[GearStage], names: Names) -> SceneShafts:
-    """Return the shafts that computed stages and couplings make parts of one train."""
-    first = {planets.planets[0].id for planets in layout.rotors.sets}
-    others = {shaft.id for planets in layout.rotors.sets for shaft in planets.planets} - first
-    kept = tuple(s for s in stages if not others & {shaft.id for shaft in s.shafts})
-    rotors = _joined(layout, kept)
-    bodies = SceneShafts({rotor: _shaft(layout, rotor, names) for rotor in sorted(rotors)}, kept)
-    for placed in layout.shafts.values():
-        if placed.part.id not in others and layout.rotor(placed.part.id) not in rotors:
-            placed.part.say("", "refused", "no computed stage or coupling joins it to the train")
-    for stage in kept:
-        for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
-            carrier = layout.carrier(stage)
-            if carrier is not None and _meshes_outside(layout, kept, shaft, carrier):
-                bodies.stubs[gear.id] = _stub(layout, shaft, gear, names)
-    _enter_frames(layout, bodies)
-    return bodies
 
 
 def _joined(layout: Layout, stages: Sequence[GearStage]) -> set[int]:

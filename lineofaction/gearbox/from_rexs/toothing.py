@@ -9,9 +9,11 @@ from functools import cached_property
 
 from fe_contact.flank.involute import involute_function
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
-from lineofaction.gearbox.from_rexs.meshing import LoadedFlank
+from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, Meshing
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, as_typed
+
+_SHIFT = "addendum_modification_coefficient"
 
 # Macro geometry of a gear as its file gives it, in SI (ISO 21771-1).
 
@@ -30,7 +32,7 @@ class ToothingData:
         None where the file gives none.
     """
 
-    part: Part
+    loaded: LoadedFlank
     sign: int
     teeth: int
     normal_module: float
@@ -38,6 +40,32 @@ class ToothingData:
     helix_angle: float
     face_width: float
     profile_shift_coefficient: float | None
+
+    @classmethod
+    def of(cls, loaded: LoadedFlank) -> ToothingData:
+        """Return the numbers of a gear."""
+        gear = loaded.gear
+        teeth = gear.required("number_of_teeth", "teeth")
+        ring = gear.type == "ring_gear"
+        if teeth != round(teeth) or teeth == 0.0 or (teeth < 0.0 and not ring):
+            bound = f"a whole number {'other than' if ring else 'above'} 0"
+            advice = "" if teeth > 0.0 else "A ring gear is a component of the type ring_gear."
+            raise BadInput.of(f"{gear.place}, number_of_teeth", teeth, bound, advice)
+        return cls(
+            loaded=loaded,
+            sign=-1 if ring else 1,
+            teeth=abs(round(teeth)),
+            normal_module=gear.positive("normal_module", "normal_module_mm"),
+            pressure_angle=_pressure_angle(loaded),
+            helix_angle=_helix_angle(gear),
+            face_width=gear.positive("face_width", "face_width_mm"),
+            profile_shift_coefficient=_of_flanks(loaded, _SHIFT, "profile_shift_coefficient"),
+        )
+
+    @property
+    def part(self) -> Part:
+        """The gear."""
+        return self.loaded.gear
 
     @cached_property
     def reference_diameter(self) -> float:
@@ -50,35 +78,26 @@ class ToothingData:
         return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
 
 
-def toothing_of(gear: Part, loaded: LoadedFlank) -> ToothingData:
-    """Return the numbers of a gear."""
-    teeth = gear.required("number_of_teeth", "teeth")
-    ring = gear.type == "ring_gear"
-    if teeth != round(teeth) or teeth == 0.0 or (teeth < 0.0 and not ring):
-        bound = f"a whole number {'other than' if ring else 'above'} 0"
-        advice = "" if teeth > 0.0 else "A ring gear is a component of the type ring_gear."
-        raise BadInput.of(f"{gear.place}, number_of_teeth", teeth, bound, advice)
-    return ToothingData(
-        part=gear,
-        sign=-1 if ring else 1,
-        teeth=abs(round(teeth)),
-        normal_module=gear.positive("normal_module", "normal_module_mm"),
-        pressure_angle=_pressure_angle(gear, loaded),
-        helix_angle=_helix_angle(gear),
-        face_width=gear.positive("face_width", "face_width_mm"),
-        profile_shift_coefficient=_shift(loaded),
-    )
-
-
-def _pressure_angle(gear: Part, loaded: LoadedFlank) -> float:
+def _pressure_angle(loaded: LoadedFlank) -> float:
     """Return the normal pressure angle of the loaded flank, else of the other, else of the gear."""
-    for part in (*loaded.flanks, gear):
-        value = part.number("normal_pressure_angle", "normal_pressure_angle_deg")
+    item, field = "normal_pressure_angle", "normal_pressure_angle_deg"
+    value = _of_flanks(loaded, item, field)
+    if value is None:
+        value = loaded.gear.number(item, field)
         if value is not None:
-            _say_difference(loaded, "normal_pressure_angle", value)
-            return value
-    gear.say("normal_pressure_angle", "defaulted", "20 deg (ISO 53)")
-    return math.radians(20.0)
+            _say_difference(loaded, item, value)
+    if value is None:
+        loaded.gear.say(item, "defaulted", "20 deg (ISO 53)")
+        return math.radians(20.0)
+    return value
+
+
+def _of_flanks(loaded: LoadedFlank, item: str, field: str) -> float | None:
+    """Return a number of the loaded flank, else of the other."""
+    value = next((value for flank in loaded.flanks if (value := flank.number(item, field)) is not None), None)
+    if value is not None:
+        _say_difference(loaded, item, value)
+    return value
 
 
 def _helix_angle(gear: Part) -> float:
@@ -87,16 +106,6 @@ def _helix_angle(gear: Part) -> float:
     if not abs(value) < math.radians(80.0):
         raise BadInput.of(f"{gear.place}, {item}", math.degrees(value), "-80 to 80 deg")
     return value + 0.0  # -0.0 becomes 0.0
-
-
-def _shift(loaded: LoadedFlank) -> float | None:
-    """Return the profile shift coefficient of the loaded flank, else of the other."""
-    for flank in loaded.flanks:
-        value = flank.number("addendum_modification_coefficient", "profile_shift_coefficient")
-        if value is not None:
-            _say_difference(loaded, "addendum_modification_coefficient", value)
-            return value
-    return None
 
 
 def _say_difference(loaded: LoadedFlank, item: str, value: float) -> None:
@@ -110,17 +119,36 @@ def _say_difference(loaded: LoadedFlank, item: str, value: float) -> None:
 # Profile shifts that a file leaves out, from the center distance and the mates (ISO 21771-1, clause 5.5).
 
 
-_ITEM = "addendum_modification_coefficient"
-
-
 @dataclass(frozen=True)
 class ToothedPair:
-    """Two gears of a stage at a center distance in m; the second may be a ring gear."""
+    """What the file says of a stage's two gears; the second may be a ring gear.
 
-    stage: Part
+    Attributes
+    ----------
+    center_distance : float
+        m.
+    axial_offset : float
+        Of the wheel's mid-face from the pinion's towards +z, m.
+    torques : tuple of float
+        On the driving gear, N m; of one sign.
+    """
+
+    meshing: Meshing
     pinion: ToothingData
     wheel: ToothingData
     center_distance: float
+    axial_offset: float
+    torques: tuple[float, ...]
+
+    @property
+    def stage(self) -> Part:
+        """The stage."""
+        return self.meshing.stage
+
+    @property
+    def gears(self) -> tuple[ToothingData, ToothingData]:
+        """Pinion and wheel."""
+        return self.pinion, self.wheel
 
     @property
     def working_pressure_angle(self) -> float:
@@ -149,7 +177,7 @@ def derived_shifts(pairs: Sequence[ToothedPair]) -> dict[int, float]:
 
     A gear whose mates have none either stays without. Every pair's working pressure angle must exist.
     """
-    gears = [gear for pair in pairs for gear in (pair.pinion, pair.wheel)]
+    gears = [gear for pair in pairs for gear in pair.gears]
     shifts = {
         gear.part.id: gear.profile_shift_coefficient
         for gear in gears
@@ -165,13 +193,13 @@ def derived_shifts(pairs: Sequence[ToothedPair]) -> dict[int, float]:
 
 def _derive(pair: ToothedPair, shifts: dict[int, float]) -> None:
     """Add the shift of the gear of a pair that has none, if its mate has one."""
-    for gear, mate in ((pair.pinion, pair.wheel), (pair.wheel, pair.pinion)):
+    for gear, mate in (pair.gears, pair.gears[::-1]):
         if gear.part.id not in shifts and mate.part.id in shifts:
             shift = pair.shift_sum - shifts[mate.part.id]
             shifts[gear.part.id] = 0.0 if abs(shift) < 1e-9 else shift
             total = "x_1 + x_2 = (z_1 + z_2) (inv alpha_wt - inv alpha_t) / (2 tan alpha_n)"
             gear.part.say(
-                _ITEM, "derived", f"x = {shifts[gear.part.id]:.6g} from {total} with {mate.part.name}"
+                _SHIFT, "derived", f"x = {shifts[gear.part.id]:.6g} from {total} with {mate.part.name}"
             )
 
 
@@ -201,18 +229,17 @@ class ToothDepth:
     root_radius_coefficient: float
     cutter: Mapping[str, int | float] = field(default_factory=dict)
 
-
-def tooth_depth(gear: ToothingData, loaded: LoadedFlank, shift: float, tip_alteration: float) -> ToothDepth:
-    """Return tip and root of a gear: x stated or derived, k <= 0 of a tip that the file leaves out."""
-    tool = _tool(gear.part, loaded)
-    tip = _stated_tip(gear, shift)
-    return ToothDepth(
-        tip_diameter=_computed_tip(gear, loaded, shift, tip_alteration) if tip is None else tip,
-        tip_stated=tip is not None,
-        dedendum_coefficient=_dedendum(gear, tool, shift),
-        root_radius_coefficient=_root_radius(gear, tool),
-        cutter=_cutter(tool, gear.sign),
-    )
+    @classmethod
+    def of(cls, gear: ToothingData, shift: float, tip_alteration: float) -> ToothDepth:
+        """Return tip and root of a gear: x stated or derived, k <= 0 of a tip that the file leaves out."""
+        tool, tip = _tool(gear.loaded), _stated_tip(gear, shift)
+        return cls(
+            tip_diameter=_computed_tip(gear, shift, tip_alteration) if tip is None else tip,
+            tip_stated=tip is not None,
+            dedendum_coefficient=_dedendum(gear, tool, shift),
+            root_radius_coefficient=_root_radius(gear, tool),
+            cutter=_cutter(tool, gear.sign),
+        )
 
 
 def _stated_tip(gear: ToothingData, shift: float) -> float | None:
@@ -229,9 +256,11 @@ def _implied_addendum(gear: ToothingData, diameter: float, shift: float) -> floa
     return gear.sign * (diameter - gear.reference_diameter) / (2.0 * gear.normal_module) - shift
 
 
-def _computed_tip(gear: ToothingData, loaded: LoadedFlank, shift: float, alteration: float) -> float:
+def _computed_tip(gear: ToothingData, shift: float, alteration: float) -> float:
     """Return d + 2 m_n (x + h_aP + k) in m, of a ring gear d - 2 m_n (x + h_aP)."""
-    addendum = _addendum(loaded)
+    item, words = "addendum_coefficient_basic_profile", "h_aP of the tip diameter"
+    stated = (flank.number(item, words) for flank in gear.loaded.flanks)
+    addendum = next((value for value in stated if value is not None), _ADDENDUM)
     height = shift + addendum + alteration
     computed = gear.reference_diameter + 2.0 * gear.sign * gear.normal_module * height
     formula = "d + 2 m_n (x + h_aP + k)" if gear.sign > 0 else "d - 2 m_n (x + h_aP)"
@@ -242,15 +271,6 @@ def _computed_tip(gear: ToothingData, loaded: LoadedFlank, shift: float, alterat
         words = f"{value / MM:.7g} mm is no tip diameter (h_aP would be {implied:.4g}); {words}"
     gear.part.say("tip_diameter", "defaulted", words)
     return computed
-
-
-def _addendum(loaded: LoadedFlank) -> float:
-    """Return the addendum coefficient of the flank's basic rack, 1 where the file gives none."""
-    for flank in loaded.flanks:
-        value = flank.number("addendum_coefficient_basic_profile", "h_aP of the tip diameter")
-        if value is not None:
-            return value
-    return _ADDENDUM
 
 
 def _dedendum(gear: ToothingData, tool: Part | None, shift: float) -> float:
@@ -283,18 +303,13 @@ def _root_radius(gear: ToothingData, tool: Part | None) -> float:
             length = tool.number("tip_corner_radius_reference_profile", words)
             value = None if length is None else length / gear.normal_module
         if value is not None:
-            _say_ignored(tool)
+            for item in ("protuberance_amount", "protuberance_amount_factor"):
+                if tool.attribute(item) is not None:
+                    tool.say(item, "ignored", "the fillet is generated without protuberance")
             return value
     default = _RADIUS if gear.sign > 0 else _CUTTER_RADIUS
     gear.part.say("root_radius_coefficient", "defaulted", f"{default}: no tool says its tip rounding")
     return default
-
-
-def _say_ignored(tool: Part) -> None:
-    """State what of a tool has no place in a case."""
-    for item in ("protuberance_amount", "protuberance_amount_factor"):
-        if tool.attribute(item) is not None:
-            tool.say(item, "ignored", "the fillet is generated without protuberance")
 
 
 def _cutter(tool: Part | None, sign: int) -> Mapping[str, int | float]:
@@ -307,9 +322,9 @@ def _cutter(tool: Part | None, sign: int) -> Mapping[str, int | float]:
     return fields if shift is None else fields | {"cutter_profile_shift_coefficient": rounded(shift)}
 
 
-def _tool(gear: Part, loaded: LoadedFlank) -> Part | None:
+def _tool(loaded: LoadedFlank) -> Part | None:
     """Return the tool that makes the root: the first step of the loaded flank, else of the gear."""
-    for part in (*loaded.flanks, gear):
+    for part in (*loaded.flanks, loaded.gear):
         tools = (
             *part.related("manufacturing_step", "workpiece", "tool"),
             *part.related("ordered_reference", "origin", "referenced"),

@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+import io
+import re
+import zipfile
+import zlib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from lineofaction.gearbox.problems import BadInput, Fault
-from lineofaction.gearbox.rexs.archive import MOST_BYTES, read_archive, write_archive
 from lineofaction.gearbox.rexs.json_form import json_of, read_json
 from lineofaction.gearbox.rexs.model import Document, Model
 from lineofaction.gearbox.rexs.xml_form import read_xml, xml_of
+
+_MOST_BYTES = 64_000_000
+"""Of a file, and of an archive's files together."""
+_MOST_FILES = 1_000
+_MOST_RATIO = 200
+"""Bytes of an archive's files by bytes of the archive; models compress 20 to 50 times."""
+
+_MODEL_NAME = "rexs-model.rexs"
+_MODEL_ENDINGS = (".rexs", ".rexsj")
+_FIRST_DAY = (1980, 1, 1, 0, 0, 0)
 
 _WHOLE, _PART = "assembly", "part"
 _ASSEMBLIES = ("assembly", "ordered_assembly")
@@ -25,7 +38,6 @@ def _check(model: Model) -> None:
 
 
 def _repeated(model: Model) -> Iterator[Fault]:
-    """Yield the ids that are given twice."""
     lists = {
         "component": [component.id for component in model.components],
         "relation": [relation.id for relation in model.relations],
@@ -40,7 +52,6 @@ def _repeated(model: Model) -> Iterator[Fault]:
 
 
 def _dangling(model: Model) -> Iterator[Fault]:
-    """Yield the references to components that do not exist."""
     known = {component.id for component in model.components}
     bound = "the id of a component"
     for relation in model.relations:
@@ -95,7 +106,7 @@ def read_rexs(path: Path) -> Document:
     """
     try:
         with path.open("rb") as stream:
-            data = stream.read(MOST_BYTES + 1)
+            data = stream.read(_MOST_BYTES + 1)
     except OSError as error:
         raise BadInput.of("file", str(path), f"a file that can be read ({error.strerror})") from None
     return parsed(data)
@@ -103,10 +114,10 @@ def read_rexs(path: Path) -> Document:
 
 def parsed(data: bytes) -> Document:
     """Return the document of a file's bytes."""
-    if len(data) > MOST_BYTES:
-        raise BadInput.of("file", f"more than {MOST_BYTES} bytes", "smaller")
+    if len(data) > _MOST_BYTES:
+        raise BadInput.of("file", f"more than {_MOST_BYTES} bytes", "smaller")
     if data.startswith(b"PK"):
-        _, text, files = read_archive(data)
+        text, files = _read_archive(data)
         return Document(_model(text), files)
     return Document(_model(data))
 
@@ -124,7 +135,7 @@ def serialized(document: Document, name: str) -> bytes:
         raise BadInput.of("file", name, "a name that ends in one of " + ", ".join(ENDINGS))
     _check(document.model)
     if ending in (".rexsz", ".rexs.zip"):
-        return write_archive(xml_of(document.model), document.files)
+        return _archive_of(xml_of(document.model), document.files)
     if document.files:
         raise BadInput.of("file", name, "an archive (.rexsz): other files belong to the model")
     return json_of(document.model) if ending == ".rexsj" else xml_of(document.model)
@@ -136,3 +147,70 @@ def _model(data: bytes) -> Model:
     model = read_json(data) if start == b"{" else read_xml(data)
     _check(model)
     return model
+
+
+# The ZIP form (``.rexsz``, ``.rexs.zip``): a model and the files it names, read within bounds.
+
+
+def _read_archive(data: bytes) -> tuple[bytes, dict[str, bytes]]:
+    """Return the text of the model, and the other files of an archive by name."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            files = _unpacked(archive, len(data))
+    except (
+        zipfile.BadZipFile,
+        zlib.error,
+        EOFError,
+        NotImplementedError,
+        RuntimeError,
+        ValueError,
+        OSError,
+    ):
+        raise BadInput.of("archive", None, "a ZIP archive that can be read") from None
+    models = [name for name in files if name.lower().endswith(_MODEL_ENDINGS)]
+    if len(models) != 1:
+        raise BadInput.of("archive", ", ".join(models) or None, "an archive of one model, .rexs or .rexsj")
+    return files.pop(models[0]), files
+
+
+def _archive_of(model: bytes, files: Mapping[str, bytes]) -> bytes:
+    """Return an archive of a model's XML and its files, the same bytes at every time."""
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        for name, data in [(_MODEL_NAME, model), *sorted(files.items())]:
+            entry = zipfile.ZipInfo(name, _FIRST_DAY)
+            entry.external_attr = 0o644 << 16
+            archive.writestr(entry, data, zipfile.ZIP_DEFLATED)
+    return stream.getvalue()
+
+
+def _inside(name: str) -> bool:
+    """Return whether a relative name stays in its folder on every system."""
+    parts = re.split(r"[/\\]", name)
+    return bool(name) and parts[0] != "" and ".." not in parts and ":" not in name and "\0" not in name
+
+
+def _unpacked(archive: zipfile.ZipFile, size: int) -> dict[str, bytes]:
+    entries = [entry for entry in archive.infolist() if not entry.is_dir()]
+    if len(entries) > _MOST_FILES:
+        raise BadInput.of("archive", f"{len(entries)} files", f"at most {_MOST_FILES}")
+    files: dict[str, bytes] = {}
+    left = min(_MOST_BYTES, _MOST_RATIO * size)
+    for entry in entries:
+        if not _inside(entry.filename):
+            raise BadInput.of("archive", entry.filename, "a name inside the archive")
+        if entry.filename in files:
+            raise BadInput.of("archive", entry.filename, "in the archive once")
+        files[entry.filename] = _read(archive, entry, left)
+        left -= len(files[entry.filename])
+    return files
+
+
+def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most: int) -> bytes:
+    """Return a file of an archive, of at most so many bytes, whatever the archive says."""
+    with archive.open(entry) as stream:
+        data = stream.read(most + 1)
+    if len(data) > most:
+        bound = f"at most {_MOST_BYTES} bytes and {_MOST_RATIO} times its archive"
+        raise BadInput.of("archive", f"{entry.filename}, larger", bound)
+    return data

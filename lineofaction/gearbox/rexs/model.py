@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
 Scalar = float | int | bool | str
 Array = tuple[Scalar, ...]
@@ -134,6 +134,20 @@ class Model:
     def component(self, number: int) -> Component | None:
         """Return the component of an id, None if there is none."""
         return next((component for component in self.components if component.id == number), None)
+
+    def mapped(self, change: Callable[[str, Component], Component]) -> Model:
+        """Return the model with what `change` makes of each place and component, load cases included."""
+        places = (place for place, _ in self.all_components())
+
+        def changed(parts: Iterable[Component]) -> tuple[Component, ...]:
+            return tuple(change(next(places), part) for part in parts)
+
+        components, spectra = changed(self.components), []
+        for spectrum in self.spectra:
+            cases = tuple(replace(case, components=changed(case.components)) for case in spectrum.cases)
+            whole = None if spectrum.accumulation is None else changed(spectrum.accumulation)
+            spectra.append(replace(spectrum, cases=cases, accumulation=whole))
+        return replace(self, components=components, spectra=tuple(spectra))
 
     def all_components(self) -> Iterator[tuple[str, Component]]:
         """Yield the components with their place in the file, those of load cases too."""

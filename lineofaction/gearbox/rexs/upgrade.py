@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import functools
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from lineofaction.gearbox.problems import BadInput
@@ -40,18 +40,8 @@ class Change:
     words: str
 
 
-@dataclass(frozen=True)
-class _Step:
-    """What a version renamed, moved, retyped and removed: a file of `steps`."""
-
-    version: str
-    components_removed: frozenset[str]
-    removed: frozenset[str]
-    renamed: dict[str, str]
-    units: dict[str, list[str]]
-    kinds: dict[str, list[str]]
-    moved: dict[str, list[str]]
-    enums: dict[str, dict[str, Any]]
+_Step = dict[str, Any]
+"""What a version renamed, moved, retyped and removed: a file of `steps`."""
 
 
 def upgrade(model: Model, version: str = NEWEST) -> tuple[Model, tuple[Change, ...]]:
@@ -68,7 +58,9 @@ def upgrade(model: Model, version: str = NEWEST) -> tuple[Model, tuple[Change, .
     start, end = _version_number(model.version), _version_number(version)
     changes: list[Change] = []
     for old, new in zip(VERSIONS[start:end], VERSIONS[start + 1 : end + 1], strict=True):
-        model = _stepped(model, _step(old, new), changes)
+        step = table(f"steps/{old}_to_{new}")
+        newer = partial(_component, step=step, version=new, changes=changes)
+        model = replace(model.mapped(newer), version=new)
     return model, tuple(changes)
 
 
@@ -79,53 +71,11 @@ def _version_number(version: str) -> int:
     return VERSIONS.index(name)
 
 
-@functools.cache
-def _step(old: str, new: str) -> _Step:
-    """Return the step between neighboring versions."""
-    step = table(f"steps/{old}_to_{new}")
-    attributes = step["attributes"]
-    return _Step(
-        version=new,
-        components_removed=frozenset(step["components"]["removed"]),
-        removed=frozenset(attributes["removed"]),
-        renamed=attributes["renamed"],
-        units=attributes["units"],
-        kinds=attributes["kinds"],
-        moved=step["moved"],
-        enums=step["enums"],
-    )
-
-
-def _stepped(model: Model, step: _Step, changes: list[Change]) -> Model:
-    """Return a model one version newer; what changes goes to `changes`."""
-    places = (place for place, _ in model.all_components())
-
-    def newer(component: Component) -> Component:
-        return _component(component, step, next(places), changes)
-
-    return replace(
-        model,
-        version=step.version,
-        components=tuple(map(newer, model.components)),
-        spectra=tuple(
-            replace(
-                spectrum,
-                cases=tuple(
-                    replace(case, components=tuple(map(newer, case.components))) for case in spectrum.cases
-                ),
-                accumulation=None
-                if spectrum.accumulation is None
-                else tuple(map(newer, spectrum.accumulation)),
-            )
-            for spectrum in model.spectra
-        ),
-    )
-
-
-def _component(component: Component, step: _Step, place: str, changes: list[Change]) -> Component:
-    """Return a component one version newer."""
-    if component.type in step.components_removed:
-        changes.append(Change(step.version, place, component.type, True, "components of this type are gone"))
+def _component(
+    place: str, component: Component, step: _Step, version: str, changes: list[Change]
+) -> Component:
+    if component.type in step["components"]["removed"]:
+        changes.append(Change(version, place, component.type, True, "components of this type are gone"))
         return component
     names = {attribute.id for attribute in component.attributes}
     attributes = []
@@ -133,10 +83,10 @@ def _component(component: Component, step: _Step, place: str, changes: list[Chan
         for change in (_unit, _kind, _enum):
             attribute, words, kept = change(attribute, step)  # noqa: PLW2901  # the attribute as it goes
             if words:
-                changes.append(Change(step.version, place, attribute.id, kept, words))
+                changes.append(Change(version, place, attribute.id, kept, words))
         name, words = _name(component.type, attribute.id, step, names)
         if words:
-            changes.append(Change(step.version, place, attribute.id, name == attribute.id, words))
+            changes.append(Change(version, place, attribute.id, name == attribute.id, words))
         attributes.append(replace(attribute, id=name))
     return replace(component, attributes=tuple(attributes))
 
@@ -146,12 +96,12 @@ _Changed = tuple[Attribute, str, bool]
 
 def _name(component: str, name: str, step: _Step, names: set[str]) -> tuple[str, str]:
     own = f"{component}.{name}"
-    if own in step.moved:
-        targets = ", ".join(step.moved[own])
+    if own in step["moved"]:
+        targets = ", ".join(step["moved"][own])
         return name, f"the component has it no more{f'; these have it now: {targets}' if targets else ''}"
-    if name in step.removed:
+    if name in step["attributes"]["removed"]:
         return name, "the attribute is gone"
-    later = step.renamed.get(own, step.renamed.get(name, name))
+    later = step["attributes"]["renamed"].get(own, step["attributes"]["renamed"].get(name, name))
     if later != name and later in names:
         return name, f"renamed to {later}, which the component has besides"
     return later, f"renamed to {later}" if later != name else ""
@@ -159,7 +109,7 @@ def _name(component: str, name: str, step: _Step, names: set[str]) -> tuple[str,
 
 def _unit(attribute: Attribute, step: _Step) -> _Changed:
     """Respell a unit; a value whose unit becomes another quantity is kept in its own."""
-    old, new = step.units.get(attribute.id, (None, None))
+    old, new = step["attributes"]["units"].get(attribute.id, (None, None))
     if new is None or attribute.unit != old:
         return attribute, "", False
     if units()[str(old)] == units()[new]:
@@ -169,7 +119,7 @@ def _unit(attribute: Attribute, step: _Step) -> _Changed:
 
 def _kind(attribute: Attribute, step: _Step) -> _Changed:
     """Give a value its newer type where it has the same meaning."""
-    old, new = step.kinds.get(attribute.id, (None, None))
+    old, new = step["attributes"]["kinds"].get(attribute.id, (None, None))
     if new is None or attribute.kind != old:
         return attribute, "", False
     value = attribute.value
@@ -183,8 +133,7 @@ _UNWRAPPED = ("floating_point_array", "floating_point_matrix")
 
 
 def _enum(attribute: Attribute, step: _Step) -> _Changed:
-    """Rename a value of an enum."""
-    table = step.enums.get(attribute.id, {})
+    table = step["enums"].get(attribute.id, {})
     value = str(attribute.value)
     if value in table.get("renamed", {}):
         later = table["renamed"][value]

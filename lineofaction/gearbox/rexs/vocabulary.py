@@ -30,7 +30,7 @@ def words(name: Literal["descriptive_components", "bearing_types"]) -> frozenset
 
 
 @dataclass(frozen=True)
-class SiUnit:
+class _SiUnit:
     """A unit: a value v in it is v * factor + offset in the SI unit `si`."""
 
     si: str
@@ -39,9 +39,9 @@ class SiUnit:
 
 
 @functools.cache
-def units() -> dict[str, SiUnit]:
+def units() -> dict[str, _SiUnit]:
     """Return every unit of REXS 1.0 to 2.0.0 by its spelling."""
-    return {name: SiUnit(**unit) for name, unit in table("units").items()}
+    return {name: _SiUnit(**unit) for name, unit in table("units").items()}
 
 
 def si_value(value: float, unit: str | None, expected: str, place: str) -> float:

@@ -14,7 +14,7 @@ from rexs_stage import (
     stage_unit,
 )
 
-from lineofaction.gearbox.from_rexs.meshing import loaded_flank, meshing_of
+from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, Meshing
 
 SIGNS = (1, -1)
 DIRECTION = {1: "positive", -1: "negative"}
@@ -48,9 +48,9 @@ def test_a_ring_gear_carries_on_its_trailing_flank_its_tooth_turned_upwards(sens
     expected = side_by_vectors(sense, drives=False, datum=datum, ring=True)
     assert loaded(unit, WHEEL, 10.0 * sense).side == expected
     # If the ring gear drives, it carries on its leading flank, and the planet on its trailing one.
-    meshing = meshing_of(unit.part(STAGE), driver=WHEEL, torques=(10.0 * sense,))
-    ring = loaded_flank(meshing, unit.part(WHEEL))
-    planet = loaded_flank(meshing, unit.part(PINION))
+    meshing = Meshing.of(unit.part(STAGE), driver=WHEEL, torques=(10.0 * sense,))
+    ring = LoadedFlank.of(meshing, unit.part(WHEEL))
+    planet = LoadedFlank.of(meshing, unit.part(PINION))
     assert ring.side == side_by_vectors(sense, drives=True, datum=datum, ring=True)
     assert planet.side == side_by_vectors(sense, drives=False, datum=-1)
 

@@ -45,8 +45,7 @@ from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.rexs.upgrade import upgrade
 from lineofaction.gearbox.rexs.values import KINDS, kind_of
 from lineofaction.gearbox.rexs.vocabulary import units, words
-from lineofaction.gearbox.to_rexs.deflected import bearing_results, deflected
-from lineofaction.gearbox.to_rexs.exported import exported
+from lineofaction.gearbox.to_rexs import bearing_results, deflected, exported
 from tests.fakes.deflected_unit import deflection_of_unit
 from tests.fakes.rexs_unit import MOTOR, two_stages
 

@@ -20,7 +20,7 @@ from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import parsed, serialized
 from lineofaction.gearbox.rexs.model import Attribute, Component, Document
-from lineofaction.gearbox.to_rexs.exported import exported
+from lineofaction.gearbox.to_rexs import exported
 
 
 def unit() -> GearUnit:

@@ -1,4 +1,4 @@
-"""A REXS document with the results of the deflection of its gear unit, load case by load case."""
+"""A REXS document with calculated results: of the tables of its stages, or of its deflection."""
 
 from __future__ import annotations
 
@@ -11,16 +11,182 @@ import numpy as np
 
 from bounds.types import FloatArray, Json
 from dynamics.deflection import BearingLoad, CaseDeflection, MeshAlignment
+from fe_contact.geometry import ParallelAxes
+from fe_contact.ste import Curve, SteDatabase
+from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
+from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.loads import LoadCase
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.from_rexs.scene import BearingPart, SceneParts, ShaftPart
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs.model import Attribute, Document
+from lineofaction.gearbox.rexs.model import Attribute, Component, Document
 from lineofaction.gearbox.rexs.upgrade import upgrade
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
 from lineofaction.gearbox.studies.deflect.run import scene_of
-from lineofaction.gearbox.to_rexs.exported import calculated, with_case_results
 from lineofaction.gearbox.units import MM, RPM, UM
+
+# Calculated attributes in a REXS document.
+
+
+CALCULATED = "calculated"
+"""Origin of what this program writes (REXS, since 1.5)."""
+
+
+def _calculated(name: str, value: float | Sequence[float], unit: str) -> Attribute:
+    """Return an attribute of a number or an array in `unit`, a unit of REXS."""
+    if isinstance(value, Sequence):
+        return Attribute(name, "floating_point_array", tuple(map(float, value)), unit, origin=CALCULATED)
+    return Attribute(name, "floating_point", float(value), unit, origin=CALCULATED)
+
+
+Results = Mapping[int, Iterable[Attribute]]
+"""Calculated attributes by id of the component."""
+
+
+def _with_calculated(document: Document, results: Results) -> Document:
+    """Return a document with results on its components; everything else stays as it is.
+
+    A result takes the place of an attribute of its name, another program's too.
+    """
+    model = document.model
+    _refuse_unknown(document, results)
+    components = tuple(_with(component, results.get(component.id, ())) for component in model.components)
+    return replace(document, model=replace(model, components=components))
+
+
+def _with_case_results(document: Document, number: int, results: Results) -> Document:
+    """Return a document with results in a load case of its first spectrum; see `_with_calculated`.
+
+    Without a spectrum the results are the components' own.
+    `number` is the place of the load case in the spectrum, from 1.
+    """
+    model = document.model
+    if not model.spectra:
+        return _with_calculated(document, results)
+    _refuse_unknown(document, results)
+    first, cases = model.spectra[0], list(model.spectra[0].cases)
+    case = cases[number - 1]
+    present = {component.id for component in case.components}
+    further = (
+        Component(part.id, part.type) for part in model.components if part.id in results.keys() - present
+    )
+    components = tuple(_with(part, results.get(part.id, ())) for part in (*case.components, *further))
+    cases[number - 1] = replace(case, components=components)
+    spectra = (replace(first, cases=tuple(cases)), *model.spectra[1:])
+    return replace(document, model=replace(model, spectra=spectra))
+
+
+def _refuse_unknown(document: Document, results: Results) -> None:
+    known = {component.id for component in document.model.components}
+    for number in results:
+        if number not in known:
+            raise BadInput.of("results", number, "the id of a component of the document")
+
+
+def _with(component: Component, results: Iterable[Attribute]) -> Component:
+    """Return a component with results, after what else it has."""
+    new = tuple(results)
+    names = {attribute.id for attribute in new}
+    kept = tuple(attribute for attribute in component.attributes if attribute.id not in names)
+    return replace(component, attributes=(*kept, *new))
+
+
+# Results of a cylindrical stage: contact ratios, stiffness over the mesh, transmission error.
+
+
+POSITIONS = 64
+"""Positions of the curves in one base pitch."""
+_N_PER_MM = 1e3
+
+
+def _stage_results(
+    pair: ParallelAxes, database: SteDatabase, torque: float | None = None
+) -> tuple[Attribute, ...]:
+    """Return the attributes of a ``cylindrical_stage``.
+
+    REXS has no attribute of the transmission error: it stands in custom ones, along the transverse line of
+    action, > 0 where the driven gear lags, over positions of the driving gear in transverse base pitches; 0:
+    the reference pair touches at the pitch point.
+    The table is of the same gears, the torque on gear 1, N m; the largest stored by default.
+    """
+    at = np.arange(POSITIONS * database.period) / POSITIONS
+    load = float(database.torque[-1]) if torque is None else torque
+    with boundary_errors():
+        curve = database.curve(torque=load, at=at)
+        stiffness = np.asarray(database.force_at(at, curve.ste).stiffness)
+    return (*_contact_ratios(pair), *_mesh(curve, stiffness))
+
+
+def _contact_ratios(pair: ParallelAxes) -> tuple[Attribute, ...]:
+    return (
+        _calculated("radial_contact_ratio", pair.transverse_contact_ratio, "none"),
+        _calculated("overlap_contact_ratio", pair.overlap_ratio, "none"),
+        _calculated("total_contact_ratio", pair.total_contact_ratio, "none"),
+    )
+
+
+def _mesh(
+    curve: Curve, stiffness: np.ndarray[tuple[int, ...], np.dtype[np.float64]]
+) -> tuple[Attribute, ...]:
+    """Return tangent stiffness and transmission error over the mesh at the curve's load."""
+    harmonics = [estimate.value / UM for estimate in curve.harmonics]
+    return (
+        _calculated("meshing_stiffness_characteristic", (stiffness / _N_PER_MM).tolist(), "N / mm"),
+        _calculated("custom_mesh_positions", curve.position.tolist(), "none"),
+        _calculated("custom_torque_on_driving_gear", curve.torque, "N m"),
+        _calculated("custom_transmission_error", (curve.ste / UM).tolist(), "mum"),
+        _calculated("custom_transmission_error_mean", curve.mean.value / UM, "mum"),
+        _calculated("custom_transmission_error_peak_to_peak", curve.peak_to_peak.value / UM, "mum"),
+        _calculated("custom_transmission_error_harmonics", harmonics, "mum"),
+    )
+
+
+def exported(
+    document: Document,
+    cases: Sequence[StageCase],
+    databases: Sequence[SteDatabase],
+    torque: float | None = None,
+) -> Document:
+    """Return the document, in the newest version of REXS, with the results of stages as calculated.
+
+    Parameters
+    ----------
+    document : Document
+        As read, of any version.
+    cases : sequence of StageCase
+        Of the document; a database belongs to the stage whose pair its case has, and to those equal to it.
+    databases : sequence of SteDatabase
+    torque : float, optional
+        On gear 1, N m; each table's largest by default.
+
+    Raises
+    ------
+    BadInput
+        A table of no stage's pair, a torque outside what is stored, or a document that cannot be upgraded.
+    JobFailed
+        A table with failed points.
+    """
+    results: dict[int, tuple[Attribute, ...]] = {}
+    for database in databases:
+        stage = _stage_of(cases, database)
+        attributes = _stage_results(gear_pair(stage.case), database, torque)
+        results |= dict.fromkeys((stage.stage, *stage.equal), attributes)
+    newest = replace(document, model=upgrade(document.model)[0])
+    return _with_calculated(newest, results)
+
+
+def _stage_of(cases: Sequence[StageCase], database: SteDatabase) -> StageCase:
+    pair = validated(Case, database.metadata.case).pair
+    stage = next((stage for stage in cases if stage.case.pair == pair), None)
+    if stage is None:
+        names = ", ".join(stage.name for stage in cases) or "none"
+        teeth = f"{pair.pinion.teeth}/{pair.wheel.teeth} teeth"
+        bound = f"a table of the pair of a stage of the file, as opened: {names}"
+        raise BadInput.of("database", teeth, bound, "Compute the table of the case that the import gives.")
+    return stage
+
 
 # Whether a deflection is that of a gear unit: the first difference of their scenes and load cases.
 
@@ -68,13 +234,11 @@ def _first(differences: Iterable[tuple[str, Any, Any] | None]) -> tuple[str, Any
 
 
 def _equal(unit: Any, result: Any) -> bool:
-    """Return whether two scalars are equal, numbers to the digits of files."""
     numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in (unit, result))
     return math.isclose(unit, result, rel_tol=RELATIVE, abs_tol=ABSOLUTE) if numbers else bool(unit == result)
 
 
 def _bodies(scene: Json) -> Json:
-    """Return a scene without the settings of its computation."""
     return {key: value for key, value in scene.items() if key not in SETTINGS}
 
 
@@ -118,7 +282,6 @@ def _vectors(force: Iterable[float], moment: Iterable[float]) -> Json:
 
 
 def _check_load(own: LoadCase, case: CaseDeflection) -> None:
-    """Refuse a load case that is not loaded as the unit's of its name."""
     if own.direction != case.direction:
         _refuse((f'load case "{case.name}", direction', own.direction, case.direction))
     numbers = {
@@ -134,8 +297,15 @@ def _check_load(own: LoadCase, case: CaseDeflection) -> None:
 # Results of a bearing: forces on both sides, and how they move, each and against each other.
 
 
-AXES = "uvw"
-DEFLECTIONS = ("axial_deflection", "radial_deflection_in_v", "radial_deflection_in_w")
+_AXES = "uvw"
+_DEFLECTIONS = ("axial_deflection", "radial_deflection_in_v", "radial_deflection_in_w")
+
+
+def _along(name: str, vector: Iterable[float], unit: str, axes: str = _AXES) -> Iterator[Attribute]:
+    """Yield the components of a vector along some axes, each by a name that ends in the axis."""
+    for axis, value in zip(_AXES, vector, strict=True):
+        if axis in axes:
+            yield _calculated(f"{name}_{axis}", value, unit)
 
 
 def bearing_results(part: BearingPart, load: BearingLoad) -> tuple[Attribute, ...]:
@@ -156,13 +326,10 @@ def bearing_results(part: BearingPart, load: BearingLoad) -> tuple[Attribute, ..
         *_loads(shaft_side, -on_housing, -moment),
         *_loads(housing_side, on_housing, moment),
         *(
-            calculated(name, inward * value / UM, "mum")
-            for name, value in zip(DEFLECTIONS, across, strict=True)
+            _calculated(name, inward * value / UM, "mum")
+            for name, value in zip(_DEFLECTIONS, across, strict=True)
         ),
-        *(
-            calculated(f"angular_deflection_in_{axis}", inward * tilt[AXES.index(axis)], "rad")
-            for axis in "vw"
-        ),
+        *_along("angular_deflection_in", inward * tilt, "rad", "vw"),
         *_displacements(shaft_side, shaft, shaft_tilt),
         *_displacements(housing_side, seat, seat_tilt),
     )
@@ -174,18 +341,14 @@ def _turned(part: BearingPart, values: FloatArray) -> tuple[FloatArray, FloatArr
 
 def _loads(side: str, force: FloatArray, moment: FloatArray) -> Iterator[Attribute]:
     """Yield force and moment on the component of a side; none about u, about which the bearing turns."""
-    for axis, value in zip(AXES, force, strict=True):
-        yield calculated(f"force_acting_on_{side}_component_{axis}", value, "N")
-    for axis, value in zip("vw", moment[1:], strict=True):
-        yield calculated(f"torque_acting_on_{side}_component_{axis}", value, "N m")
+    yield from _along(f"force_acting_on_{side}_component", force, "N")
+    yield from _along(f"torque_acting_on_{side}_component", moment, "N m", "vw")
 
 
 def _displacements(side: str, displacement: FloatArray, tilt: FloatArray) -> Iterator[Attribute]:
     """Yield the displacements of a side from where it stands without load."""
-    for axis, value in zip(AXES, displacement, strict=True):
-        yield calculated(f"displacement_{side}_side_{axis}", value / UM, "mum")
-    for axis, value in zip("vw", tilt[1:], strict=True):
-        yield calculated(f"tilting_{side}_side_{axis}", math.degrees(value), "deg")
+    yield from _along(f"displacement_{side}_side", displacement / UM, "mum")
+    yield from _along(f"tilting_{side}_side", map(math.degrees, tilt), "deg", "vw")
 
 
 # Results of a stage under a load case: misalignment, load along the face, contact stress.
@@ -202,12 +365,12 @@ def _alignment_results(mesh: MeshAlignment, sense: int) -> tuple[Attribute, ...]
     `sense` is +1 where the case's face positions count along that u, -1 against it.
     """
     return (
-        calculated("effective_equivalent_misalignment_iso_6336_2019", abs(mesh.misalignment) / UM, "mum"),
-        calculated("custom_misalignment", sense * mesh.misalignment / UM, "mum"),
+        _calculated("effective_equivalent_misalignment_iso_6336_2019", abs(mesh.misalignment) / UM, "mum"),
+        _calculated("custom_misalignment", sense * mesh.misalignment / UM, "mum"),
     )
 
 
-def flank_results(flanks: MeshFlanks, sense: int) -> tuple[Attribute, ...]:
+def _flank_results(flanks: MeshFlanks, sense: int) -> tuple[Attribute, ...]:
     """Return the load along the face and what follows from it, by increasing u of gear 1's shaft.
 
     Nodes count from the end of the face of the lower u. K_Hbeta is left out where the model is plane.
@@ -218,18 +381,18 @@ def flank_results(flanks: MeshFlanks, sense: int) -> tuple[Attribute, ...]:
     pattern = flanks.pattern[:, order] / _PA_PER_MPA
     factor = flanks.face_load_factor
     return (
-        calculated("load_distribution_node_positions", ((along - along[0]) / MM).tolist(), "mm"),
-        calculated(
+        _calculated("load_distribution_node_positions", ((along - along[0]) / MM).tolist(), "mm"),
+        _calculated(
             "load_distribution_along_face_width", (flanks.face_load[order] / _N_PER_M).tolist(), "N / mm"
         ),
-        *(() if math.isnan(factor) else (calculated("face_load_factor_contact_stress", factor, "none"),)),
-        calculated("custom_largest_contact_stress", flanks.largest_pressure / _PA_PER_MPA, "MPa"),
-        calculated("custom_contact_pattern_roll_lengths", (flanks.roll_length / MM).tolist(), "mm"),
-        calculated("custom_contact_pattern", pattern.ravel().tolist(), "MPa"),
-        calculated("custom_transmission_error_mean", flanks.mean / UM, "mum"),
-        calculated("custom_transmission_error_peak_to_peak", flanks.peak_to_peak / UM, "mum"),
-        calculated("custom_transmission_error_harmonics", (flanks.harmonics / UM).tolist(), "mum"),
-        calculated("custom_torque_on_driving_gear", flanks.torque, "N m"),
+        *(() if math.isnan(factor) else (_calculated("face_load_factor_contact_stress", factor, "none"),)),
+        _calculated("custom_largest_contact_stress", flanks.largest_pressure / _PA_PER_MPA, "MPa"),
+        _calculated("custom_contact_pattern_roll_lengths", (flanks.roll_length / MM).tolist(), "mm"),
+        _calculated("custom_contact_pattern", pattern.ravel().tolist(), "MPa"),
+        _calculated("custom_transmission_error_mean", flanks.mean / UM, "mum"),
+        _calculated("custom_transmission_error_peak_to_peak", flanks.peak_to_peak / UM, "mum"),
+        _calculated("custom_transmission_error_harmonics", (flanks.harmonics / UM).tolist(), "mum"),
+        _calculated("custom_torque_on_driving_gear", flanks.torque, "N m"),
     )
 
 
@@ -247,12 +410,12 @@ def _shaft_results(part: ShaftPart, position: FloatArray, motion: FloatArray) ->
     displacement = (motion[:, :3] @ part.turn)[order]
     torsion = part.sense * motion[order, 5]
     return (
-        calculated("u_coordinates_of_beam_nodes", (u / MM).tolist(), "mm"),
+        _calculated("u_coordinates_of_beam_nodes", (u / MM).tolist(), "mm"),
         *(
-            calculated(f"displacement_{axis}_of_nodes", (displacement[:, k] / UM).tolist(), "mum")
+            _calculated(f"displacement_{axis}_of_nodes", (displacement[:, k] / UM).tolist(), "mum")
             for k, axis in enumerate("uvw")
         ),
-        calculated("torsion_u", np.degrees(torsion).tolist(), "deg"),
+        _calculated("torsion_u", np.degrees(torsion).tolist(), "deg"),
     )
 
 
@@ -285,7 +448,7 @@ def deflected(document: Document, unit: OpenedUnit, result: GearboxDeflection) -
             **dict(_bearings(unit.parts, case)),
             **dict(_meshes(unit.parts, result, case)),
         }
-        written = with_case_results(written, numbers[case.name], results)
+        written = _with_case_results(written, numbers[case.name], results)
     return written
 
 
@@ -300,10 +463,10 @@ def left_out(unit: OpenedUnit, result: GearboxDeflection) -> list[str]:
     ]
 
 
-Part = tuple[int, tuple[Attribute, ...]]
+_Part = tuple[int, tuple[Attribute, ...]]
 
 
-def _shafts(parts: SceneParts, names: tuple[str, ...], case: CaseDeflection) -> Iterator[Part]:
+def _shafts(parts: SceneParts, names: tuple[str, ...], case: CaseDeflection) -> Iterator[_Part]:
     lines = case.shafts
     for index, name in enumerate(names):
         if name in parts.shafts:
@@ -312,14 +475,14 @@ def _shafts(parts: SceneParts, names: tuple[str, ...], case: CaseDeflection) -> 
             yield part.component, _shaft_results(part, lines.position[at], lines.motion[at])
 
 
-def _bearings(parts: SceneParts, case: CaseDeflection) -> Iterator[Part]:
+def _bearings(parts: SceneParts, case: CaseDeflection) -> Iterator[_Part]:
     for load in case.bearings:
         if load.name in parts.bearings:
             part = parts.bearings[load.name]
             yield part.component, bearing_results(part, load)
 
 
-def _meshes(parts: SceneParts, result: GearboxDeflection, case: CaseDeflection) -> Iterator[Part]:
+def _meshes(parts: SceneParts, result: GearboxDeflection, case: CaseDeflection) -> Iterator[_Part]:
     """Yield what the stages have; a load case on the coast side turns the train the other way."""
     flanks = {entry.mesh: entry for entry in result.flanks if entry.case == case.name}
     turned = 1 if case.direction == "drive" else -1
@@ -327,5 +490,5 @@ def _meshes(parts: SceneParts, result: GearboxDeflection, case: CaseDeflection) 
         if mesh.name in parts.meshes:
             part = parts.meshes[mesh.name]
             sense = turned * part.sense
-            own = flank_results(flanks[mesh.name], sense) if mesh.name in flanks else ()
+            own = _flank_results(flanks[mesh.name], sense) if mesh.name in flanks else ()
             yield part.component, (*_alignment_results(mesh, sense), *own)

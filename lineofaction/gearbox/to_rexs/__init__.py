@@ -1,1 +1,0 @@
-"""Results in a REXS document: attributes of origin ``calculated`` beside what the file says."""
