@@ -15,7 +15,7 @@ import numpy as np
 from dynamics.checks import one_of
 from dynamics.orders import highest_valid_order, order_waterfall, window_spectrum
 from dynamics.results import RunResult
-from dynamics.results.series import over_time
+from dynamics.results.run_result import SAMPLED
 from dynamics.types import FloatArray, Json
 
 # Datasets of universal files: 58 (function at a nodal degree of freedom), 164 (units), 2411 (nodes). Pyuff,
@@ -221,7 +221,7 @@ def write_universal_file(
 
 def _stretch(result: RunResult, start: float, end: float) -> RunResult:
     window = result.window(start, end)
-    return replace(result, **{name: getattr(result, name)[..., window] for name in over_time()})
+    return replace(result, **{name: getattr(result, name)[..., window] for name in SAMPLED})
 
 
 def _functions(result: RunResult, function: str) -> Iterator[_NodalFunction]:

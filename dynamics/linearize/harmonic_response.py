@@ -31,6 +31,9 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 # Harmonic forced response to the transmission error, about the static equilibrium, over speeds.
 
 
+GRID = ("speed", "order")
+
+
 @dataclass(frozen=True)
 class HarmonicResponse:
     """Steady vibration at S speeds in H harmonics of the common period; m meshes, b bearings, n freedoms.
@@ -63,20 +66,14 @@ class HarmonicResponse:
     static_transmission_error: ComplexArray = field(
         metadata=stored("m", "complex amplitude of the excitation", "mesh", "order")
     )
-    dynamic_transmission_error: ComplexArray = field(
-        metadata=stored("m", "complex amplitude", "mesh", "speed", "order")
-    )
-    mesh_force: ComplexArray = field(
-        metadata=stored("N", "complex amplitude, transverse", "mesh", "speed", "order")
-    )
+    dynamic_transmission_error: ComplexArray = field(metadata=stored("m", "complex amplitude", "mesh", *GRID))
+    mesh_force: ComplexArray = field(metadata=stored("N", "complex amplitude, transverse", "mesh", *GRID))
     bearing_force: ComplexArray = field(
         metadata=stored(
-            "N or N m", "complex amplitude on the ground or the pin", "bearing", "direction", "speed", "order"
+            "N or N m", "complex amplitude on the ground or the pin", "bearing", "direction", *GRID
         )
     )
-    displacement: ComplexArray = field(
-        metadata=stored("m or rad", "complex amplitude", "freedom", "speed", "order")
-    )
+    displacement: ComplexArray = field(metadata=stored("m or rad", "complex amplitude", "freedom", *GRID))
     mean_force: FloatArray = field(metadata=stored("N", "static mesh force", "mesh"))
     mean_stiffness: FloatArray = field(
         metadata=stored("N m-1", "tangent stiffness, mean over the positions", "mesh")

@@ -103,20 +103,20 @@ class RadiatedSound(ArrayFile):
     order: FloatArray = field(
         metadata=stored("1", "multiple of the frequency of the first mesh that turns", "order")
     )
-    frequency: FloatArray = field(metadata=stored("Hz", "frequency of the harmonic", "speed", "order"))
-    power: FloatArray = field(metadata=stored("W", "radiated sound power", "speed", "order"))
-    efficiency: FloatArray = field(metadata=stored("1", "radiation efficiency", "speed", "order"))
+    frequency: FloatArray = field(metadata=stored("Hz", "frequency of the harmonic", *POWER))
+    power: FloatArray = field(metadata=stored("W", "radiated sound power", *POWER))
+    efficiency: FloatArray = field(metadata=stored("1", "radiation efficiency", *POWER))
     bearing_share: FloatArray = field(
-        metadata=stored("W", "part of the power by the force of a bearing", "bearing", "speed", "order")
+        metadata=stored("W", "part of the power by the force of a bearing", "bearing", *POWER)
     )
     bearing_alone: FloatArray = field(
-        metadata=stored("W", "power under the force of a bearing alone", "bearing", "speed", "order")
+        metadata=stored("W", "power under the force of a bearing alone", "bearing", *POWER)
     )
     mode_share: FloatArray = field(
-        metadata=stored("W", "part of the power by a mode of the housing", "mode", "speed", "order")
+        metadata=stored("W", "part of the power by a mode of the housing", "mode", *POWER)
     )
     mode_alone: FloatArray = field(
-        metadata=stored("W", "power of a mode of the housing alone", "mode", "speed", "order")
+        metadata=stored("W", "power of a mode of the housing alone", "mode", *POWER)
     )
     natural_frequency: FloatArray = field(
         metadata=stored("Hz", "natural frequency of the housing, seats free", "mode")

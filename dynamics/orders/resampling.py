@@ -11,7 +11,7 @@ from bounds import at_most
 from dynamics.checks import integer, one_of
 from dynamics.errors import InputError
 from dynamics.results import RunResult
-from dynamics.results.series import SERIES
+from dynamics.results.run_result import OVER_TIME
 from dynamics.types import FloatArray, IntArray
 
 # The frequency by which orders of a run count: of a mesh, or without one of a shaft's rotation.
@@ -190,7 +190,7 @@ def _cubic(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
     return np.asarray(interpolated)
 
 
-def check_series(result: RunResult, series: str) -> str:
+def unit_of(series: str) -> str:
     """Return the unit of a series over time.
 
     Raises
@@ -198,6 +198,4 @@ def check_series(result: RunResult, series: str) -> str:
     InputError
         If there is no such series.
     """
-    units = {entry.name: entry.units for entry in SERIES if entry.dimensions[-1] == "time"}
-    one_of("series", series, units)
-    return units[series]
+    return OVER_TIME[one_of("series", series, OVER_TIME)].units

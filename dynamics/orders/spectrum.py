@@ -9,9 +9,8 @@ import numpy as np
 
 from dynamics.checks import integer, one_of, positive
 from dynamics.errors import InputError
-from dynamics.orders.resampling import checked_order, resample_to_position
+from dynamics.orders.resampling import checked_order, resample_to_position, unit_of
 from dynamics.results import RunResult
-from dynamics.results.series import SERIES
 from dynamics.types import FloatArray
 
 # Amplitude spectra of time series, and where the mesh orders lie in them.
@@ -102,10 +101,9 @@ def window_spectrum(
     InputError
         If the run has no such series over time, or not those times.
     """
-    over_time = {entry.name: entry.units for entry in SERIES if entry.dimensions[-1] == "time"}
-    one_of("series", series, over_time)
+    unit = unit_of(series)
     values = getattr(result, series)[..., result.window(start, end)]
-    return spectrum(values, result.sample_rate, over_time[series], window)
+    return spectrum(values, result.sample_rate, unit, window)
 
 
 def mesh_orders(

@@ -9,7 +9,7 @@ import numpy as np
 from bounds import Bound, at_least, at_most, from_to
 from dynamics.checks import integer
 from dynamics.errors import InputError
-from dynamics.orders.resampling import check_series, checked_order, resample_to_position
+from dynamics.orders.resampling import checked_order, resample_to_position, unit_of
 from dynamics.orders.spectrum import Spectrum, spectrum
 from dynamics.results import RunResult
 from dynamics.types import FloatArray, IntArray
@@ -103,7 +103,7 @@ def order_waterfall(
     InputError
         If the run is shorter than one block, has no such series, or its output does not hold the order.
     """
-    unit = check_series(result, series)
+    unit = unit_of(series)
     integer("pitches", pitches, 1, 1_000_000)
     if not result.mesh:
         raise InputError("mesh", mesh, "one of the run, which has none: orders are those of a mesh")
@@ -150,7 +150,7 @@ def frequency_waterfall(
     InputError
         If the run is shorter than one block, or has no such series.
     """
-    unit = check_series(result, series)
+    unit = unit_of(series)
     length = round(block * result.sample_rate)
     if not 4 <= length <= result.time.size:
         bound = from_to(4.0 / result.sample_rate, float(result.time[-1]), "s", "the run's")

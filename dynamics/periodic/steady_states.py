@@ -133,6 +133,9 @@ CURVES = ("up", "down", "branch")
 SAME = 0.02  # of the rms of the transmission error: motions nearer than that are one
 
 
+MESH = ("point", "mesh")
+
+
 @dataclass(frozen=True)
 class SteadyStates(ArrayFile):
     """P periodic motions on three curves: at rising speeds, at falling ones, and along the branch.
@@ -174,22 +177,16 @@ class SteadyStates(ArrayFile):
     multiplier: ComplexArray = field(
         metadata=stored("1", "Floquet multipliers by falling size", "point", "state")
     )
-    mean_error: FloatArray = field(metadata=stored("m", "mean dynamic transmission error", "point", "mesh"))
-    rms_error: FloatArray = field(
-        metadata=stored("m", "root mean square of its alternating part", "point", "mesh")
-    )
-    peak_to_peak_error: FloatArray = field(metadata=stored("m", "its peak-to-peak", "point", "mesh"))
-    least_force: FloatArray = field(
-        metadata=stored("N", "least mesh force of the driving flank", "point", "mesh")
-    )
-    largest_force: FloatArray = field(
-        metadata=stored("N", "largest mesh force of the driving flank", "point", "mesh")
-    )
+    mean_error: FloatArray = field(metadata=stored("m", "mean dynamic transmission error", *MESH))
+    rms_error: FloatArray = field(metadata=stored("m", "root mean square of its alternating part", *MESH))
+    peak_to_peak_error: FloatArray = field(metadata=stored("m", "its peak-to-peak", *MESH))
+    least_force: FloatArray = field(metadata=stored("N", "least mesh force of the driving flank", *MESH))
+    largest_force: FloatArray = field(metadata=stored("N", "largest mesh force of the driving flank", *MESH))
     parted: FloatArray = field(
-        metadata=stored("1", "share of the period that the driving flank is out of contact", "point", "mesh")
+        metadata=stored("1", "share of the period that the driving flank is out of contact", *MESH)
     )
     coasting: FloatArray = field(
-        metadata=stored("1", "share of the period that the coast flank is in contact", "point", "mesh")
+        metadata=stored("1", "share of the period that the coast flank is in contact", *MESH)
     )
     rms_bearing_force: FloatArray = field(
         metadata=stored("N", "root mean square of the alternating force", "point", "bearing")

@@ -16,9 +16,9 @@ import numpy as np
 
 from dynamics.errors import ResultError
 from dynamics.results.energy_audit import EnergyAudit
-from dynamics.results.run_result import RunResult, StepStatistics
-from dynamics.results.series import LABELS, SERIES, Series, over_time
+from dynamics.results.run_result import NAMED, OVER_TIME, SAMPLED, SERIES, RunResult, StepStatistics
 from dynamics.types import FloatArray, RunStatus
+from model_studies.array_file import Stored
 from model_studies.netcdf import DAMAGE, UnreadableFile, read_dataset
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 CHUNK = 8192  # samples that are packed together
 PACKING: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
 DIRECTIONS = ("x", "y", "z")
+TIME = Stored(("time",), "s", "time")
 
 
 class RunFile:
@@ -59,10 +60,9 @@ class RunFile:
         first, self._samples = self._samples, self._samples + fields["time"].size
         self._file.resize_dimension("time", self._samples)
         self._file["time"][first : self._samples] = fields["time"]
-        for series in SERIES:
-            values = fields[series.name]
-            if values.size and series.dimensions[-1] == "time":
-                self._file[series.name][..., first : self._samples] = values
+        for name in OVER_TIME:
+            if fields[name].size:
+                self._file[name][..., first : self._samples] = fields[name]
 
     def publish(self, attributes: Mapping[str, Any]) -> None:
         """Add the attributes, flush to disk and rename."""
@@ -77,22 +77,21 @@ class RunFile:
         self._part.replace(self._path)
 
     def _lay_out(self, fields: Mapping[str, Any]) -> None:
-        labels = {dimension: fields[field] for field, dimension in LABELS.items() if fields[field]}
+        labels = {name: fields[name] for name in NAMED if fields[name]}
         labels["direction"] = DIRECTIONS
         self._file.dimensions = {name: len(names) for name, names in labels.items()} | {"time": None}
         for name, names in labels.items():
             variable = self._file.create_variable(name, (name,), h5py.string_dtype())
             variable[...] = np.array(names, dtype=object)
-        self._variable(Series("time", ("time",), "s", "time"), fields["time"])
-        for series in SERIES:
-            if fields[series.name].size:
-                self._variable(series, fields[series.name])
+        for name, series in ({"time": TIME} | SERIES).items():
+            if fields[name].size:
+                self._variable(name, series, fields[name])
 
-    def _variable(self, series: Series, values: FloatArray) -> None:
+    def _variable(self, name: str, series: Stored, values: FloatArray) -> None:
         """Make one variable; what has no time is written at once."""
         growing = series.dimensions[-1] == "time"
         packing = PACKING | {"chunks": (*values.shape[:-1], CHUNK)} if growing else PACKING
-        variable = self._file.create_variable(series.name, series.dimensions, float, **packing)
+        variable = self._file.create_variable(name, series.dimensions, float, **packing)
         variable.attrs.update({"units": series.units, "long_name": series.long_name})
         if not growing:
             variable[...] = values
@@ -112,20 +111,14 @@ def to_dataset(result: RunResult) -> xarray.Dataset:
     import xarray  # noqa: PLC0415 - a second, and not needed to run a scene
 
     coordinates: dict[str, Any] = {
-        dimension: (dimension, np.array(getattr(result, field), dtype=object))
-        for field, dimension in LABELS.items()
-        if getattr(result, field)
+        name: (name, np.array(getattr(result, name), dtype=object)) for name in NAMED if getattr(result, name)
     }
     coordinates["time"] = ("time", result.time, {"units": "s", "long_name": "time"})
     coordinates["direction"] = ("direction", np.array(DIRECTIONS, dtype=object))
     data = {
-        series.name: (
-            series.dimensions,
-            getattr(result, series.name),
-            {"units": series.units, "long_name": series.long_name},
-        )
-        for series in SERIES
-        if getattr(result, series.name).size
+        name: (series.dimensions, values, {"units": series.units, "long_name": series.long_name})
+        for name, series in SERIES.items()
+        if (values := getattr(result, name)).size
     }
     return xarray.Dataset(data, coordinates, attributes(vars(result)))
 
@@ -135,7 +128,7 @@ def write_netcdf(result: RunResult, path: Path) -> None:
     fields = dict(vars(result))
     with RunFile(path) as file:
         for first in range(0, result.time.size, CHUNK):
-            part = {name: fields[name][..., first : first + CHUNK] for name in over_time()}
+            part = {name: fields[name][..., first : first + CHUNK] for name in SAMPLED}
             file.append(fields | part)
         file.publish(attributes(fields))
 
@@ -170,15 +163,15 @@ def attributes(fields: Mapping[str, Any]) -> dict[str, Any]:
 
 def _from_dataset(dataset: xarray.Dataset) -> RunResult:
     fields: dict[str, Any] = {
-        field: tuple(str(name) for name in dataset[dimension].values) if dimension in dataset.coords else ()
-        for field, dimension in LABELS.items()
+        name: tuple(str(each) for each in dataset[name].values) if name in dataset.coords else ()
+        for name in NAMED
     }
     sizes = {"direction": len(DIRECTIONS), **{str(key): size for key, size in dataset.sizes.items()}}
     fields |= {
-        entry.name: np.asarray(dataset[entry.name].values, dtype=float)
-        if entry.name in dataset
-        else np.empty([0, *(sizes.get(dimension, 0) for dimension in entry.dimensions[1:])])
-        for entry in SERIES
+        name: np.asarray(dataset[name].values, dtype=float)
+        if name in dataset
+        else np.empty([0, *(sizes.get(dimension, 0) for dimension in series.dimensions[1:])])
+        for name, series in SERIES.items()
     }
     energy = json.loads(dataset.attrs["energy"])
     return RunResult(
@@ -194,24 +187,19 @@ def _from_dataset(dataset: xarray.Dataset) -> RunResult:
 def write_csv(result: RunResult, path: Path) -> None:
     """Write time and every series over time, 9 significant digits, e.g. ``mesh_force[mesh 1] (N)``."""
     names, columns = ["time (s)"], [result.time]
-    for series in SERIES:
-        if series.dimensions[-1] != "time":
-            continue
-        values = getattr(result, series.name)
-        if not values.size:
-            continue
-        labels = _labels(result, series.dimensions[:-1])
-        for label, column in zip(labels, values.reshape(-1, result.time.size), strict=True):
-            names.append(f"{series.name}{label} ({series.units})")
-            columns.append(column)
+    for name, series in OVER_TIME.items():
+        values = getattr(result, name)
+        if values.size:
+            rows = values.reshape(-1, result.time.size)
+            labels = _labels(result, series.dimensions[:-1])
+            names += [f"{name}{label} ({series.units})" for label, _ in zip(labels, rows, strict=True)]
+            columns += list(rows)
     table: FloatArray = np.stack(columns, axis=1)
     np.savetxt(path, table, fmt="%.9g", delimiter=",", header=",".join(names), comments="")
 
 
 def _labels(result: RunResult, dimensions: tuple[str, ...]) -> list[str]:
-    if not dimensions:
-        return [""]
-    names = getattr(result, {dimension: field for field, dimension in LABELS.items()}[dimensions[0]])
+    names = getattr(result, dimensions[0])
     if len(dimensions) == 1:
         return [f"[{name}]" for name in names]
     return [f"[{name} {direction}]" for name in names for direction in "xyz"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,8 +10,10 @@ import numpy as np
 
 from bounds import Quantity, Text
 from dynamics.errors import InputError
+from dynamics.results.array_file import stored
 from dynamics.results.energy_audit import EnergyAudit
 from dynamics.types import FloatArray, Json, RunStatus
+from model_studies.array_file import Stored
 
 if TYPE_CHECKING:
     import xarray
@@ -50,9 +52,15 @@ class StepStatistics:
         return asdict(self)
 
 
+MESH, FREEDOM = ("mesh", "time"), ("freedom", "time")
+BEARING = ("bearing", "direction", "time")
+
+
 @dataclass(frozen=True)
 class RunResult:
     """Time series on a uniform grid of T samples; m meshes, s shafts, b bearings, n freedoms.
+
+    Fields state unit, meaning and dimensions of arrays.
 
     Attributes
     ----------
@@ -61,46 +69,41 @@ class RunResult:
     mesh, shaft, bearing, freedom, drive, coupling : tuples of str
         Names along the axes below.
     position : (m, T) array
-        Of each mesh by its driver, base pitches in [0, period of its table).
+        The period is that of the table.
     mesh_frequency : (m, T) array
-        Hz, of the kinematic motion and the own rotation of trains without a drive.
+        Of the kinematic motion and the own rotation of trains without a drive.
     dynamic_transmission_error : (m, T) array
-        m; r_b1 theta_1 - r_b2 theta_2 plus the gears' displacements along the line of action; > 0: the
+        r_b1 theta_1 - r_b2 theta_2 plus the gears' displacements along the line of action; > 0: the
         driven gear lags.
     static_transmission_error : (m, T) array
-        m; the static reference: the table's at the nominal force and the same position, with misalignment and
+        The static reference: the table's at the nominal force and the same position, with misalignment and
         center distance of the static equilibrium at t = 0.
     mesh_force : (m, T) array
-        Transverse force of the driving flank in N, damping included; filtered against aliasing, which may
-        ring slightly below 0 at lift-off.
+        Of the driving flank, damping included; filtered against aliasing, which may ring slightly below 0 at
+        lift-off.
     coast_force : (m, T) array
-        Transverse force of the coast flank in N; m = 0 here if backlash is off in all meshes.
+        m = 0 here if backlash is off in all meshes.
     least_mesh_force, largest_mesh_force : (m, T) arrays
-        N; extremes of the unfiltered force of the driving flank around each sample, >= 0.
-    contact : (m, T) array
-        Flanks in contact at each sample: 0 none, 1 the driving, 2 the coast flank, 3 both.
+        Of the driving flank around each sample, >= 0.
     misalignment, center_distance_change : (m, T) arrays
-        m; where each mesh's table was read, as its bodies tilt and move; m = 0 here if the effect is off in
-        all meshes.
+        As bodies tilt and move; m = 0 here if the effect is off in all meshes.
     load_centroid : (m, T) array
-        m; where along the face the mesh force acted, from the middle of the common face towards +z, 0 out of
-        contact; m = 0 here if the moving application point is off in all meshes.
+        From the middle of the common face, 0 out of contact; m = 0 here if the moving application point is
+        off in all meshes.
     speed : (s, T) array
-        rad/s about +z; of a flexible shaft the mean over its inertia, or where a rigid drive imposes it.
+        Of a flexible shaft the mean over its inertia, or where a rigid drive imposes it.
     drive_torque : (d, T) array
-        N m about +z, on each drive's shaft.
+        On each drive's shaft.
     coupling_torque : (c, T) array
-        N m about +z, from the first shaft of each coupling on the second.
+        About +z.
     bearing_force : (b, 3, T) array
-        Force of the shaft on the ground in the fixed frame x, y, z, N; of a planet on its pin in the
-        carrier's rotating frame; b = 0 if not requested.
+        In the fixed frame x, y, z; of a planet on its pin in the carrier's rotating frame; b = 0 if not
+        requested.
     bearing_moment : (b, 3, T) array
-        Moment of the shaft on the ground about each bearing's center, N m, in the same frames; the one about
-        the axis is 0, since the shaft turns. b = 0 if not requested or if no bearing has tilt stiffness.
-    displacement, velocity : (n, T) arrays
-        Deviations from the kinematic motion, m and rad (and per s); n = 0 if not requested.
-    nominal_force : (m,) array
-        Transverse, N.
+        About each bearing's center in the same frames; the one about the axis is 0, since the shaft turns.
+        b = 0 if not requested or if no bearing has tilt stiffness.
+    displacement, velocity, acceleration : (n, T) arrays
+        n = 0 if not requested.
     status : RunStatus
     statistics : StepStatistics
     energy : EnergyAudit or None
@@ -118,11 +121,9 @@ class RunResult:
         the last.
     warnings : list of dict
         Implausible values of the scene; empty if there are none.
-    acceleration : (n, T) array
-        Second rate of the deviations, m/s2 and rad/s2; n = 0 if not requested.
     bearing_acceleration : (b, 3, T) array
-        Of the shaft at each bearing (of a planet against its pin), m/s2, in the frame of `bearing_force`;
-        the rotation of a carrier's frame adds no terms. b = 0 if not requested.
+        Of a planet against its pin, in the frame of `bearing_force`; the rotation of a carrier's frame adds
+        no terms. b = 0 if not requested.
     """
 
     time: FloatArray
@@ -132,26 +133,42 @@ class RunResult:
     freedom: tuple[str, ...]
     drive: tuple[str, ...]
     coupling: tuple[str, ...]
-    position: FloatArray
-    mesh_frequency: FloatArray
-    dynamic_transmission_error: FloatArray
-    static_transmission_error: FloatArray
-    mesh_force: FloatArray
-    coast_force: FloatArray
-    least_mesh_force: FloatArray
-    largest_mesh_force: FloatArray
-    contact: FloatArray
-    misalignment: FloatArray
-    center_distance_change: FloatArray
-    load_centroid: FloatArray
-    speed: FloatArray
-    drive_torque: FloatArray
-    coupling_torque: FloatArray
-    bearing_force: FloatArray
-    bearing_moment: FloatArray
-    displacement: FloatArray
-    velocity: FloatArray
-    nominal_force: FloatArray
+    position: FloatArray = field(
+        metadata=stored("1", "position by the driving gear in base pitches, in [0, period)", *MESH)
+    )
+    mesh_frequency: FloatArray = field(metadata=stored("Hz", "mesh frequency of the mean motion", *MESH))
+    dynamic_transmission_error: FloatArray = field(metadata=stored("m", "dynamic transmission error", *MESH))
+    static_transmission_error: FloatArray = field(
+        metadata=stored("m", "static transmission error at the nominal force", *MESH)
+    )
+    mesh_force: FloatArray = field(metadata=stored("N", "transverse mesh force", *MESH))
+    coast_force: FloatArray = field(metadata=stored("N", "transverse force of the coast flank", *MESH))
+    least_mesh_force: FloatArray = field(
+        metadata=stored("N", "least mesh force between samples, unfiltered", *MESH)
+    )
+    largest_mesh_force: FloatArray = field(
+        metadata=stored("N", "largest mesh force between samples, unfiltered", *MESH)
+    )
+    contact: FloatArray = field(
+        metadata=stored("1", "flanks in contact: 0 none, 1 driving, 2 coast, 3 both", *MESH)
+    )
+    misalignment: FloatArray = field(metadata=stored("m", "misalignment at which the table was read", *MESH))
+    center_distance_change: FloatArray = field(metadata=stored("m", "center-distance change likewise", *MESH))
+    load_centroid: FloatArray = field(
+        metadata=stored("m", "place of the mesh force from mid-face towards +z", *MESH)
+    )
+    speed: FloatArray = field(metadata=stored("rad s-1", "speed about +z", "shaft", "time"))
+    drive_torque: FloatArray = field(metadata=stored("N m", "drive torque about +z", "drive", "time"))
+    coupling_torque: FloatArray = field(
+        metadata=stored("N m", "torque from the first to the second shaft", "coupling", "time")
+    )
+    bearing_force: FloatArray = field(metadata=stored("N", "force of the shaft on the ground", *BEARING))
+    bearing_moment: FloatArray = field(metadata=stored("N m", "moment of the shaft on the ground", *BEARING))
+    displacement: FloatArray = field(
+        metadata=stored("m or rad", "deviation from the kinematic motion", *FREEDOM)
+    )
+    velocity: FloatArray = field(metadata=stored("m s-1 or rad s-1", "rate of the deviation", *FREEDOM))
+    nominal_force: FloatArray = field(metadata=stored("N", "nominal transverse mesh force", "mesh"))
     status: RunStatus
     statistics: StepStatistics
     energy: EnergyAudit | None
@@ -160,8 +177,14 @@ class RunResult:
     case: Json = field(default_factory=dict)
     modes: Json = field(default_factory=dict)
     warnings: list[Json] = field(default_factory=list)
-    acceleration: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
-    bearing_acceleration: FloatArray = field(default_factory=lambda: np.empty((0, 3, 0)))
+    acceleration: FloatArray = field(
+        default_factory=lambda: np.empty((0, 0)),
+        metadata=stored("m s-2 or rad s-2", "second rate of the deviation", *FREEDOM),
+    )
+    bearing_acceleration: FloatArray = field(
+        default_factory=lambda: np.empty((0, 3, 0)),
+        metadata=stored("m s-2", "acceleration of the shaft there", *BEARING),
+    )
 
     @property
     def sample_rate(self) -> float:
@@ -213,3 +236,16 @@ class RunResult:
         from dynamics.results.run_files import write_csv  # noqa: PLC0415
 
         write_csv(self, Path(path))
+
+
+NAMED = ("mesh", "shaft", "bearing", "freedom", "drive", "coupling")
+"""Dimensions along which names stand, in the field of the same name."""
+_STORED: dict[str, Stored] = {
+    each.name: each.metadata["stored"] for each in fields(RunResult) if "stored" in each.metadata
+}
+OVER_TIME = {name: each for name, each in _STORED.items() if each.dimensions[-1] == "time"}
+"""Series over time."""
+SAMPLED = ("time", *OVER_TIME)
+"""All that has one value per sample."""
+SERIES = OVER_TIME | _STORED
+"""All series of a result, in the order of its files."""

@@ -30,7 +30,7 @@ from dynamics.results import RunResult
 from dynamics.results.checks import ending
 from dynamics.results.run_checks import RunChecks
 from dynamics.results.run_files import RunFile, attributes
-from dynamics.results.series import over_time
+from dynamics.results.run_result import SAMPLED
 from dynamics.scene import Scene
 from dynamics.simulation.documents import (
     documents,
@@ -213,7 +213,7 @@ def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
     if len(parts) == 1:
         return parts[0]
     whole = dict(parts[0])
-    for name in over_time():
+    for name in SAMPLED:
         whole[name] = np.concatenate([part.pop(name) for part in parts], axis=-1)
     return whole
 

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from dynamics.errors import InputError
 from dynamics.orders import order_waterfall
 from dynamics.results import RunResult
-from dynamics.results.series import SERIES
+from dynamics.results.run_result import SERIES
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.commands import app
 from lineofaction.cli.output import console
@@ -28,7 +28,7 @@ from lineofaction.report.runs.signals import TOO_SHORT
 
 STORED = "lineofaction.report.document.inputs"
 
-SHAPES = {series.name: series.dimensions for series in SERIES}
+SHAPES = {name: series.dimensions for name, series in SERIES.items()}
 
 
 def first(run: RunResult, samples: int, **changes: Any) -> RunResult:
