@@ -14,7 +14,6 @@ from dynamics.bearings import PlanetBearing, RollingBearing
 from dynamics.bearings.rating_life import rating_life
 from dynamics.bearings.row_law import row_law
 from dynamics.checks import distinct, integer
-from dynamics.deflection.bearing_strain import BearingStrain, bearing_strain
 from dynamics.deflection.loaded_scene import (
     ForceUnderCase,
     as_records,
@@ -22,7 +21,14 @@ from dynamics.deflection.loaded_scene import (
     leading_torque,
     loaded_scene,
 )
-from dynamics.deflection.mesh_alignment import MeshAlignment, Rest, mesh_alignment, rest_over
+from dynamics.deflection.mesh_alignment import (
+    BearingStrain,
+    MeshAlignment,
+    Rest,
+    bearing_strain,
+    mesh_alignment,
+    rest_over,
+)
 from dynamics.linearize.operating_speeds import common_period
 from dynamics.mechanism.bearing_elements import supports_by_name
 from dynamics.mechanism.columns import section_rows

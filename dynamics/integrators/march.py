@@ -12,7 +12,7 @@ import numpy as np
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
 from dynamics.forces.elements import FLANK, SPATIAL_FLANK, Elements, potential
-from dynamics.integrators.advance import advance, prepare_samples, prepare_steps
+from dynamics.integrators.advance import Control, advance, prepare_samples, prepare_steps
 from dynamics.integrators.method_choice import choose_method
 from dynamics.integrators.sampler import (
     Sampler,
@@ -24,7 +24,6 @@ from dynamics.integrators.sampler import (
 )
 from dynamics.integrators.state_sink import BLOCK, StateSink
 from dynamics.integrators.static import StaticSolution
-from dynamics.integrators.step_control import Control
 from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED_ORDER, IMPLICIT_EMBEDDED_ORDER
 from dynamics.integrators.workspace import Count, Workspace, geometric_steps, make_workspace
 from dynamics.kernels.by_address import by_address, by_value

@@ -20,18 +20,19 @@ from dynamics.influence import Decided, decide_effects
 from dynamics.influence.neglected_check import NeglectedChecks
 from dynamics.integrators import Cancel, Progress, StaticSolution, Trajectory, integrate, static_equilibrium
 from dynamics.integrators import march as marching
-from dynamics.integrators.march import Ending
+from dynamics.integrators.march import Ending, March, march_on, start_march
 from dynamics.integrators.method_choice import MethodChoice, choose_method
-from dynamics.integrators.start_value import Trail
-from dynamics.integrators.state_sink import MemorySink, blocks
-from dynamics.motion.sampled_states import States
+from dynamics.integrators.start_value import StartValue, Trail, start_from, widened
+from dynamics.integrators.state_sink import MemorySink, StateSpool, blocks, fingerprint, restore
+from dynamics.integrators.workspace import Count
+from dynamics.motion.sampled_states import States, Widths
 from dynamics.plausibility import scene_findings
 from dynamics.results import RunResult
 from dynamics.results.checks import ending
 from dynamics.results.run_checks import RunChecks
 from dynamics.results.run_files import RunFile, attributes
 from dynamics.results.run_result import SAMPLED
-from dynamics.scene import Scene
+from dynamics.scene import Integration, Scene
 from dynamics.simulation.documents import (
     documents,
     finer,
@@ -41,9 +42,99 @@ from dynamics.simulation.documents import (
     squared_difference,
 )
 from dynamics.simulation.error_by_source import error_by_source
-from dynamics.simulation.leg import Leg, MadeRun
 from dynamics.simulation.violations import FIRST, EarlierRun, StatesOf, needed_effects, taken_over
 from dynamics.types import Json, RunStatus
+
+
+@dataclass(frozen=True)
+class _MadeRun:
+    """A run as made: its status, effect ledger and wall time (s), its saved states, its records."""
+
+    status: RunStatus
+    ledger: Json
+    seconds: float
+    trail: Trail
+    widths: Widths
+
+
+class _Leg:
+    """One integration with its states on disk, resumed from its checkpoint."""
+
+    def __init__(
+        self,
+        stack: ExitStack,
+        path: Path,
+        system: System,
+        start: StaticSolution,
+        integration: Integration,
+        resume: bool,
+        earlier: _MadeRun | None = None,
+    ) -> None:
+        self.march: March = start_march(system, start, integration)
+        work, control, duration = self.march.work, self.march.control, system.scene.duration
+        self._mark = fingerprint(
+            system.arrays, control, self.march.sampler, work.step_sizes, start.displacement, duration
+        )
+        self.spool = stack.enter_context(StateSpool(path, self.march.widths))
+        self._seconds = 0.0
+        self._status: RunStatus | None = None
+        self.since = 0.0
+        checkpoint = self.spool.checkpoint() if resume else None
+        taken = earlier and taken_over(earlier.ledger, earlier.trail, self.spool.states, system)
+        if checkpoint is not None:
+            self._resume(path, *checkpoint)
+        elif earlier and taken:
+            self._go_on_for(earlier.widths, taken)
+        else:
+            self.spool.begin()
+
+    def _resume(self, path: Path, arrays: dict[str, Any], facts: dict[str, Any]) -> None:
+        if str(facts.get("mark")) != self._mark:
+            raise ResultError(f"{path}: of another scene or version. Start a new run.")
+        restore(self.march.state, arrays, path)
+        self.spool.resume(int(facts["samples"]))
+        self._seconds, self.since = float(facts["seconds"]), float(facts["since"])
+        status = RunStatus(int(facts["status"]))
+        self._status = None if status is RunStatus.CANCELLED else status
+
+    def _go_on_for(self, widths: Widths, taken: StartValue) -> None:
+        """Start from an earlier run, whose samples the spool holds; save at once, as its own are gone."""
+        start_from(self.march, taken.at, taken.rows_of)
+        samples = taken.at.samples
+        self.spool.rewrite(widths, samples, lambda states: widened(states, taken.rows_of, self.march))
+        self.spool.resume(samples)
+        self.since = taken.at.time
+        self._save(RunStatus.CANCELLED)
+
+    def go(
+        self, progress: Progress | None, cancel: Cancel | None, every: float, trail: Trail | None = None
+    ) -> Ending:
+        """March on to the end, with checkpoints; one that had ended stays as it is."""
+        began = saved = clock.perf_counter()
+        before = self._seconds
+        remember = None if trail is None else trail.watch(self.march)
+
+        def after_block() -> None:
+            nonlocal saved
+            if remember is not None:
+                remember()
+            if clock.perf_counter() - saved >= every:
+                self._save(RunStatus.CANCELLED)
+                saved = clock.perf_counter()
+            self._seconds = before + clock.perf_counter() - began
+
+        if self._status is None:
+            status = march_on(self.march, self.spool, progress, cancel, after_block)
+            self._seconds = before + clock.perf_counter() - began
+            self._save(status)
+            self._status = status
+        return marching.ending(self.march, self.spool, self._status, self._seconds)
+
+    def _save(self, status: RunStatus) -> None:
+        samples = int(self.march.work.counts[Count.OUTPUT])
+        facts = {"mark": self._mark, "samples": samples, "seconds": self._seconds, "since": self.since}
+        self.spool.save(self.march.state, **facts, status=int(status))
+
 
 # From a scene to its result in memory.
 
@@ -329,8 +420,8 @@ class _How:
 
 
 def _run_to_file(
-    decided: Decided, path: Path, before: EarlierRun, how: _How, earlier: MadeRun | None
-) -> MadeRun:
+    decided: Decided, path: Path, before: EarlierRun, how: _How, earlier: _MadeRun | None
+) -> _MadeRun:
     """Run once; `before` says what of the run `earlier` it repeats."""
     start = _Start.of(decided)
     system, rest, seconds = start.system, start.rest, start.seconds
@@ -339,20 +430,20 @@ def _run_to_file(
     folder.mkdir(exist_ok=True)
     going = (how.progress, how.cancel, how.checkpoint_every)
     with ExitStack() as stack:
-        leg = Leg(stack, folder / "run", system, rest, integration, how.resume, earlier)
+        leg = _Leg(stack, folder / "run", system, rest, integration, how.resume, earlier)
         before = replace(before, since=leg.since)
         end = leg.go(*going, start.trail)
         error = requested_error(integration)
         if end.status.usable:
             error = error_by_source(system, leg.spool.states, end.samples)
         if integration.estimate_error and end.status.usable:
-            check = Leg(stack, folder / "check", system, rest, finer(integration), how.resume)
+            check = _Leg(stack, folder / "check", system, rest, finer(integration), how.resume)
             other = check.go(*going)
             end = replace(end, status=other.status)
             error = error | (_difference(system, leg, check, other) if other.status.usable else {})
         seconds["integration"] = end.seconds
         ledger = _write(path, leg, end, start, error, decided, before)
-    return MadeRun(end.status, ledger, sum(seconds.values()), start.trail, leg.march.widths)
+    return _MadeRun(end.status, ledger, sum(seconds.values()), start.trail, leg.march.widths)
 
 
 def _read_earlier(folder: Path) -> EarlierRun:
@@ -366,7 +457,7 @@ def _read_earlier(folder: Path) -> EarlierRun:
         raise ResultError(f"{REPEATED}: not readable. Start a new run.") from error
 
 
-def _difference(system: System, leg: Leg, check: Leg, end: Ending) -> Json:
+def _difference(system: System, leg: _Leg, check: _Leg, end: Ending) -> Json:
     total = 0.0
     for first, stop in blocks(end.samples):
         total += squared_difference(
@@ -377,7 +468,7 @@ def _difference(system: System, leg: Leg, check: Leg, end: Ending) -> Json:
 
 def _write(
     path: Path,
-    leg: Leg,
+    leg: _Leg,
     end: Ending,
     start: _Start,
     error: Json,

@@ -1,6 +1,13 @@
 """Vibration of housings under the forces of their bearings."""
 
-from dynamics.vibration.housing_motion import housing_motion
+from dynamics.vibration.housing_motion import (
+    BearingHarmonics,
+    ReportedHarmonics,
+    finer_seat_forces,
+    housing_motion,
+    run_seat_forces,
+    seat_forces,
+)
 from dynamics.vibration.housing_vibration import (
     MotionQuantity,
     housing_vibration,
@@ -8,13 +15,6 @@ from dynamics.vibration.housing_vibration import (
     overall,
     surface_weight,
     vibration_level,
-)
-from dynamics.vibration.seat_forces import (
-    BearingHarmonics,
-    ReportedHarmonics,
-    finer_seat_forces,
-    run_seat_forces,
-    seat_forces,
 )
 from dynamics.vibration.time_signal import motion_pieces, motion_signal, point_signal
 from dynamics.vibration.vibration_analysis import (

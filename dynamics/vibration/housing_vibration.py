@@ -19,8 +19,7 @@ from dynamics.acoustics import outer_hull
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import PointMotion, ReducedHousing
 from dynamics.types import BoolArray, ComplexArray, FloatArray
-from dynamics.vibration.housing_motion import housing_motion
-from dynamics.vibration.seat_forces import BearingHarmonics, seat_forces
+from dynamics.vibration.housing_motion import BearingHarmonics, housing_motion, seat_forces
 
 # Quantities of a vibration: displacement and its rates.
 

@@ -12,7 +12,7 @@ from dynamics.checks import integer, not_negative
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import ReducedHousing, SurfaceMotion
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
-from dynamics.vibration.housing_motion import housing_motion, modal_amplitudes
+from dynamics.vibration.housing_motion import ReportedHarmonics, housing_motion, modal_amplitudes
 from dynamics.vibration.housing_vibration import (
     HousingVibration,
     MotionQuantity,
@@ -21,7 +21,6 @@ from dynamics.vibration.housing_vibration import (
     point_rows,
     surface_weight,
 )
-from dynamics.vibration.seat_forces import ReportedHarmonics
 
 # Contributions of bearings and modes to the motion of a housing at one frequency.
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from dynamics.integrators.step_control import Control, next_level
+from dynamics.integrators.advance import Control, next_level
 from dynamics.integrators.workspace import Count, geometric_steps
 
 STEP_SIZES = geometric_steps(1e-3, 1e-8)
