@@ -13,7 +13,7 @@ from textwrap import fill
 
 from bounds import Choice
 from fe_contact.geometry import Gear, GearPair, RingGear
-from lineofaction.gearbox.convert.vocabulary import DECLARED
+from lineofaction.gearbox.convert.errors import DECLARED
 from lineofaction.gearbox.schemas.case import OF_PAIR, RING
 from lineofaction.gearbox.schemas.declared import Figure, figures
 from lineofaction.gearbox.schemas.gear import of_gear

@@ -18,10 +18,10 @@ ROOT = Path(__file__).parents[1]
 NEEDS = ("numpy", "pydantic", "annotated-types", "httpx2")
 _LOADED = """
 import importlib, json, pkgutil, sys
-import lineofaction.client
+import lineofaction.client, lineofaction.gearbox.subjects
 from lineofaction.gearbox import schemas
 from lineofaction.gearbox.registry import STUDIES
-[getattr(schemas, name) for name in schemas.__all__]  # loaded on first use
+[getattr(schemas, name) for name in schemas.HOMES]  # loaded on first use
 [study.answer for study in STUDIES.values()]
 for module in pkgutil.walk_packages(lineofaction.client.__path__, "lineofaction.client."):
     importlib.import_module(module.name)

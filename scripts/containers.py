@@ -12,8 +12,7 @@ import numpy as np
 
 from fe_contact.analysis import ste_database
 from lineofaction.client import LineOfActionClient
-from lineofaction.gearbox.convert.case import analysis_options, case_json, table_axes
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import analysis_options, case_json, check_case, table_axes
 from lineofaction.gearbox.schemas import Case, read_model
 
 CASE = Path("examples/palermo_spur_20_20.toml")

@@ -25,7 +25,7 @@ from sound import deciding, levels, verdict, write_sounds
 from dynamics.noise import RadiatedSound, loudest
 from dynamics.orders import order_track
 from dynamics.results import RunResult
-from lineofaction.gearbox.convert.toml import toml_text
+from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.units import RPM
 
 UNIT = Path(__file__).parent

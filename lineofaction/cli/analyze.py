@@ -23,24 +23,20 @@ from lineofaction.cli.output import (
     progress_bar,
     table,
 )
-from lineofaction.gearbox.convert.answers import summary_json
-from lineofaction.gearbox.convert.case import (
-    case_at,
-)
-from lineofaction.gearbox.convert.drafts import draft_line
-from lineofaction.gearbox.convert.effect_lines import assumption_lines, ledger_lines
-from lineofaction.gearbox.convert.plan import plan_of
+from lineofaction.gearbox.convert.answers import draft_line, summary_json
+from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.convert.effects import assumption_lines, ledger_lines
+from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
-from lineofaction.gearbox.convert.task_workers import ExecutorChoice, open_executor
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import JobFailed
 from lineofaction.gearbox.schemas import Case, read_model
-from lineofaction.gearbox.schemas.flank import FlankPoint
-from lineofaction.gearbox.schemas.lines import located
+from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.warning import left_out_warnings
 from lineofaction.gearbox.subjects import scene_of
-from lineofaction.gearbox.tabled_scene import database_of
+from lineofaction.gearbox.tabled_scene import ExecutorChoice, database_of, open_executor
 from lineofaction.gearbox.units import MM, NM, UM
 from lineofaction.report.tables.static_part import static_headlines
 

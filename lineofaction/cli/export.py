@@ -24,8 +24,7 @@ from lineofaction.cli.analyze import assessed_case
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
 from lineofaction.cli.ste import open_ste, positions
-from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, operating_point
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, check_case, operating_point
 from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
@@ -33,8 +32,8 @@ from lineofaction.gearbox.registry import Study
 from lineofaction.gearbox.rexs.files import read_rexs, serialized
 from lineofaction.gearbox.rexs.model import Attribute, Document
 from lineofaction.gearbox.schemas import validated
-from lineofaction.gearbox.schemas.flank import FlankPoint
-from lineofaction.gearbox.schemas.warning import left_out_warnings
+from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.to_rexs import CALCULATED, deflected, exported, left_out
 from lineofaction.gearbox.units import UM
 from lineofaction.report.document.inputs import file_attributes, read_run, read_stored, stored_study

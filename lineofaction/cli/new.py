@@ -30,9 +30,9 @@ from lineofaction.gearbox.from_rexs.opened import OpenedUnit, headline, opened, 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.toml_table import toml_table
-from lineofaction.gearbox.schemas.warning import left_out_warnings
+from lineofaction.gearbox.schemas.toml import toml_table
 from lineofaction.gearbox.units import DEGREE
 
 # The text of scene files: a pair between two shafts, and a planetary stage.

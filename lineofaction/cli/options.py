@@ -167,7 +167,7 @@ def _with(files: InputFile | list[InputFile], overrides: tuple[Override, ...]) -
 
 def _overrides(typed: Mapping[str, Any]) -> tuple[Override, ...]:
     """Return what was typed as overrides, shorthands first."""
-    from lineofaction.gearbox.schemas.number_list import number_list  # noqa: PLC0415 (start-up time)
+    from lineofaction.gearbox.input_file import number_list  # noqa: PLC0415 (start-up time)
 
     made = []
     for name, (path, others) in _SHORTHANDS.items():

@@ -17,13 +17,13 @@ from lineofaction.cli.analyze import assessed_case
 from lineofaction.cli.guard import messages, warn
 from lineofaction.cli.output import Report, check_writable, console, print_json, progress_bar, table
 from lineofaction.gearbox.convert.case import case_at, gear_pair
-from lineofaction.gearbox.convert.stamp import stamped
-from lineofaction.gearbox.convert.topology import facts_of
+from lineofaction.gearbox.convert.meshes import facts_of
+from lineofaction.gearbox.convert.result_files import stamped
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.flank import FlankPoint
+from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.units import UM
 from lineofaction.report.comparison.compare import compare
 from lineofaction.report.document.content import nominal_force

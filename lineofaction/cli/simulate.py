@@ -23,14 +23,13 @@ from lineofaction.cli.output import (
 from lineofaction.cli.remote import watching
 from lineofaction.client import LineOfActionClient
 from lineofaction.client.client import ServiceTables
-from lineofaction.gearbox.convert.run_effects import model_lines
-from lineofaction.gearbox.convert.runs import run_json, staged
+from lineofaction.gearbox.convert.effects import model_lines
+from lineofaction.gearbox.convert.result_files import run_json, staged, stamp
 from lineofaction.gearbox.convert.scene import TabledScene
-from lineofaction.gearbox.convert.stamp import stamp
 from lineofaction.gearbox.input_file import InputFile
-from lineofaction.gearbox.mesh_tables import MeshTables, finished
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.subjects import MeshTables, finished
 from lineofaction.gearbox.tabled_scene import ComputedTables
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from lineofaction.report.drawing.figure import number

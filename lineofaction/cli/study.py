@@ -32,18 +32,16 @@ from lineofaction.cli.output import (
 )
 from lineofaction.cli.simulate import tabled_scene
 from lineofaction.gearbox.convert.plausibility import case_warnings
-from lineofaction.gearbox.convert.stamp import stamp
-from lineofaction.gearbox.convert.task_workers import ExecutorChoice, open_executor
-from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.convert.result_files import stamp
+from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.registry import Study
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
-from lineofaction.gearbox.schemas.lines import located
-from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.schemas.number_list import number_list
+from lineofaction.gearbox.schemas.model import BoundaryModel, item_type, spelling_of
+from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.spelling import item_type, spelling_of
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.tabled_scene import ExecutorChoice, open_executor
 from lineofaction.report.document.inputs import read_run
 from lineofaction.report.document.write import write_whole
 from lineofaction.report.drawing.image import png

@@ -1,28 +1,36 @@
-"""STE databases of cases and of the meshes of scenes, computed in this process."""
+"""STE databases of cases and of the meshes of scenes, computed in this process or by its workers."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 from fe_contact.analysis import ste_database
 from fe_contact.options import Run
 from fe_contact.ste import PairFacts, SteDatabase
-from fe_contact.workers import InProcess, Workers
+from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, case_json, table_axes
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import (
+    analysis_options,
+    boundary_errors,
+    case_json,
+    check_case,
+    table_axes,
+)
 from lineofaction.gearbox.convert.housings import housings_in
+from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_database, scene_warnings, within
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene, dynamic_scene
-from lineofaction.gearbox.convert.topology import facts_of
-from lineofaction.gearbox.mesh_tables import Steps
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.scene_meshes import MeshInput
-from lineofaction.gearbox.subjects import case_of_mesh, with_own_cases, without_modes_files
+from lineofaction.gearbox.subjects import Steps, case_of_mesh, with_own_cases, without_modes_files
 from model_studies.progress import Progress, silent
 
 Warn = Callable[[Iterable[dict[str, Any]]], object]
@@ -129,3 +137,38 @@ def _facts(index: int, mesh: MeshInput, folder: Path, table_of: TableOf, warn: W
         return facts_of(check_case(case))
     except BadInput as error:
         raise error.within(f"{field}.case") from None
+
+
+# The workers of a study: those of a job, or of the command line.
+
+
+@dataclass(frozen=True)
+class ExecutorChoice:
+    """A number of processes here, or the address of a Dask scheduler."""
+
+    workers: int = 1
+    dask: str | None = None
+
+
+@contextmanager
+def open_executor(choice: ExecutorChoice) -> Iterator[Workers]:
+    """Provide the workers, and send those of this machine home at the end.
+
+    Raises
+    ------
+    BadInput
+        Both are given, or nobody answers at the address.
+    """
+    if choice.dask is not None and choice.workers != 1:
+        raise BadInput.of("--workers", choice.workers, "left out with --dask", "The cluster has its own.")
+    if choice.dask is not None:
+        with boundary_errors():
+            cluster = dask_workers(choice.dask)
+        with cluster.client:
+            yield cluster
+    elif choice.workers == 1:
+        yield InProcess()
+    else:
+        # spawn: compiled code and numerical libraries do not survive a fork
+        with ProcessPoolExecutor(choice.workers, mp_context=get_context("spawn")) as executor:
+            yield ByExecutor(executor)

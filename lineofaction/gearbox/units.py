@@ -52,6 +52,9 @@ _OF_SI = {
 }
 """The ending of a declared field by its unit; depths are in um."""
 
+ENDINGS = (*BY_SUFFIX, *_OF_SI.values(), "_n_per_m_n", "_m_per_s2", "_matrix")
+"""What may follow the name of a field at the boundary."""
+
 _IN_WORDS = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
 
 

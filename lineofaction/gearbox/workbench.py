@@ -21,17 +21,15 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.from_rexs.account import Assumption
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
 from lineofaction.gearbox.input_file import InputFile, Override
-from lineofaction.gearbox.mesh_tables import MeshTables, finished
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
-from lineofaction.gearbox.schemas.named_files import beside
-from lineofaction.gearbox.schemas.reading import READERS, written_out
+from lineofaction.gearbox.schemas.files import READERS, beside, written_out
+from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.warning import left_out_warnings
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.subjects import case_of, scene_of, with_own_files
+from lineofaction.gearbox.subjects import MeshTables, case_of, finished, scene_of, with_own_files
 from lineofaction.gearbox.tabled_scene import ComputedTables, database_of
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from model_studies.progress import Progress, silent

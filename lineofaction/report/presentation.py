@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import Any
 
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.effect_lines import run_lines
+from lineofaction.gearbox.convert.effects import run_lines
 from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.registry import Study
 from lineofaction.report.drawing.figure import Figure, Table

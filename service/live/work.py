@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from fe_contact.analysis import CondensedPair
-from lineofaction.gearbox.convert.live import condensed_of, live_curves
-from lineofaction.gearbox.convert.plan import plan_of
+from lineofaction.gearbox.convert.live import condensed_of, live_curves, plan_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.live import LiveInput

@@ -9,11 +9,18 @@ from typing import Any
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.file_content import LARGEST, FileContentInput
-from lineofaction.gearbox.schemas.named_files import Find, own_name
-from lineofaction.gearbox.schemas.reading import SENT, read_text, validated, written_out
+from lineofaction.gearbox.schemas.files import (
+    LARGEST,
+    SENT,
+    FileContentInput,
+    Find,
+    own_name,
+    read_text,
+    written_out,
+)
+from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.toml_table import toml_table
+from lineofaction.gearbox.schemas.toml import toml_table
 
 # The files that a caller sends together with a text: written into a folder, found there by their names.
 

@@ -9,15 +9,14 @@ from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field, Strict
 from starlette.responses import JSONResponse, Response
 
-from lineofaction.gearbox.convert.toml import toml_text
 from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, TooLarge, TooManyHeld
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.file_content import FileContentInput
-from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.schemas.named import Named
-from lineofaction.gearbox.schemas.outline import OutlineBody
+from lineofaction.gearbox.schemas.files import FileContentInput
+from lineofaction.gearbox.schemas.model import BoundaryModel, Named
+from lineofaction.gearbox.schemas.plan import OutlineBody
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.toml import toml_text
 from service.access import Scope
 from service.live.order import LiveOrder
 from service.page.files import Example, examples

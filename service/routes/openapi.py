@@ -33,9 +33,9 @@ from lineofaction.gearbox.problems import (
     UnsupportedMediaType,
     last_part,
 )
-from lineofaction.gearbox.schemas.named import with_named
+from lineofaction.gearbox.schemas.model import with_named
+from lineofaction.gearbox.schemas.plan import InputWarning
 from lineofaction.gearbox.schemas.query import QueryInput
-from lineofaction.gearbox.schemas.warning import InputWarning
 from service.access import MEANINGS
 from service.routes.access import OPEN_PATHS
 from service.routes.media_types import (

@@ -108,7 +108,7 @@ def list_databases(request: Request, context: Ctx, limit: Limit = 20, cursor: Cu
 def _entry(store: ResultStore, mark: Mark, line: IndexLine) -> DatabaseEntry:
     """Return what the list tells of a database, which is not thereby used; of a damaged file its name."""
     with LOADING:
-        from lineofaction.gearbox.convert.database_case import case_of_file  # noqa: PLC0415 (start-up time)
+        from lineofaction.gearbox.convert.result_files import case_of_file  # noqa: PLC0415 (start-up time)
 
     try:
         case = case_of_file(store.files.local(line.file, line.sha256))
@@ -179,7 +179,7 @@ def _figures(context: Context, stored: StoredResult) -> dict[str, Any]:
 
         return metadata_json(context.databases.get(context.store, stored.key).database)
     with LOADING:
-        from lineofaction.gearbox.convert.runs import figures_of  # noqa: PLC0415 (start-up time)
+        from lineofaction.gearbox.convert.result_files import figures_of  # noqa: PLC0415 (start-up time)
 
     return figures_of(stored.kind, stored.path)
 

@@ -12,8 +12,8 @@ from service.page.files import PLOTLY, page_file
 HEAVY = (
     "service.worker.preparations",
     "lineofaction.gearbox.convert.answers",
-    "lineofaction.gearbox.convert.outline",
-    "lineofaction.gearbox.convert.runs",
+    "lineofaction.gearbox.convert.live",
+    "lineofaction.gearbox.convert.result_files",
     "service.worker.study_work",
     "fe_contact.ste.compiled_force",
 )

@@ -6,8 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
-from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.schemas.named import Named
+from lineofaction.gearbox.schemas.model import BoundaryModel, Named
 
 Uri = Annotated[str, Field(max_length=2000, examples=["https://hooks.example.com/loa?case=12"])]
 

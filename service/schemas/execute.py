@@ -9,9 +9,9 @@ from pydantic import BaseModel, Field, create_model, model_validator
 
 from lineofaction.gearbox.registry import JSON, NETCDF, Study
 from lineofaction.gearbox.schemas.case import Case
-from lineofaction.gearbox.schemas.case_or_scene import CaseOrScene
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.studied import CaseOrScene
 from service.schemas.answers import JobStatus, ProblemBody, ResultReference, Subscriber, class_name
 
 Title = Annotated[str, Field(max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")]

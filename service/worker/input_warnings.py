@@ -9,13 +9,13 @@ from typing import Any
 from pydantic import ValidationError
 
 from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.plausibility import case_warnings, scene_warnings, unique, within
 from lineofaction.gearbox.convert.scene import check_scene
-from lineofaction.gearbox.convert.topology import facts_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.warning import left_out_warnings
 
 Json = dict[str, Any]
 

@@ -7,13 +7,13 @@ from typing import Any, NoReturn
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import check_case
+from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import check_scene
-from lineofaction.gearbox.convert.topology import facts_of
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.scene_meshes import MeshInput
 from service.schemas.execute import AnalyzeInputs, SimulateInputs
 from service.store import ResultStore
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from service.worker.order import Product, WorkOrder
 from service.worker.process import on_demand
 
-stamp = on_demand("lineofaction.gearbox.convert.stamp:stamp")
+stamp = on_demand("lineofaction.gearbox.convert.result_files:stamp")
 case_warnings = on_demand("service.worker.input_warnings:warnings_of_case")
 
 

@@ -16,6 +16,7 @@ from dynamics.simulation import simulate_to_file
 from fe_contact.analysis import ste_database
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.convert.answers import draft_line
 from lineofaction.gearbox.convert.case import (
     analysis_options,
     boundary_errors,
@@ -23,15 +24,14 @@ from lineofaction.gearbox.convert.case import (
     gear_pair,
     table_axes,
 )
-from lineofaction.gearbox.convert.drafts import draft_line
 from lineofaction.gearbox.convert.housings import HousedScene, reduced_in
 from lineofaction.gearbox.convert.plausibility import phrased_database, scene_warnings
-from lineofaction.gearbox.convert.runs import staged
+from lineofaction.gearbox.convert.result_files import staged
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.scene_meshes import MeshInput
 from lineofaction.gearbox.stages import TableFraction
 from model_studies.progress import Report, by_cost
 from service.store import ResultStore, stored_results

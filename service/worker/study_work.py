@@ -11,8 +11,8 @@ from dynamics.results import RunResult
 from lineofaction.gearbox.convert.housings import HousedScene
 from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.result_kinds import SUFFIX
-from lineofaction.gearbox.schemas.warning import left_out_warnings
 from lineofaction.gearbox.studies.computation import Means
 from service.store import ResultStore
 from service.worker.cluster import cluster_of, table_workers

@@ -215,7 +215,7 @@ def _table(name: str) -> Path:
 def test_a_scene_takes_no_table_of_another_project(two: Two) -> None:
     """Checked by the worker too: `tests/unit/service/test_projects.py`."""
     from lineofaction.gearbox.problems import BadInput  # noqa: PLC0415
-    from lineofaction.gearbox.schemas.scene_meshes import MeshInput  # noqa: PLC0415
+    from lineofaction.gearbox.schemas.meshes import MeshInput  # noqa: PLC0415
     from service.worker.preparations import _check_source  # noqa: PLC0415
 
     mesh = MeshInput.model_construct(database_hash=KEY, case=None, case_file=None, database_file=None)

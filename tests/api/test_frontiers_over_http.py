@@ -16,7 +16,7 @@ from fe_contact.analysis.studies.accuracy_study import FIDELITIES
 from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase
 from lineofaction.client import JobState
-from lineofaction.gearbox.convert.runs import figures_of
+from lineofaction.gearbox.convert.result_files import figures_of
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.scene import SceneInput

@@ -16,7 +16,7 @@ from httpx2 import Response
 from small_table import small_table
 
 from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable
-from lineofaction.gearbox.schemas.toml_table import toml_table
+from lineofaction.gearbox.schemas.toml import toml_table
 from service.access import KeyFile
 from service.access.capacity import Capacity
 from service.app import create_app

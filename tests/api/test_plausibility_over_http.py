@@ -15,7 +15,7 @@ from fastapi.testclient import TestClient
 from study_service import empty_service
 
 from lineofaction.client import LineOfActionClient
-from lineofaction.gearbox.schemas.warning import InputWarning
+from lineofaction.gearbox.schemas.plan import InputWarning
 
 GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
 RELIEVED = GEAR | {"tip_relief_um": 0.02, "tip_relief_length_mm": 1.5}

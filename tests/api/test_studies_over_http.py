@@ -18,7 +18,7 @@ from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.gearbox.convert.case import case_at
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
-from lineofaction.gearbox.schemas.flank import FlankPoint
+from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.flank.run import flank_json, flanks_of
 from lineofaction.gearbox.studies.root_stress import Inputs

@@ -15,8 +15,8 @@ from page_visit import PATIENCE, Visit, shown
 from playwright.sync_api import Browser, Route, expect
 from running_service import until
 
-from lineofaction.gearbox.convert.toml import toml_text
 from lineofaction.gearbox.registry import studies_of
+from lineofaction.gearbox.schemas.toml import toml_text
 from tests.fakes.faulty_units import LEFT_OUT, TWO_STAGE
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from fe_contact.errors import InputError
 from lineofaction.cli.commands import app as loa
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import check_case
 from lineofaction.gearbox.schemas import Case, validated
 from service.app import create_app
 from service.settings import Settings

@@ -19,7 +19,7 @@ from fe_contact.microgeometry import QUANTITIES
 from fe_contact.microgeometry.variables import ACROSS_FACE
 from fe_contact.plausibility import pair_findings
 from lineofaction.gearbox.convert.case import gear_pair
-from lineofaction.gearbox.convert.vocabulary import boundary_name, case_field
+from lineofaction.gearbox.convert.errors import boundary_name, case_field
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.declared import Figure, figures
 from lineofaction.gearbox.schemas.gear import SHARED

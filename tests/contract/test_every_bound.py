@@ -21,9 +21,9 @@ from toml_text import toml_text
 from bounds import Kind
 from fe_contact.flank.modification import FlankModification
 from fe_contact.ste import PairFacts
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import check_case
+from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import check_scene
-from lineofaction.gearbox.convert.topology import facts_of
 from lineofaction.gearbox.problems import BadInput, Fault
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.declared import figures

@@ -5,8 +5,8 @@ import pytest
 from dynamics.shafts import BeamSection
 from fe_contact import STEEL
 from fe_contact.body import Shaft
-from lineofaction.gearbox.schemas.gear_body import MaterialInput
-from lineofaction.gearbox.schemas.scene import SectionInput
+from lineofaction.gearbox.schemas.bodies import SectionInput
+from lineofaction.gearbox.schemas.gear import MaterialInput
 
 
 def in_si(young, poisson, density):

@@ -14,9 +14,9 @@ from typer.testing import CliRunner
 
 from dynamics.errors import InputError
 from lineofaction.cli.commands import app as loa
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import check_case
+from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import check_scene
-from lineofaction.gearbox.convert.topology import facts_of
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.app import create_app

@@ -21,7 +21,7 @@ from hostile_rexs import XML, archive
 from housing_solid import housed_scene, housing
 from reduced_housings import random_housing
 
-from lineofaction.gearbox.convert.toml import toml_text
+from lineofaction.gearbox.schemas.toml import toml_text
 
 Body = dict[str, Any]
 Question = tuple[str, str, Body]

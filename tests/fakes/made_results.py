@@ -8,7 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from lineofaction.gearbox.convert.stamp import stamp
+from lineofaction.gearbox.convert.result_files import stamp
 from service.store import StoredResult, stored_results
 from service.worker.order import WorkOrder
 from service.worker.process import default_registry

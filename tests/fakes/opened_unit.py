@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import check_scene
-from lineofaction.gearbox.convert.topology import facts_of
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
 from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas.scene import SceneInput

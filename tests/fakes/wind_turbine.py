@@ -11,9 +11,9 @@ from typing import Any
 from small_table import small_table
 
 from dynamics.scene import Scene
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import check_case
+from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import dynamic_scene
-from lineofaction.gearbox.convert.topology import facts_of
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 

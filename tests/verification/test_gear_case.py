@@ -22,9 +22,9 @@ from dynamics.housings import (
     mesh_step,
     reduced_housing,
 )
-from lineofaction.gearbox.convert.toml import toml_text
 from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.rexs.files import read_rexs
+from lineofaction.gearbox.schemas.toml import toml_text
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "two_stage"
 ELEMENT_SIZE = 0.03

@@ -95,7 +95,7 @@ def _analyze(
 ) -> None:
     """Compute the STE database of a case."""
     from lineofaction.cli.analyze import run_analyze  # noqa: PLC0415 (start-up time)
-    from lineofaction.gearbox.convert.task_workers import ExecutorChoice  # noqa: PLC0415
+    from lineofaction.gearbox.tabled_scene import ExecutorChoice  # noqa: PLC0415
 
     run_analyze(case, output, ExecutorChoice(workers, dask), as_json=json)
 
@@ -400,7 +400,7 @@ class ViewOptions:
     @property
     def view(self) -> RunView:
         """The view that the options name."""
-        from lineofaction.gearbox.schemas.number_list import number_list  # noqa: PLC0415 (start-up time)
+        from lineofaction.gearbox.input_file import number_list  # noqa: PLC0415 (start-up time)
         from lineofaction.report.runs.run_view import RunView  # noqa: PLC0415 (start-up time)
 
         cuts = tuple(number_list("--orders", self.orders)) if self.orders else ()

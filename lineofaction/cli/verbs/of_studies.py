@@ -22,7 +22,7 @@ from lineofaction.cli.options import (
 )
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.registry import STUDIES, Study
-from lineofaction.gearbox.schemas.spelling import is_list, spelling_of
+from lineofaction.gearbox.schemas.model import is_list, spelling_of
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo

@@ -1,4 +1,4 @@
-"""Answers of an STE database in boundary units: curves, summaries, metadata."""
+"""Answers of an STE database in boundary units: curves, summaries, metadata, drafts."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import engineering
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.case import boundary_errors
@@ -135,3 +136,17 @@ def metadata_json(database: SteDatabase) -> Json:
         "misalignment_um": [as_typed(skew, UM) for skew in database.misalignment],
         "center_distance_change_mm": [as_typed(change, MM) for change in database.center_distance_change],
     }
+
+
+# First figures of a table that is being refined, in one line.
+
+
+def draft_line(table: SteDatabase, refining: str) -> str:
+    """Return mean and peak-to-peak with their errors at the highest load, and what is refined."""
+    curve = table.curve(force=float(table.force[-1]), allow_failed=True)
+    mean, ripple = _figure(curve.mean), _figure(curve.peak_to_peak)
+    return f"draft: mean {mean} um, p-p {ripple} um at {curve.torque:.6g} N m (refining {refining})"
+
+
+def _figure(estimate: Estimate) -> str:
+    return f"{estimate.value / UM:.4g} +- {engineering(estimate.error / UM, 1)}"

@@ -1,4 +1,4 @@
-"""From a case to a gear pair and the arguments of `fe_contact.analyze`."""
+"""From a case to a gear pair and the arguments of `fe_contact.analyze`, and whether it can be computed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from bounds import inside
+from bounds import inside, warn_of
 from fe_contact.allowed_error import AllowedError
 from fe_contact.errors import FeContactError
 from fe_contact.geometry import (
@@ -24,17 +24,12 @@ from fe_contact.geometry import (
 )
 from fe_contact.material import Material
 from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
-from lineofaction.gearbox.convert.declared import declared_part, in_si
+from fe_contact.plausibility import pair_findings
+from lineofaction.gearbox.convert.declared import in_si, part_of
 from lineofaction.gearbox.convert.errors import translated
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas import (
-    AccuracyInput,
-    Case,
-    ErrorsInput,
-    LoadInput,
-    ToothingInput,
-)
-from lineofaction.gearbox.schemas.flank import FlankPoint
+from lineofaction.gearbox.schemas.case import AccuracyInput, Case, ErrorsInput, LoadInput
+from lineofaction.gearbox.schemas.gear import FlankPoint, ToothingInput
 from lineofaction.gearbox.units import MM, NM, UM
 
 Json = dict[str, Any]
@@ -52,7 +47,8 @@ def gear_pair(case: Case) -> ParallelAxes:
     """
     with boundary_errors():
         pinion = _gear(Gear, "pinion", case)
-        shafts = (_shaft("pinion", case.pair.pinion), _shaft("wheel", case.pair.wheel))
+        first = part_of(Shaft, case.pair.pinion.shaft, "pinion.shaft")
+        shafts = (first, part_of(Shaft, case.pair.wheel.shaft, "wheel.shaft"))
         facts = in_si(GearPair, case.pair)
         if case.pair.wheel.internal:
             return InternalGearPair(pinion, _gear(RingGear, "wheel", case), shafts=shafts, **facts)
@@ -77,34 +73,14 @@ def _gear(kind: type[Toothed], name: str, case: Case) -> Toothed:
     hand = -kind.sign if name == "wheel" else 1
     with inside(name):
         facts = in_si(kind, gear, case.pair)
-        return kind(
-            **facts | {"helix_angle": hand * facts["helix_angle"] + 0.0},  # -0.0 becomes 0.0
-            modification=_modification(gear),
-            material=Material(**in_si(Material, gear.material or case.material)),
-            pitch_deviation=PitchDeviation(tuple(value * UM for value in gear.pitch_deviation_um)),
-        )
-
-
-def _shaft(name: str, gear: ToothingInput) -> Shaft | None:
-    """Return the shaft of a gear, None for a rigid one."""
-    return declared_part(Shaft, gear.shaft, f"{name}.shaft")
-
-
-def _modification(toothing: ToothingInput) -> FlankModification:
-    return FlankModification(**in_si(FlankModification, toothing), flank_grid=_flank_grid(toothing))
-
-
-def _flank_grid(toothing: ToothingInput) -> FlankGrid | None:
-    """Return the free-form flank of a gear, None if it has none."""
-    grid = toothing.flank_grid
-    if grid is None:
-        return None
-    with inside("flank_grid"):
-        return FlankGrid(
-            roll_length=tuple(value * MM for value in grid.roll_length_mm),
-            face_position=tuple(value * MM for value in grid.face_position_mm),
-            removed=tuple(tuple(value * UM for value in row) for row in grid.removed_um),
-        )
+        grid = part_of(FlankGrid, gear.flank_grid, "flank_grid")
+        own = {
+            "helix_angle": hand * facts["helix_angle"] + 0.0,  # -0.0 becomes 0.0
+            "modification": FlankModification(**in_si(FlankModification, gear), flank_grid=grid),
+            "material": Material(**in_si(Material, gear.material or case.material)),
+            "pitch_deviation": PitchDeviation(facts["pitch_deviation"]),
+        }
+        return kind(**facts | own)
 
 
 def table_axes(case: Case) -> TableAxes:
@@ -124,16 +100,8 @@ def analysis_options(case: Case) -> AnalysisOptions:
     """Return accuracy, model and effects of a case, in SI."""
     accuracy = case.accuracy
     with boundary_errors():
-        return AnalysisOptions(
-            tolerance=_allowed(accuracy),
-            time_budget=accuracy.time_budget_s,
-            level=accuracy.level,
-            model=accuracy.model,
-            positions=accuracy.positions,
-            effects=dict(case.effects),
-            receipt=accuracy.receipt,
-            on_violation=accuracy.on_violation,
-        )
+        own = {"tolerance": _allowed(accuracy), "effects": dict(case.effects)}
+        return AnalysisOptions(**in_si(AnalysisOptions, accuracy) | own)
 
 
 def study_options(case: Case) -> AnalysisOptions:
@@ -187,3 +155,46 @@ def _allowed(accuracy: AccuracyInput) -> AllowedError | None:
 def case_json(case: Case) -> Json:
     """Return the case with all defaults, as JSON: what is hashed and echoed."""
     return case.model_dump(mode="json")
+
+
+# Whether a case can be computed: what a schema cannot check and a request can afford.
+
+THICK = 10.0
+"""Face widths from bore to root up to which `check_request` refuses no disc: rounding leaves less than a
+tenth of what it allows."""
+
+
+def check_case(case: Case, *, whole_table: bool = True) -> ParallelAxes:
+    """Return the pair of a case that can be computed; `whole_table` as for `check_request`.
+
+    Raises
+    ------
+    BadInput
+        No such pair, or a request that no plan can meet.
+    """
+    from fe_contact.analysis import check_request  # noqa: PLC0415 (start-up time)
+
+    pair = gear_pair(case)
+    with boundary_errors():
+        check_request(pair, table_axes(case), analysis_options(case), whole_table=whole_table, spare=False)
+    return pair
+
+
+def check_plain_case(case: Case) -> ParallelAxes:
+    """Return the pair of a case of loads alone, as `check_case` does, without what computes.
+
+    A case with default accuracy and effects, one alignment and equal teeth is refused for its loads, or for
+    a disc that is too thin; whether one may be is decided here.
+    """
+    pair = gear_pair(case)
+    if any(
+        gear.face_width * THICK < abs(gear.root_radius - gear.held_radius)
+        for gear in (pair.pinion, pair.wheel)
+    ):
+        return check_case(case)
+    with boundary_errors():
+        axes = table_axes(case)
+        load = axes.load(pair)
+        alignments = axes.misalignment, axes.center_distance_change
+        warn_of(pair_findings(pair, load, *alignments, loads_as=axes.loads_as))
+    return pair

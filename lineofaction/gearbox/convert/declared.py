@@ -1,19 +1,24 @@
-"""Declared fields of the libraries from the boundary's fields."""
+"""Dataclasses of the libraries from the tables of the boundary that have their fields."""
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from collections.abc import Hashable
+from dataclasses import fields
+from functools import cache
+from typing import Any, TypeVar, cast
 
 from pydantic import BaseModel
 
 from bounds import inside
 from lineofaction.gearbox.schemas.declared import figures, parts_of
+from lineofaction.gearbox.schemas.faults import model_in
+from lineofaction.gearbox.units import ENDINGS, factor
 
 Part = TypeVar("Part")
 
 
-def declared_part(kind: type[Part], model: BaseModel | None, name: str, **further: Any) -> Part | None:
-    """Return a part of the libraries' from the model that has its declared fields, None if it is left out.
+def part_of(kind: type[Part], model: BaseModel | None, name: str, **further: Any) -> Part | None:
+    """Return a part of the libraries' from the table that has its fields, None if it is left out.
 
     Raises
     ------
@@ -23,32 +28,46 @@ def declared_part(kind: type[Part], model: BaseModel | None, name: str, **furthe
     if model is None:
         return None
     with inside(name):
-        return kind(**in_si(kind, model), **further)
+        return kind(**in_si(kind, model) | further)
 
 
 def in_si(kind: type[Any], *models: BaseModel) -> dict[str, Any]:
-    """Return the declared fields of a dataclass, in SI, each from the first of the models that has it.
+    """Return the fields of a dataclass that tables have, in SI, each from the first that has it.
 
-    Parts that are left out are left out.
+    A table has a field by its name alone, or by its name and unit: ``position`` or ``position_mm``. Of tables
+    in it those are converted that are declared as parts; left out ones are left out.
 
     Raises
     ------
     RefusedValue
         A value of a part out of its bounds.
     """
-    values = ((figure, _first(models, figure.field)) for figure in figures(kind))
-    numbers = {
-        figure.name: value * figure.unit.factor if isinstance(value, float) else value
-        for figure, value in values
-    }
-    parts = {
-        name: declared_part(fact.part, _first(models, name), name)
-        for name, fact in parts_of(kind).items()
-        if fact.part is not None
-    }
-    return numbers | {name: part for name, part in parts.items() if part is not None}
+    facts: dict[str, Any] = {}
+    for model in reversed(models):
+        for name, field, unit in _shared_fields(cast("Hashable", kind), cast("Hashable", type(model))):
+            facts[name] = _in_unit(getattr(model, field), unit)
+        for name, fact in parts_of(kind).items():
+            if fact.part is not None and (value := getattr(model, name, None)) is not None:
+                facts[name] = part_of(fact.part, value, name)
+    return facts
 
 
-def _first(models: tuple[BaseModel, ...], field: str) -> Any:
-    """Return a field of the first of the models that has it."""
-    return next(getattr(model, field) for model in models if hasattr(model, field))
+@cache
+def _shared_fields(kind: Any, model: Any) -> tuple[tuple[str, str, float], ...]:
+    """Return the fields that a dataclass and a table share: name, the table's name, SI value of its unit."""
+    declared = {figure.name: (figure.field, figure.unit.factor) for figure in figures(kind)}
+    own = {name for name, field in model.model_fields.items() if model_in(field.annotation) is None}
+    shared = []
+    for name in (entry.name for entry in fields(kind) if entry.init):
+        known = declared.get(name)
+        fits = [known] if known else [(name + end, factor(name + end)) for end in ("", *ENDINGS)]
+        shared += [(name, field, unit) for field, unit in fits if field in own][:1]
+    return tuple(shared)
+
+
+def _in_unit(value: Any, unit: float) -> Any:
+    if unit == 1.0:
+        return value
+    if isinstance(value, tuple):
+        return tuple(_in_unit(each, unit) for each in value)
+    return value * unit if isinstance(value, float) else value

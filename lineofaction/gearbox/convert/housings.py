@@ -11,17 +11,52 @@ import numpy as np
 
 from dynamics.errors import InputError
 from dynamics.joints import Housing
+from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES, check_mesh_content
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
-from lineofaction.gearbox.convert.solid_file import solid_file
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.scene_housings import HousingInput
-from lineofaction.gearbox.units import MM
 from model_studies.progress import Progress, silent
 
 if TYPE_CHECKING:
     from dynamics.housings import ReducedHousing
+
+
+STEP_BEGINS = b"ISO-10303-21"
+
+
+def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
+    """Return the field that holds the file of a solid, how its name ends, and what is in it.
+
+    Raises
+    ------
+    BadInput
+        Another kind of file, damaged content, or a mesh that names further files, which are not here.
+    """
+    field, suffixes = ("step_file", STEP_SUFFIXES) if housing.step_file else ("mesh_file", MESH_SUFFIXES)
+    content = housing.step_file or housing.mesh_file
+    assert content is not None  # the schema comes first
+    suffix = Path(content.name).suffix.lower()
+    if suffix not in suffixes:
+        raise BadInput.of(f"{field}.name", content.name, f"a name that ends in {', '.join(suffixes)}")
+    try:
+        data = content.unpacked()
+    except ValueError as error:
+        length = f"{len(content.content)} characters"
+        raise BadInput.of(f"{field}.content", length, str(error), "The client packs files.") from None
+    if field == "step_file" and not data.lstrip().startswith(STEP_BEGINS):
+        bound = f"a STEP file, which begins with {STEP_BEGINS.decode()}"
+        raise BadInput.of(field, content.name, bound, "Export the solid as STEP (AP 214, AP 242).")
+    if field == "mesh_file":
+        try:
+            check_mesh_content(content.name, data)
+        except InputError as error:
+            raise BadInput.of(field, content.name, str(error.bound), str(error.suggestion)) from None
+    return field, suffix, data
+
+
+# Housings of a scene file in the terms of dynamics: by their matrices, or reduced from their solids.
 
 FOLDER = "housings"
 """Of the cache: meshes and reductions."""
@@ -102,19 +137,5 @@ def stand_in(index: int, housing: HousingInput) -> Housing:
 
 
 def _of_matrices(index: int, housing: HousingInput) -> Housing:
-    assert housing.stiffness_matrix is not None  # the schema comes first
-    positions = housing.seat_positions_mm
     with named(f"housings[{index}]"):
-        return Housing(
-            name=housing.name,
-            bushings=housing.bushings,
-            stiffness=housing.stiffness_matrix,
-            damping=housing.damping_matrix,
-            mass=housing.mass_matrix,
-            seat_positions=None if positions is None else tuple(_point(*at) for at in positions),
-            **in_si(Housing, housing),
-        )
-
-
-def _point(x: float, y: float, z: float) -> tuple[float, float, float]:
-    return x * MM, y * MM, z * MM
+        return Housing(**in_si(Housing, housing))

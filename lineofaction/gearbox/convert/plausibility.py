@@ -14,11 +14,10 @@ from dynamics.scene import Scene
 from fe_contact.plausibility import pair_findings
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.case import gear_pair, table_axes
-from lineofaction.gearbox.convert.errors import named
-from lineofaction.gearbox.convert.vocabulary import case_field, scene_field
+from lineofaction.gearbox.convert.errors import case_field, named, scene_field
 from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.warning import left_out_warnings
 from lineofaction.gearbox.units import DEGREE, GPA, MM, UM, factor, unit_name
 
 Json = dict[str, Any]

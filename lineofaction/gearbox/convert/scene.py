@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from pydantic import BaseModel
 
 from bounds import inside
 from dynamics.bearings import BallBearing, Bushing, CatalogLine, PlanetBearing, RollerBearing, RollingBearing
 from dynamics.bearings.catalog import from_catalog
 from dynamics.effects.ledger import mechanism_of
-from dynamics.forces import RollingContact, SpringCurve
+from dynamics.forces import RollingContact, SpeedTorque, SpringCurve
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
-from dynamics.loads import AngleLaw, TimeLaw
+from dynamics.loads import AngleLaw, AppliedForce, BySpeed, LoadTorque, Orders, SpeedCurve, TimeLaw, Unbalance
+from dynamics.loads.load_course import CONSTANT, Course
 from dynamics.mechanism import with_planets
 from dynamics.mechanism.motion_check import check_motion
 from dynamics.meshes import CoastFlank, GearMesh, MeshTable, straight_table
@@ -20,68 +23,54 @@ from dynamics.scene import Integration, Outputs, Scene
 from dynamics.shafts import BeamSection, DiscBody, GearBody, Inertia, Shaft, hollow_cylinder
 from fe_contact.ste import PairFacts, SteDatabase
 from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.convert.closed_form import closed_forms
-from lineofaction.gearbox.convert.declared import declared_part, in_si
+from lineofaction.gearbox.convert.declared import in_si, part_of
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.housings import housing_of, stand_in
-from lineofaction.gearbox.convert.loads import force_of, load_torque_of, speed_torque_of, unbalance_of
-from lineofaction.gearbox.convert.topology import Teeth, check_center_distances, teeth_of
-from lineofaction.gearbox.schemas.scene import DiscInput, SceneInput, ShaftInput
-from lineofaction.gearbox.schemas.scene_bearings import RollingBearingInput
-from lineofaction.gearbox.schemas.scene_bodies import (
-    BearingInput,
-    BushingInput,
-    CouplingInput,
-    GearBodyInput,
-    PlanetBearingInput,
-)
-from lineofaction.gearbox.schemas.scene_meshes import CoastFlankInput, MeshInput
-from lineofaction.gearbox.schemas.scene_motion import DriveInput, FreeRotationInput
+from lineofaction.gearbox.convert.meshes import Teeth, check_center_distances, closed_forms, teeth_of
+from lineofaction.gearbox.schemas.bearings import BearingInput, BushingInput, RollingBearingInput
+from lineofaction.gearbox.schemas.bodies import DiscInput, GearBodyInput, ShaftInput
+from lineofaction.gearbox.schemas.loads import DriveInput, ForceInput, LoadTorqueInput, SpeedTorqueInput
+from lineofaction.gearbox.schemas.meshes import CoastFlankInput, MeshInput
+from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import DEGREE, MM, MRAD, RPM, UM
 
 if TYPE_CHECKING:
     from dynamics.housings import ReducedHousing
 
-# Bearings of a scene file in SI: bushings, planet bearings, and what they do that is not linear.
+T = TypeVar("T")
+
+# Parts of a scene file in SI, each by its table; what a table shares with its part is not said here again.
 
 
-def _bushing_of(index: int, bushing: BushingInput) -> Bushing:
-    """Return a bushing."""
-    with named(f"bushings[{index}]"):
-        return Bushing(
-            name=bushing.name,
-            shaft=bushing.shaft,
-            stiffness=bushing.stiffness_matrix,
-            damping=bushing.damping_matrix,
-            preload=_preload(bushing),
-            **in_si(Bushing, bushing),
-        )
+def _all(scene: SceneInput, kind: str, made: Callable[[Any], T]) -> tuple[T, ...]:
+    """Return the parts of a kind; errors are named by the place in the list."""
+    parts = []
+    for index, table in enumerate(getattr(scene, kind)):
+        with named(f"{kind}[{index}]"):
+            parts.append(made(table))
+    return tuple(parts)
 
 
-def _preload(bushing: BushingInput) -> tuple[float, ...] | None:
-    """Force and moment on the shaft; None where neither is given."""
-    if bushing.preload_force_n is None and bushing.preload_moment_n_m is None:
-        return None
-    return (*(bushing.preload_force_n or (0.0,) * 3), *(bushing.preload_moment_n_m or (0.0,) * 2))
+def _plain(kind: type[T]) -> Callable[[BaseModel], T]:
+    """Return what makes parts that share all their fields with their tables."""
+    return lambda table: kind(**in_si(kind, table))
 
 
-def rolling_bearing_of(index: int, bearing: RollingBearingInput) -> RollingBearing:
+def bushing_of(table: BushingInput) -> Bushing:
+    """Return a bushing; force and moment of its preload where one of them is given."""
+    force, moment = table.preload_force_n, table.preload_moment_n_m
+    preload = None if force is None and moment is None else (*(force or (0.0,) * 3), *(moment or (0.0,) * 2))
+    return Bushing(**in_si(Bushing, table), preload=preload)
+
+
+def rolling_bearing_of(table: RollingBearingInput) -> RollingBearing:
     """Return a rolling bearing, its row as written or by its catalog line."""
-    with named(f"rolling_bearings[{index}]"):
-        own = in_si(RollingBearing, bearing)
-        return RollingBearing(bearing.name, bearing.shaft, _row(bearing), **own)
-
-
-def _row(bearing: RollingBearingInput) -> BallBearing | RollerBearing:
-    if bearing.ball is not None:
-        with inside("ball"):
-            return BallBearing(**in_si(BallBearing, bearing.ball))
-    if bearing.roller is not None:
-        with inside("roller"):
-            return RollerBearing(**in_si(RollerBearing, bearing.roller))
-    assert bearing.catalog is not None  # the schema comes first
-    with inside("catalog"):
-        return from_catalog(**in_si(CatalogLine, bearing.catalog))
+    row = part_of(BallBearing, table.ball, "ball") or part_of(RollerBearing, table.roller, "roller")
+    if row is None:
+        assert table.catalog is not None  # the schema comes first
+        with inside("catalog"):
+            row = from_catalog(**in_si(CatalogLine, table.catalog))
+    return RollingBearing(**in_si(RollingBearing, table), row=row)
 
 
 def rolling_contacts_of(scene: SceneInput) -> Iterator[RollingContact]:
@@ -90,14 +79,8 @@ def rolling_contacts_of(scene: SceneInput) -> Iterator[RollingContact]:
         law = bearing.rolling_contact
         if law is not None:
             with named(f"{path}.rolling_contact"):
-                yield RollingContact(
-                    bearing.name,
-                    law.stiffness_n_per_m_n,
-                    law.exponent,
-                    law.radial_clearance_um * UM,
-                    law.damping_n_s_per_m,
-                    law.damping_ratio,
-                )
+                clearance = law.radial_clearance_um * UM
+                yield RollingContact(bearing.name, **in_si(RollingContact, law), clearance=clearance)
 
 
 def spring_curves_of(scene: SceneInput) -> Iterator[SpringCurve]:
@@ -112,40 +95,20 @@ def spring_curves_of(scene: SceneInput) -> Iterator[SpringCurve]:
                 )
 
 
-def planet_bearing_of(index: int, bearing: PlanetBearingInput) -> PlanetBearing:
-    """Return a planet's bearing."""
-    with named(f"planet_bearings[{index}]"):
-        return PlanetBearing(
-            name=bearing.name,
-            shaft=bearing.shaft,
-            carrier=bearing.carrier,
-            stiffness=bearing.stiffness_matrix,
-            damping=bearing.damping_matrix,
-            **in_si(PlanetBearing, bearing),
-        )
-
-
 def _bearings(scene: SceneInput) -> Iterator[tuple[str, BearingInput]]:
     yield from ((f"bushings[{index}]", part) for index, part in enumerate(scene.bushings))
     yield from ((f"planet_bearings[{index}]", part) for index, part in enumerate(scene.planet_bearings))
 
 
-# Shafts of a scene file, and the discs on them, in the terms of dynamics.
-
-
-def _shaft_of(index: int, shaft: ShaftInput) -> Shaft:
-    """Return a shaft; a diameter is one section of steel, an inertia alone is rigid."""
-    x, y, z = shaft.origin_mm
-    sections = _sections(index, shaft)
-    with named(f"shafts[{index}]"):
-        return Shaft(
-            name=shaft.name,
-            origin=(x * MM, y * MM, z * MM),
-            inertia=declared_part(Inertia, shaft.inertia, "inertia") or Inertia(),
-            frame=shaft.frame,
-            sections=sections,
-            **in_si(Shaft, shaft),
-        )
+def _shafts(scene: SceneInput) -> tuple[Shaft, ...]:
+    """Return the shafts; a diameter is one section of steel, an inertia alone is rigid."""
+    shafts = []
+    for index, table in enumerate(scene.shafts):
+        sections = _sections(index, table)
+        with named(f"shafts[{index}]"):
+            inertia = part_of(Inertia, table.inertia, "inertia") or Inertia()
+            shafts.append(Shaft(**in_si(Shaft, table), inertia=inertia, sections=sections))
+    return tuple(shafts)
 
 
 def _sections(index: int, shaft: ShaftInput) -> tuple[BeamSection, ...]:
@@ -162,17 +125,82 @@ def _sections(index: int, shaft: ShaftInput) -> tuple[BeamSection, ...]:
     return tuple(sections)
 
 
-def _disc_of(index: int, disc: DiscInput) -> DiscBody:
-    field = f"discs[{index}]"
-    with named(field):
-        inertia = declared_part(Inertia, disc.inertia, "inertia") or Inertia()
-        placed = DiscBody(disc.name, disc.shaft, inertia=inertia, **in_si(DiscBody, disc))
-    if disc.cylinder is None:
+def _disc(table: DiscInput) -> DiscBody:
+    inertia = part_of(Inertia, table.inertia, "inertia") or Inertia()
+    placed = DiscBody(**in_si(DiscBody, table), inertia=inertia)
+    if table.cylinder is None:
         return placed
-    size = disc.cylinder
-    with named(f"{field}.cylinder"):
+    size = table.cylinder
+    with inside("cylinder"):
         steel = hollow_cylinder(size.outer_diameter_mm * MM, size.width_mm * MM, size.bore_diameter_mm * MM)
         return replace(placed, inertia=steel)
+
+
+def _gear(table: GearBodyInput, teeth: Teeth) -> GearBody:
+    inertia = part_of(Inertia, table.inertia, "inertia")
+    if inertia is None:
+        inertia = hollow_cylinder(teeth.pitch_diameter, teeth.face_width, table.bore_diameter_mm * MM)
+    own = {name: value for name, value in vars(teeth).items() if name != "pitch_diameter"}
+    return GearBody(**in_si(GearBody, table), **own, inertia=inertia)
+
+
+def _mesh(index: int, mesh: MeshInput, table: MeshTable, base_pitch: float) -> GearMesh:
+    with named(f"meshes[{index}]"):
+        return GearMesh(
+            **in_si(GearMesh, mesh), table=table, coast=_coast_flank(mesh.coast_flank, base_pitch)
+        )
+
+
+def _coast_flank(flank: CoastFlankInput | None, base_pitch: float) -> CoastFlank | None:
+    """Return the coast flank; teeth that are equally thick share the pitch less the backlash."""
+    if flank is None:
+        return None
+    backlash = flank.backlash_um * UM
+    thickness = flank.tooth_thickness
+    with named("coast_flank"):
+        return CoastFlank(backlash, 0.5 * (1.0 - backlash / base_pitch) if thickness is None else thickness)
+
+
+def _drive(table: DriveInput) -> ImposedRotation:
+    law: TimeLaw | AngleLaw
+    if table.angle_deg is not None:
+        law = AngleLaw(table.time_s, tuple(value * DEGREE for value in table.angle_deg))
+    else:
+        law = TimeLaw(table.time_s, tuple(v * RPM for v in table.speed_rpm or ()), table.course)
+    return ImposedRotation(**in_si(ImposedRotation, table) | {"speed": law})
+
+
+def _load_torque(table: LoadTorqueInput) -> LoadTorque:
+    law = TimeLaw(table.time_s, table.torque_n_m, table.course)
+    return LoadTorque(**in_si(LoadTorque, table) | {"torque": law})
+
+
+def _speed_torque(table: SpeedTorqueInput) -> SpeedTorque:
+    speed = [value * RPM for value in table.speed_rpm]
+    if table.kind == "table":
+        curve = SpeedCurve.table(speed, table.torque_n_m)
+    elif table.kind == "quadratic":
+        curve = SpeedCurve.quadratic(table.torque_n_m[0], speed[0])
+    else:
+        curve = SpeedCurve.constant(table.torque_n_m[0], speed[0])
+    return SpeedTorque(**in_si(SpeedTorque, table), curve=curve)
+
+
+def _force(table: ForceInput) -> AppliedForce:
+    return AppliedForce(**in_si(AppliedForce, table) | {"course": _course(table)})
+
+
+def _course(force: ForceInput) -> Course:
+    shaft, factor = force.of_shaft or force.shaft, force.factor or ()
+    if force.time_s is not None:
+        return TimeLaw(force.time_s, factor, force.course)
+    if force.speed_rpm is not None:
+        return BySpeed(SpeedCurve.table([value * RPM for value in force.speed_rpm], factor), shaft)
+    if force.orders is not None:
+        phases = force.phase_deg or (0.0,) * len(force.orders)
+        angles = tuple(phase * DEGREE for phase in phases)
+        return Orders(shaft, force.orders, force.amplitude or (), angles, force.mean)
+    return CONSTANT if force.turn_factor is None else Orders.table(shaft, force.turn_factor)
 
 
 def _has_bent_shafts(database: SteDatabase) -> bool:
@@ -297,68 +325,33 @@ def _assembled(
     """Return the scene with its parts checked one by one and together."""
     teeth = teeth_of(scene, facts)
     check_center_distances(scene, facts)
-    x, y, z = scene.gravity_m_per_s2
-    gears = tuple(_gear(i, gear, teeth[gear.name]) for i, gear in enumerate(scene.gears))
+    gears = _all(scene, "gears", lambda gear: _gear(gear, teeth[gear.name]))
     with named("outputs"):
         outputs = Outputs(**in_si(Outputs, scene.outputs))
     with named("integration"):
         integration = Integration(**in_si(Integration, scene.integration))
     with named(""):
         return Scene(
-            shafts=tuple(_shaft_of(i, shaft) for i, shaft in enumerate(scene.shafts)),
+            **in_si(Scene, scene, scene.run, scene.accuracy),
+            shafts=_shafts(scene),
             gears=gears,
-            discs=tuple(_disc_of(i, disc) for i, disc in enumerate(scene.discs)),
-            bushings=tuple(_bushing_of(i, bushing) for i, bushing in enumerate(scene.bushings)),
+            discs=_all(scene, "discs", _disc),
+            bushings=_all(scene, "bushings", bushing_of),
             meshes=meshes,
-            drives=tuple(_drive(i, drive) for i, drive in enumerate(scene.drives)),
-            planet_bearings=tuple(planet_bearing_of(i, b) for i, b in enumerate(scene.planet_bearings)),
-            couplings=tuple(_coupling(i, part) for i, part in enumerate(scene.couplings)),
-            speed_torques=tuple(speed_torque_of(i, part) for i, part in enumerate(scene.speed_torques)),
-            free_rotations=tuple(_free_rotation(i, part) for i, part in enumerate(scene.free_rotations)),
+            drives=_all(scene, "drives", _drive),
+            planet_bearings=_all(scene, "planet_bearings", _plain(PlanetBearing)),
+            couplings=_all(scene, "couplings", _plain(Coupling)),
+            speed_torques=_all(scene, "speed_torques", _speed_torque),
+            free_rotations=_all(scene, "free_rotations", _plain(FreeRotation)),
             housings=tuple(housings),
-            rolling_bearings=tuple(rolling_bearing_of(i, b) for i, b in enumerate(scene.rolling_bearings)),
+            rolling_bearings=_all(scene, "rolling_bearings", rolling_bearing_of),
             rolling_contacts=tuple(rolling_contacts_of(scene)),
             spring_curves=tuple(spring_curves_of(scene)),
-            loads=tuple(load_torque_of(i, load) for i, load in enumerate(scene.loads)),
-            forces=tuple(force_of(i, force) for i, force in enumerate(scene.forces)),
-            unbalances=tuple(unbalance_of(i, part) for i, part in enumerate(scene.unbalances)),
-            duration=scene.run.duration_s,
-            gravity=(x, y, z),
-            effects=dict(scene.effects),
+            loads=_all(scene, "loads", _load_torque),
+            forces=_all(scene, "forces", _force),
+            unbalances=_all(scene, "unbalances", _plain(Unbalance)),
             outputs=outputs,
             integration=integration,
-            on_violation=scene.run.on_violation,
-            tolerance=scene.accuracy.tolerance,
-        )
-
-
-def _gear(index: int, gear: GearBodyInput, teeth: Teeth) -> GearBody:
-    with named(f"gears[{index}]"):
-        inertia = declared_part(Inertia, gear.inertia, "inertia")
-        if inertia is None:
-            inertia = hollow_cylinder(teeth.pitch_diameter, teeth.face_width, gear.bore_diameter_mm * MM)
-        return GearBody(
-            name=gear.name,
-            shaft=gear.shaft,
-            teeth=teeth.teeth,
-            base_radius=teeth.base_radius,
-            face_width=teeth.face_width,
-            base_helix_angle=teeth.base_helix_angle,
-            inertia=inertia,
-            internal=teeth.internal,
-            **in_si(GearBody, gear),
-        )
-
-
-def _coupling(index: int, coupling: CouplingInput) -> Coupling:
-    with named(f"couplings[{index}]"):
-        return Coupling(
-            name=coupling.name,
-            first=coupling.first,
-            second=coupling.second,
-            stiffness=coupling.stiffness_matrix,
-            damping=coupling.damping_matrix,
-            **in_si(Coupling, coupling),
         )
 
 
@@ -374,47 +367,3 @@ def _with_all_planets(inputs: SceneInput, scene: Scene) -> Scene:
         with named(f"planets[{index}]"):
             scene = with_planets(scene, planets.planet, planets.number, angles, errors)
     return scene
-
-
-def _mesh(index: int, mesh: MeshInput, table: MeshTable, base_pitch: float) -> GearMesh:
-    with named(f"meshes[{index}]"):
-        return GearMesh(
-            name=mesh.name,
-            driver=mesh.driver,
-            driven=mesh.driven,
-            table=table,
-            technique=mesh.technique,
-            damping=mesh.damping_n_s_per_m,
-            damping_ratio=mesh.damping_ratio,
-            nominal_force=mesh.nominal_force_n,
-            position_offset=mesh.position_offset,
-            misalignment=mesh.misalignment_um * UM,
-            center_distance_change=mesh.center_distance_change_mm * MM,
-            coast=_coast_flank(mesh.coast_flank, base_pitch),
-            friction=mesh.friction,
-        )
-
-
-def _coast_flank(flank: CoastFlankInput | None, base_pitch: float) -> CoastFlank | None:
-    """Return the coast flank; teeth that are equally thick share the pitch less the backlash."""
-    if flank is None:
-        return None
-    backlash = flank.backlash_um * UM
-    thickness = flank.tooth_thickness
-    with named("coast_flank"):
-        return CoastFlank(backlash, 0.5 * (1.0 - backlash / base_pitch) if thickness is None else thickness)
-
-
-def _drive(index: int, drive: DriveInput) -> ImposedRotation:
-    with named(f"drives[{index}]"):
-        law: TimeLaw | AngleLaw
-        if drive.angle_deg is not None:
-            law = AngleLaw(drive.time_s, tuple(value * DEGREE for value in drive.angle_deg))
-        else:
-            law = TimeLaw(drive.time_s, tuple(v * RPM for v in drive.speed_rpm or ()), drive.course)
-        return ImposedRotation(drive.name, drive.shaft, law, **in_si(ImposedRotation, drive))
-
-
-def _free_rotation(index: int, rotation: FreeRotationInput) -> FreeRotation:
-    with named(f"free_rotations[{index}]"):
-        return FreeRotation(rotation.name, rotation.shaft, **in_si(FreeRotation, rotation))

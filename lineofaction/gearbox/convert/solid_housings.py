@@ -37,12 +37,11 @@ from dynamics.housings import (
 from dynamics.work_cost import announce
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
-from lineofaction.gearbox.convert.solid_file import solid_file
+from lineofaction.gearbox.convert.housings import solid_file
 from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.schemas.bearings import BushingInput, RollingBearingInput
+from lineofaction.gearbox.schemas.housings import HousingFootInput, HousingInput, HousingSeatInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.scene_bearings import RollingBearingInput
-from lineofaction.gearbox.schemas.scene_bodies import BushingInput
-from lineofaction.gearbox.schemas.scene_housings import HousingFootInput, HousingInput, HousingSeatInput
 from lineofaction.gearbox.units import MM
 from model_studies.progress import Progress, by_cost, silent
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from fe_contact.errors import FeContactError
 from fe_contact.geometry import Gear
-from lineofaction.gearbox.convert.checks import check_plain_case
+from lineofaction.gearbox.convert.case import check_plain_case
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.micro_geometry import micro_geometry
 from lineofaction.gearbox.from_rexs.placement import u_on_shaft

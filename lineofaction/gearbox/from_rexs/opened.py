@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 from lineofaction.gearbox.convert.case import case_json
-from lineofaction.gearbox.convert.toml import toml_text
 from lineofaction.gearbox.from_rexs.account import Assumption, Line, assumed
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
@@ -27,6 +26,7 @@ from lineofaction.gearbox.rexs.upgrade import Change, upgrade
 from lineofaction.gearbox.rexs.vocabulary import words
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.toml import toml_text
 
 # What a file has and its scene has not: every refused line of the account, by its reason.
 

@@ -9,66 +9,32 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from lineofaction.gearbox.schemas.case import (
-        AccuracyInput,
-        Case,
-        ErrorsInput,
-        LoadInput,
-        PairInput,
-        WheelInput,
-    )
-    from lineofaction.gearbox.schemas.gear import GearInput, ToothingInput
-    from lineofaction.gearbox.schemas.gear_body import MaterialInput
-    from lineofaction.gearbox.schemas.live_answer import LiveOutput
-    from lineofaction.gearbox.schemas.outline import OutlineBody
-    from lineofaction.gearbox.schemas.plan import PlanBody
-    from lineofaction.gearbox.schemas.query import QueryOutput
-    from lineofaction.gearbox.schemas.reading import read_model, read_table, validated
-    from lineofaction.gearbox.schemas.scene import SceneInput
+    from lineofaction.gearbox.schemas.case import Case as Case
+    from lineofaction.gearbox.schemas.live import LiveOutput as LiveOutput
+    from lineofaction.gearbox.schemas.plan import OutlineBody as OutlineBody
+    from lineofaction.gearbox.schemas.plan import PlanBody as PlanBody
+    from lineofaction.gearbox.schemas.query import QueryOutput as QueryOutput
+    from lineofaction.gearbox.schemas.reading import read_model as read_model
+    from lineofaction.gearbox.schemas.reading import read_table as read_table
+    from lineofaction.gearbox.schemas.reading import validated as validated
+    from lineofaction.gearbox.schemas.scene import SceneInput as SceneInput
 
-__all__ = [
-    "AccuracyInput",
-    "Case",
-    "ErrorsInput",
-    "GearInput",
-    "LiveOutput",
-    "LoadInput",
-    "MaterialInput",
-    "OutlineBody",
-    "PairInput",
-    "PlanBody",
-    "QueryOutput",
-    "SceneInput",
-    "ToothingInput",
-    "WheelInput",
-    "read_model",
-    "read_table",
-    "validated",
-]
-
-_HOME = {
-    "AccuracyInput": "case",
+HOMES = {
     "Case": "case",
-    "ErrorsInput": "case",
-    "GearInput": "gear",
-    "LiveOutput": "live_answer",
-    "LoadInput": "case",
-    "MaterialInput": "gear_body",
-    "OutlineBody": "outline",
-    "PairInput": "case",
+    "LiveOutput": "live",
+    "OutlineBody": "plan",
     "PlanBody": "plan",
     "QueryOutput": "query",
     "SceneInput": "scene",
-    "ToothingInput": "gear",
-    "WheelInput": "case",
     "read_model": "reading",
     "read_table": "reading",
     "validated": "reading",
 }
+"""The module of each name."""
 
 
 def __getattr__(name: str) -> object:
     """Import a name on first use."""
-    if name not in _HOME:
+    if name not in HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    return getattr(import_module(f"{__name__}.{HOMES[name]}"), name)

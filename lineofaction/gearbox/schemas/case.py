@@ -13,10 +13,17 @@ from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.ring_gear import RingGear
 from lineofaction.gearbox.schemas.declared import as_fields, figures, with_fields
-from lineofaction.gearbox.schemas.gear import SHARED, GearInput, ToothingInput
-from lineofaction.gearbox.schemas.gear_body import MaterialInput
-from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
-from lineofaction.gearbox.schemas.rules import at_most_one_of, both, exactly_one_of, given, left_out, stated
+from lineofaction.gearbox.schemas.gear import SHARED, GearInput, MaterialInput, ToothingInput
+from lineofaction.gearbox.schemas.model import (
+    BoundaryModel,
+    at_most_one_of,
+    both,
+    exactly_one_of,
+    given,
+    left_out,
+    refuse,
+    stated,
+)
 
 # The driven gear of the case file: an external gear, or a ring gear with the pinion inside it.
 

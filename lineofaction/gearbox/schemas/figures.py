@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -84,3 +84,38 @@ class RunFigures(Figures):
     attributes: Json
     dimensions: dict[str, int]
     variables: dict[str, RunVariable]
+
+
+# Where the bearing forces of a study of housings come from.
+
+
+class BearingForces(Part):
+    """A linear response, or orders of a run: how its windows hold. Lists are by order, then by window."""
+
+    source: str
+    time_s: list[float] | None = None
+    window_pitches: int | None = None
+    windows_left_out: int | None = None
+    speed_change: list[float] | None = None
+    smearing: list[list[float]] | None = None
+    remainder: dict[str, list[float]] | None = None
+    other_housings: list[str] | None = None
+
+
+# Cost of work on housings, in figures.
+
+
+class PredictedCost(Part):
+    """Predicted CPU seconds on the host that computed the result, and bytes of the largest working set."""
+
+    cpu_seconds: Annotated[float, Source("seconds")]
+    bytes: float
+
+
+class HousingCost(Part):
+    """Cost of work on a housing: bytes are null where the process had been as large before."""
+
+    predicted_cpu_seconds: Annotated[float, Source("predicted_seconds")]
+    predicted_bytes: float
+    cpu_seconds: Annotated[float, Source("seconds")]
+    bytes: float | None

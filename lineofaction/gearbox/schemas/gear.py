@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import ConfigDict, Field, Strict, model_validator
 
+from fe_contact.body import Shaft
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.toothing import MATING, Toothing
+from fe_contact.material import Material
 from lineofaction.gearbox.schemas.declared import (
     Figure,
     as_fields,
@@ -18,8 +20,20 @@ from lineofaction.gearbox.schemas.declared import (
     parts_of,
     with_fields,
 )
-from lineofaction.gearbox.schemas.gear_body import GearShaftInput, MaterialInput
-from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
+from lineofaction.gearbox.schemas.model import BoundaryModel, Spelling, at_most_one_of, refuse, stated
+
+
+@with_fields(declared_in(Material))
+class MaterialInput(BoundaryModel):
+    """Linear elastic, isotropic material."""
+
+
+@with_fields(declared_in(Shaft))
+class GearShaftInput(BoundaryModel):
+    """A round shaft on two bearings that carries a gear."""
+
+
+# Gear of the case file: toothing and flank modifications (ISO 21771 names, units in the names).
 
 GridAxis = Annotated[
     tuple[Annotated[float, Field(ge=-10_000.0, le=10_000.0)], ...],
@@ -115,3 +129,45 @@ class ToothingInput(_ToothingFigures):
 @with_fields(as_fields(of_gear(Gear)))
 class GearInput(ToothingInput):
     """One external gear."""
+
+
+# The load and the alignment at which the flanks of a case are looked at.
+
+
+class FlankPoint(BoundaryModel):
+    """One load and one alignment; what is left out is taken from the case."""
+
+    model_config = ConfigDict(json_schema_extra=stated(at_most_one_of("torque_n_m", "normal_force_n")))
+
+    torque_n_m: Annotated[float | None, Spelling("--torque")] = Field(
+        default=None,
+        title="Torque on the pinion, N m",
+        ge=1e-9,
+        le=1e9,
+        description="Torque on the driving gear in N m; left out, with no force: the highest of the case",
+        examples=[100.0],
+    )
+    normal_force_n: Annotated[float | None, Spelling("--force")] = Field(
+        default=None, ge=1e-9, le=1e9, description="Normal tooth force in N, instead of a torque"
+    )
+    misalignment_um: float | None = Field(
+        default=None,
+        title="Misalignment, µm",
+        ge=-10_000.0,
+        le=10_000.0,
+        description="Misalignment in um; left out: the case's value nearest to 0",
+    )
+    center_distance_change_mm: float | None = Field(
+        default=None,
+        ge=-10.0,
+        le=10.0,
+        description="Change of the center distance in mm; left out: the case's value nearest to 0",
+    )
+
+    @model_validator(mode="after")
+    def _one_load(self) -> Self:
+        """At most one kind of load."""
+        if self.torque_n_m is not None and self.normal_force_n is not None:
+            advice = "Give a torque or a normal force."
+            refuse("normal_force_n", self.normal_force_n, "left out when torque_n_m is given", advice)
+        return self

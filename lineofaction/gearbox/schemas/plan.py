@@ -1,12 +1,43 @@
-"""What a run will be and cost: the answer to a plan."""
+"""What is said of an input before anything is computed: warnings, plan and cost, drawing."""
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Iterable
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field
 
-from lineofaction.gearbox.schemas.warning import InputWarning
+
+class InputWarning(BaseModel):
+    """A value that is accepted and far from practice, or a part that an import left out of a scene."""
+
+    check: str = Field(description="Name of the check")
+    field: str
+    value: float | None = Field(description="null: a part that is left out")
+    unit: str
+    low: float | None = Field(description="Lowest plausible value; null: none")
+    high: float | None = Field(description="Highest plausible value; null: none")
+    reason: str
+    source: str = Field(description="Where the bound comes from")
+    whole: str = Field(description="What a question about the unit ends with; may be empty")
+    message: str = Field(description="All of it as a sentence")
+
+
+def left_out_warnings(texts: Iterable[str]) -> list[dict[str, Any]]:
+    """Return what an import left out of a scene as warnings."""
+    nothing = {"value": None, "unit": "", "low": None, "high": None, "reason": "", "source": "", "whole": ""}
+    return [
+        {
+            "check": "left_out",
+            "field": f"left_out[{index}]",
+            **nothing,
+            "message": f"left out of the scene: {text}",
+        }
+        for index, text in enumerate(texts)
+    ]
+
+
+# What a run will be and cost: the answer to a plan.
 
 # The effect ledger as answers have it.
 
@@ -116,3 +147,36 @@ class PlanBody(BaseModel):
     plan: PlannedRun = Field(description="Meshes, patches, positions and loads")
     warnings: list[InputWarning]
     effect_ledger: list[LedgerEntry] = Field(description="Decision and reason for each effect")
+
+
+# The drawing of a pair: the answer to an outline.
+
+Point = Annotated[tuple[float, ...], Field(min_length=2, max_length=2)]
+
+
+class GearOutline(BaseModel):
+    """One tooth of a gear with half a space on either side, in mm, center at the origin, tooth on +y."""
+
+    teeth: int
+    tooth_mm: list[Point]
+    radius_mm: dict[str, float] = Field(description="tip, root, base, reference, held")
+    angle_deg: float = Field(description="By which the whole is turned counter-clockwise")
+    centre_mm: Point
+    turn: float = Field(description="Sense of rotation, 1 counter-clockwise")
+
+
+class PathOfContact(BaseModel):
+    """The usable path of contact."""
+
+    points_mm: dict[str, Point] = Field(description="A to E")
+    base_pitch_mm: float
+
+
+class OutlineBody(BaseModel):
+    """Both gears at position 0, seen from +z, x to the right, and the main figures of the pair."""
+
+    pinion: GearOutline
+    wheel: GearOutline
+    internal: bool
+    path_of_contact: PathOfContact
+    figures: dict[str, float] = Field(description="Contact ratios, working pressure angle ..., by name")

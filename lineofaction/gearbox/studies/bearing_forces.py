@@ -12,7 +12,7 @@ from dynamics.scene import Scene
 from dynamics.vibration import ReportedHarmonics
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.schemas.speeds import OverOrders
+from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.listen.through_housing import other_housings
 from lineofaction.gearbox.studies.response.run import response_of

@@ -12,7 +12,7 @@ from dynamics.errors import DynamicsError
 from dynamics.results import RunResult
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.stamp import stamped
+from lineofaction.gearbox.convert.result_files import stamped
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.report.drawing.page import Page

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from bounds import engineering
 from fe_contact.analysis import LoadDistribution
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.effect_lines import assumption_lines
+from lineofaction.gearbox.convert.effects import assumption_lines
 from lineofaction.gearbox.units import UM
 from lineofaction.report.drawing.figure import Figure, number
 from lineofaction.report.drawing.page import Headline, Page, Part, Section

@@ -8,7 +8,7 @@ import numpy as np
 
 from bounds import leftover
 from dynamics.linearize import ModalAnalysis
-from lineofaction.gearbox.convert.run_effects import model_lines
+from lineofaction.gearbox.convert.effects import model_lines
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,

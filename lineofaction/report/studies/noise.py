@@ -10,7 +10,7 @@ import numpy as np
 
 from dynamics.acoustics import OrderPower, a_weighting, sound_power_level
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
-from lineofaction.gearbox.convert.run_effects import model_lines
+from lineofaction.gearbox.convert.effects import model_lines
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, HeatMap, Line, Panel, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Part, Section

@@ -10,7 +10,7 @@ import numpy as np
 from bounds import engineering
 from fe_contact.microgeometry import Optimization
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
-from lineofaction.gearbox.convert.vocabulary import boundary_name
+from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.units import UM, factor
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (

@@ -8,7 +8,7 @@ import numpy as np
 
 from bounds import engineering, leftover
 from dynamics.linearize import ForcedResponse, peaks
-from lineofaction.gearbox.convert.run_effects import model_lines
+from lineofaction.gearbox.convert.effects import model_lines
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number

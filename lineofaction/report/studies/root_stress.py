@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from bounds import engineering
-from lineofaction.gearbox.convert.effect_lines import assumption_lines
+from lineofaction.gearbox.convert.effects import assumption_lines
 from lineofaction.gearbox.studies.root_stress.run import GEARS, Roots, root_stress_json
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from fe_contact.microgeometry import ToleranceStudy
-from lineofaction.gearbox.convert.vocabulary import boundary_name
+from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.units import UM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number, thousands

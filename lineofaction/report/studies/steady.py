@@ -9,7 +9,7 @@ import numpy as np
 from bounds import leftover
 from dynamics.periodic import SteadyStates
 from dynamics.periodic.steady_states import BRANCH, DOWN, UP
-from lineofaction.gearbox.convert.run_effects import model_lines
+from lineofaction.gearbox.convert.effects import model_lines
 from lineofaction.gearbox.studies.steady.run import KINDS, facts, status_name
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (

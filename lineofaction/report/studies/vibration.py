@@ -10,7 +10,7 @@ import numpy as np
 from bounds.types import FloatArray
 from dynamics.vibration import VibrationAnalysis, vibration_level
 from dynamics.vibration.vibration_analysis import Shares
-from lineofaction.gearbox.convert.run_effects import model_lines
+from lineofaction.gearbox.convert.effects import model_lines
 from lineofaction.gearbox.studies.vibration.run import MM_PER_S, HousingVibrationResult
 from lineofaction.gearbox.units import MM, RPM
 from lineofaction.report.drawing import palette

@@ -11,7 +11,7 @@ import numpy as np
 from bounds import leftover
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
-from lineofaction.gearbox.convert.effect_lines import by_size, influence_place, influence_words, trifles_title
+from lineofaction.gearbox.convert.effects import by_size, influence_place, influence_words, trifles_title
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
 from lineofaction.report.drawing.page import Headline, Part, Section

@@ -14,8 +14,7 @@ from bad_inputs import GOOD
 
 from bounds import Kind
 from fe_contact import AllowedError, FlankModification
-from lineofaction.gearbox.convert.case import analysis_options, case_json, gear_pair, table_axes
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import analysis_options, case_json, check_case, gear_pair, table_axes
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.declared import figures

@@ -8,10 +8,9 @@ from typing import Any
 
 import pytest
 
-from lineofaction.gearbox.convert.outline import outline_json
+from lineofaction.gearbox.convert.live import outline_json
 from lineofaction.gearbox.schemas import Case, read_model
-from lineofaction.gearbox.schemas.outline import OutlineBody
-from lineofaction.gearbox.schemas.plan import PlanBody
+from lineofaction.gearbox.schemas.plan import OutlineBody, PlanBody
 from service.live.work import live_plan
 
 EXAMPLES = Path(__file__).parents[3] / "service" / "page" / "examples"

@@ -12,7 +12,7 @@ from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis import plan_run
 from fe_contact.options import AnalysisOptions, TableAxes
-from lineofaction.gearbox.convert.effect_lines import assumption_lines, ledger_lines, run_lines
+from lineofaction.gearbox.convert.effects import assumption_lines, ledger_lines, run_lines
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 

@@ -11,8 +11,7 @@ import pytest
 from bad_inputs import GOOD
 from spur_case import spur_case
 
-from lineofaction.gearbox.convert.case import case_json, gear_pair
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import case_json, check_case, gear_pair
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput

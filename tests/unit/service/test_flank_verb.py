@@ -15,7 +15,7 @@ from lineofaction.cli.commands import app
 from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.gearbox.convert.case import case_at
 from lineofaction.gearbox.schemas import Case, validated
-from lineofaction.gearbox.schemas.flank import FlankPoint
+from lineofaction.gearbox.schemas.gear import FlankPoint
 
 SMALL = (
     SPUR

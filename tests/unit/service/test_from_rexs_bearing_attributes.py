@@ -8,7 +8,7 @@ from pathlib import Path
 from rexs_bearing_units import BALL, ROW, inside, on_lines
 
 from lineofaction.gearbox.from_rexs.opened import opened
-from lineofaction.gearbox.schemas.scene_bearings import BallRowInput, RollerRowInput, RollingBearingInput
+from lineofaction.gearbox.schemas.bearings import BallRowInput, RollerRowInput, RollingBearingInput
 
 ROLES = {"support_vector", "u_axis_vector", "w_axis_vector", "reference_component_for_position"}
 PAGE = Path(__file__).parents[3] / "docs" / "reference" / "rexs-bearings.md"

@@ -11,7 +11,7 @@ from dynamics.bearings.loaded_bearing import LoadedBearing
 from lineofaction.gearbox.convert.scene import rolling_bearing_of
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
 from lineofaction.gearbox.rexs.files import read_rexs
-from lineofaction.gearbox.schemas.scene_bearings import RollingBearingInput
+from lineofaction.gearbox.schemas.bearings import RollingBearingInput
 from tests.fakes.deflected_unit import deflection_of_unit
 from tests.fakes.opened_unit import said
 from tests.fakes.rexs_stage import relation
@@ -34,7 +34,7 @@ def why(unit: OpenedUnit, number: int) -> str:
 
 def thrusts(bearing: RollingBearingInput) -> tuple[float, float]:
     """Return the axial force of a bearing on a shaft that is pushed by 100 um along z, and against it."""
-    made = rolling_bearing_of(0, bearing)
+    made = rolling_bearing_of(bearing)
     loaded = LoadedBearing(made.row, locating=made.locating)
     moved = ((2e-5, 0.0, z, 0.0, 0.0) for z in (1e-4, -1e-4))
     force = [float(loaded.evaluate(d).force[2]) for d in moved]

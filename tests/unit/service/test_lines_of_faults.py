@@ -14,7 +14,7 @@ from lineofaction.cli.commands import app
 from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
-from lineofaction.gearbox.schemas.lines import line_of
+from lineofaction.gearbox.schemas.reading import line_of
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR = EXAMPLES / "palermo_spur_20_20.toml"

@@ -18,8 +18,8 @@ from dynamics.linearize import ModalAnalysis, modal_analysis
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.input_file import number_list
 from lineofaction.gearbox.problems import EXIT_FAILED, BadInput
-from lineofaction.gearbox.schemas.number_list import number_list
 from lineofaction.gearbox.studies.modes.run import facts
 from lineofaction.gearbox.subjects import scene_of
 from lineofaction.report.document import write_report

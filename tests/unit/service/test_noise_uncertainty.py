@@ -18,7 +18,7 @@ from lineofaction.cli.simulate import tabled_scene
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
-from lineofaction.gearbox.schemas.noise_ranges import RANGES, NoiseRanges
+from lineofaction.gearbox.schemas.studied import RANGES, NoiseRanges
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.noise.flank_figures import flank_scenes
 from lineofaction.gearbox.studies.noise.uncertainty import (

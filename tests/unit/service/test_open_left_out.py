@@ -14,12 +14,12 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 from lineofaction.cli.commands import app as loa
-from lineofaction.gearbox.convert.stamp import stamped
-from lineofaction.gearbox.convert.toml import toml_text
+from lineofaction.gearbox.convert.result_files import stamped
 from lineofaction.gearbox.from_rexs.opened import unit_of_rexs
 from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.toml import toml_text
 from service.schemas.answers import UnitBody
 from tests.fakes.faulty_units import LEFT_OUT, REFUSED, TWO_STAGE
 

@@ -10,10 +10,10 @@ import pytest
 from bounds import PlausibilityWarning
 from fe_contact.compliance.flank import LARGEST_ROUNDING, disc_rounding
 from fe_contact.material import Material
-from lineofaction.gearbox.convert.checks import THICK, check_case, check_plain_case
+from lineofaction.gearbox.convert.case import THICK, check_case, check_plain_case
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.flank import FlankPoint
+from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.schemas.reading import validated
 
 MOST_LAYERS = 36

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import check_case
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.plausibility import scene_warnings
 from lineofaction.gearbox.convert.scene import check_scene
-from lineofaction.gearbox.convert.topology import facts_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.scene import SceneInput

@@ -11,8 +11,7 @@ import pytest
 
 from fe_contact.analysis import analyze
 from fe_contact.geometry import InternalGearPair, RingGear
-from lineofaction.gearbox.convert.case import case_json, gear_pair
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import case_json, check_case, gear_pair
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.report.tables.pair import iso_mesh_stiffness, pair_of

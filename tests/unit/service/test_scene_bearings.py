@@ -15,18 +15,14 @@ import pytest
 from small_table import small_table
 
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import BallBearing, RollerBearing
+from dynamics.bearings import BallBearing, PlanetBearing, RollerBearing
 from dynamics.bearings.catalog import from_catalog
 from dynamics.housings import ReducedHousing, ReducedMatrices, Ring, SeatFrame, housing_of_matrices
 from dynamics.integrators import static_equilibrium
 from dynamics.mechanism.bodies import modal_housing
 from dynamics.scene import Scene
-from lineofaction.gearbox.convert.scene import (
-    dynamic_scene,
-    planet_bearing_of,
-    rolling_contacts_of,
-    spring_curves_of,
-)
+from lineofaction.gearbox.convert.declared import in_si
+from lineofaction.gearbox.convert.scene import dynamic_scene, rolling_contacts_of, spring_curves_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -127,7 +123,7 @@ def test_planet_bearings_have_all_that_bushings_have() -> None:
     (contact_law,), (curve_law,) = rolling_contacts_of(given), spring_curves_of(given)
     assert (contact_law.bushing, contact_law.clearance) == ("pin", pytest.approx(20e-6, rel=1e-12, abs=0.0))
     assert (curve_law.bushing, curve_law.direction) == ("pin", "tilt_y")
-    bearing = planet_bearing_of(0, given.planet_bearings[0])
+    bearing = PlanetBearing(**in_si(PlanetBearing, given.planet_bearings[0]))
     np.testing.assert_array_equal(bearing.stiffness, MATRIX)
     np.testing.assert_array_equal(bearing.damping, MATRIX)
     for field in ("rolling_contact", "spring_curves", "stiffness_matrix"):

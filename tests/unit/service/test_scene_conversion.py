@@ -13,8 +13,8 @@ import pytest
 from small_table import BASE_RADIUS, small_table
 
 from dynamics.scene import Scene
+from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import dynamic_scene
-from lineofaction.gearbox.convert.topology import facts_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput

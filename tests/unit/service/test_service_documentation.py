@@ -13,17 +13,7 @@ from pydantic import BaseModel
 from lineofaction.cli.commands import app as loa
 from lineofaction.gearbox import problems
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.schemas import (
-    case,
-    gear,
-    scene,
-    scene_bearings,
-    scene_bodies,
-    scene_housings,
-    scene_loads,
-    scene_meshes,
-    scene_motion,
-)
+from lineofaction.gearbox.schemas import bearings, bodies, case, gear, housings, loads, meshes, scene
 from service.settings import Settings, load_settings
 
 DOCS = Path(__file__).parents[3] / "docs"
@@ -36,8 +26,7 @@ def page(name: str) -> str:
 
 def models() -> list[type[BaseModel]]:
     """Return the tables of case and scene files."""
-    modules = (case, gear, scene, scene_bearings, scene_bodies, scene_housings)
-    modules += (scene_loads, scene_meshes, scene_motion)
+    modules = (case, gear, scene, bearings, bodies, housings, loads, meshes)
     found = [vars(module).values() for module in modules]
     return [m for group in found for m in group if inspect.isclass(m) and issubclass(m, BaseModel)]
 

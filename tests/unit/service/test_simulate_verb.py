@@ -15,7 +15,7 @@ from dynamics.types import RunStatus
 from lineofaction.cli.commands import app
 from lineofaction.cli.guard import until_interrupted
 from lineofaction.cli.simulate import _run, run_headlines
-from lineofaction.gearbox.convert.run_effects import effect_lines
+from lineofaction.gearbox.convert.effects import effect_lines
 
 SCENE = gear_pair_scene(duration=0.02)
 

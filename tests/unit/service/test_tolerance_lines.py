@@ -12,7 +12,7 @@ from typer.testing import CliRunner, Result
 from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
 from lineofaction.cli.analyze import tolerance_lines, tolerance_warnings
 from lineofaction.cli.commands import app
-from lineofaction.gearbox.convert.drafts import draft_line
+from lineofaction.gearbox.convert.answers import draft_line
 from lineofaction.gearbox.problems import EXIT_WARNINGS
 from service.worker.simulation_work import DraftedProgress
 

@@ -6,9 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
-from lineofaction.gearbox.schemas.case_or_scene import Name
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
-from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.model import BoundaryModel, Name
 
 
 class Inputs(BoundaryModel):

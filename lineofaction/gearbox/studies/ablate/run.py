@@ -12,8 +12,13 @@ from fe_contact.analysis.studies.ablation import Ablation, ablate
 from fe_contact.effects import EFFECTS
 from fe_contact.errors import chosen
 from fe_contact.options import Run
-from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair, table_axes
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import (
+    analysis_options,
+    boundary_errors,
+    check_case,
+    gear_pair,
+    table_axes,
+)
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.scene import SceneInput

@@ -10,10 +10,8 @@ from dynamics.settings import load_case
 from dynamics.settings.case_force import CaseForce
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
-from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
-from lineofaction.gearbox.schemas.rules import own_or_factor, stated
-from lineofaction.gearbox.schemas.scene_loads import ACTING, Vector
-from lineofaction.gearbox.schemas.scene_types import Name
+from lineofaction.gearbox.schemas.loads import ACTING, Vector
+from lineofaction.gearbox.schemas.model import BoundaryModel, Name, own_or_factor, refuse, stated
 
 MOST_CASES = 64
 MOST_FORCES = 256

@@ -20,7 +20,7 @@ from dynamics.deflection import (
     life_duration,
 )
 from dynamics.settings.load_case import COAST
-from lineofaction.gearbox.convert.toml import toml_text
+from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.studies.deflect import DeflectionFigures
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
 from lineofaction.gearbox.studies.figures import figures_of

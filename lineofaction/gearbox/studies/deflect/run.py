@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 import numpy as np
 
@@ -23,8 +22,8 @@ from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.scene_meshes import MeshInput
 from lineofaction.gearbox.studies.computation import Computation, Means
 from lineofaction.gearbox.studies.deflect import CaseForceInput, Inputs
 from lineofaction.gearbox.studies.deflect.agreement import Agreement, MeshContact, in_agreement, mesh_contact
@@ -79,14 +78,13 @@ def load_cases(inputs: Inputs) -> tuple[LoadCase, ...]:
     for index, case in enumerate(inputs.load_cases):
         with inside(f"load_cases[{index}]"):
             forces = tuple(_force(k, force) for k, force in enumerate(case.forces))
-            cases.append(LoadCase(case.name, forces=forces, **in_si(LoadCase, case)))
+            cases.append(LoadCase(**in_si(LoadCase, case), forces=forces))
     return tuple(cases)
 
 
 def _force(index: int, force: CaseForceInput) -> CaseForce:
     with inside(f"forces[{index}]"):
-        own: Any = {"force": force.force_n, "moment": force.moment_n_m}
-        return CaseForce(force.name, **own, **in_si(CaseForce, force))
+        return CaseForce(**in_si(CaseForce, force))
 
 
 def _check_cases(scene: SceneInput, inputs: Inputs) -> None:

@@ -5,14 +5,19 @@ from __future__ import annotations
 from dataclasses import replace
 
 from bounds.types import Json
+from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
 from dynamics.accuracy import Frontier as SceneFrontier
 from dynamics.accuracy import frontier as frontier_of_scene
-from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
 from fe_contact.analysis.studies.accuracy_study import FIDELITIES
 from fe_contact.analysis.studies.frontier import Frontier, frontier
 from fe_contact.errors import chosen
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, study_options, table_axes
-from lineofaction.gearbox.convert.checks import check_case
+from lineofaction.gearbox.convert.case import (
+    boundary_errors,
+    check_case,
+    gear_pair,
+    study_options,
+    table_axes,
+)
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case

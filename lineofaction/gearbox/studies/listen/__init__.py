@@ -7,10 +7,8 @@ from typing import Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.figures import Figures, Part
-from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
-from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
-from lineofaction.gearbox.schemas.scene_types import Point
-from lineofaction.gearbox.schemas.speeds import RunHash
+from lineofaction.gearbox.schemas.model import BoundaryModel, Point, exactly_one_of, refuse, stated
+from lineofaction.gearbox.schemas.studied import RunHash
 
 _PLACES = ("microphone_mm", "point")
 

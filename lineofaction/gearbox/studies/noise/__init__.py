@@ -6,11 +6,16 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lineofaction.gearbox.schemas.bearing_forces import BearingForces
-from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
-from lineofaction.gearbox.schemas.housing_costs import HousingCost, PredictedCost
-from lineofaction.gearbox.schemas.noise_ranges import NoiseRanges
-from lineofaction.gearbox.schemas.speeds import OverSpeedsOrRun
+from lineofaction.gearbox.schemas.figures import (
+    BearingForces,
+    Figures,
+    HousingCost,
+    Json,
+    Part,
+    PredictedCost,
+    Source,
+)
+from lineofaction.gearbox.schemas.studied import NoiseRanges, OverSpeedsOrRun
 from lineofaction.gearbox.studies.equilibrium import Equilibrium
 
 

@@ -23,7 +23,7 @@ from dynamics.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
-from lineofaction.gearbox.schemas.noise_ranges import RANGES, NoiseRanges
+from lineofaction.gearbox.schemas.studied import RANGES, NoiseRanges
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.noise import Inputs
 from lineofaction.gearbox.studies.noise.flank_figures import flank_figures, flank_scenes

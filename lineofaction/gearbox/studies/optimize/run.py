@@ -30,9 +30,9 @@ from fe_contact.microgeometry.confirmation import ConfirmedDesign, HarrisMap
 from fe_contact.microgeometry.search import never
 from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair
-from lineofaction.gearbox.convert.toml import toml_text
-from lineofaction.gearbox.convert.vocabulary import boundary_name
+from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.studies.computation import Computation, Means, with_defaults
 from lineofaction.gearbox.studies.optimize import (
     GearScatterInput,

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
-from lineofaction.gearbox.schemas.housing_costs import HousingCost
-from lineofaction.gearbox.schemas.speeds import OverOrders
+from lineofaction.gearbox.schemas.figures import Figures, HousingCost, Json, Part, Source
+from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.equilibrium import Equilibrium
 
 

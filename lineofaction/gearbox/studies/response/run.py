@@ -10,7 +10,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ForcedResponse, PowerBalance, forced_response, peaks
 from dynamics.scene import Scene
 from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.schemas.speeds import OverOrders
+from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.computation import Computation, Means
 from lineofaction.gearbox.studies.equilibrium import equilibrium_figures
 from lineofaction.gearbox.studies.figures import Row, figures_of, rows

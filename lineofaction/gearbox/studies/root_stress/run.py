@@ -13,10 +13,10 @@ from lineofaction.gearbox.convert.case import (
     analysis_options,
     boundary_errors,
     case_at,
+    check_case,
     gear_pair,
     operating_point,
 )
-from lineofaction.gearbox.convert.checks import check_case
 from lineofaction.gearbox.convert.plausibility import phrased_for
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.studies.computation import Computation, Means

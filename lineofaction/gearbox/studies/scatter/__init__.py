@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
-from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.schemas.spelling import Spelling
+from lineofaction.gearbox.schemas.model import BoundaryModel, Spelling
 
 
 class Inputs(BoundaryModel):

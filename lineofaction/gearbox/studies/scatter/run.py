@@ -8,7 +8,7 @@ from fe_contact.microgeometry import Sampling, ToleranceStudy, iso1328_tolerance
 from fe_contact.microgeometry.tolerance_study import toleranced
 from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair
-from lineofaction.gearbox.convert.vocabulary import boundary_name
+from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.studies.computation import Computation, Means, with_defaults

@@ -6,9 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
-from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
-from lineofaction.gearbox.schemas.housing_costs import HousingCost
-from lineofaction.gearbox.schemas.speeds import MOST_SPEEDS, OverSpeeds, TurningSpeed
+from lineofaction.gearbox.schemas.figures import Figures, HousingCost, Json, Part, Source
+from lineofaction.gearbox.schemas.studied import MOST_SPEEDS, OverSpeeds, TurningSpeed
 
 
 class Inputs(OverSpeeds):

@@ -7,9 +7,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import ConfigDict, Field, Strict, model_validator
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
-from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
-from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
-from lineofaction.gearbox.schemas.scene_types import Name
+from lineofaction.gearbox.schemas.model import BoundaryModel, Name, exactly_one_of, refuse, stated
 
 Value = Annotated[float, Field(ge=-1e20, le=1e20)]
 Values = Annotated[tuple[Value, ...], Strict(False)]

@@ -32,11 +32,11 @@ from lineofaction.gearbox.convert.case import (
     gear_pair,
     operating_point,
 )
+from lineofaction.gearbox.input_file import number_list
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.declared import Figure, figures
-from lineofaction.gearbox.schemas.flank import FlankPoint
-from lineofaction.gearbox.schemas.number_list import number_list
+from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.studies.computation import Computation, Means
 from lineofaction.gearbox.studies.result_file import record_file
 from lineofaction.gearbox.studies.sweep import Inputs

@@ -6,10 +6,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from lineofaction.gearbox.schemas.bearing_forces import BearingForces
-from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
-from lineofaction.gearbox.schemas.housing_costs import HousingCost
-from lineofaction.gearbox.schemas.speeds import OverSpeedsOrRun
+from lineofaction.gearbox.schemas.figures import BearingForces, Figures, HousingCost, Json, Part, Source
+from lineofaction.gearbox.schemas.studied import OverSpeedsOrRun
 
 
 class Inputs(OverSpeedsOrRun):

@@ -35,7 +35,7 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES, Study
-from lineofaction.gearbox.schemas.warning import InputWarning
+from lineofaction.gearbox.schemas.plan import InputWarning
 from lineofaction.report.document.content import page_json, page_of, stored_figures
 from lineofaction.report.document.inputs import read_inputs
 from lineofaction.report.presentation import presentation_of

@@ -8,10 +8,15 @@ from typing import Annotated, Literal, Self
 from pydantic import ConfigDict, Field, Strict, model_validator
 
 from lineofaction.gearbox.schemas.case import Case
-from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
+from lineofaction.gearbox.schemas.model import (
+    BoundaryModel,
+    Name,
+    at_most_one_of,
+    exactly_one_of,
+    refuse,
+    stated,
+)
 from lineofaction.gearbox.schemas.result_kinds import HASH
-from lineofaction.gearbox.schemas.rules import at_most_one_of, exactly_one_of, stated
-from lineofaction.gearbox.schemas.scene_types import Name
 
 # A mesh in closed form: its teeth, and its stiffness and transmission error over a base pitch.
 

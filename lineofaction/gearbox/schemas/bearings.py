@@ -1,4 +1,4 @@
-"""The bodies of a scene and what joins them: shafts, gears, bearings, couplings, planets."""
+"""Bearings of a scene: rolling bearings by their rows, bushings, and bearings of planets."""
 
 from __future__ import annotations
 
@@ -7,40 +7,73 @@ from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, Strict, model_validator
 
+from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
 from dynamics.bearings.bushing import Bushing
 from dynamics.bearings.planet_bearing import PlanetBearing
-from dynamics.joints.coupling import Coupling
-from dynamics.shafts.gear_body import GearBody
-from dynamics.shafts.inertia import Inertia
-from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
-from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
-from lineofaction.gearbox.schemas.rules import both, given, left_out, stated
-from lineofaction.gearbox.schemas.scene_types import Coordinate, CouplingRows, Name, Number, SeatRows
+from dynamics.bearings.rolling_bearing import RollingBearing
+from lineofaction.gearbox.schemas.declared import declared_in, with_fields
+from lineofaction.gearbox.schemas.model import (
+    BoundaryModel,
+    Name,
+    Number,
+    SeatRows,
+    both,
+    exactly_one_of,
+    given,
+    left_out,
+    refuse,
+    stated,
+)
+
+ROWS = ("ball", "roller", "catalog")
 
 
-@with_fields(declared_in(Inertia, all_given=True))
-class InertiaInput(BoundaryModel):
-    """Inertia of a body of revolution about its own center of mass."""
+@with_fields(declared_in(BallBearing))
+class BallRowInput(BoundaryModel):
+    """A row of balls in grooves: a deep groove ball bearing, or one of angular contact."""
 
 
-@with_fields(declared_in(GearBody))
-class GearBodyInput(BoundaryModel):
-    """A gear on a shaft; its teeth, base radius, helix and face width come from the mesh it takes part in."""
+@with_fields(declared_in(RollerBearing))
+class RollerRowInput(BoundaryModel):
+    """A row of rollers: a cylindrical roller bearing, or a tapered one."""
 
-    name: Name = Field(description="Name of the gear", examples=["pinion"])
-    shaft: Name = Field(description="The shaft that carries it", examples=["input"])
-    bore_diameter_mm: float = Field(
-        default=0.0,
-        ge=0.0,
-        le=1e5,
-        description="Bore in mm of the steel cylinder from which the inertia follows",
-        examples=[40.0],
-    )
-    inertia: InertiaInput | None = Field(
+
+@with_fields(declared_in(CatalogLine))
+class CatalogLineInput(BoundaryModel):
+    """The line of a deep groove ball bearing in a catalog, from which its balls are estimated."""
+
+
+@with_fields(declared_in(RollingBearing))
+class RollingBearingInput(BoundaryModel):
+    """One row of rolling elements between a shaft and the ground, by its geometry."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*ROWS)))
+
+    name: Name = Field(description="Name of the bearing", examples=["input left"])
+    shaft: Name = Field(description="The shaft it carries", examples=["input"])
+    position_mm: float
+    ball: BallRowInput | None = Field(
         default=None,
-        description="Inertia; left out: a steel cylinder of pitch diameter and face width",
-        examples=[{"mass_kg": 0.7, "polar_kg_m2": 7e-4, "transverse_kg_m2": 4e-4}],
+        description="Its balls and grooves",
+        examples=[{"count": 8, "diameter_mm": 11.5, "pitch_diameter_mm": 43.5}],
     )
+    roller: RollerRowInput | None = Field(
+        default=None,
+        description="Its rollers",
+        examples=[{"count": 14, "diameter_mm": 9.0, "length_mm": 13.6, "pitch_diameter_mm": 53.5}],
+    )
+    catalog: CatalogLineInput | None = Field(
+        default=None,
+        description="Its line in a catalog, a deep groove ball bearing",
+        examples=[{"bore_mm": 25.0, "outside_diameter_mm": 62.0, "static_rating_n": 11600.0}],
+    )
+
+    @model_validator(mode="after")
+    def _one_row(self) -> Self:
+        rows = [name for name in ROWS if getattr(self, name) is not None]
+        if len(rows) != 1:
+            refuse("ball", rows or None, f"given once, as one of {', '.join(ROWS)}", "Keep one of them.")
+        return self
 
 
 class RollingContactInput(BoundaryModel):
@@ -212,54 +245,3 @@ class PlanetBearingInput(BearingInput):
 
     shaft: Name = Field(description="The planet's shaft", examples=["planet"])
     carrier: Name = Field(description="The carrier's shaft", examples=["carrier"])
-
-
-@with_fields(declared_in(Coupling))
-class CouplingInput(BoundaryModel):
-    """A flexible coupling between two shafts of the same speed."""
-
-    name: Name = Field(description="Name of the coupling", examples=["joint"])
-    first: Name = Field(description="One shaft", examples=["output"])
-    second: Name = Field(description="The other shaft", examples=["machine"])
-    stiffness_matrix: CouplingRows | None = Field(
-        default=None,
-        min_length=6,
-        max_length=6,
-        description="Added stiffness: 6 by 6 in x, y, z, tilt_x, tilt_y, rotation; N, m, rad",
-    )
-    damping_matrix: CouplingRows | None = Field(
-        default=None, min_length=6, max_length=6, description="Added damping, likewise; N, m, rad, s"
-    )
-
-
-_PIN = next(figure for figure in figures(PlanetBearing) if figure.name == "radial_error")
-PinErrors = Annotated[tuple[Annotated[float, *_PIN.limits], ...], Strict(False)]
-
-
-class PlanetsInput(BoundaryModel):
-    """Several planets from one, whose shaft, gears, bearings and meshes are in the scene."""
-
-    planet: Name = Field(description="The shaft of the first planet", examples=["planet"])
-    number: int = Field(ge=1, le=100, description="Number of planets in all", examples=[3])
-    angles_deg: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
-        default=None,
-        description="Angles from the first planet about +z in degrees; left out: equally spaced",
-        examples=[[0.0, 120.0, 240.0]],
-    )
-    radial_errors_um: PinErrors | None = Field(
-        default=None, description="Position errors of all pins outwards in um", examples=[[0.0, 0.0, 0.0]]
-    )
-    tangential_errors_um: PinErrors | None = Field(
-        default=None, description="Position errors of all pins about +z in um", examples=[[20.0, 0.0, 0.0]]
-    )
-
-    @model_validator(mode="after")
-    def _one_each(self) -> Self:
-        """As many values as planets."""
-        for field in ("angles_deg", "radial_errors_um", "tangential_errors_um"):
-            values = getattr(self, field)
-            if values is not None and len(values) != self.number:
-                refuse(
-                    field, list(values), f"a list of {self.number}, one for each planet", "Or leave it out."
-                )
-        return self

@@ -1,17 +1,39 @@
-"""The attributes of a run's file."""
+"""What the files of results say of themselves: warnings, attributes, the case they were made of."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import h5netcdf
 import numpy as np
 
-from lineofaction.gearbox.convert.stamp import WARNINGS, stamped
 from lineofaction.gearbox.registry import study_of
-from model_studies.netcdf import opened_netcdf
+from model_studies.netcdf import opened, opened_netcdf
+
+Json = dict[str, Any]
+WARNINGS = "warnings"
+
+
+def stamp(file: Path, warnings: Sequence[Json]) -> None:
+    """Write warnings into a file that this program has just made; other kinds of files stay as they are."""
+    if file.suffix == ".nc":
+        with h5netcdf.File(file, "r+") as content:
+            content.attrs[WARNINGS] = json.dumps(list(warnings))
+    elif file.suffix == ".json":
+        text = json.dumps(json.loads(file.read_text(encoding="utf-8")) | {WARNINGS: list(warnings)})
+        file.write_text(f"{text}\n", encoding="utf-8")
+
+
+def stamped(file: Path) -> list[Json]:
+    """Return the warnings of the netCDF file of a result; none of an older one."""
+    with opened_netcdf(file) as content:
+        return list(json.loads(content.attrs.get(WARNINGS, "[]")))
+
+
+# The attributes of a run's file.
 
 # The figures of a stored file, as JSON, by the kind of the result.
 
@@ -55,3 +77,16 @@ def figures_of(kind: str, file: Path) -> dict[str, Any]:
     study = study_of(kind)
     figures = run_json(file) if study is None else study.run.facts(study.run.file.read(file))
     return figures | {WARNINGS: stamped(file)}
+
+
+# The case that a database file was made of, without reading its arrays.
+
+
+def case_of_file(file: Path) -> dict[str, Any] | None:
+    """Return the case with all defaults, None if the file is none that can be read."""
+    try:
+        with opened(file) as content:
+            case = json.loads(content.attrs["case"])
+    except (KeyError, TypeError, ValueError):
+        return None
+    return case if isinstance(case, dict) else None

@@ -10,10 +10,18 @@ from pydantic import BeforeValidator, ConfigDict, Field, Strict, model_validator
 from dynamics.joints.housing import Housing
 from dynamics.solid_housing import MATERIALS, Material, ReductionSettings, SeatWall
 from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
-from lineofaction.gearbox.schemas.file_content import FileContentInput
-from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
-from lineofaction.gearbox.schemas.rules import exactly_one_of, given, stated
-from lineofaction.gearbox.schemas.scene_types import Coordinate, HousingRows, Name, Point
+from lineofaction.gearbox.schemas.files import FileContentInput
+from lineofaction.gearbox.schemas.model import (
+    BoundaryModel,
+    Coordinate,
+    HousingRows,
+    Name,
+    Point,
+    exactly_one_of,
+    given,
+    refuse,
+    stated,
+)
 
 # The solid of a housing of a scene: its material, bearing seats, feet and points.
 

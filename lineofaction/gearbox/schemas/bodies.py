@@ -1,0 +1,207 @@
+"""The bodies of a scene and what joins them: shafts, gears, discs, couplings, planets."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+from pydantic import ConfigDict, Field, Strict, model_validator
+
+from dynamics.bearings.planet_bearing import PlanetBearing
+from dynamics.joints.coupling import Coupling
+from dynamics.shafts.beam_section import BeamSection
+from dynamics.shafts.disc_body import DiscBody
+from dynamics.shafts.gear_body import GearBody
+from dynamics.shafts.inertia import Inertia
+from dynamics.shafts.shaft import Shaft
+from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
+from lineofaction.gearbox.schemas.model import (
+    BoundaryModel,
+    Coordinate,
+    CouplingRows,
+    Name,
+    exactly_one_of,
+    refuse,
+    stated,
+)
+
+
+@with_fields(declared_in(Inertia, all_given=True))
+class InertiaInput(BoundaryModel):
+    """Inertia of a body of revolution about its own center of mass."""
+
+
+@with_fields(declared_in(GearBody))
+class GearBodyInput(BoundaryModel):
+    """A gear on a shaft; its teeth, base radius, helix and face width come from the mesh it takes part in."""
+
+    name: Name = Field(description="Name of the gear", examples=["pinion"])
+    shaft: Name = Field(description="The shaft that carries it", examples=["input"])
+    bore_diameter_mm: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1e5,
+        description="Bore in mm of the steel cylinder from which the inertia follows",
+        examples=[40.0],
+    )
+    inertia: InertiaInput | None = Field(
+        default=None,
+        description="Inertia; left out: a steel cylinder of pitch diameter and face width",
+        examples=[{"mass_kg": 0.7, "polar_kg_m2": 7e-4, "transverse_kg_m2": 4e-4}],
+    )
+
+
+@with_fields(declared_in(Coupling))
+class CouplingInput(BoundaryModel):
+    """A flexible coupling between two shafts of the same speed."""
+
+    name: Name = Field(description="Name of the coupling", examples=["joint"])
+    first: Name = Field(description="One shaft", examples=["output"])
+    second: Name = Field(description="The other shaft", examples=["machine"])
+    stiffness_matrix: CouplingRows | None = Field(
+        default=None,
+        min_length=6,
+        max_length=6,
+        description="Added stiffness: 6 by 6 in x, y, z, tilt_x, tilt_y, rotation; N, m, rad",
+    )
+    damping_matrix: CouplingRows | None = Field(
+        default=None, min_length=6, max_length=6, description="Added damping, likewise; N, m, rad, s"
+    )
+
+
+_PIN = next(figure for figure in figures(PlanetBearing) if figure.name == "radial_error")
+PinErrors = Annotated[tuple[Annotated[float, *_PIN.limits], ...], Strict(False)]
+
+
+class PlanetsInput(BoundaryModel):
+    """Several planets from one, whose shaft, gears, bearings and meshes are in the scene."""
+
+    planet: Name = Field(description="The shaft of the first planet", examples=["planet"])
+    number: int = Field(ge=1, le=100, description="Number of planets in all", examples=[3])
+    angles_deg: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+        default=None,
+        description="Angles from the first planet about +z in degrees; left out: equally spaced",
+        examples=[[0.0, 120.0, 240.0]],
+    )
+    radial_errors_um: PinErrors | None = Field(
+        default=None, description="Position errors of all pins outwards in um", examples=[[0.0, 0.0, 0.0]]
+    )
+    tangential_errors_um: PinErrors | None = Field(
+        default=None, description="Position errors of all pins about +z in um", examples=[[20.0, 0.0, 0.0]]
+    )
+
+    @model_validator(mode="after")
+    def _one_each(self) -> Self:
+        """As many values as planets."""
+        for field in ("angles_deg", "radial_errors_um", "tangential_errors_um"):
+            values = getattr(self, field)
+            if values is not None and len(values) != self.number:
+                refuse(
+                    field, list(values), f"a list of {self.number}, one for each planet", "Or leave it out."
+                )
+        return self
+
+
+# The shafts of a scene: one diameter, several sections, or an inertia.
+
+
+LENGTHS_AGREE = 1e-6  # relative
+
+
+@with_fields(declared_in(BeamSection))
+class SectionInput(BoundaryModel):
+    """A cylindrical or conical piece of a shaft."""
+
+    length_mm: float
+
+
+@with_fields(declared_in(Shaft))
+class ShaftInput(BoundaryModel):
+    """A shaft parallel to the z axis; with sections, or a diameter, it can bend and twist."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("diameter_mm", "sections", "inertia")))
+
+    name: Name = Field(description="Name of the shaft", examples=["input"])
+    length_mm: float
+    origin_mm: Annotated[tuple[Coordinate, ...], Strict(False)] = Field(
+        default=(0.0, 0.0, 0.0),
+        min_length=3,
+        max_length=3,
+        description="Left end of the axis, x, y, z in mm",
+        examples=[[0.0, 0.0, 0.0]],
+    )
+    diameter_mm: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e5,
+        description="Diameter in mm of a solid steel shaft: one section",
+        examples=[40.0],
+    )
+    sections: Annotated[tuple[SectionInput, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=200,
+        description="Sections of a stepped shaft from its left end, instead of a diameter",
+        examples=[[{"length_mm": 200.0, "outer_diameter_mm": 40.0}]],
+    )
+    inertia: InertiaInput | None = Field(
+        default=None,
+        description="Inertia of the bare shaft, instead of a diameter: the shaft is rigid",
+        examples=[{"mass_kg": 2.0, "polar_kg_m2": 4e-4, "transverse_kg_m2": 7e-3}],
+    )
+    frame: Name | None = Field(
+        default=None,
+        description="The carrier of the planetary set it belongs to; a carrier names itself",
+        examples=["carrier"],
+    )
+
+    @model_validator(mode="after")
+    def _one_inertia(self) -> Self:
+        """Exactly one source of inertia."""
+        sources = [part for part in (self.diameter_mm, self.sections, self.inertia) if part is not None]
+        if len(sources) != 1:
+            bound = "given, or sections or inertia instead, one of the three"
+            refuse("diameter_mm", self.diameter_mm, bound, "For example 40.0.")
+        if self.sections is not None:
+            lengths = [section.length_mm for section in self.sections]
+            together = sum(lengths)
+            if abs(together / self.length_mm - 1.0) > LENGTHS_AGREE:
+                bound = f"such that the sections are together length_mm, {self.length_mm:g} mm, long"
+                refuse("sections", lengths, bound, f"They are {together:g} mm long.")
+        return self
+
+
+# Discs on the shafts of a scene that mesh with nothing.
+
+
+class SteelCylinderInput(BoundaryModel):
+    """A steel cylinder from which an inertia follows."""
+
+    outer_diameter_mm: float = Field(gt=0.0, le=1e5, description="Outer diameter in mm", examples=[300.0])
+    width_mm: float = Field(gt=0.0, le=1e6, description="Width along the axis in mm", examples=[40.0])
+    bore_diameter_mm: float = Field(default=0.0, ge=0.0, le=1e5, description="Bore in mm", examples=[40.0])
+
+
+@with_fields(declared_in(DiscBody))
+class DiscInput(BoundaryModel):
+    """A flywheel, coupling half or rotor on a shaft."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("inertia", "cylinder")))
+
+    name: Name = Field(description="Name of the disc", examples=["flywheel"])
+    shaft: Name = Field(description="The shaft that carries it", examples=["input"])
+    inertia: InertiaInput | None = Field(
+        default=None,
+        description="Inertia about its center of mass",
+        examples=[{"mass_kg": 22.0, "polar_kg_m2": 0.25, "transverse_kg_m2": 0.13}],
+    )
+    cylinder: SteelCylinderInput | None = Field(
+        default=None,
+        description="A steel cylinder instead of the inertia",
+        examples=[{"outer_diameter_mm": 300.0, "width_mm": 40.0}],
+    )
+
+    @model_validator(mode="after")
+    def _one_inertia(self) -> Self:
+        if (self.inertia is None) == (self.cylinder is None):
+            refuse("inertia", self.inertia, "given, or cylinder instead, but not both", "Keep one of them.")
+        return self

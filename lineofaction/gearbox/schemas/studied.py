@@ -1,0 +1,162 @@
+"""What studies take and vary: a case or a scene, speeds, orders, ranges of what is only guessed."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Self
+
+from pydantic import ConfigDict, Field, Strict, model_validator
+
+from lineofaction.gearbox.schemas.case import Case
+from lineofaction.gearbox.schemas.model import (
+    BoundaryModel,
+    Spelling,
+    both,
+    exactly_one_of,
+    given,
+    left_out,
+    refuse,
+    stated,
+)
+from lineofaction.gearbox.schemas.result_kinds import HASH
+from lineofaction.gearbox.schemas.scene import SceneInput
+
+MOST_SPEEDS = 10_000
+Speed = Annotated[float, Field(ge=0.0, le=1e7)]
+TurningSpeed = Annotated[float, Field(gt=0.0, le=1e7)]
+Orders = Annotated[int, Field(ge=1, le=100)]
+RunHash = Annotated[str, Field(pattern=HASH)]
+_OF_RUN = both(given("run"), {"properties": {"speed_rpm": {"maxItems": 0}}})
+_OVER_SPEEDS = both(
+    left_out("run"), {"required": ["speed_rpm"], "properties": {"speed_rpm": {"minItems": 1}}}
+)
+
+
+class OverSpeeds(BoundaryModel):
+    """Inputs of a study over speeds, which are an axis."""
+
+    speed_rpm: tuple[float, ...]
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Self:
+        """Refuse speeds that do not increase."""
+        if any(later <= earlier for earlier, later in pairwise(self.speed_rpm)):
+            shown = list(self.speed_rpm)[:8]
+            refuse("speed_rpm", shown, "strictly increasing", "Sort the list and drop repeats.")
+        return self
+
+
+class OverOrders(OverSpeeds):
+    """Inputs of a study of mesh orders over speeds at which the shafts turn."""
+
+    speed_rpm: Annotated[tuple[TurningSpeed, ...], Strict(False)] = Field(
+        min_length=1,
+        max_length=MOST_SPEEDS,
+        description="Speeds of the first driven shaft in rpm, increasing",
+        examples=[[300.0, 600.0, 900.0]],
+    )
+    orders: Orders = Field(default=10, description="Harmonics of the mesh frequency", examples=[10])
+
+
+class OverSpeedsOrRun(OverOrders):
+    """Inputs of a study of mesh orders in the linear response over speeds, or in a run at its own speeds."""
+
+    model_config = ConfigDict(json_schema_extra=stated({"oneOf": [_OF_RUN, _OVER_SPEEDS]}))
+
+    speed_rpm: Annotated[tuple[TurningSpeed, ...], Strict(False)] = Field(
+        default=(),
+        max_length=MOST_SPEEDS,
+        description="Speeds of the first driven shaft in rpm, increasing; a run has its own",
+        examples=[[300.0, 600.0, 900.0]],
+    )
+    run: Annotated[RunHash | None, Spelling("--run", file=True)] = Field(
+        default=None,
+        description="Run of the scene whose bearing forces are taken in place of the linear response, at its "
+        "speeds",
+    )
+
+    @model_validator(mode="after")
+    def _speeds_or_run(self) -> Self:
+        """Refuse both and neither."""
+        if self.run is not None and self.speed_rpm:
+            shown = list(self.speed_rpm)[:8]
+            refuse("speed_rpm", shown, "left out with a run", "The run has its own speeds.")
+        if self.run is None and not self.speed_rpm:
+            refuse("speed_rpm", [], "at least one speed, if no run is given", "For example 300, 600 and 900.")
+        return self
+
+
+# Ranges of what is only guessed about a scene, and whether the sound is computed over them.
+
+Factor = Annotated[float, Field(ge=0.05, le=20.0)]
+Factors = Annotated[tuple[Factor, ...], Strict(False)]
+RANGES = (
+    "housing_damping",
+    "housing_frequency",
+    "mount_stiffness",
+    "bearing_stiffness",
+    "mesh_damping",
+)
+"""Of `dynamics.noise.GUESSES`, which takes longer to load than a service to start."""
+
+
+def _range(low: float, high: float, text: str) -> Factors:
+    described = f"{text}: lowest and highest factor on what the scene states"
+    field: Factors = Field(
+        default=(low, high), min_length=2, max_length=2, description=described, examples=[[low, high]]
+    )
+    return field
+
+
+class NoiseRanges(BoundaryModel):
+    """Whether levels have bands and sensitivities, and the ranges that the bands are over."""
+
+    band: bool = Field(
+        default=True,
+        description="Whether levels have a band in dB over the ranges below: some 40 responses",
+        examples=[False],
+    )
+    sensitivities: bool = Field(
+        default=False,
+        description="Whether to find what 1 dB costs: in damping and stiffness, three responses each, and in "
+        "tip relief and crowning of meshes with a case, whose contact is solved again three times each",
+        examples=[True],
+    )
+    housing_damping: Factors = _range(0.4, 2.0, "Damping of the housings")
+    housing_frequency: Factors = _range(0.97, 1.01, "Natural frequencies of the housings (mesh, walls)")
+    mount_stiffness: Factors = _range(0.5, 2.0, "Stiffness and damping of the mounts at the feet")
+    bearing_stiffness: Factors = _range(0.7, 1.4, "Stiffness of the bearings, but of rows by their geometry")
+    mesh_damping: Factors = _range(0.5, 2.0, "Damping of the meshes")
+
+    @model_validator(mode="after")
+    def _about_one(self) -> Self:
+        """Refuse ranges without what the scene states."""
+        for name in RANGES:
+            low, high = getattr(self, name)
+            if not low <= 1.0 <= high:
+                advice = "1 is what the scene states; 1, 1 varies nothing."
+                refuse(name, [low, high], "two factors, the first at most 1, the second at least 1", advice)
+        return self
+
+
+# The inputs of a process for cases and for scenes: one of them.
+
+
+class CaseOrScene(BoundaryModel):
+    """A case or a scene, one of both."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("case", "scene")))
+
+    case: Case | None = Field(default=None, description="The case, as in a case file; alternative to a scene")
+    scene: SceneInput | None = Field(
+        default=None,
+        description="The scene, with cases written out or databases by hash; alternative to a case",
+    )
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> Self:
+        """Refuse none of both, and both."""
+        if (self.case is None) == (self.scene is None):
+            value = None if self.case is None else "beside a scene"
+            refuse("case", value, "given without a scene, left out beside one", "Give one of them.")
+        return self
