@@ -11,7 +11,7 @@ import numpy as np
 
 from benchmarks.stages import stages
 from dynamics.loads import TimeLaw
-from dynamics.meshes.coast_flank import CoastFlank
+from dynamics.meshes.gear_mesh import CoastFlank
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.meshes.technique import PlainTable
 from dynamics.scene import Outputs, Scene

@@ -12,7 +12,7 @@ import numpy as np
 
 import model_studies
 from dynamics.assembly.assemble import System, assemble
-from dynamics.assembly.decimated_tables import with_decimated_tables
+from dynamics.assembly.varied import with_decimated_tables
 from dynamics.checks import chosen
 from dynamics.effects import EFFECTS
 from dynamics.errors import InputError, SolveError

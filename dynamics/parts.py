@@ -33,3 +33,6 @@ ON_A_SHAFT = (
     "unbalances",
 )
 """Kinds whose parts name the shaft that they are on."""
+
+LAWS_OF_BEARINGS = ("rolling_contacts", "spring_curves")
+"""Kinds whose parts are laws of bearings and name the bearing at which they act."""

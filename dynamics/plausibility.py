@@ -202,7 +202,6 @@ def _speeds(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def _bearings(scene: Scene) -> Iterator[Finding]:
-    """Check stiffness, damping and clearance of every bearing."""
     parts: list[tuple[str, Bushing | PlanetBearing]] = [
         *((f"bushings[{i}]", part) for i, part in enumerate(scene.bushings)),
         *((f"planet_bearings[{i}]", part) for i, part in enumerate(scene.planet_bearings)),
@@ -221,7 +220,6 @@ def _bearings(scene: Scene) -> Iterator[Finding]:
 
 
 def _meshes(scene: Scene) -> Iterator[Finding]:
-    """Check damping, backlash, friction and misalignment of every mesh."""
     for index, mesh in enumerate(scene.meshes):
         path = f"meshes[{index}]"
         yield from assessed("damping_ratio", f"{path}.damping_ratio", mesh.damping_ratio, "1")
@@ -242,7 +240,6 @@ def _meshes(scene: Scene) -> Iterator[Finding]:
 
 
 def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
-    """Check shafts and gears."""
     for index, shaft in enumerate(mechanism.scene.shafts):
         yield from _shaft(f"shafts[{index}]", shaft)
     for index, gear in enumerate(mechanism.scene.gears):
@@ -256,7 +253,6 @@ def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
 
 
 def _shaft(path: str, shaft: Shaft) -> Iterator[Finding]:
-    """Check a shaft's shape, material and inertia."""
     if shaft.sections:
         widest = max(max(section.outer_diameters) for section in shaft.sections)
         reason = f"{shaft.length / widest:.3g} diameters long"

@@ -15,8 +15,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from dynamics.bearings.bushing import Bushing
     from dynamics.bearings.rolling_bearing import RollingBearing
+    from dynamics.bearings.seat import Bushing
     from dynamics.joints.housing import Housing
     from dynamics.loads.time_law import TimeLaw
     from dynamics.results import RunResult
@@ -73,7 +73,7 @@ _HOME = {
     "AsyncClient": ("lineofaction.client", "AsyncLineOfActionClient"),
     "BadInput": ("lineofaction.gearbox.problems", "BadInput"),
     "BoreSeat": ("fe_contact", "BoreSeat"),
-    "Bushing": ("dynamics.bearings.bushing", "Bushing"),
+    "Bushing": ("dynamics.bearings.seat", "Bushing"),
     "Case": ("lineofaction.gearbox.schemas", "Case"),
     "Client": ("lineofaction.client", "LineOfActionClient"),
     "deflect": ("lineofaction.gearbox.workbench", "deflect"),

@@ -2,37 +2,49 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from dynamics.arrays.sparse_rows import SparseMatrices, sparse_matrices
 from dynamics.forces.elements import Elements
+from dynamics.kernels.cubics import Cubics
+from dynamics.loads import AngleLaw, TimeLaw
 from dynamics.types import FloatArray, IntArray
 
 
-class LawArrays(NamedTuple):
-    """Piecewise cubic laws of time, one after the other in flat arrays.
-
-    Attributes
-    ----------
-    first : (l + 1,) int array
-        First piece of each law.
-    start : (S,) array
-        Start times of the pieces, s.
-    coefficient : (S, 4) array
-        Ascending coefficients in the time since the piece's start.
-    """
-
-    first: IntArray
-    start: FloatArray
-    coefficient: FloatArray
+def slope(law: TimeLaw | AngleLaw, moment: FloatArray) -> FloatArray:
+    """Return the derivative of `law` at `moment` (s), from the right where it jumps."""
+    start, coefficient = law.polynomials()
+    piece = np.searchsorted(start[1:], moment, side="right")
+    elapsed, c = moment - start[piece], coefficient[piece]
+    return np.asarray(c[..., 1] + elapsed * (2.0 * c[..., 2] + 3.0 * elapsed * c[..., 3]), dtype=float)
 
 
-class Reference(NamedTuple):
+def revolutions(law: TimeLaw | AngleLaw) -> tuple[FloatArray, FloatArray]:
+    """Return whole and fractional revolutions at the start of each piece of a speed law; 0 at t = 0."""
+    start, coefficient = law.polynomials()
+    span = np.diff(start)
+    turned = np.concatenate([[0.0], np.cumsum(_integral(coefficient[:-1], span))])
+    piece = int(np.searchsorted(start[1:], 0.0, side="right"))
+    origin = turned[piece] + _integral(coefficient[piece], np.array(-start[piece]))
+    turns = (turned - origin) / (2.0 * math.pi)
+    return np.floor(turns), turns - np.floor(turns)
+
+
+def _integral(c: FloatArray, s: FloatArray) -> FloatArray:
+    """Integral of cubics from 0 to s."""
+    value = s * (c[..., 0] + s * (c[..., 1] / 2.0 + s * (c[..., 2] / 3.0 + s * c[..., 3] / 4.0)))
+    return np.asarray(value, dtype=float)
+
+
+class KinematicMotion(NamedTuple):
     """The kinematic motion: every shaft turns by its exact ratios to the k laws (drives, free rotations).
 
     Attributes
     ----------
-    speed : LawArrays
+    speed : Cubics
         Speed of each law, rad/s.
     whole, fraction : (S,) arrays
         Revolutions of the law at the start of each piece, integer and remainder.
@@ -51,7 +63,7 @@ class Reference(NamedTuple):
         Change of q when the law's shaft turns by one radian and all parts with it.
     """
 
-    speed: LawArrays
+    speed: Cubics
     whole: FloatArray
     fraction: FloatArray
     numerator: IntArray
@@ -68,7 +80,7 @@ class Loads(NamedTuple):
 
     Attributes
     ----------
-    torque : LawArrays
+    torque : Cubics
         One law per load, N m.
     direction : (l, n) array
         Generalized force per unit torque.
@@ -78,7 +90,7 @@ class Loads(NamedTuple):
         Torque on the shaft of each rigid drive per unit torque.
     """
 
-    torque: LawArrays
+    torque: Cubics
     direction: FloatArray
     reference: FloatArray
     drive: FloatArray
@@ -155,7 +167,7 @@ class SystemArrays(NamedTuple):
     scale: FloatArray
     rate_scale: FloatArray
     elements: Elements
-    reference: Reference
+    reference: KinematicMotion
     load: Loads
 
     def with_matrices(self, **matrices: Any) -> SystemArrays:

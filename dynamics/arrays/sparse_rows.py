@@ -103,7 +103,7 @@ def modal_loss(modal: ModalFreedoms, velocity: FloatArray) -> float:
 
 
 @inner
-def subtract_modal_resistance(modal: ModalFreedoms, q: FloatArray, v: FloatArray, force: FloatArray) -> None:
+def _subtract_modal_resistance(modal: ModalFreedoms, q: FloatArray, v: FloatArray, force: FloatArray) -> None:
     """Subtract what the modes' own dampers and springs exert at `q` and `v` (n,) from `force` (n,)."""
     first = np.uint64(modal.first)
     for i in range(np.uint64(modal.damping.size)):
@@ -122,7 +122,7 @@ def subtract_modal_forces(modal: ModalFreedoms, local: FloatArray, force: FloatA
             force[first + i] -= pushed + (modal.shape[r + 2, i] * c + modal.shape[r + 3, i] * d)
 
 
-class SparseRows(NamedTuple):
+class _SparseRows(NamedTuple):
     """The entries of a matrix that are not 0, row by row.
 
     Attributes
@@ -156,21 +156,21 @@ class SparseMatrices(NamedTuple):
         The last freedoms, where each of them is alone in the first two matrices.
     """
 
-    damping: SparseRows
-    stiffness: SparseRows
-    direction: SparseRows
-    turn: SparseRows
-    bodies: SparseRows
-    mobility: SparseRows
-    coupling: SparseRows
+    damping: _SparseRows
+    stiffness: _SparseRows
+    direction: _SparseRows
+    turn: _SparseRows
+    bodies: _SparseRows
+    mobility: _SparseRows
+    coupling: _SparseRows
     modal: ModalFreedoms
 
 
-def _sparse_rows(matrix: FloatArray, entries: FloatArray | None = None) -> SparseRows:
+def _sparse_rows(matrix: FloatArray, entries: FloatArray | None = None) -> _SparseRows:
     """Lay out the entries of `matrix` (rows, columns), or all at which `entries` is not 0."""
     row, column = np.nonzero(matrix if entries is None else entries)
     first = np.searchsorted(row, np.arange(matrix.shape[0] + 1))
-    return SparseRows(first.astype(np.int64), column.astype(np.int64), matrix[row, column])
+    return _SparseRows(first.astype(np.int64), column.astype(np.int64), matrix[row, column])
 
 
 def sparse_matrices(
@@ -209,7 +209,7 @@ NO_ENTRIES = sparse_matrices(_NONE, _NONE, _NONE, _NONE, _NONE)
 
 
 @inner
-def row_product(rows: SparseRows, weight: FloatArray, row: int, vector: FloatArray) -> float:
+def row_product(rows: _SparseRows, weight: FloatArray, row: int, vector: FloatArray) -> float:
     """Return one row of the matrix with the entries `weight` times `vector`."""
     total = 0.0
     for entry in range(np.uint64(rows.first[row]), np.uint64(rows.first[row + 1])):
@@ -219,7 +219,7 @@ def row_product(rows: SparseRows, weight: FloatArray, row: int, vector: FloatArr
 
 @inner
 def row_products(
-    rows: SparseRows, row: int, weight: FloatArray, first: FloatArray, other: FloatArray, second: FloatArray
+    rows: _SparseRows, row: int, weight: FloatArray, first: FloatArray, other: FloatArray, second: FloatArray
 ) -> tuple[float, float]:
     """Return one row with the entries `weight` times `first`, and one with `other` times `second`."""
     by_first, by_second = 0.0, 0.0
@@ -237,11 +237,11 @@ def subtract_resistance(sparse: SparseMatrices, q: FloatArray, v: FloatArray, fo
     for i in range(sparse.modal.first):
         damped, held = row_products(sparse.damping, i, damping, v, stiffness, q)
         force[i] -= damped + held
-    subtract_modal_resistance(sparse.modal, q, v, force)
+    _subtract_modal_resistance(sparse.modal, q, v, force)
 
 
 @inner
-def subtract_columns(rows: SparseRows, values: FloatArray, target: FloatArray) -> None:
+def subtract_columns(rows: _SparseRows, values: FloatArray, target: FloatArray) -> None:
     """Subtract the transposed matrix times `values`, one per row, from `target`."""
     for row in range(values.size):
         for entry in range(np.uint64(rows.first[row]), np.uint64(rows.first[row + 1])):

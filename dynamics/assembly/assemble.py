@@ -10,34 +10,36 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.arrays.elements import Element, gradients, pack_elements
 from dynamics.arrays.sparse_rows import NO_ENTRIES
 from dynamics.assembly.bearing_rest import linear_scene
 from dynamics.assembly.force_elements import force_elements
-from dynamics.assembly.housed_bearings import housed_bearings
 from dynamics.assembly.model import Model, decide_model
-from dynamics.assembly.phases import phases
 from dynamics.assembly.references import drive_springs, lay_out_drives, lay_out_loads, lay_out_reference
 from dynamics.bearings.seat import SEAT
 from dynamics.effects import EFFECTS, EffectLedger
-from dynamics.forces.elements import ElementLaws, Elements
+from dynamics.forces.elements import Element, Elements
+from dynamics.forces.laws import ElementLaws
 from dynamics.kernels.by_address import by_address
 from dynamics.mechanism.additions import BEARING_LAWS, ELEMENT_PASSING, HOUSING_AMPLITUDES
 from dynamics.mechanism.base_pitches import Corrections
-from dynamics.mechanism.bearing_elements import BearingElement
-from dynamics.mechanism.bodies import Bodies, ModalHousing
+from dynamics.mechanism.bearing_elements import BearingElement, housed_bearings, tilt_lever
+from dynamics.mechanism.bodies import Bodies, ModalHousing, resting_housings, under_laws
 from dynamics.mechanism.columns import column_count, times_mass, turn_row
-from dynamics.mechanism.connections import Seats, elastic_matrices, forces_on_ground, linear_matrices
-from dynamics.mechanism.coupling_rows import CouplingRows
+from dynamics.mechanism.connections import (
+    CouplingRows,
+    Seats,
+    elastic_matrices,
+    forces_on_ground,
+    linear_matrices,
+)
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import FREEDOMS, ROTATION, Freedoms
 from dynamics.mechanism.kinematics import Kinematics, mesh_shafts
 from dynamics.mechanism.line_of_action import LineOfAction
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.mechanism.resting_housings import resting_housings, under_laws
+from dynamics.mechanism.phases import phases
 from dynamics.mechanism.sampling import Sampling, choose_sampling, top_mode
 from dynamics.mechanism.supports import Supports
-from dynamics.mechanism.weight import weight
 from dynamics.scene.scene import LEAST_RATE, Scene
 from dynamics.types import FloatArray, IntArray, Json
 
@@ -128,17 +130,17 @@ def _system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws)
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
     vectors = mechanism.vectors
     stiffness, damping, constant = linear_matrices(joined, freedoms)
-    constant = constant + freedoms.keep(weight(scene, rotors))
+    constant = constant + freedoms.keep(_weight(scene, rotors))
     own_stiffness, own_damping = elastic_matrices(rotors, freedoms)
     stiffness, damping = stiffness + own_stiffness, damping + own_damping
     for _, drive, row in drive_springs(scene, kinematics, rotors, freedoms):
         stiffness += (drive.stiffness or 0.0) * np.outer(row, row)
         damping += drive.damping * np.outer(row, row)
     mass = freedoms.motion.T @ np.ascontiguousarray(times_mass(rotors, freedoms.motion.T).T)
-    gradient = gradients(elements, column_count(rotors))
+    gradient = np.concatenate([np.empty((0, column_count(rotors))), *(each.gradient for each in elements)])
     scale, direction = _scales(scene, rotors, freedoms), freedoms.keep(gradient)
     turn = freedoms.keep(_turns(mechanism))
-    packed = pack_elements(elements, laws, len(scene.references))
+    packed = Elements.packed(elements, laws, len(scene.references))
     along = direction[packed.first[: len(scene.meshes)]]
     held = np.diag(stiffness) + model.flanks.mean_stiffness @ along**2
     held += packed.stiffness @ direction**2
@@ -160,6 +162,18 @@ def _system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws)
         lay_out_loads(mechanism, freedoms),
     )
     return by_address(arrays.with_matrices())
+
+
+def _weight(scene: Scene, rotors: Bodies) -> FloatArray:
+    """Return the force of gravity per freedom of all rotors, (N,) in N.
+
+    It acts at the centers of mass: elastic coordinates share no momentum with the rigid motion, so gravity
+    does no work on them. Shafts sag by what their bearings do to them.
+    """
+    acceleration = np.zeros(column_count(rotors))
+    for axis, value in enumerate(scene.gravity):
+        acceleration[axis : 6 * len(rotors) : 6] = value
+    return np.asarray(times_mass(rotors, acceleration[None])[0])
 
 
 def _turns(mechanism: Mechanism) -> FloatArray:
@@ -199,7 +213,7 @@ def _scales(scene: Scene, rotors: Bodies, freedoms: Freedoms) -> FloatArray:
     For an amplitude of a housing what it moves a seat by, at least a tenth of what any of them does: modes
     that hardly move a seat do not matter to the shafts.
     """
-    largest = max((gear.base_radius for gear in scene.gears), default=1.0)
+    largest = tilt_lever(scene)
     radius = np.zeros(len(rotors))
     for gear in scene.gears:
         shaft = scene.shaft_index(gear.shaft)
@@ -363,7 +377,7 @@ def _with_linear_bearings(system: System) -> Scene:
 def _put_together(model: Model, elements: tuple[Element, ...], arrays: SystemArrays) -> System:
     """Gather all parts; bearings that hold tilt also exert moments."""
     mechanism, freedoms, joined = model.mechanism, model.freedoms, model.connections
-    housed = housed_bearings(mechanism)
+    housed = housed_bearings(mechanism.scene, mechanism.rotors)
     tilted = bool(joined.seats.name) or any(at.tilts for at in mechanism.bearings)
     stiffness, damping = forces_on_ground(joined, freedoms, tilted)
     return System(

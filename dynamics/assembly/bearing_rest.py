@@ -4,24 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.assembly.frame_couplings import stiffness_across
 from dynamics.bearings import Bushing, PlanetBearing
-from dynamics.bearings.matrix import Matrix, congruent
+from dynamics.bearings.matrix import congruent, matrix_rows
 from dynamics.bearings.seat import SEAT, seat_matrix
 from dynamics.errors import SolveError
 from dynamics.forces.elements import Elements, potential
+from dynamics.forces.laws import OF_BEARINGS
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
-from dynamics.kernels.law import OF_BEARINGS
 from dynamics.kernels.local_state import LocalState
 from dynamics.mechanism.bearing_elements import BearingElement
-from dynamics.motion.mean_loads import at_mean_loads, mean_loads
+from dynamics.motion.force_balance import at_mean_loads, mean_loads, stiffness_across
 from dynamics.motion.observation import local_state
+from dynamics.parts import LAWS_OF_BEARINGS
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray
 
@@ -32,7 +32,7 @@ UNRESISTED = 1e-13  # of the largest stiffness: below it nothing resists a motio
 
 
 @dataclass(frozen=True)
-class Rest:
+class _Rest:
     """Where bodies rest on bearings under known forces.
 
     Attributes
@@ -50,7 +50,7 @@ class Rest:
     residual: float
 
 
-def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray) -> Rest:
+def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray) -> _Rest:
     """Return q (n,) with matrix q + bearing forces = force, `matrix` (n, n) that of all but the bearings.
 
     Damped Newton steps reduce energy less work of the forces, which has one lowest place: no law of a bearing
@@ -65,7 +65,7 @@ def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray
         residual = float(np.max(np.abs(missing), initial=0.0))
         scale = max(float(np.max(np.abs(ways.T @ force), initial=0.0)), now.largest)
         if residual <= SETTLED * scale:
-            return Rest(True, q, residual)
+            return _Rest(True, q, residual)
         stiffness = ways.T @ now.stiffness @ ways
         floor = SOFTEST * float(np.max(np.abs(stiffness)))
         damping = max(damping, floor)
@@ -77,7 +77,7 @@ def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray
             q, now, damping = q + step, then, damping / 10.0
         else:
             damping *= 4.0
-    return Rest(False, q, residual)
+    return _Rest(False, q, residual)
 
 
 def bearing_rows(arrays: SystemArrays) -> IntArray:
@@ -167,13 +167,13 @@ def linear_scene(
         )
         linear[name] = _with_tangent(linear[name], at, *state)
     parts = [linear[part.name] for part in (*scene.ground_bearings, *scene.planet_bearings)]
+    none: dict[str, Any] = dict.fromkeys(LAWS_OF_BEARINGS, ())
     return replace(
         scene,
         bushings=tuple(part for part in parts if isinstance(part, Bushing)),
         planet_bearings=tuple(part for part in parts if isinstance(part, PlanetBearing)),
-        rolling_contacts=(),
-        spring_curves=(),
         rolling_bearings=(),
+        **none,
     )
 
 
@@ -191,11 +191,7 @@ def _with_tangent(
     symmetric = 0.5 * (stiffness + stiffness.T)
     return replace(
         bearing,
-        stiffness=_rows(bearing.added_stiffness + congruent(symmetric, spread)),
-        damping=_rows(seat_matrix(bearing.damping) + congruent(damping, spread)),
+        stiffness=matrix_rows(bearing.added_stiffness + congruent(symmetric, spread)),
+        damping=matrix_rows(seat_matrix(bearing.damping) + congruent(damping, spread)),
         preload=tuple(float(value) for value in added + (symmetric @ coordinate - force) @ spread),
     )
-
-
-def _rows(matrix: FloatArray) -> Matrix:
-    return tuple(tuple(float(value) for value in row) for row in matrix)

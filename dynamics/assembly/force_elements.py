@@ -4,47 +4,44 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from dynamics.arrays.elements import Element
-from dynamics.assembly.frame_couplings import frame_coupling_elements
-from dynamics.assembly.housed_bearings import housed_bearing_elements, housed_bearings
 from dynamics.assembly.model import Model
-from dynamics.assembly.phases import repeating_phases
 from dynamics.effects.force_terms import (
     CENTER_DISTANCE,
     MISALIGNMENT,
     SLIDING,
     FlankInSpace,
     FlankTerms,
-    FrameTerm,
-    frame_laws,
-    frame_lever,
 )
 from dynamics.errors import InputError
-from dynamics.forces.elements import ElementLaws, RotatingFrameLaws
-from dynamics.kernels.law import Law
+from dynamics.forces.elements import Element
+from dynamics.forces.frames import FrameCouplingLaws, FrameTerm, RotatingFrameLaws
+from dynamics.forces.laws import ElementLaws, Law
 from dynamics.loads.applied_force import AppliedForce
-from dynamics.loads.force_course import ForceCourseLaws, pack_courses
 from dynamics.loads.load_course import BySpeed, Orders
-from dynamics.loads.speed_torque import SpeedTorqueLaws, pack_speed_torques
-from dynamics.loads.unbalance_force import UnbalanceLaws
-from dynamics.mechanism.bearing_elements import bearing_elements, tilt_lever
+from dynamics.loads.load_laws import ForceCourseLaws, SpeedTorqueLaws, UnbalanceLaws
+from dynamics.mechanism.bearing_elements import (
+    bearing_elements,
+    housed_bearing_elements,
+    housed_bearings,
+    tilt_lever,
+)
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, section_rows, turn_row
-from dynamics.mechanism.flank_gradients import approach, middle_from_driver
+from dynamics.mechanism.connections import ACROSS, frame_couplings, full_matrix
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import ROTATION, Freedoms
 from dynamics.mechanism.kinematics import Kinematics
-from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
-from dynamics.mechanism.load_phases import LoadPhase, angle_phase, frame_phase, unbalance_phase
+from dynamics.mechanism.line_of_action import LineOfAction, approach, line_of_action, middle_from_driver
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.meshes.grid_tables import pack_grids
+from dynamics.mechanism.phases import LoadPhase, angle_phase, frame_phase, repeating_phases, unbalance_phase
+from dynamics.meshes.mesh_table import MeshTable
 from dynamics.meshes.spatial_flank import SpatialFlankLaws
 from dynamics.scene.scene import Scene
-from dynamics.types import BoolArray, FloatArray, IntArray
+from dynamics.types import FloatArray
 
 # The force elements of applied forces and of unbalances.
 
@@ -55,7 +52,7 @@ def _force_course_elements(mechanism: Mechanism) -> tuple[tuple[Element, ...], F
     The rows are those of the force and moment as one generalized force per newton, the moment by a lever.
     """
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
-    lever, known, vectors = frame_lever(scene), repeating_phases(scene, kinematics), mechanism.vectors
+    lever, known, vectors = tilt_lever(scene), repeating_phases(scene, kinematics), mechanism.vectors
     elements, size, carrying, read, turned, senses = [], [], [], [], [], []
     for entry, force in enumerate(scene.forces):
         frame = frame_phase(scene, kinematics, force)
@@ -74,8 +71,8 @@ def _force_course_elements(mechanism: Mechanism) -> tuple[tuple[Element, ...], F
         read.append(_index(scene, known, angle))
         turned.append(_index(scene, known, frame))
         elements.append(Element(Law.APPLIED_FORCE, entry, -1, rows, np.zeros(len(rows)), rows @ vectors.T))
-    laws = ForceCourseLaws(
-        **pack_courses([force.course for force in scene.forces]),
+    laws = ForceCourseLaws.packed(
+        [force.course for force in scene.forces],
         size=np.array(size, dtype=float),
         lever=np.full(len(size), lever),
         sense=np.array(senses, dtype=float),
@@ -83,7 +80,6 @@ def _force_course_elements(mechanism: Mechanism) -> tuple[tuple[Element, ...], F
         phase=np.array(read, dtype=np.int64),
         frame=np.array(turned, dtype=np.int64),
         mean=np.array([_mean(scene, kinematics, force) for force in scene.forces]).reshape(-1, 2),
-        steady=np.zeros(1, dtype=np.bool_),
     )
     return tuple(elements), laws
 
@@ -97,7 +93,7 @@ def _unbalance_elements(mechanism: Mechanism) -> tuple[tuple[Element, ...], Unba
         If the shaft of one is described in the frame of a carrier.
     """
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
-    lever, known, vectors = frame_lever(scene), repeating_phases(scene, kinematics), mechanism.vectors
+    lever, known, vectors = tilt_lever(scene), repeating_phases(scene, kinematics), mechanism.vectors
     elements, read = [], []
     for entry, part in enumerate(scene.unbalances):
         shaft = scene.shaft_index(part.shaft)
@@ -167,67 +163,53 @@ def _index(scene: Scene, known: tuple[LoadPhase, ...], phase: LoadPhase | None) 
 # The flank elements of meshes to whose forces effects contribute.
 
 
-@dataclass(frozen=True)
-class SpatialFlank:
-    """One flank with what effects add, laid out: its rows after that of the deflection, and how it uses them.
-
-    Attributes
-    ----------
-    entry : int
-        Its index among all flanks.
-    terms : FlankTerms
-    fixed : (float, float)
-        Misalignment and center-distance change of the mesh, m, as the flank sees them.
-    mid_face, radius : float
-        As in `SpatialFlankLaws`, m.
-    row : (3,) int array
-        First row of each kind; -1: none.
-    gradient : (p, N) array
-    offset : (p,) array
-    slides : (p,) bool array
-    """
-
-    entry: int
-    terms: FlankTerms
-    fixed: tuple[float, float]
-    mid_face: float
-    radius: float
-    row: IntArray
-    gradient: FloatArray
-    offset: FloatArray
-    slides: BoolArray
-
-
 def _spatial_elements(model: Model, plain: Sequence[Element]) -> tuple[tuple[Element, ...], SpatialFlankLaws]:
     """Return the elements `plain` with those of such meshes replaced, each at its index, and their laws.
 
     Flanks slide along the kinematic motion but keep their deflection.
     """
-    vectors = model.mechanism.vectors
+    mechanism, law = model.mechanism, model.flanks.law
     elements: list[Element] = []
-    flanks: list[SpatialFlank] = []
+    grids: list[MeshTable] = []
+    figures: dict[str, list[Any]] = {name: [] for name in SpatialFlankLaws._fields[1:]}
     for entry, element in enumerate(plain):
-        flank = FlankInSpace(model.mechanism, element.mesh, coast=entry >= len(model.mechanism.lines))
+        flank = FlankInSpace(mechanism, element.mesh, coast=entry >= len(mechanism.lines))
         in_plane = FlankTerms(model.flanks.tables[entry])
-        terms = in_plane
-        for effect in model.ledger.on_mesh(model.mechanism.scene.meshes[element.mesh].name):
+        mesh, terms = mechanism.scene.meshes[element.mesh], in_plane
+        for effect in model.ledger.on_mesh(mesh.name):
             terms = effect.contribute(terms, flank)
         if terms is in_plane:
             elements.append(element)
             continue
-        laid_out = _lay_out(entry, element, flank, terms)
-        drift = np.where(laid_out.slides[:, None], laid_out.gradient @ vectors.T, 0.0)
-        law, rows = Law.SPATIAL_FLANK, (laid_out.gradient, laid_out.offset)
-        elements.append(Element(law, len(flanks), element.mesh, *rows, drift))
-        flanks.append(laid_out)
-    return tuple(elements), _pack(model, flanks)
+        fixed = (-mesh.misalignment if flank.coast else mesh.misalignment, mesh.center_distance_change)
+        rows, first = _rows_in_space(element, terms, fixed, mechanism.vectors)
+        elements.append(Element(Law.SPATIAL_FLANK, len(grids), element.mesh, *rows))
+        grids.append(terms.table)
+        own = {
+            "damping": law.damping[entry],
+            "reach": law.reach[entry],
+            "row": first,
+            "fixed": fixed,
+            "follows": terms.follows,
+            "per_face": terms.per_face,
+            "mid_face": middle_from_driver(mechanism.scene, flank.index, flank.line, flank.sense),
+            "friction": terms.friction,
+            "radius": mechanism.scene.gear(mesh.driver).base_radius,
+            "running": False,
+        }
+        for name, value in own.items():
+            figures[name].append(value)
+    return tuple(elements), SpatialFlankLaws.packed(grids, figures)
 
 
-def _lay_out(entry: int, element: Element, flank: FlankInSpace, terms: FlankTerms) -> SpatialFlank:
-    """Lay out the rows of a flank after that of its deflection, which `element` has in the plane."""
-    scene = flank.mechanism.scene
-    mesh = scene.meshes[flank.index]
-    fixed = (-mesh.misalignment if flank.coast else mesh.misalignment, mesh.center_distance_change)
+def _rows_in_space(
+    element: Element, terms: FlankTerms, fixed: tuple[float, float], vectors: FloatArray
+) -> tuple[tuple[FloatArray, FloatArray, FloatArray], list[int]]:
+    """Return gradient, offset and drift of a flank's rows, and the first row of each kind, -1: none.
+
+    The first row is that of the deflection, which `element` has in the plane; `fixed` are misalignment and
+    center-distance change of the mesh, m, as the flank sees them.
+    """
     at = {MISALIGNMENT: fixed[0], CENTER_DISTANCE: fixed[1], SLIDING: 0.0}
     gradient, offset, slides, first = [element.gradient], [float(element.offset[0])], [False], []
     for kind, rows in enumerate(terms.rows):
@@ -236,35 +218,9 @@ def _lay_out(entry: int, element: Element, flank: FlankInSpace, terms: FlankTerm
             gradient.append(rows)
             offset += [at[kind]] * len(rows)
             slides += [kind == SLIDING] * len(rows)
-    return SpatialFlank(
-        entry,
-        terms,
-        fixed,
-        middle_from_driver(scene, flank.index, flank.line, flank.sense),
-        scene.gear(mesh.driver).base_radius,
-        np.array(first),
-        np.concatenate(gradient),
-        np.array(offset),
-        np.array(slides),
-    )
-
-
-def _pack(model: Model, flanks: Sequence[SpatialFlank]) -> SpatialFlankLaws:
-    """Lay out the laws."""
-    law = model.flanks.law
-    return SpatialFlankLaws(
-        pack_grids([flank.terms.table for flank in flanks]),
-        np.array([law.damping[flank.entry] for flank in flanks], dtype=float),
-        np.array([law.reach[flank.entry] for flank in flanks], dtype=float),
-        np.array([flank.row for flank in flanks], dtype=np.int64).reshape(-1, 3),
-        np.array([flank.fixed for flank in flanks], dtype=float).reshape(-1, 2),
-        np.array([flank.terms.follows for flank in flanks], dtype=np.int64).reshape(-1, 2),
-        np.array([flank.terms.per_face for flank in flanks], dtype=float),
-        np.array([flank.mid_face for flank in flanks], dtype=float),
-        np.array([flank.terms.friction for flank in flanks], dtype=float),
-        np.array([flank.radius for flank in flanks], dtype=float),
-        np.zeros(len(flanks), dtype=np.bool_),
-    )
+    whole = np.concatenate(gradient)
+    drift = np.where(np.array(slides)[:, None], whole @ vectors.T, 0.0)
+    return (whole, np.array(offset), drift), first
 
 
 # Rotating-frame elements: what effects add to rotors because these, or their frames, rotate.
@@ -276,7 +232,7 @@ def _rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], Rotatin
     A radius makes lengths of angles. Where nothing moves there is no element.
     """
     mechanism, freedoms = model.mechanism, model.freedoms
-    lever, free, vectors = frame_lever(mechanism.scene), mechanism.freely_turned, mechanism.vectors
+    lever, free, vectors = tilt_lever(mechanism.scene), mechanism.freely_turned, mechanism.vectors
     terms: list[tuple[int, FrameTerm]] = []
     for index, rotor in enumerate(mechanism.rotors):
         own = [
@@ -290,7 +246,8 @@ def _rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], Rotatin
         _element(mechanism, vectors, entry, index, term.rows, lever if free[index] else 0.0)
         for entry, (index, term) in enumerate(terms)
     )
-    return elements, frame_laws([term for _, term in terms], lever, [bool(free[index]) for index, _ in terms])
+    spinning = [bool(free[index]) for index, _ in terms]
+    return elements, RotatingFrameLaws.packed([term for _, term in terms], lever, spinning)
 
 
 def _merged(terms: Sequence[FrameTerm], freedoms: Freedoms) -> list[FrameTerm]:
@@ -322,6 +279,35 @@ def _element(
     turns = np.zeros(ratio.shape[1]) if frame is None else ratio[frame]
     speed = np.array([ratio[index], turns])
     return Element(Law.ROTATING_FRAME, entry, -1, rows, np.zeros(len(rows)), drift, speed=speed)
+
+
+# Couplings between shafts described in different frames.
+
+
+def _frame_coupling_elements(
+    scene: Scene, rotors: Bodies, lever: float
+) -> tuple[tuple[Element, ...], FrameCouplingLaws]:
+    """Return the elements of all couplings across frames, and their laws; `lever` (m) makes lengths of tilts.
+
+    Each reads a phase of its own behind those of the meshes: how far its second frame has turned against its
+    first.
+    """
+    parts = frame_couplings(scene)
+    elements = []
+    size = np.array([1.0, 1.0, lever, lever])
+    laws = [np.zeros((len(parts), 4, 4)) for _ in range(2)]
+    for entry, part in enumerate(parts):
+        coupling, n = scene.couplings[part.coupling], part.directions
+        for law, matrix in zip(laws, (coupling.stiffness, coupling.damping), strict=True):
+            law[entry] = full_matrix(matrix, 0.0)[np.ix_(ACROSS, ACROSS)] / np.outer(size, size)
+        ends = (section_rows(rotors, rotor, part.height) for rotor in (part.first, part.second))
+        gradient = np.concatenate([(moves[list(ACROSS)] * size[:, None])[:n] for moves in ends])
+        typical = np.tile(np.diag(laws[0][entry])[:n], 2)
+        phase = len(scene.meshes) + entry
+        offset = np.zeros(2 * n)
+        elements.append(Element(Law.FRAME_COUPLING, entry, phase, gradient, offset, stiffness=typical))
+    directions = np.array([part.directions for part in parts], dtype=np.int64)
+    return tuple(elements), FrameCouplingLaws(directions, *laws)
 
 
 # The force elements of the flanks: driving flanks of all meshes, coast flanks where backlash is on.
@@ -364,7 +350,7 @@ def _speed_elements(
     Its coordinate is the rotation in the shaft's sense times a radius, and its rate in the kinematic motion
     is the shaft's speed times that radius.
     """
-    radius = max((gear.base_radius for gear in scene.gears), default=1.0)
+    radius = tilt_lever(scene)
     elements = []
     for entry, part in enumerate(scene.speed_torques):
         shaft = scene.shaft_index(part.shaft)
@@ -376,7 +362,7 @@ def _speed_elements(
         gradient[0] += sense * radius * turn_row(rotors, shaft, part.position)
         drift = sense * radius * kinematics.float_ratio[shaft][None, :]
         elements.append(Element(Law.SPEED_TORQUE, entry, -1, gradient, np.zeros(1), drift))
-    return tuple(elements), pack_speed_torques(scene.speed_torques, radius)
+    return tuple(elements), SpeedTorqueLaws.packed(scene.speed_torques, radius)
 
 
 def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
@@ -396,10 +382,10 @@ def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
         mechanism.bearing_duty,
         {name: phase + index for index, name in enumerate(passing)},
     )
-    across, frame = frame_coupling_elements(scene, rotors, tilt_lever(scene))
+    across, frame = _frame_coupling_elements(scene, rotors, tilt_lever(scene))
     applied, course = _force_course_elements(mechanism)
     eccentric, unbalance = _unbalance_elements(mechanism)
-    housed, linear_bearing = housed_bearing_elements(mechanism, housed_bearings(mechanism))
+    housed, linear_bearing = housed_bearing_elements(rotors, housed_bearings(scene, rotors))
     laws = ElementLaws(
         flank=flanks.law,
         speed_torque=speed,

@@ -45,7 +45,7 @@ def decide_model(scene: Scene, registry: tuple[Effect, ...]) -> Model:
     added = [ledger.on_rotor(rotor.shaft.name) for rotor in mechanism.rotors]
     kinds = [{kind for effect in own for kind in effect.adds} for own in added]
     freedoms = find_freedoms(mechanism.rotors, mechanism.kinematics, kinds)
-    _check_mass(freedoms, mechanism.rotors)
+    _require_mass(freedoms, mechanism.rotors)
     train = LoadedTrain(mechanism, freedoms, gather_connections(mechanism.scene, mechanism.rotors), flanks)
     flanks, ledger = _on_meshes(train, ledger, [e for e in registry if isinstance(e, MeshEffect)])
     return Model(mechanism, freedoms, train.connections, flanks, ledger)
@@ -84,8 +84,7 @@ def _on_meshes(
     return flanks, ledger
 
 
-def _check_mass(freedoms: Freedoms, rotors: Bodies) -> None:
-    """Every free direction needs inertia."""
+def _require_mass(freedoms: Freedoms, rotors: Bodies) -> None:
     for name, value in zip(freedoms.name, mass_terms(rotors)[0][freedoms.column], strict=True):
         if value <= 0.0:
             raise InputError(f"inertia of {name}", float(value), above(0.0), GIVE_INERTIA)

@@ -6,22 +6,21 @@ import math
 
 import numpy as np
 
-from dynamics.arrays.arrays import Drives, Loads, Reference
-from dynamics.arrays.law_arrays import pack_laws, revolutions
-from dynamics.assembly.phases import phases
+from dynamics.arrays.arrays import Drives, KinematicMotion, Loads, revolutions
 from dynamics.joints import ImposedRotation
+from dynamics.kernels.cubics import Cubics
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, times_mass, turn_row
 from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.freedoms import ROTATION, Freedoms, carried_motion
-from dynamics.mechanism.kinematics import Kinematics
+from dynamics.mechanism.kinematics import Kinematics, check_loads
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.mechanism.motion_check import check_loads
+from dynamics.mechanism.phases import phases
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
 
-def lay_out_reference(mechanism: Mechanism, freedoms: Freedoms) -> Reference:
+def lay_out_reference(mechanism: Mechanism, freedoms: Freedoms) -> KinematicMotion:
     """Lay out the kinematic motion.
 
     Behind the positions of the meshes come the turns of `phases`.
@@ -35,8 +34,8 @@ def lay_out_reference(mechanism: Mechanism, freedoms: Freedoms) -> Reference:
     turns = phases(mechanism)
     rates, none = (*kinematics.mesh_rate, *(phase.rate for phase in turns)), len(turns)
     shape = (len(rates), len(laws))
-    return Reference(
-        pack_laws(laws),
+    return KinematicMotion(
+        Cubics.packed([law.polynomials() for law in laws]),
         np.concatenate([whole for whole, _ in turned]),
         np.concatenate([fraction for _, fraction in turned]),
         np.array([[rate.numerator for rate in row] for row in rates], dtype=np.int64).reshape(shape),
@@ -62,7 +61,7 @@ def lay_out_loads(mechanism: Mechanism, freedoms: Freedoms) -> Loads:
     rotation = direction[:, 6 * np.arange(len(rotors)) + ROTATION]
     on_drive = direction @ _own_motions(mechanism).T * np.array(kinematics.rigid)
     return Loads(
-        pack_laws([load.torque for load in scene.loads]),
+        Cubics.packed([load.torque.polynomials() for load in scene.loads]),
         freedoms.keep(direction),
         np.ascontiguousarray(rotation @ kinematics.float_ratio),
         np.ascontiguousarray(on_drive),

@@ -13,13 +13,216 @@ References
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
 
-from dynamics.bearings.axial_seat import HOLDS, axial_seat, cage_angle
-from dynamics.bearings.ball_grooves import BallElements, grooves
+import numpy as np
+
+from dynamics.bearings import BallBearing
+from dynamics.bearings.rolling_bearing import AGAINST, ALONG, BOTH, HELD
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
-from dynamics.types import FloatArray
+from dynamics.types import FloatArray, IntArray
+
+# How a row of rolling elements is laid out, and the grooves between which its balls lie.
+
+
+# How a row of rolling elements is laid out for compiled functions.
+
+
+@dataclass(frozen=True)
+class RowPlacement:
+    """What a row's geometry does not say.
+
+    Attributes
+    ----------
+    copies : int
+        Each element as so many that share its stiffness, evenly spaced: more than 1 averages its passing.
+    lever : float
+        Length that makes coordinates of tilts, m; 1: coordinates are in rad and moments in N m.
+    shift : float
+        Displacement of the inner ring along z, less that of the outer, at which the coordinates are 0, m.
+    damping : float
+        Damping of an element over its load, s/m.
+    locating : str
+        Directions in which the rings are held in their seats, see `dynamics.bearings.rolling_bearing`.
+    """
+
+    copies: int = 1
+    lever: float = 1.0
+    shift: float = 0.0
+    damping: float = 0.0
+    locating: str = BOTH
+
+
+class BallElements(NamedTuple):
+    """Balls of l bearings.
+
+    Attributes
+    ----------
+    balls : (l,) int array
+        Their number.
+    stiffness : (l,) array
+        c of a ball between both grooves, N/m^1.5.
+    damping : (l,) array
+        Damping of a ball over its load, s/m.
+    reach : (l,) array
+        A: distance of the centers of curvature of both grooves where the ball just touches, m.
+    radial, axial : (l,) arrays
+        Center of the inner groove seen from that of the outer at no displacement, m.
+    arm_radius, arm_axial : (l,) arrays
+        Center of the inner groove seen from the bearing's center, over the lever of tilts.
+    held : (l,) int array
+        Directions in which the rings are held in their seats, `locating.HELD`.
+    """
+
+    balls: IntArray
+    stiffness: FloatArray
+    damping: FloatArray
+    reach: FloatArray
+    radial: FloatArray
+    axial: FloatArray
+    arm_radius: FloatArray
+    arm_axial: FloatArray
+    held: IntArray
+
+    @classmethod
+    def packed(cls, rows: Sequence[tuple[BallBearing, RowPlacement]]) -> BallElements:
+        """Lay out `rows` and how they are placed."""
+        values = np.array([_values(bearing, place) for bearing, place in rows], dtype=float).reshape(-1, 7)
+        balls = np.array([bearing.count * place.copies for bearing, place in rows], dtype=np.int64)
+        held = np.array([HELD[place.locating] for _, place in rows], dtype=np.int64)
+        stiffness, damping, reach, radial, axial, *arms = (
+            np.ascontiguousarray(column) for column in values.T
+        )
+        return cls(balls, stiffness, damping, reach, radial, axial, arms[0], arms[1], held)
+
+
+def _values(bearing: BallBearing, place: RowPlacement) -> tuple[float, ...]:
+    """Return the figures of a row in the order of `BallElements`; clearance leaves it in its middle."""
+    angle, reach = bearing.free_contact_angle, bearing.groove_distance
+    offset = (bearing.inner_groove - 0.5) * bearing.diameter
+    radial, axial, height = reach - bearing.clearance / 2.0, 0.0, 0.0
+    if bearing.contact_angle != 0.0:
+        toward = math.copysign(1.0, angle)
+        radial, axial = reach * math.cos(angle), reach * math.sin(angle) - toward * bearing.clearance
+        height = offset * math.sin(angle)
+    arm = bearing.pitch_diameter / 2.0 + offset * math.cos(angle)
+    stiffness = bearing.element_stiffness / place.copies
+    arms = arm / place.lever, height / place.lever
+    return stiffness, place.damping, reach, radial, axial + place.shift, *arms
+
+
+@inner
+def _grooves(
+    laws: BallElements, entry: int, c: float, s: float, y: FloatArray, row: int, z: float
+) -> tuple[float, float, float]:
+    """Return radial and axial part of v of the ball at the cosine and sine `c`, `s`, and its length.
+
+    `z` is the axial displacement of the rings against each other.
+    """
+    turn = y[row + 4] * c - y[row + 3] * s
+    v_r = laws.radial[entry] + y[row] * c + y[row + 1] * s + laws.arm_axial[entry] * turn
+    v_z = laws.axial[entry] + z - laws.arm_radius[entry] * turn
+    return v_r, v_z, math.sqrt(v_r * v_r + v_z * v_z)
+
+
+# The axial seat of a ring: where a ring that its seat does not hold slides to.
+#
+# It has neither mass nor friction: it stands where the balls push it nowhere, at the least energy. With
+# E(y, z) that of the balls at the axial displacement z of the rings, the bearing's is
+#
+#     E*(y) = min E(y, z)    over all z, or over those in the direction in which the seat does not hold.
+#
+# E has no hollows in y and z together, nor has E* in y.
+
+
+# The angle of a bearing's cage among the positions of a local state.
+
+
+@inner
+def cage_angle(local: LocalState, turned: int) -> float:
+    """Return the angle of the position `turned`, which is in revolutions, rad; 0 if it is -1: averaged."""
+    return 2.0 * math.pi * float(local.position[turned]) if turned >= 0 else 0.0
+
+
+HOLDS = ALONG | AGAINST
+STEPS = 100
+SETTLED = 1e-12  # of the sum of the loads of all balls
+Seat = tuple[float, float, float, float, float, float, float, float]
+Thrust = tuple[float, float, float, float, float, float, float]
+
+
+@routine
+def axial_seat(laws: BallElements, entry: int, local: LocalState, row: int, turned: int) -> Seat:
+    """Return where a ring stands along the axis, and what presses it against its seat.
+
+    A ring that slides stands between the places where the grooves of all balls are on one side. Between them
+    the thrust of the balls grows with z, and safeguarded Newton steps find its zero.
+
+    Returns
+    -------
+    tuple of float
+        1.0 where the seat holds the ring, 0.0 where it slides; z of the rings against each other (m); the
+        thrust on the seat (N), 0 of a ring that slides; the derivatives of the thrust in the five
+        displacements at this z.
+    """
+    y, angle, held = local.coordinate, cage_angle(local, turned), laws.held[entry]
+    if held != 0:
+        thrust, kx, ky, kz, ktx, kty, _ = _thrust(laws, entry, angle, y, row, y[row + 2])
+        if (thrust >= 0.0 and held & ALONG) or (thrust <= 0.0 and held & AGAINST):
+            return 1.0, y[row + 2], thrust, kx, ky, kz, ktx, kty
+    reach = laws.arm_radius[entry] * math.sqrt(y[row + 3] * y[row + 3] + y[row + 4] * y[row + 4])
+    z = -laws.axial[entry]
+    low, high = z - reach, z + reach
+    thrust, kx, ky, kz, ktx, kty, load = _thrust(laws, entry, angle, y, row, z)
+    for _ in range(STEPS):
+        if abs(thrust) <= SETTLED * load:
+            break
+        if thrust > 0.0:
+            high = z
+        else:
+            low = z
+        z -= thrust / kz
+        if not low < z < high:
+            z = 0.5 * (low + high)
+        thrust, kx, ky, kz, ktx, kty, load = _thrust(laws, entry, angle, y, row, z)
+    return 0.0, z, 0.0, kx, ky, kz, ktx, kty
+
+
+@inner
+def _thrust(laws: BallElements, entry: int, angle: float, y: FloatArray, row: int, z: float) -> Thrust:
+    """Return the axial force of all balls, its derivatives (`kx` to `kty`) and the sum of their loads."""
+    thrust, kx, ky, kz, ktx, kty, total = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    radius, height = laws.arm_radius[entry], laws.arm_axial[entry]
+    step = 2.0 * math.pi / laws.balls[entry]
+    c, s, turn_c, turn_s = math.cos(angle), math.sin(angle), math.cos(step), math.sin(step)
+    for ball in range(laws.balls[entry]):
+        if ball > 0:  # turned from the one before: sines would cost more than the rest
+            c, s = c * turn_c - s * turn_s, s * turn_c + c * turn_s
+        v_r, v_z, length = _grooves(laws, entry, c, s, y, row, z)
+        press = length - laws.reach[entry]
+        if press <= 0.0:
+            continue
+        rigid = laws.stiffness[entry] * math.sqrt(press)
+        load, e_r, e_z = rigid * press, v_r / length, v_z / length
+        along, across = 1.5 * rigid * e_z, load / length * e_r
+        radial, tilting = along * e_r - across * e_z, along * (height * e_r - radius * e_z)
+        tilting -= across * (height * e_z + radius * e_r)
+        thrust += load * e_z
+        total += load
+        kx += radial * c
+        ky += radial * s
+        kz += along * e_z + across * e_r
+        ktx -= tilting * s
+        kty += tilting * c
+    return thrust, kx, ky, kz, ktx, kty, total
+
+
+# Forces, derivatives and energy of all balls.
+
 
 DIRECTIONS, AXIAL = 5, 2
 
@@ -51,7 +254,7 @@ def balls(laws: BallElements, entry: int, local: LocalState, row: int, turned: i
     step = 2.0 * math.pi / laws.balls[entry]
     for ball in range(laws.balls[entry]):
         c, s = math.cos(angle + ball * step), math.sin(angle + ball * step)
-        v_r, v_z, length = grooves(laws, entry, c, s, y, row, z)
+        v_r, v_z, length = _grooves(laws, entry, c, s, y, row, z)
         press = length - laws.reach[entry]
         if press <= 0.0:
             continue
@@ -133,12 +336,11 @@ def balls_energy(
     laws: BallElements, entry: int, local: LocalState, row: int, turned: int
 ) -> tuple[float, float]:
     """Return the energy stored at the displacement in `row` and on, J, and its derivative, J/revolution."""
-    return _energy(laws, entry, local, row, turned, _axial(laws, entry, local, row, turned))
+    return _energy(laws, entry, local, row, turned, _axial_displacement(laws, entry, local, row, turned))
 
 
 @inner
-def _axial(laws: BallElements, entry: int, local: LocalState, row: int, turned: int) -> float:
-    """Return the axial displacement of the rings against each other."""
+def _axial_displacement(laws: BallElements, entry: int, local: LocalState, row: int, turned: int) -> float:
     if laws.held[entry] == HOLDS:
         return float(local.coordinate[row + AXIAL])
     return float(axial_seat(laws, entry, local, row, turned)[1])
@@ -153,7 +355,7 @@ def _energy(
     step, energy, slope = 2.0 * math.pi / laws.balls[entry], 0.0, 0.0
     for ball in range(laws.balls[entry]):
         c, s = math.cos(angle + ball * step), math.sin(angle + ball * step)
-        v_r, v_z, length = grooves(laws, entry, c, s, y, row, z)
+        v_r, v_z, length = _grooves(laws, entry, c, s, y, row, z)
         press = length - laws.reach[entry]
         if press <= 0.0:
             continue
@@ -173,9 +375,9 @@ def ball_reaction(laws: BallElements, local: LocalState, load: FloatArray) -> tu
     """
     balls(laws, 0, local, 0, 0)
     y, angle, step = local.coordinate, cage_angle(local, 0), 2.0 * math.pi / laws.balls[0]
-    z = _axial(laws, 0, local, 0, 0)
+    z = _axial_displacement(laws, 0, local, 0, 0)
     for ball in range(laws.balls[0]):
         c, s = math.cos(angle + ball * step), math.sin(angle + ball * step)
-        press = max(grooves(laws, 0, c, s, y, 0, z)[2] - laws.reach[0], 0.0)
+        press = max(_grooves(laws, 0, c, s, y, 0, z)[2] - laws.reach[0], 0.0)
         load[ball, 0] = laws.stiffness[0] * math.sqrt(press) * press
     return _energy(laws, 0, local, 0, 0, z)

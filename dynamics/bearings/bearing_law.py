@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
-from dynamics.kernels.law import Law
 from dynamics.types import FloatArray
 
 
@@ -32,15 +31,22 @@ class BearingLaw(Protocol):
     """A law of p rows at a bushing or planet bearing, in addition to its linear one."""
 
     @property
-    def law(self) -> Law:
-        """Kind of its force element."""
+    def arrays(self) -> Any:
+        """The packed arrays of its kind, which `ElementLaws` has a field of."""
 
     @property
     def bushing(self) -> str:
         """Where it acts."""
 
+    @property
+    def acts_at(self) -> str:
+        """That and, of a law of a direction, the direction: no two laws of a kind have the same."""
+
     def rows(self, duty: BearingDuty) -> FloatArray:
         """Return its coordinates, m, per displacement x, y, z, tilt_x, tilt_y of the bearing, (p, 5)."""
+
+    def laid_out(self, duty: BearingDuty) -> Any:
+        """Return what those take of it."""
 
     def typical(self, duty: BearingDuty) -> FloatArray:
         """Return the stiffness of the rows at the typical load, (p,), N/m."""

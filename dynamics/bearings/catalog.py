@@ -19,8 +19,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from bounds import from_to
-from dynamics.bearings.ball_bearing import BallBearing
-from dynamics.bearings.row import CatalogLine
+from dynamics.bearings.rolling_bearing import BallBearing, CatalogLine
 from dynamics.errors import InputError
 
 SLENDERNESS = (0.0, 0.09, 0.1, 0.11, 0.12, 0.15, 0.2, 0.25, 0.3)

@@ -33,15 +33,14 @@ class LinearBearingLaws(NamedTuple):
     stiffness: FloatArray
     damping: FloatArray
 
-
-def pack_linear_bearings(laws: Sequence[tuple[FloatArray, FloatArray]]) -> LinearBearingLaws:
-    """Lay out the stiffness and the damping (n, n) of each bearing."""
-    stiffness, damping = np.zeros((2, len(laws), MOST, MOST))
-    for entry, (spring, damper) in enumerate(laws):
-        rows = len(spring)
-        stiffness[entry, :rows, :rows], damping[entry, :rows, :rows] = spring, damper
-    size = np.array([len(spring) for spring, _ in laws], dtype=np.int64)
-    return LinearBearingLaws(size, stiffness, damping)
+    @classmethod
+    def packed(cls, laws: Sequence[tuple[FloatArray, FloatArray]]) -> LinearBearingLaws:
+        """Lay out the stiffness and the damping (n, n) of each bearing."""
+        stiffness, damping = np.zeros((2, len(laws), MOST, MOST))
+        for entry, (spring, damper) in enumerate(laws):
+            rows = len(spring)
+            stiffness[entry, :rows, :rows], damping[entry, :rows, :rows] = spring, damper
+        return cls(np.array([len(spring) for spring, _ in laws], dtype=np.int64), stiffness, damping)
 
 
 @routine

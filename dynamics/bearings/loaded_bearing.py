@@ -1,4 +1,4 @@
-"""A rolling bearing's force from its displacement, and its displacement from a load."""
+"""A rolling bearing's force from its displacement, its displacement from a load, and what follows."""
 
 from __future__ import annotations
 
@@ -10,16 +10,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dynamics.bearings import BallBearing, RollerBearing
-from dynamics.bearings.axial_seat import axial_seat
-from dynamics.bearings.ball_elements import ball_reaction, balls, balls_energy
-from dynamics.bearings.ball_grooves import RowPlacement, pack_balls
-from dynamics.bearings.roller_bearing import BOTH, check_locating
-from dynamics.bearings.roller_elements import pack_rollers, roller_reaction, rollers, rollers_energy
+from dynamics.bearings import BallBearing, Bushing, RollerBearing
+from dynamics.bearings.ball_elements import (
+    BallElements,
+    RowPlacement,
+    axial_seat,
+    ball_reaction,
+    balls,
+    balls_energy,
+)
+from dynamics.bearings.matrix import matrix_rows
+from dynamics.bearings.roller_elements import RollerElements, roller_reaction, rollers, rollers_energy
+from dynamics.bearings.rolling_bearing import BOTH, check_locating
 from dynamics.bearings.seat import SEAT
 from dynamics.errors import SolveError
 from dynamics.kernels.by_address import by_address
-from dynamics.kernels.local_state import alone
+from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import Routine
 from dynamics.types import FloatArray
 
@@ -78,15 +84,15 @@ class LoadedBearing:
     def __init__(self, bearing: BallBearing | RollerBearing, copies: int = 1, locating: str = BOTH) -> None:
         check_locating(bearing, locating)
         self.bearing, self.copies = bearing, copies
-        self._local = by_address(alone(SEAT))
+        self._local = by_address(LocalState.empty(SEAT, SEAT))
         self._load = np.zeros((bearing.count * copies, bearing.laminae))
         place = RowPlacement(copies, damping=1.0, locating=locating)
         if isinstance(bearing, BallBearing):
-            self._laws: Any = by_address(pack_balls([(bearing, place)]))
+            self._laws: Any = by_address(BallElements.packed([(bearing, place)]))
             self._react: Any = ball_reaction
             routines: tuple[Routine, ...] = (axial_seat, balls, balls_energy)
         else:
-            self._laws = by_address(pack_rollers([(bearing, place)]))
+            self._laws = by_address(RollerElements.packed([(bearing, place)]))
             self._react = roller_reaction
             routines = rollers, rollers_energy
         for routine in routines:
@@ -149,3 +155,80 @@ class LoadedBearing:
             else:
                 damping *= 4.0
         raise SolveError(f"the bearing does not carry the load: {left:.3g} N are left after {STEPS} steps")
+
+
+# Element passing: how a shaft moves under a constant load as the elements pass it, without inertia.
+
+
+ANGLES = 32
+
+
+@dataclass(frozen=True)
+class ElementPassing:
+    """The motion of a bearing's inner ring over the passing of one element.
+
+    Attributes
+    ----------
+    order : float
+        Passings per revolution of the inner ring, the outer at rest.
+    angle : (T,) array
+        Of the first element from x towards y, rad; one pitch, its end left out.
+    displacement : (T, 5) array
+        m, rad.
+    """
+
+    order: float
+    angle: FloatArray
+    displacement: FloatArray
+
+    @property
+    def peak_to_peak(self) -> FloatArray:
+        """Return the size of the motion in each direction, (5,), m and rad."""
+        return np.asarray(np.ptp(self.displacement, axis=0))
+
+
+def element_passing(
+    bearing: BallBearing | RollerBearing, load: ArrayLike, angles: int = ANGLES
+) -> ElementPassing:
+    """Return the motion of `bearing` under `load` (5,), N and N m, at evenly spaced angles of the cage.
+
+    Raises
+    ------
+    SolveError
+        If the bearing does not carry the load.
+    """
+    loaded = LoadedBearing(bearing)
+    pitch = 2.0 * math.pi / bearing.count
+    angle = np.arange(angles) * pitch / angles
+    moved = [loaded.displacement(load, float(turned)) for turned in angle]
+    return ElementPassing(bearing.count * bearing.cage_ratio, angle, np.array(moved))
+
+
+# A bearing by geometry as the linear bushing that it is for small motions.
+
+
+def tangent_bushing(
+    bearing: LoadedBearing, place: tuple[str, str, float], displacement: ArrayLike, angle: float = 0.0
+) -> Bushing:
+    """Return the bushing with force and tangent of `bearing` at a displacement.
+
+    Exact there and to first order about it. Where loads follow from statics alone, take
+    `LoadedBearing.displacement` of the load; otherwise the displacement at which a scene rests on these
+    bushings is the next, better one (Newton's method).
+
+    Parameters
+    ----------
+    bearing : LoadedBearing
+        Its outer ring is held by the ground, its center is on the shaft's axis.
+    place : (str, str, float)
+        Name of the bushing, its shaft, position along it (m).
+    displacement : (5,) array_like
+        Of the shaft at the bushing: x, y, z (m), tilt_x, tilt_y (rad).
+    angle : float
+        Of the first element from x towards y, rad.
+    """
+    name, shaft, position = place
+    at = bearing.evaluate(displacement, angle)
+    preload = at.tangent @ np.asarray(displacement, dtype=float) - at.force
+    stiffness = matrix_rows(0.5 * (at.tangent + at.tangent.T))
+    return Bushing(name, shaft, position, stiffness=stiffness, preload=tuple(map(float, preload)))

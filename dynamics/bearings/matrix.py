@@ -9,10 +9,16 @@ from dynamics.types import FloatArray
 
 Matrix = tuple[tuple[float, ...], ...]
 
+
 PRECISION = 1e-9
 """Relative precision to which entries count."""
 OPERATIONS = 10.0
 """Roundings per term of a row: turning, adding and condensing each leave some."""
+
+
+def matrix_rows(matrix: FloatArray) -> Matrix:
+    """Return the rows of an array as a part of a scene holds them."""
+    return tuple(tuple(float(value) for value in row) for row in matrix)
 
 
 def check_matrix(

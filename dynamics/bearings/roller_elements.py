@@ -13,9 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.bearings import RollerBearing
-from dynamics.bearings.axial_seat import cage_angle
-from dynamics.bearings.ball_grooves import RowPlacement
-from dynamics.bearings.roller_bearing import lamina_places, lamina_stiffness
+from dynamics.bearings.ball_elements import RowPlacement, cage_angle
+from dynamics.bearings.rolling_bearing import lamina_places, lamina_stiffness
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
@@ -60,26 +59,26 @@ class RollerElements(NamedTuple):
     place: FloatArray
     drop: FloatArray
 
-
-def pack_rollers(rows: Sequence[tuple[RollerBearing, RowPlacement]]) -> RollerElements:
-    """Lay out `rows` and how they are placed."""
-    values = np.array([_values(bearing, place) for bearing, place in rows], dtype=float).reshape(-1, 6)
-    places = [lamina_places(bearing.length, bearing.laminae) for bearing, _ in rows]
-    drops = [2.0 * bearing.drop(place) for (bearing, _), place in zip(rows, places, strict=True)]
-    own = [place / at.lever for (_, at), place in zip(rows, places, strict=True)]
-    stiffness, damping, cosine, sine, arm, play = (np.ascontiguousarray(column) for column in values.T)
-    return RollerElements(
-        np.array([bearing.count * at.copies for bearing, at in rows], dtype=np.int64),
-        stiffness,
-        damping,
-        cosine,
-        sine,
-        arm,
-        play,
-        np.cumsum([0, *(bearing.laminae for bearing, _ in rows)], dtype=np.int64),
-        np.concatenate([np.empty(0), *own]),
-        np.concatenate([np.empty(0), *drops]),
-    )
+    @classmethod
+    def packed(cls, rows: Sequence[tuple[RollerBearing, RowPlacement]]) -> RollerElements:
+        """Lay out `rows` and how they are placed."""
+        values = np.array([_values(bearing, place) for bearing, place in rows], dtype=float).reshape(-1, 6)
+        places = [lamina_places(bearing.length, bearing.laminae) for bearing, _ in rows]
+        drops = [2.0 * bearing.drop(place) for (bearing, _), place in zip(rows, places, strict=True)]
+        own = [place / at.lever for (_, at), place in zip(rows, places, strict=True)]
+        stiffness, damping, cosine, sine, arm, play = (np.ascontiguousarray(column) for column in values.T)
+        return cls(
+            np.array([bearing.count * at.copies for bearing, at in rows], dtype=np.int64),
+            stiffness,
+            damping,
+            cosine,
+            sine,
+            arm,
+            play,
+            np.cumsum([0, *(bearing.laminae for bearing, _ in rows)], dtype=np.int64),
+            np.concatenate([np.empty(0), *own]),
+            np.concatenate([np.empty(0), *drops]),
+        )
 
 
 def _values(bearing: RollerBearing, at: RowPlacement) -> tuple[float, ...]:

@@ -1,16 +1,377 @@
-"""A rolling bearing between a shaft and the ground, by the geometry of its row."""
+"""Rolling bearings by their internal geometry: rows of balls and of rollers, their contacts, their seats.
+
+References
+----------
+.. [1] ISO 5593:2019, Rolling bearings - Vocabulary: locating and non-locating bearing.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 
-from bounds import Declared, Kind, between, declared, described, required
-from dynamics.bearings import seat
-from dynamics.bearings.ball_bearing import BallBearing
-from dynamics.bearings.bushing import Bushing
-from dynamics.bearings.roller_bearing import BOTH, LOCATING, RollerBearing, check_locating
-from dynamics.checks import declared_fields
+import numpy as np
+
+from bounds import Choice, Declared, Kind, above, below, between, declared, described, integers, required
+from dynamics.bearings.seat import POSITION, Bushing
+from dynamics.checks import declared_fields, one_of, positive
 from dynamics.errors import InputError
+from dynamics.shafts.bodies import STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
+from dynamics.types import FloatArray
+
+# Rows of equal elements, and a line of a bearing catalog.
+
+
+COUNT = Declared(Kind.COUNT, "", integers(3, 500), "Number of rolling elements", 8)
+DIAMETER = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Diameter of a rolling element", 0.008)
+PITCH = Declared(Kind.LENGTH, "m", between(1e-4, 100.0), "Diameter of the circle of their centers", 0.039)
+ANGLE = Declared(
+    Kind.ANGLE,
+    "rad",
+    between(-math.radians(85.0), math.radians(85.0)),
+    "Free contact angle; positive: the bearing holds a shaft that is pushed along z, negative: against z",
+    math.radians(40.0),
+)
+CLEARANCE = Declared(
+    Kind.LENGTH,
+    "m",
+    between(-0.01, 0.01),
+    "Play: across the axis between both extremes where the contact angle is 0, otherwise along the axis to "
+    "contact; negative: preload",
+    1e-5,
+    written="um",
+)
+
+
+class _Row:
+    """A row of equal elements, evenly spaced by a cage."""
+
+    count: int
+    diameter: float
+    pitch_diameter: float
+    contact_angle: float
+    clearance: float
+
+    @property
+    def slenderness(self) -> float:
+        """Return gamma: element diameter times the cosine of the contact angle, over the pitch diameter."""
+        return self.diameter * math.cos(self.contact_angle) / self.pitch_diameter
+
+    @property
+    def cage_ratio(self) -> float:
+        """Return the speed of the cage over that of the inner ring, the outer at rest and nothing slips."""
+        return (1.0 - self.slenderness) / 2.0
+
+    def check_row(self) -> None:
+        """Refuse what is no row.
+
+        Raises
+        ------
+        InputError
+            A field out of its bounds, or more elements than their circle holds.
+        """
+        declared_fields(self)
+        least = self.diameter / math.sin(math.pi / self.count)
+        if self.pitch_diameter <= least:
+            bound = above(least, "m", "where the elements touch each other")
+            suggestion = "Check number and diameter of the elements."
+            raise InputError("pitch_diameter", self.pitch_diameter, bound, suggestion)
+
+
+BORE = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Bore of the inner ring", 0.025)
+OUTSIDE = Declared(Kind.LENGTH, "m", between(1e-4, 20.0), "Outside diameter of the outer ring", 0.062)
+RATING = Declared(Kind.FORCE, "N", between(1.0, 1e9), "Basic static load rating C_0", 11600.0)
+
+
+@described
+@dataclass(frozen=True)
+class CatalogLine:
+    """What a catalog says of a deep groove ball bearing, and its clearance, which it does not."""
+
+    bore: float = required(BORE)
+    outside_diameter: float = required(OUTSIDE)
+    static_rating: float = required(RATING)
+    clearance: float = declared(0.0, CLEARANCE)
+
+    def __post_init__(self) -> None:
+        declared_fields(self)
+        if self.outside_diameter <= self.bore:
+            raise InputError("outside_diameter", self.outside_diameter, above(self.bore, "m", "the bore"))
+
+
+# Hertz contact of two elastic bodies over an ellipse, by exact integrals.
+
+
+LEAST_RATIO = 1e-12  # of the axes: radii that differ by 23 orders of magnitude
+
+
+@dataclass(frozen=True)
+class EllipticContact:
+    """A Hertz contact.
+
+    Attributes
+    ----------
+    small_radius, large_radius : float
+        Relative radii of curvature in the two principal planes, m, > 0.
+    modulus : float
+        E*, Pa.
+    """
+
+    small_radius: float
+    large_radius: float
+    modulus: float
+
+    def __post_init__(self) -> None:
+        for name in ("small_radius", "large_radius", "modulus"):
+            positive(name, getattr(self, name))
+
+    @property
+    def axis_ratio(self) -> float:
+        """Return b/a, from 0 to 1."""
+        from scipy.optimize import brentq  # noqa: PLC0415 (start-up time)
+        from scipy.special import elliprd  # noqa: PLC0415 (start-up time)
+
+        ratio = self.small_radius / self.large_radius
+        if ratio > 1.0:
+            return EllipticContact(self.large_radius, self.small_radius, self.modulus).axis_ratio
+        if math.isclose(ratio, 1.0, rel_tol=1e-14):
+            return 1.0
+
+        def missed(logarithm: float) -> float:
+            square = math.exp(2.0 * logarithm)
+            return math.log(elliprd(0.0, square, 1.0) / elliprd(0.0, 1.0, square)) - math.log(ratio)
+
+        # below 0 by as much as rounding needs where the radii are almost equal
+        return math.exp(float(brentq(missed, math.log(LEAST_RATIO), 1e-12, xtol=1e-15)))
+
+    @property
+    def spring_constant(self) -> float:
+        """Return c of load = c approach^1.5, N/m^1.5."""
+        return float((1.0 / self.approach(1.0)) ** 1.5)
+
+    def axes(self, load: float) -> tuple[float, float]:
+        """Return the half-axes a >= b of the ellipse under `load` (N), m."""
+        from scipy.special import elliprd  # noqa: PLC0415 (start-up time)
+
+        q, radius = self.axis_ratio, min(self.small_radius, self.large_radius)
+        a = (load * radius * float(elliprd(0.0, 1.0, q * q)) / (math.pi * self.modulus)) ** (1.0 / 3.0)
+        return a, q * a
+
+    def approach(self, load: float) -> float:
+        """Return how far the bodies approach under `load` (N, > 0), m."""
+        from scipy.special import elliprf  # noqa: PLC0415 (start-up time)
+
+        a, b = self.axes(load)
+        return 1.5 * load * float(elliprf(0.0, (b / a) ** 2, 1.0)) / (math.pi * self.modulus * a)
+
+    def peak_pressure(self, load: float) -> float:
+        """Return the peak pressure under `load` (N, > 0), Pa."""
+        a, b = self.axes(load)
+        return 1.5 * load / (math.pi * a * b)
+
+
+GROOVE = Declared(Kind.RATIO, "", between(0.501, 1.0), "Groove radius over ball diameter", 0.52)
+MODULUS = Declared(Kind.STIFFNESS, "Pa", between(1e9, 1e12), "Young's modulus of rings and balls", 206e9)
+POISSON = Declared(Kind.RATIO, "", between(0.0, 0.49), "Poisson's ratio of rings and balls", 0.3)
+
+
+@described
+@dataclass(frozen=True)
+class BallBearing(_Row):
+    """A single row of balls, without shoulders: with clearance both flanks of the grooves carry.
+
+    Balls have neither mass nor friction: no centrifugal force, no gyroscopic moment, so that inner and outer
+    contact have the same angle. Rings are rigid but for the contacts. The bearing's center is the plane of
+    the balls' centers where they just touch. A contact angle of 0 is a deep groove bearing, whose free
+    contact angle follows from its clearance.
+    """
+
+    count: int = required(COUNT)
+    diameter: float = required(DIAMETER)
+    pitch_diameter: float = required(PITCH)
+    inner_groove: float = declared(0.52, GROOVE)
+    outer_groove: float = declared(0.53, GROOVE)
+    contact_angle: float = declared(0.0, ANGLE)
+    clearance: float = declared(0.0, CLEARANCE)
+    youngs_modulus: float = declared(STEEL_YOUNGS_MODULUS, MODULUS)
+    poisson_ratio: float = declared(STEEL_POISSON_RATIO, POISSON)
+
+    def __post_init__(self) -> None:
+        self.check_row()
+        if self.contact_angle == 0.0 and self.clearance >= 2.0 * self.groove_distance:
+            bound = below(2.0 * self.groove_distance, "m", "where the grooves hold nothing")
+            raise InputError("clearance", self.clearance, bound, "Reduce it, or widen the grooves.")
+
+    @property
+    def groove_distance(self) -> float:
+        """Return A, the distance of both grooves' centers of curvature around a ball that just touches, m."""
+        return (self.inner_groove + self.outer_groove - 1.0) * self.diameter
+
+    @property
+    def free_contact_angle(self) -> float:
+        """Return the angle of the contacts where the balls just touch under an axial force, rad."""
+        if self.contact_angle != 0.0:
+            return self.contact_angle
+        return math.acos(min(1.0, 1.0 - self.clearance / (2.0 * self.groove_distance)))
+
+    def contacts(self) -> tuple[EllipticContact, EllipticContact]:
+        """Return the contacts of a ball with the inner and the outer groove."""
+        modulus = self.youngs_modulus / (2.0 * (1.0 - self.poisson_ratio**2))
+        radius = self.diameter / 2.0
+
+        def contact(rolling: float, groove: float) -> EllipticContact:
+            return EllipticContact(radius * rolling, 1.0 / (1.0 / radius - 1.0 / groove), modulus)
+
+        inner, outer = self.inner_groove * self.diameter, self.outer_groove * self.diameter
+        return contact(1.0 - self.slenderness, inner), contact(1.0 + self.slenderness, outer)
+
+    @cached_property
+    def element_stiffness(self) -> float:
+        """Return c of load = c approach^1.5 of a ball between both grooves, N/m^1.5."""
+        compliance = sum(contact.spring_constant ** (-2.0 / 3.0) for contact in self.contacts())
+        return float(compliance**-1.5)
+
+    @property
+    def laminae(self) -> int:
+        """Return the number of parts of an element: a ball is whole."""
+        return 1
+
+    def peak_pressure(self, load: float) -> float:
+        """Return the larger of the peak pressures of a ball under `load` (N) on both rings, Pa."""
+        return max(contact.peak_pressure(load) for contact in self.contacts()) if load > 0.0 else 0.0
+
+
+# Profiles of rollers, and the stiffness of their laminae, by ISO/TS 16281.
+
+
+LOGARITHMIC, CROWNED, STRAIGHT = "logarithmic", "crowned", "straight"
+PROFILES = (LOGARITHMIC, CROWNED, STRAIGHT)
+LINE_STIFFNESS = 35948e6  # N/m^2: 35948 N/mm^2 of [1]_, of steel rollers between steel raceways
+LONG = 2.5  # diameters: longer cylindrical rollers are straight in their middle
+
+
+def lamina_places(length: float, laminae: int) -> FloatArray:
+    """Return the middles of equal laminae along a roller of `length` (m), (laminae,), m from its middle."""
+    return np.asarray((np.arange(laminae) + 0.5) / laminae - 0.5) * length
+
+
+def lamina_stiffness(length: float, laminae: int) -> float:
+    """Return c of one lamina of a roller of `length` (m), N/m^(10/9): both contacts in series [1]_."""
+    return float(LINE_STIFFNESS * length ** (8.0 / 9.0) / laminae)
+
+
+def _logarithmic_drop(place: FloatArray, diameter: float, length: float, tapered: bool) -> FloatArray:
+    """Return how far the logarithmic profile [1]_ of a roller lies below its middle at `place`, m.
+
+    Diameter and effective length in m.
+    """
+    straight = 0.0 if tapered or length <= LONG * diameter else length - LONG * diameter
+    factor = 0.00045 if tapered else 0.0005 if straight > 0.0 else 0.00035
+    ratio = np.maximum(2.0 * np.abs(place) - straight, 0.0) / (length - straight)
+    return np.asarray(-factor * diameter * np.log1p(-(ratio**2)))
+
+
+def _crowned_drop(place: FloatArray, crown: float, length: float) -> FloatArray:
+    """Return how far a circular crowning lies below its middle at `place`, m; `crown` (m) at the ends."""
+    return np.asarray(crown * (2.0 * place / length) ** 2)
+
+
+# Cylindrical and tapered roller bearings by their internal geometry, in laminae.
+
+
+LENGTH = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Effective length of a roller", 0.0136)
+PROFILE = Declared(Kind.CHOICE, "", Choice(PROFILES), "Profile of a roller", LOGARITHMIC)
+CROWN = Declared(
+    Kind.AMOUNT,
+    "m",
+    between(0.0, 1e-3),
+    "Drop of a crowned profile at the ends of the roller, at each contact",
+    1e-5,
+)
+LAMINAE = Declared(Kind.COUNT, "", integers(1, 1000), "Laminae of a roller; ISO/TS 16281: at least 30", 30)
+
+
+@described
+@dataclass(frozen=True)
+class RollerBearing(_Row):
+    """A single row of steel rollers, each cut into laminae.
+
+    A contact angle of 0 is a cylindrical roller bearing, which carries no axial force: state its ribs as a
+    spring curve in z. The rib of a tapered one carries what the raceways leave over and yields nothing.
+    Rollers have no mass, and lie halfway between raceways that tilt against each other. The bearing's center
+    is the plane of the rollers' middles.
+    """
+
+    count: int = required(COUNT)
+    diameter: float = required(DIAMETER)
+    length: float = required(LENGTH)
+    pitch_diameter: float = required(PITCH)
+    contact_angle: float = declared(0.0, ANGLE)
+    clearance: float = declared(0.0, CLEARANCE)
+    profile: str = declared(LOGARITHMIC, PROFILE)
+    crown: float = declared(0.0, CROWN)
+    laminae: int = declared(30, LAMINAE)
+
+    def __post_init__(self) -> None:
+        self.check_row()
+
+    @property
+    def play(self) -> float:
+        """Return the approach along the normal at which the middle of a roller just touches, m."""
+        tapered = self.contact_angle != 0.0
+        return self.clearance * (abs(math.sin(self.contact_angle)) if tapered else 0.5)
+
+    @property
+    def element_stiffness(self) -> float:
+        """Return c of load = c approach^(10/9) of a straight roller between both raceways, N/m^(10/9)."""
+        return self.laminae * lamina_stiffness(self.length, self.laminae)
+
+    def drop(self, place: FloatArray) -> FloatArray:
+        """Return how far the profile lies below the middle at `place` along the roller, m; one contact."""
+        if self.profile == LOGARITHMIC:
+            return _logarithmic_drop(place, self.diameter, self.length, self.contact_angle != 0.0)
+        return _crowned_drop(place, self.crown if self.profile == CROWNED else 0.0, self.length)
+
+    def peak_pressure(self, load: float) -> float:
+        """Return the Hertz pressure of a lamina under `load` (N) on the inner ring, the smaller one, Pa.
+
+        Steel on steel: p_0 = sqrt(q E*/(pi R)), q load over length, R = D (1 - gamma)/2.
+        """
+        modulus = STEEL_YOUNGS_MODULUS / (2.0 * (1.0 - STEEL_POISSON_RATIO**2))
+        radius = self.diameter * (1.0 - self.slenderness) / 2.0
+        return math.sqrt(load * self.laminae / self.length * modulus / (math.pi * radius))
+
+
+BOTH, POSITIVE, NEGATIVE, NONE = "both", "positive", "negative", "none"
+LOCATING = Declared(
+    Kind.CHOICE,
+    "",
+    Choice((BOTH, POSITIVE, NEGATIVE, NONE)),
+    "Directions along z in which its rings are held in their seats. positive, negative: only against a shaft "
+    "that is pushed along z, against z, as in a cross-located pair; none: a non-locating (floating) bearing, "
+    "one ring of which slides",
+    BOTH,
+    later=True,
+)
+ALONG, AGAINST = 1, 2
+HELD = {BOTH: ALONG | AGAINST, POSITIVE: ALONG, NEGATIVE: AGAINST, NONE: 0}
+"""The directions as bits."""
+
+
+def check_locating(row: BallBearing | RollerBearing, locating: str) -> None:
+    """Refuse a row with a contact angle of which a ring slides: it would carry nothing at all.
+
+    Raises
+    ------
+    InputError
+        `locating` is none of the choices, or the row has a contact angle and not both directions are held.
+    """
+    one_of("locating", locating, list(HELD))
+    if locating != BOTH and row.contact_angle != 0.0:
+        bound = f'"{BOTH}" with a contact angle, whose sign is the direction in which the row holds'
+        raise InputError("locating", locating, bound, "State the contact angle's sign instead.")
+
 
 AXIAL_PRELOAD = Declared(
     Kind.FORCE,
@@ -56,7 +417,7 @@ class RollingBearing:
     name: str
     shaft: str
     row: BallBearing | RollerBearing
-    position: float = required(seat.POSITION)
+    position: float = required(POSITION)
     axial_preload: float = declared(0.0, AXIAL_PRELOAD)
     damping_ratio: float = declared(0.05, DAMPING_RATIO)
     dynamic_capacity: float | None = declared(None, DYNAMIC_CAPACITY)

@@ -11,7 +11,6 @@ import numpy as np
 
 from dynamics.bearings.bearing_law import BearingDuty
 from dynamics.checks import not_negative, positive, within
-from dynamics.kernels.law import Law
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray
@@ -19,6 +18,39 @@ from dynamics.types import FloatArray
 ROLLER, BALL = 10.0 / 9.0, 1.5
 REACH_SHARE = 0.05  # of the typical load: where damping acts in full
 LEAST_PRESS = 1e-6  # m; sets the typical load of a bearing that nothing loads
+
+
+class RollingContactLaws(NamedTuple):
+    """Laws of l contacts.
+
+    Attributes
+    ----------
+    stiffness, exponent, clearance : (l,) arrays
+        N/m^n, 1, m.
+    damping, reach : (l,) arrays
+        N s/m in full contact, and the elastic force (N) from which it acts in full.
+    """
+
+    stiffness: FloatArray
+    exponent: FloatArray
+    clearance: FloatArray
+    damping: FloatArray
+    reach: FloatArray
+
+    @classmethod
+    def packed(cls, laws: Sequence[tuple[RollingContact, BearingDuty]]) -> RollingContactLaws:
+        """Lay out laws, each with the duty of its bearing."""
+        parts = [part for part, _ in laws]
+        typical = [part.typical_load(duty.load) for part, duty in laws]
+        damping = [
+            2.0 * part.damping_ratio * math.sqrt(part.tangent(load) * duty.mass)
+            if part.damping is None
+            else part.damping
+            for (part, duty), load in zip(laws, typical, strict=True)
+        ]
+        fields = ([getattr(part, name) for part in parts] for name in ("stiffness", "exponent", "clearance"))
+        reach = [REACH_SHARE * load for load in typical]
+        return cls(*(np.array(values, dtype=float) for values in (*fields, damping, reach)))
 
 
 @dataclass(frozen=True)
@@ -62,7 +94,12 @@ class RollingContact:
         if self.damping is not None:
             not_negative("damping", self.damping)
 
-    law: ClassVar[Law] = Law.ROLLING_CONTACT
+    arrays: ClassVar[type[RollingContactLaws]] = RollingContactLaws
+
+    @property
+    def acts_at(self) -> str:
+        """The bearing."""
+        return self.bushing
 
     def displacement(self, force: float) -> float:
         """Return how far the shaft moves along a static `force` (N, > 0), m."""
@@ -81,6 +118,10 @@ class RollingContact:
         """Return the displacements x and y, (2, 5)."""
         return np.eye(2, 5)
 
+    def laid_out(self, duty: BearingDuty) -> tuple[RollingContact, BearingDuty]:
+        """Return what its arrays take."""
+        return self, duty
+
     def typical(self, duty: BearingDuty) -> FloatArray:
         """Return the stiffness of the rows at the typical load, (2,), N/m."""
         return np.full(2, self.tangent(self.typical_load(duty.load)))
@@ -89,39 +130,6 @@ class RollingContact:
         """Return what its tangent misses of the displacement under the typical load, m."""
         load = self.typical_load(duty.load)
         return self.displacement(load) - load / self.tangent(load)
-
-
-class RollingContactLaws(NamedTuple):
-    """Laws of l contacts.
-
-    Attributes
-    ----------
-    stiffness, exponent, clearance : (l,) arrays
-        N/m^n, 1, m.
-    damping, reach : (l,) arrays
-        N s/m in full contact, and the elastic force (N) from which it acts in full.
-    """
-
-    stiffness: FloatArray
-    exponent: FloatArray
-    clearance: FloatArray
-    damping: FloatArray
-    reach: FloatArray
-
-
-def pack_rolling_contacts(laws: Sequence[tuple[RollingContact, BearingDuty]]) -> RollingContactLaws:
-    """Lay out laws, each with the duty of its bearing."""
-    parts = [part for part, _ in laws]
-    typical = [part.typical_load(duty.load) for part, duty in laws]
-    damping = [
-        2.0 * part.damping_ratio * math.sqrt(part.tangent(load) * duty.mass)
-        if part.damping is None
-        else part.damping
-        for (part, duty), load in zip(laws, typical, strict=True)
-    ]
-    fields = ([getattr(part, name) for part in parts] for name in ("stiffness", "exponent", "clearance"))
-    reach = [REACH_SHARE * load for load in typical]
-    return RollingContactLaws(*(np.array(values, dtype=float) for values in (*fields, damping, reach)))
 
 
 @routine

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import cached_property, lru_cache
-from typing import cast
 
 import numpy as np
 from scipy.optimize import brentq
 
 from dynamics.bearings import BallBearing, RollerBearing
-from dynamics.bearings.ball_grooves import BallElements, RowPlacement, pack_balls
+from dynamics.bearings.ball_elements import BallElements, RowPlacement
 from dynamics.bearings.bearing_law import BearingDuty
 from dynamics.bearings.loaded_bearing import LoadedBearing, Reaction
-from dynamics.bearings.roller_elements import EXPONENT, RollerElements, pack_rollers
+from dynamics.bearings.roller_elements import EXPONENT, RollerElements
 from dynamics.bearings.rolling_bearing import RollingBearing
-from dynamics.kernels.law import Law
 from dynamics.types import FloatArray
 
 AVERAGED = 64
@@ -25,7 +22,7 @@ PASSING_ANGLES = 8
 LEAST_PRESS = 1e-6  # m; of one element: sets the typical load of a bearing that nothing loads
 
 
-class RowLaw:
+class _RowLaw:
     """The law of a bearing.
 
     Parameters
@@ -42,14 +39,16 @@ class RowLaw:
         self.loaded = LoadedBearing(bearing.row, self.copies, bearing.locating)
 
     @property
-    def law(self) -> Law:
-        """Kind of its force element."""
-        return Law.BALLS if isinstance(self.row, BallBearing) else Law.ROLLERS
+    def arrays(self) -> type[BallElements] | type[RollerElements]:
+        """The packed arrays of its kind."""
+        return BallElements if isinstance(self.row, BallBearing) else RollerElements
 
     @property
     def bushing(self) -> str:
         """Where it acts."""
         return self.bearing.name
+
+    acts_at = bushing
 
     @property
     def lever(self) -> float:
@@ -82,13 +81,13 @@ class RowLaw:
         way, at = self._under(duty)
         return way - float(at.force[0] / at.tangent[0, 0])
 
-    def placement(self, duty: BearingDuty) -> RowPlacement:
-        """Return how the row is laid out."""
+    def laid_out(self, duty: BearingDuty) -> tuple[BallBearing | RollerBearing, RowPlacement]:
+        """Return the row and how it is placed."""
         at = self._under(duty)[1]
         critical = 2.0 * math.sqrt(float(at.tangent[0, 0]) * duty.mass)
         damping = self.bearing.damping_ratio * critical / float(at.viscous[0, 0])
         copies = 1 if self.passing else self.copies
-        return RowPlacement(copies, self.lever, self.shift, damping, self.bearing.locating)
+        return self.row, RowPlacement(copies, self.lever, self.shift, damping, self.bearing.locating)
 
     def passing_motion(self, duty: BearingDuty) -> float:
         """Return how far the shaft moves as an element passes, from peak to peak along the load, m."""
@@ -100,7 +99,7 @@ class RowLaw:
         self, duty: BearingDuty, loaded: LoadedBearing | None = None, angle: float = 0.0
     ) -> tuple[float, Reaction]:
         """Return displacement and answer under the typical load across the axis, nothing else moving."""
-        exponent = 1.5 if self.law is Law.BALLS else EXPONENT
+        exponent = 1.5 if isinstance(self.row, BallBearing) else EXPONENT
         load = max(duty.load, self.row.element_stiffness * LEAST_PRESS**exponent)
 
         def reaction(way: float) -> Reaction:
@@ -114,16 +113,6 @@ class RowLaw:
 
 
 @lru_cache(maxsize=1024)
-def row_law(bearing: RollingBearing, passing: bool = False) -> RowLaw:
+def row_law(bearing: RollingBearing, passing: bool = False) -> _RowLaw:
     """Return the law of `bearing`, laid out once."""
-    return RowLaw(bearing, passing)
-
-
-def pack_ball_laws(laws: Sequence[tuple[RowLaw, BearingDuty]]) -> BallElements:
-    """Lay out laws of balls."""
-    return pack_balls([(cast(BallBearing, law.row), law.placement(duty)) for law, duty in laws])
-
-
-def pack_roller_laws(laws: Sequence[tuple[RowLaw, BearingDuty]]) -> RollerElements:
-    """Lay out laws of rollers."""
-    return pack_rollers([(cast(RollerBearing, law.row), law.placement(duty)) for law, duty in laws])
+    return _RowLaw(bearing, passing)

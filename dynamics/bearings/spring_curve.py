@@ -12,13 +12,42 @@ from scipy.interpolate import PchipInterpolator
 from dynamics.bearings.bearing_law import BearingDuty
 from dynamics.checks import finite, increasing, one_of
 from dynamics.errors import InputError
-from dynamics.kernels.compiled import inner
-from dynamics.kernels.law import Law
+from dynamics.kernels.cubics import Cubics, area, piece_at, value_and_slope
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import FloatArray
 
 DIRECTIONS = ("x", "y", "z", "tilt_x", "tilt_y")
+
+
+class SpringCurveLaws(NamedTuple):
+    """Curves.
+
+    Attributes
+    ----------
+    force : Cubics
+        By displacement, m or rad; N, N m.
+    energy : (S,) array
+        Energy at the start of each piece less that at no displacement, J.
+    lever : (l,) array
+        Coordinate over displacement: 1, or a radius in m for tilts.
+    """
+
+    force: Cubics
+    energy: FloatArray
+    lever: FloatArray
+
+    @classmethod
+    def packed(cls, laws: Sequence[tuple[SpringCurve, BearingDuty]]) -> SpringCurveLaws:
+        """Lay out laws, each with the duty of its bearing."""
+        pieces = [part.pieces() for part, _ in laws]
+        energies = [_energies(start, coefficient) for start, coefficient in pieces]
+        levers = [part.lever(duty) for part, duty in laws]
+        return cls(
+            Cubics.packed(pieces),
+            np.concatenate([np.empty(0), *energies]),
+            np.array(levers, dtype=float),
+        )
 
 
 @dataclass(frozen=True)
@@ -57,7 +86,12 @@ class SpringCurve:
             finite(f"force[{index}]", value)
         increasing("force", self.force, "A bearing whose force falls with displacement is unstable.")
 
-    law: ClassVar[Law] = Law.SPRING_CURVE
+    arrays: ClassVar[type[SpringCurveLaws]] = SpringCurveLaws
+
+    @property
+    def acts_at(self) -> str:
+        """The bearing and the direction."""
+        return f"{self.bushing}.{self.direction}"
 
     @property
     def slope(self) -> float:
@@ -71,6 +105,10 @@ class SpringCurve:
     def rows(self, duty: BearingDuty) -> FloatArray:
         """Return the displacement of its direction, (1, 5)."""
         return self.lever(duty) * np.eye(5)[[DIRECTIONS.index(self.direction)]]
+
+    def laid_out(self, duty: BearingDuty) -> tuple[SpringCurve, BearingDuty]:
+        """Return what its arrays take."""
+        return self, duty
 
     def typical(self, duty: BearingDuty) -> FloatArray:
         """Return its mean stiffness, (1,), N/m."""
@@ -98,44 +136,6 @@ class SpringCurve:
         return np.array([x[0], *x]), np.concatenate([first, inside.c[::-1].T, last])
 
 
-class SpringCurveLaws(NamedTuple):
-    """Curves one after the other in flat arrays.
-
-    Attributes
-    ----------
-    first : (l + 1,) int array
-        First piece of each curve.
-    start : (S,) array
-        Start of the pieces, m or rad.
-    coefficient : (S, 4) array
-        Ascending, in N, N m.
-    energy : (S,) array
-        Energy at the start of each piece less that at no displacement, J.
-    lever : (l,) array
-        Coordinate over displacement: 1, or a radius in m for tilts.
-    """
-
-    first: IntArray
-    start: FloatArray
-    coefficient: FloatArray
-    energy: FloatArray
-    lever: FloatArray
-
-
-def pack_spring_curves(laws: Sequence[tuple[SpringCurve, BearingDuty]]) -> SpringCurveLaws:
-    """Lay out laws, each with the duty of its bearing."""
-    pieces = [part.pieces() for part, _ in laws]
-    energies = [_energies(start, coefficient) for start, coefficient in pieces]
-    levers = [part.lever(duty) for part, duty in laws]
-    return SpringCurveLaws(
-        np.cumsum([0, *(start.size for start, _ in pieces)], dtype=np.int64),
-        np.concatenate([np.empty(0), *(start for start, _ in pieces)]),
-        np.ascontiguousarray(np.concatenate([np.empty((0, 4)), *(c for _, c in pieces)])),
-        np.concatenate([np.empty(0), *energies]),
-        np.array(levers, dtype=float),
-    )
-
-
 def _energies(start: FloatArray, c: FloatArray) -> FloatArray:
     """Energy at the start of each piece, 0 at no displacement."""
     inside = np.array([_area(c[k], start[k + 1] - start[k]) for k in range(1, start.size - 1)])
@@ -149,23 +149,11 @@ def _area(c: FloatArray, s: float) -> float:
     return float(s * (c[0] + s * (c[1] / 2.0 + s * (c[2] / 3.0 + s * c[3] / 4.0))))
 
 
-@inner
-def _piece(laws: SpringCurveLaws, entry: int, displacement: float) -> int:
-    piece = laws.first[entry]
-    while piece + 1 < laws.first[entry + 1] and displacement >= laws.start[piece + 1]:
-        piece += 1
-    return int(piece)
-
-
 @routine
 def spring_curve(laws: SpringCurveLaws, entry: int, local: LocalState, row: int) -> None:
     """Write force and derivative at the coordinate of `row`."""
     lever = laws.lever[entry]
-    displacement = local.coordinate[row] / lever
-    piece = _piece(laws, entry, displacement)
-    s, c = displacement - laws.start[piece], laws.coefficient
-    force = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))
-    slope = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])
+    force, slope = value_and_slope(laws.force, entry, local.coordinate[row] / lever)
     local.force[row] = local.elastic[row] = force / lever
     local.tangent[row, 0] = slope / (lever * lever)
 
@@ -174,7 +162,6 @@ def spring_curve(laws: SpringCurveLaws, entry: int, local: LocalState, row: int)
 def spring_curve_energy(laws: SpringCurveLaws, entry: int, local: LocalState, row: int) -> float:
     """Return the energy at the coordinate of `row` less that at 0, J."""
     displacement = local.coordinate[row] / laws.lever[entry]
-    piece = _piece(laws, entry, displacement)
-    s, c = displacement - laws.start[piece], laws.coefficient
-    area = s * (c[piece, 0] + s * (c[piece, 1] / 2.0 + s * (c[piece, 2] / 3.0 + s * c[piece, 3] / 4.0)))
-    return float(laws.energy[piece] + area)
+    piece = piece_at(laws.force, entry, displacement)
+    stored = area(laws.force, piece, displacement - laws.force.start[piece])
+    return float(laws.energy[piece] + stored)

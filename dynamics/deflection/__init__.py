@@ -11,8 +11,7 @@ from dynamics.deflection.deflect import (
 )
 from dynamics.deflection.loaded_scene import ForceUnderCase, loaded_scene
 from dynamics.deflection.mesh_alignment import CAUSES, MeshAlignment
-from dynamics.settings.case_force import CaseForce
-from dynamics.settings.load_case import LoadCase
+from dynamics.settings.load_case import CaseForce, LoadCase
 
 __all__ = [
     "CAUSES",

@@ -11,16 +11,16 @@ from dynamics.assembly.assemble import System
 from dynamics.bearings import PlanetBearing
 from dynamics.bearings.seat import SEAT
 from dynamics.forces.elements import evaluate, make_local
+from dynamics.forces.laws import Law
 from dynamics.integrators import static_equilibrium
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
-from dynamics.kernels.law import Law
 from dynamics.kernels.local_state import LocalState
 from dynamics.mechanism.bearing_elements import supports_by_name
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import elastic_columns, section_rows
 from dynamics.mechanism.connections import condensed_housings, seat_compliance
-from dynamics.mechanism.flank_gradients import (
+from dynamics.mechanism.line_of_action import (
     common_face_width,
     distance_gradient,
     middle_from_driver,
@@ -28,7 +28,7 @@ from dynamics.mechanism.flank_gradients import (
     misalignment_per_tilt,
     table_sense,
 )
-from dynamics.mechanism.seat_motion import carried_seat, seat_motion
+from dynamics.mechanism.supports import carried_seat, seat_motion
 from dynamics.motion.observation import observe
 from dynamics.types import FloatArray, StaticStatus
 from model_studies import Record, in_unit

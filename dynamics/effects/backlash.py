@@ -13,9 +13,8 @@ from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.errors import InputError
 from dynamics.mechanism.additions import COAST_FLANKS
 from dynamics.mechanism.flanks import Flanks, mesh_mobility, with_technique
-from dynamics.meshes.coast_flank import mirrored
 from dynamics.meshes.flank_force import FlankLaws
-from dynamics.meshes.gear_mesh import GearMesh
+from dynamics.meshes.gear_mesh import GearMesh, mirrored
 from dynamics.meshes.packed_tables import pack_tables
 from dynamics.meshes.table_lookup import table_deflection
 from dynamics.meshes.technique import PlainTable, table_at

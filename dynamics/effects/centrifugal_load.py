@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from dynamics.effects.effect import RotorEffect, Verdict
-from dynamics.effects.force_terms import FrameTerm
 from dynamics.effects.loaded_parts import LoadedRotor
+from dynamics.forces.frames import FrameTerm
 from dynamics.mechanism.columns import column_count
 from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.mechanism import Mechanism

@@ -10,8 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from dynamics.effects.force_terms import FlankInSpace, FlankTerms, FrameTerm
+from dynamics.effects.force_terms import FlankInSpace, FlankTerms
 from dynamics.effects.loaded_parts import LoadedMesh, LoadedRotor
+from dynamics.forces.frames import FrameTerm
 from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.mechanism import Mechanism

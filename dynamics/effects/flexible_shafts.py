@@ -11,14 +11,140 @@ from dynamics.bearings.seat import SEAT
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.loads.load_course import mean_factor
+from dynamics.mechanism.bodies import Rotor
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, section_rows, turn_row
-from dynamics.mechanism.connections import gather_connections
-from dynamics.mechanism.flank_gradients import approach, misalignment_gradient
+from dynamics.mechanism.connections import gather_connections, seated
 from dynamics.mechanism.flanks import Flanks
+from dynamics.mechanism.line_of_action import approach, misalignment_gradient
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.mechanism.points_of_application import elastic_of, why_rigid
-from dynamics.shafts import ElasticShaft
+from dynamics.mechanism.sampling import order_rate
+from dynamics.scene.scene import Scene
+from dynamics.shafts import Disc, ElasticShaft, PointOfApplication, elastic_shaft
+from dynamics.shafts.shaft import OnShaft, on_length
 from dynamics.types import FloatArray
+
+# Shafts that can bend and twist, and the points of application of forces on them.
+
+
+def _why_rigid(mechanism: Mechanism, index: int) -> str:
+    """Return why the shaft `index` cannot be flexible; empty where it can."""
+    scene, rotor = mechanism.scene, mechanism.rotors[index]
+    shaft = rotor.shaft
+    if not shaft.sections:
+        return "the shaft has no sections: its elasticity is not known"
+    if rotor.frame is not None:
+        return "left out: members of a planetary set are rigid"
+    bent = [
+        mesh.name for mesh in scene.meshes if mesh.bent_shafts and shaft.name in _shafts(scene, mesh.name)
+    ]
+    if bent:
+        return f'the table of "{bent[0]}" has the bending of its shafts in it'
+    for name, position in _positions(scene, rotor):
+        if not on_length(position, shaft.length):
+            return f'"{name}" at {position:g} m is off the shaft, which is {shaft.length:g} m long'
+    return ""
+
+
+def _elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
+    """Return the elastic coordinates of the shaft `index`, reduced to where forces act on it.
+
+    It bends where bearings hold it across and in tilt, and neither is switched off; it stretches where it may
+    move along its axis. It is resolved to the scene's highest frequency, else to half the rate of the output.
+    """
+    scene, rotor = mechanism.scene, mechanism.rotors[index]
+    shaft = rotor.shaft
+    drive = next((d for d in scene.drives if d.shaft == shaft.name and d.rigid), None)
+    discs = tuple(Disc(rotor.on_shaft(body.position), body.inertia) for body in scene.mounted(shaft.name))
+    return elastic_shaft(
+        shaft.sections,
+        discs,
+        _points_of_application(mechanism, rotor, _bends(mechanism, rotor), _stretches(mechanism, rotor)),
+        _highest(mechanism),
+        shaft.damping_ratio,
+        None if drive is None else rotor.on_shaft(drive.position),
+    )
+
+
+def _highest(mechanism: Mechanism) -> float:
+    scene = mechanism.scene
+    rate = scene.outputs.sample_rate or order_rate(scene, mechanism.kinematics)
+    return scene.highest_frequency or 0.5 * rate
+
+
+def _bends(mechanism: Mechanism, rotor: Rotor) -> bool:
+    """Whether the shaft is held across and in tilt, and free to move."""
+    held = rotor.radial_stiffness > 0.0 and rotor.tilt_stiffness > 0.0
+    return held and {"x", "tilt_x"} <= mechanism.additions.possible
+
+
+def _stretches(mechanism: Mechanism, rotor: Rotor) -> bool:
+    """Whether the shaft has the freedom along its axis: requested, or possible and called for."""
+    scene, additions = mechanism.scene, mechanism.additions
+    gears = {gear.name: gear for gear in scene.gears if gear.shaft == rotor.shaft.name}
+    meshing = [name for mesh in scene.meshes for name in (mesh.driver, mesh.driven) if name in gears]
+    helical = any(gears[name].base_helix_angle != 0.0 for name in meshing)
+    wanted = helical or "z" in additions.requested
+    return rotor.axial_stiffness > 0.0 and "z" in additions.possible and wanted
+
+
+def _points_of_application(
+    mechanism: Mechanism, rotor: Rotor, bends: bool, stretches: bool
+) -> tuple[PointOfApplication, ...]:
+    scene, name = mechanism.scene, rotor.shaft.name
+    laws = mechanism.bearings
+    tilting = seated(scene, mechanism.rotors) | {at.name for at in laws if at.tilts}
+    holding = {at.name for at in laws if at.holds_axis}
+    points = [
+        PointOfApplication(rotor.on_shaft(gear.position), bends, bends, stretches, True)
+        for gear in scene.gears
+        if gear.shaft == name
+    ]
+    for bushing in rotor.bushings:
+        along = stretches and (bushing.axial_stiffness > 0.0 or bushing.full or bushing.name in holding)
+        tilts = bends and bushing.name in tilting
+        points.append(PointOfApplication(rotor.on_shaft(bushing.position), bends, tilts, along))
+    for position, full in _couplings(scene, rotor):
+        whole = bends and full
+        points.append(PointOfApplication(rotor.on_shaft(position), whole, whole, stretches and full, True))
+    torques: list[OnShaft] = [*scene.drives, *scene.loads, *scene.speed_torques]
+    points += [
+        PointOfApplication(rotor.on_shaft(part.position), turn=True) for part in torques if part.shaft == name
+    ]
+    applied: list[OnShaft] = [*scene.forces, *scene.unbalances]
+    points += [
+        PointOfApplication(rotor.on_shaft(part.position), bends, bends, stretches, True)
+        for part in applied
+        if part.shaft == name
+    ]
+    return tuple(points)
+
+
+def _couplings(scene: Scene, rotor: Rotor) -> list[tuple[float, bool]]:
+    """Positions of the couplings along the shaft, m, and whether they join more than rotations."""
+    z = {shaft.name: shaft.origin[2] for shaft in scene.shafts}
+    return [
+        (z[coupling.first] + coupling.position - rotor.shaft.origin[2], coupling.stiffness is not None)
+        for coupling in scene.couplings
+        if rotor.shaft.name in (coupling.first, coupling.second)
+    ]
+
+
+def _positions(scene: Scene, rotor: Rotor) -> list[tuple[str, float]]:
+    """Names and positions of what must lie on the shaft; torsional couplings act at its nearer end."""
+    name = rotor.shaft.name
+    torques: list[OnShaft] = [*scene.drives, *scene.loads, *scene.speed_torques]
+    points: list[OnShaft] = [*scene.forces, *scene.unbalances]
+    parts: list[OnShaft] = [*scene.gears, *scene.discs, *scene.ground_bearings, *torques, *points]
+    return [(part.name, part.position) for part in parts if part.shaft == name]
+
+
+def _shafts(scene: Scene, mesh: str) -> Sequence[str]:
+    meshing = next(part for part in scene.meshes if part.name == mesh)
+    return [scene.gear(name).shaft for name in (meshing.driver, meshing.driven)]
+
+
+# The effect.
+
 
 SHARE = 0.05
 """Least displacement at a mesh, over what the mesh itself yields, that calls for it."""
@@ -29,7 +155,7 @@ NOTHING_BENDS = (
 
 
 @dataclass(frozen=True)
-class Bending(Verdict):
+class _Bending(Verdict):
     """A decision with the elastic coordinates that it is made by; None: the shaft is rigid."""
 
     elastic: ElasticShaft | None = None
@@ -45,15 +171,15 @@ class FlexibleShafts(RotorEffect):
     def verdicts(self, rotors: Sequence[LoadedRotor]) -> Sequence[Verdict]:
         """Call for it where the nominal force bends and twists a shaft by a share of what its mesh yields."""
         mechanism, flanks = rotors[0].mechanism, rotors[0].flanks
-        refusals = [why_rigid(mechanism, index) for index in range(len(rotors))]
-        elastic = [None if refusal else elastic_of(mechanism, i) for i, refusal in enumerate(refusals)]
+        refusals = [_why_rigid(mechanism, index) for index in range(len(rotors))]
+        elastic = [None if refusal else _elastic_of(mechanism, i) for i, refusal in enumerate(refusals)]
         for index, part in enumerate(elastic):
             if part is not None and part.mass.size == 0:
                 refusals[index], elastic[index] = NOTHING_BENDS, None
         flexible = _with_elastic(mechanism, elastic)
         held = _held(flexible) if any(part is not None for part in elastic) else np.empty((0, 0))
         return [
-            Bending(False, False, refusal, 0.0)
+            _Bending(False, False, refusal, 0.0)
             if part is None
             else _influence(flexible, flanks, index, held, part)
             for index, (refusal, part) in enumerate(zip(refusals, elastic, strict=True))
@@ -61,7 +187,7 @@ class FlexibleShafts(RotorEffect):
 
     def extend(self, mechanism: Mechanism, decided: Sequence[Verdict | None]) -> Mechanism:
         """Give the shafts on which it is on their elastic coordinates."""
-        elastic = [verdict.elastic if isinstance(verdict, Bending) else None for verdict in decided]
+        elastic = [verdict.elastic if isinstance(verdict, _Bending) else None for verdict in decided]
         return mechanism if all(part is None for part in elastic) else _with_elastic(mechanism, elastic)
 
 
@@ -73,7 +199,7 @@ def _with_elastic(mechanism: Mechanism, elastic: Sequence[ElasticShaft | None]) 
 
 def _influence(
     mechanism: Mechanism, flanks: Flanks, index: int, held: FloatArray, elastic: ElasticShaft
-) -> Bending:
+) -> _Bending:
     """Assess the bending of the shaft `index` by the nominal forces, its neighbors at rest."""
     scene, rotors = mechanism.scene, mechanism.rotors
     rigid = _held_kinds(mechanism, index)
@@ -87,8 +213,8 @@ def _influence(
     )
     moved = np.linalg.lstsq(held[np.ix_(own, own)], force, rcond=1e-13)[0]
     moved[: len(rigid)] -= np.linalg.lstsq(held[np.ix_(rigid, rigid)], force[: len(rigid)], rcond=1e-13)[0]
-    if not rows and _loaded(mechanism, index):
-        return Bending(True, True, "loads act on the shaft, which no mesh measures", 0.0, elastic)
+    if not rows and _is_loaded(mechanism, index):
+        return _Bending(True, True, "loads act on the shaft, which no mesh measures", 0.0, elastic)
     away, share, tilted = 0.0, 0.0, 0.0
     for mesh, row in rows.items():
         here = abs(float(row @ moved))
@@ -103,7 +229,7 @@ def _influence(
         f"action, {100.0 * share:.3g} % of the mesh deflection, and misaligns the gear by "
         f"{1e6 * tilted:.3g} um over the face"
     )
-    return Bending(share > SHARE, True, reason, away, elastic)
+    return _Bending(share > SHARE, True, reason, away, elastic)
 
 
 def _meshes(mechanism: Mechanism, index: int) -> list[int]:
@@ -137,8 +263,7 @@ def _torques(mechanism: Mechanism, index: int) -> FloatArray:
     return force
 
 
-def _loaded(mechanism: Mechanism, index: int) -> bool:
-    """Whether a force or an unbalance acts on the shaft `index`."""
+def _is_loaded(mechanism: Mechanism, index: int) -> bool:
     scene, name = mechanism.scene, mechanism.scene.shafts[index].name
     return name in [part.shaft for part in scene.forces] + [part.shaft for part in scene.unbalances]
 

@@ -11,8 +11,8 @@ from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.force_terms import SLIDING, FlankInSpace, FlankTerms
 from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.mechanism.columns import gear_row
-from dynamics.mechanism.flank_gradients import UNIT_Z, table_sense
 from dynamics.mechanism.freedoms import ROTATION
+from dynamics.mechanism.line_of_action import UNIT_Z, table_sense
 from dynamics.types import FloatArray
 
 

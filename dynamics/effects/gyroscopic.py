@@ -9,13 +9,14 @@ import numpy as np
 
 from bounds import engineering
 from dynamics.effects.effect import RotorEffect, Verdict
-from dynamics.effects.force_terms import FrameTerm, frame_lever
 from dynamics.effects.loaded_parts import LoadedRotor
+from dynamics.forces.frames import FrameTerm
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
+from dynamics.mechanism.bearing_elements import tilt_lever
+from dynamics.mechanism.bodies import Rotor
 from dynamics.mechanism.columns import column_count
 from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.spun_shaft import spun_pairs
 from dynamics.types import FloatArray
 
@@ -58,7 +59,7 @@ class Gyroscopic(RotorEffect):
 
         and of a ground damper seen from the frame c W J u.
         """
-        rotor, lever = mechanism.rotors[index], frame_lever(mechanism.scene)
+        rotor, lever = mechanism.rotors[index], tilt_lever(mechanism.scene)
         mass, polar, across = rotor.inertia.mass, rotor.inertia.polar, rotor.inertia.transverse
         own = np.eye(column_count(mechanism.rotors))[6 * index : 6 * index + 6]
         terms = []

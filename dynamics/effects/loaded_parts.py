@@ -8,21 +8,21 @@ from functools import cached_property
 
 import numpy as np
 
+from dynamics.mechanism.bodies import Rotor
 from dynamics.mechanism.connections import Connections, elastic_matrices
-from dynamics.mechanism.flank_gradients import approach, distance_gradient, misalignment_gradient
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import Freedoms
+from dynamics.mechanism.line_of_action import approach, distance_gradient, misalignment_gradient
 from dynamics.mechanism.mechanism import Mechanism, mean_forces, telling_moments
-from dynamics.mechanism.rotor import Rotor
 from dynamics.meshes.gear_mesh import GearMesh
-from dynamics.shafts.shaft_position import OnShaft
+from dynamics.shafts.shaft import OnShaft
 from dynamics.types import FloatArray
 
 # Rotors as their effects assess them: each on its supports, with the meshes it carries.
 
 
 @dataclass(frozen=True)
-class MeshOnRotor:
+class _MeshOnRotor:
     """A mesh as its rotor feels it.
 
     Attributes
@@ -61,7 +61,7 @@ class LoadedRotor:
     mechanism: Mechanism
     flanks: Flanks
     index: int
-    meshes: tuple[MeshOnRotor, ...]
+    meshes: tuple[_MeshOnRotor, ...]
 
     @property
     def rotor(self) -> Rotor:
@@ -88,7 +88,7 @@ class LoadedRotor:
 def loaded_rotors(mechanism: Mechanism, flanks: Flanks) -> tuple[LoadedRotor, ...]:
     """Return all rotors; a carrier feels the meshes of its planets at their pins."""
     scene, rotors = mechanism.scene, mechanism.rotors
-    meshes: list[list[MeshOnRotor]] = [[] for _ in rotors]
+    meshes: list[list[_MeshOnRotor]] = [[] for _ in rotors]
     for mesh, line, force in zip(scene.meshes, mechanism.lines, mechanism.nominal_force, strict=True):
         for name, sign in ((mesh.driver, -1.0), (mesh.driven, 1.0)):
             gear = scene.gear(name)
@@ -97,12 +97,12 @@ def loaded_rotors(mechanism: Mechanism, flanks: Flanks) -> tuple[LoadedRotor, ..
             radius = gear.base_radius / math.cos(line.working_pressure_angle)
             axial = abs(float(line.force[2]))
             direction = (sign * float(line.force[0]), sign * float(line.force[1]))
-            meshes[index].append(MeshOnRotor(float(force), lever, axial, radius, direction))
+            meshes[index].append(_MeshOnRotor(float(force), lever, axial, radius, direction))
             carrier = rotors[index].carrier
             if carrier is not None:
                 arm = rotors[index].center - rotors[carrier].center
                 arms = float(arm[2]), axial, float(np.hypot(arm[0], arm[1]))
-                meshes[carrier].append(MeshOnRotor(float(force), *arms, direction))
+                meshes[carrier].append(_MeshOnRotor(float(force), *arms, direction))
     return tuple(
         LoadedRotor(mechanism, flanks, index, tuple(on_rotor)) for index, on_rotor in enumerate(meshes)
     )

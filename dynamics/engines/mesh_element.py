@@ -11,7 +11,7 @@ from dynamics.checks import finite, integer, not_negative, positive, within
 from dynamics.errors import InputError
 from dynamics.mechanism.base_pitches import EQUAL
 from dynamics.mechanism.flanks import DAMPING_REACH
-from dynamics.meshes.coast_flank import CoastFlank
+from dynamics.meshes.gear_mesh import CoastFlank
 from dynamics.meshes.mesh_table import MeshTable, check_table
 from dynamics.scene.scene import Scene
 

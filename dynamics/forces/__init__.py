@@ -3,7 +3,7 @@
 import host.analysis  # noqa: F401 (says what to install)
 from dynamics.bearings.rolling_contact import RollingContact
 from dynamics.bearings.spring_curve import SpringCurve
-from dynamics.loads.speed_torque import SpeedTorque
+from dynamics.loads.applied_force import SpeedTorque
 
 __all__ = [
     "RollingContact",

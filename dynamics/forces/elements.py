@@ -1,235 +1,60 @@
-"""Compiled force elements: one evaluation for all, which hands each to its law by kind.
-
-An element has p local coordinates y = G q + y0 in meters and gives p local forces f(y, y', x) in newtons,
-which act on the freedoms as -G^T f. To add a law: its file (what a scene holds, packed arrays, compiled
-function), a member of `Law`, a field of `ElementLaws`, a branch in `evaluate` and in `potential`.
-"""
+"""Compiled force elements: one evaluation for all, which hands each to its law by kind."""
 
 from __future__ import annotations
 
-import math
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from inspect import signature
+from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 
-from dynamics.bearings.axial_seat import axial_seat
-from dynamics.bearings.ball_elements import balls, balls_energy
-from dynamics.bearings.ball_grooves import BallElements
-from dynamics.bearings.linear_bearing import LinearBearingLaws, linear_bearing, linear_bearing_energy
-from dynamics.bearings.roller_elements import RollerElements, rollers, rollers_energy
-from dynamics.bearings.rolling_contact import RollingContactLaws, rolling_contact, rolling_contact_energy
-from dynamics.bearings.spring_curve import SpringCurveLaws, spring_curve, spring_curve_energy
+from dynamics.bearings.linear_bearing import linear_bearing
+from dynamics.forces.laws import COMPILED, Compiled, ElementLaws, Law
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import inner
-from dynamics.kernels.law import Law
 from dynamics.kernels.local_state import LocalState
-from dynamics.kernels.routine import routine
-from dynamics.loads.force_course import ForceCourseLaws, applied_force
-from dynamics.loads.speed_torque import SpeedTorqueLaws, speed_torque
-from dynamics.loads.unbalance_force import UnbalanceLaws, unbalance, unbalance_energy
-from dynamics.meshes.flank_force import FlankLaws, flank_force
-from dynamics.meshes.spatial_flank import SpatialFlankLaws, spatial_energy, spatial_flank
-from dynamics.meshes.technique import table_energy
-from dynamics.types import BoolArray, FloatArray, IntArray
+from dynamics.types import FloatArray, IntArray
 
-# Rotating-frame forces: gyroscopic moments, Coriolis and centripetal terms, loads; their compiled law.
-
-
-class RotatingFrameLaws(NamedTuple):
-    """l elements in y = (a, b) across the axis of a shaft of spin w in a frame of speed W.
-
-    With J = z x the inertia resists by (c_1 w + c_2 W) J y' + (c_3 w W + c_4 W^2) y, a ground damper seen
-    from the frame by c_5 W J y, and a body off the frame's axis is pulled outwards by l W^2.
-
-    Attributes
-    ----------
-    factor : (l, 5) array
-        c_1 to c_5: kg, kg/rad ..., N s/m.
-    load : (l, 2) array
-        l: mass times arm from the frame's axis, kg m.
-    lever : (l,) array
-        Of the row of the spin, m: row over angle.
-    spinning : (l,) bool array
-        Whether a third row adds the shaft's own rotation to the spin of the kinematic motion.
-    """
-
-    factor: FloatArray
-    load: FloatArray
-    lever: FloatArray
-    spinning: BoolArray
-
-
-@routine
-def rotating_frame(laws: RotatingFrameLaws, entry: int, local: LocalState, row: int, e: int) -> None:
-    """Write forces and derivatives into the rows of element `e`, the first of which is `row`.
-
-    The row of the spin carries no force: what stays 0 is 0 from the start.
-    """
-    coordinate, rate, force, elastic = local.coordinate, local.rate, local.force, local.elastic
-    tangent, viscous = local.tangent, local.viscous
-    spin, frame = local.speed[e, 0], local.speed[e, 1]
-    rows = 2
-    if laws.spinning[entry]:
-        rows = 3
-        spin += rate[row + 2] / laws.lever[entry]
-    c = laws.factor
-    swirl = c[entry, 0] * spin + c[entry, 1] * frame
-    hold = c[entry, 2] * spin * frame + c[entry, 3] * frame * frame
-    drag = c[entry, 4] * frame
-    for k in range(2):
-        other, sign = 1 - k, 2.0 * k - 1.0  # J y = (-y_2, y_1)
-        here, there = coordinate[row + k], coordinate[row + other]
-        elastic[row + k] = hold * here - laws.load[entry, k] * frame * frame
-        force[row + k] = sign * (swirl * rate[row + other] + drag * there) + elastic[row + k]
-        tangent[row + k, k], tangent[row + k, other] = hold, sign * drag
-        viscous[row + k, other] = sign * swirl
-        if rows == 2:
-            continue
-        by_spin = sign * c[entry, 0] * rate[row + other] + c[entry, 2] * frame * here
-        viscous[row + k, 2] = by_spin / laws.lever[entry]
-
-
-@routine
-def rotating_frame_energy(laws: RotatingFrameLaws, entry: int, local: LocalState, row: int, e: int) -> float:
-    """Return the energy of the terms in y and of the load, J; negative where they push outwards."""
-    spin, frame, y = local.speed[e, 0], local.speed[e, 1], local.coordinate
-    hold = laws.factor[entry, 2] * spin * frame + laws.factor[entry, 3] * frame**2
-    pulled = frame**2 * (laws.load[entry, 0] * y[row] + laws.load[entry, 1] * y[row + 1])
-    return float(0.5 * hold * (y[row] ** 2 + y[row + 1] ** 2) - pulled)
-
-
-# A coupling between shafts described in frames that turn against each other; its compiled law.
-
-
-class FrameCouplingLaws(NamedTuple):
-    """l couplings in y = (a, b): n lengths of one shaft, then n of the other, each in its own frame.
-
-    n is 2 (across the axis) or 4 (tilts about x and y times a lever too). The second frame has turned by psi
-    against the first. With R = R(psi) for each pair of directions,
-
-        d = a - R b,    F = K d + C d',    d' = a' - R b' - psi' J R b,    J = z x,
-
-    and F pushes the first shaft back and, turned by R^T, the second along. K and C are the same in all
-    directions across the axis: they commute with R.
-
-    Attributes
-    ----------
-    size : (l,) int array
-        n.
-    stiffness, damping : (l, 4, 4) arrays
-        N/m, N s/m.
-    """
-
-    size: IntArray
-    stiffness: FloatArray
-    damping: FloatArray
-
-
-@inner
-def _turned(row: int, i: int, c: float, s: float, values: FloatArray) -> float:
-    if i % 2 == 0:
-        return float(c * values[row + i] - s * values[row + i + 1])
-    return float(s * values[row + i - 1] + c * values[row + i])
-
-
-@inner
-def _strain(row: int, n: int, i: int, c: float, s: float, coordinate: FloatArray) -> float:
-    return float(coordinate[row + i]) - _turned(row + n, i, c, s, coordinate)
-
-
-@inner
-def _strain_rate(
-    row: int, n: int, i: int, c: float, s: float, turn: float, coordinate: FloatArray, rate: FloatArray
-) -> float:
-    """Return component `i` of d'."""
-    other = i + 1 if i % 2 == 0 else i - 1
-    sign = -1.0 if i % 2 == 0 else 1.0
-    swept = turn * sign * _turned(row + n, other, c, s, coordinate)
-    return float(rate[row + i]) - _turned(row + n, i, c, s, rate) - swept
-
-
-@routine
-def frame_coupling(laws: FrameCouplingLaws, entry: int, local: LocalState, row: int, turned: int) -> None:
-    """Write forces and derivatives into the 2 n rows of a coupling, the first of which is `row`.
-
-    The position `turned` is psi, in revolutions.
-    """
-    coordinate, rate, force, elastic = local.coordinate, local.rate, local.force, local.elastic
-    tangent, viscous = local.tangent, local.viscous
-    n, k, damping = laws.size[entry], laws.stiffness, laws.damping
-    angle, turn = 2.0 * math.pi * local.position[turned], 2.0 * math.pi * local.pace[turned]
-    c, s = math.cos(angle), math.sin(angle)
-    for i in range(n):
-        spring, total = 0.0, 0.0
-        for j in range(n):
-            pull = k[entry, i, j] * _strain(row, n, j, c, s, coordinate)
-            spring += pull
-            total += pull + damping[entry, i, j] * _strain_rate(row, n, j, c, s, turn, coordinate, rate)
-        elastic[row + i], force[row + i] = spring, total
-    for i in range(n):  # turned back into the second frame
-        elastic[row + n + i] = -_turned(row, i, c, -s, elastic)
-        force[row + n + i] = -_turned(row, i, c, -s, force)
-    for i in range(n):
-        for j in range(n):
-            other = j + 1 if j % 2 == 0 else j - 1
-            sign = 1.0 if j % 2 == 0 else -1.0
-            # d d'/d b = -psi' J R adds C psi' J to the stiffness that b sees
-            seen = k[entry, i, j] + turn * sign * damping[entry, i, other]
-            beside = k[entry, i, other] - turn * sign * damping[entry, i, j]
-            tangent[row + i, j] = k[entry, i, j]
-            tangent[row + i, n + j] = -(c * seen + sign * s * beside)
-            tangent[row + n + i, n + j] = seen
-            # R^T K = K R^T
-            tangent[row + n + i, j] = -(c * k[entry, i, j] - sign * s * k[entry, i, other])
-            viscous[row + i, j] = damping[entry, i, j]
-            viscous[row + i, n + j] = -(c * damping[entry, i, j] + sign * s * damping[entry, i, other])
-            viscous[row + n + i, n + j] = damping[entry, i, j]
-            viscous[row + n + i, j] = -(c * damping[entry, i, j] - sign * s * damping[entry, i, other])
-
-
-@routine
-def frame_coupling_energy(
-    laws: FrameCouplingLaws, entry: int, local: LocalState, row: int, turned: int
-) -> tuple[float, float]:
-    """Return the energy stored, J, and its derivative in psi, J per revolution."""
-    n, coordinate, angle = laws.size[entry], local.coordinate, 2.0 * math.pi * local.position[turned]
-    c, s = math.cos(angle), math.sin(angle)
-    energy, slope = 0.0, 0.0
-    for i in range(n):
-        spring = 0.0
-        for j in range(n):
-            spring += laws.stiffness[entry, i, j] * _strain(row, n, j, c, s, coordinate)
-        other = i + 1 if i % 2 == 0 else i - 1
-        sign = -1.0 if i % 2 == 0 else 1.0
-        energy += 0.5 * spring * _strain(row, n, i, c, s, coordinate)
-        slope -= 2.0 * math.pi * spring * sign * _turned(row + n, other, c, s, coordinate)
-    return energy, slope
-
-
-FLANK, SPEED_TORQUE = int(Law.FLANK), int(Law.SPEED_TORQUE)
-ROLLING_CONTACT, SPRING_CURVE = int(Law.ROLLING_CONTACT), int(Law.SPRING_CURVE)
-SPATIAL_FLANK = int(Law.SPATIAL_FLANK)
-ROTATING_FRAME, FRAME_COUPLING = int(Law.ROTATING_FRAME), int(Law.FRAME_COUPLING)
-BALLS, ROLLERS = int(Law.BALLS), int(Law.ROLLERS)
-APPLIED_FORCE, UNBALANCE = int(Law.APPLIED_FORCE), int(Law.UNBALANCE)
+# numba takes the numbers of kinds from names of this file
+FLANK, SPATIAL_FLANK, ROTATING_FRAME = int(Law.FLANK), int(Law.SPATIAL_FLANK), int(Law.ROTATING_FRAME)
+SPEED_TORQUE, APPLIED_FORCE, UNBALANCE = int(Law.SPEED_TORQUE), int(Law.APPLIED_FORCE), int(Law.UNBALANCE)
 LINEAR_BEARING = int(Law.LINEAR_BEARING)
+TURNED = tuple(int(law) for law, row in COMPILED.items() if "turned" in signature(row.force).parameters)
+"""Laws whose position is the turn of a frame or a cage."""
 
 
-class ElementLaws(NamedTuple):
-    """The packed laws of all kinds, one field per kind."""
+@dataclass(frozen=True)
+class Element:
+    """One element with p local coordinates y = gradient q + offset, in meters.
 
-    flank: FlankLaws
-    speed_torque: SpeedTorqueLaws
-    rolling_contact: RollingContactLaws
-    spring_curve: SpringCurveLaws
-    spatial_flank: SpatialFlankLaws
-    rotating_frame: RotatingFrameLaws
-    frame_coupling: FrameCouplingLaws
-    balls: BallElements
-    rollers: RollerElements
-    applied_force: ForceCourseLaws
-    unbalance: UnbalanceLaws
-    linear_bearing: LinearBearingLaws
+    Attributes
+    ----------
+    law : Law
+    entry : int
+        Its index in the arrays of its law.
+    mesh : int
+        The mesh whose position it reads; -1: none.
+    gradient : (p, N) array
+        In the six freedoms of all r rotors.
+    offset : (p,) array
+        m.
+    drift : (p, k) array or None
+        Rate of the coordinates per unit speed of each law of the kinematic motion, m/rad; None: 0.
+    speed : (2, k) array or None
+        Spin and speed of the frame per unit speed of each law, for rotating-frame terms; None: 0.
+    stiffness : (p,) array or None
+        Typical stiffness of a bearing, N/m; None: 0.
+    """
+
+    law: Law
+    entry: int
+    mesh: int
+    gradient: FloatArray
+    offset: FloatArray
+    drift: FloatArray | None = None
+    stiffness: FloatArray | None = None
+    speed: FloatArray | None = None
 
 
 class Elements(NamedTuple):
@@ -267,53 +92,100 @@ class Elements(NamedTuple):
     speed: FloatArray
     laws: ElementLaws
 
+    @classmethod
+    def packed(cls, elements: Sequence[Element], laws: ElementLaws, motions: int) -> Elements:
+        """Lay out `elements`, their rows one after the other, in a kinematic motion of that many laws.
+
+        What their laws are compiled from is compiled, too.
+        """
+        sizes = [element.offset.size for element in elements]
+        drift = [
+            np.zeros((size, motions)) if element.drift is None else element.drift
+            for element, size in zip(elements, sizes, strict=True)
+        ]
+        stiffness = [
+            np.zeros(size) if element.stiffness is None else element.stiffness
+            for element, size in zip(elements, sizes, strict=True)
+        ]
+        speed = [np.zeros((2, motions)) if element.speed is None else element.speed for element in elements]
+        packed = by_address(
+            cls(
+                np.array([int(element.law) for element in elements], dtype=np.int64),
+                np.array([element.entry for element in elements], dtype=np.int64),
+                np.cumsum([0, *sizes], dtype=np.int64),
+                np.array([element.mesh for element in elements], dtype=np.int64),
+                np.concatenate([np.empty(0), *(element.offset for element in elements)]),
+                np.ascontiguousarray(np.concatenate([np.empty((0, motions)), *drift]).T),
+                np.concatenate([np.empty(0), *stiffness]),
+                np.ascontiguousarray(np.moveaxis(np.array(speed).reshape(len(elements), 2, motions), 2, 0)),
+                laws,
+            )
+        )
+        _prepare_laws(packed)
+        return packed
+
 
 def make_local(elements: Elements, meshes: int) -> LocalState:
     """Allocate for `elements` of that many meshes."""
-    rows, count, laws = elements.offset.size, elements.law.size, elements.drift.shape[0]
     most = int(np.max(np.diff(elements.first), initial=1))
-    return LocalState(
-        np.zeros(meshes),
-        np.zeros(meshes),
-        np.full(laws, np.nan),
-        np.zeros((meshes, laws)),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros(1),
-        np.zeros((count, 2)),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros((rows, most)),
-        np.zeros((rows, most)),
-        np.zeros((rows, most)),
-        np.zeros(count, dtype=np.int64),
-    )
+    return LocalState.empty(elements.offset.size, most, meshes, elements.law.size, elements.drift.shape[0])
 
 
-ROUTINES = {
-    Law.SPEED_TORQUE: (speed_torque,),
-    Law.ROLLING_CONTACT: (rolling_contact, rolling_contact_energy),
-    Law.SPRING_CURVE: (spring_curve, spring_curve_energy),
-    Law.SPATIAL_FLANK: (spatial_flank, spatial_energy),
-    Law.ROTATING_FRAME: (rotating_frame, rotating_frame_energy),
-    Law.FRAME_COUPLING: (frame_coupling, frame_coupling_energy),
-    Law.BALLS: (axial_seat, balls, balls_energy),
-    Law.ROLLERS: (rollers, rollers_energy),
-    Law.APPLIED_FORCE: (applied_force,),
-    Law.UNBALANCE: (unbalance, unbalance_energy),
-    Law.LINEAR_BEARING: (linear_bearing, linear_bearing_energy),
-}
-"""What a kind of law is compiled from, when a scene first has it; flanks are compiled into every loop."""
-
-
-def prepare_laws(elements: Elements) -> None:
-    """Compile the routines of the laws that `elements` have."""
+def _prepare_laws(elements: Elements) -> None:
     local = by_address(make_local(elements, 0))
     for law in map(Law, np.unique(elements.law)):
-        for each in ROUTINES.get(law, ()):
+        for each in COMPILED[law].routines:
             each.prepare(by_address(getattr(elements.laws, law.name.lower())), local)
+
+
+# The dispatch is written from the list of laws: a chain of comparisons, each with the call of its law.
+
+_ARGUMENTS = {
+    "entry": "elements.entry[e]",
+    "local": "local",
+    "row": "elements.first[e]",
+    "e": "e",
+    "mesh": "elements.mesh[e]",
+    "turned": "elements.mesh[e]",
+}
+
+
+def _call(law: Law, function: Callable[..., Any]) -> str:
+    own = {**_ARGUMENTS, "laws": f"elements.laws.{law.name.lower()}"}
+    return f"{function.__name__}({', '.join(own[name] for name in signature(function).parameters)})"
+
+
+def _force(law: Law, row: Compiled) -> str:
+    return _call(law, row.force)
+
+
+def _potential(law: Law, row: Compiled) -> str:
+    """Return energy and its derivative in the position, of what a function of energy returns."""
+    if row.energy is None:
+        return "return 0.0, 0.0"
+    call, parts = _call(law, row.energy), len(get_args(get_type_hints(row.energy)["return"]))
+    if parts == 0:
+        return f"return {call}, 0.0"
+    return f"return {call}" if parts == 2 else f"energy = {call}\n        return energy[0], energy[1]"
+
+
+def _dispatch(name: str, branch: Callable[[Law, Compiled], str], otherwise: str) -> Any:
+    """Compile a function of elements, local state and one element `e` with a `branch` per law."""
+    lines = [f"def {name}(elements, local, e):", "    kind = elements.law[e]"]
+    for law, row in COMPILED.items():
+        lines += [f"    {'if' if law == 0 else 'elif'} kind == {int(law)}:", f"        {branch(law, row)}"]
+    functions = [each for row in COMPILED.values() for each in (row.force, row.energy) if each is not None]
+    names = {each.__name__: each for each in functions} | {"__name__": __name__}
+    exec("\n".join([*lines, f"    {otherwise}"]), names)
+    return inner(names[name])
+
+
+evaluate: Callable[[Elements, LocalState, int], None] = _dispatch("evaluate", _force, "return")
+"""Write forces and derivatives of element `e` at the coordinates, rates and position in `local`."""
+potential: Callable[[Elements, LocalState, int], tuple[float, float]] = _dispatch(
+    "potential", _potential, "return 0.0, 0.0"
+)
+"""Return the energy element `e` stores, J, and its derivative in the position, J per base pitch."""
 
 
 @inner
@@ -326,77 +198,6 @@ def is_linear(elements: Elements, e: int) -> bool:
 def evaluate_linear(elements: Elements, local: LocalState, e: int) -> None:
     """Do what `evaluate` does for an element that `is_linear`."""
     linear_bearing(elements.laws.linear_bearing, elements.entry[e], local, elements.first[e])
-
-
-@inner
-def evaluate(elements: Elements, local: LocalState, e: int) -> None:
-    """Write forces and derivatives of element `e` at the coordinates, rates and position in `local`."""
-    row, entry, laws = elements.first[e], elements.entry[e], elements.laws
-    kind = elements.law[e]
-    if kind == FLANK:
-        force, elastic, tangent, viscous, hint = flank_force(
-            laws.flank,
-            entry,
-            local.position[elements.mesh[e]],
-            local.coordinate[row],
-            local.rate[row],
-            local.hint[e],
-        )
-        local.force[row], local.elastic[row], local.hint[e] = force, elastic, hint
-        local.tangent[row, 0], local.viscous[row, 0] = tangent, viscous
-    elif kind == SPEED_TORQUE:
-        speed_torque(laws.speed_torque, entry, local, row)
-    elif kind == ROLLING_CONTACT:
-        rolling_contact(laws.rolling_contact, entry, local, row)
-    elif kind == SPRING_CURVE:
-        spring_curve(laws.spring_curve, entry, local, row)
-    elif kind == SPATIAL_FLANK:
-        spatial_flank(laws.spatial_flank, entry, local, row, e, elements.mesh[e])
-    elif kind == ROTATING_FRAME:
-        rotating_frame(laws.rotating_frame, entry, local, row, e)
-    elif kind == FRAME_COUPLING:
-        frame_coupling(laws.frame_coupling, entry, local, row, elements.mesh[e])
-    elif kind == BALLS:
-        balls(laws.balls, entry, local, row, elements.mesh[e])
-    elif kind == ROLLERS:
-        rollers(laws.rollers, entry, local, row, elements.mesh[e])
-    elif kind == APPLIED_FORCE:
-        applied_force(laws.applied_force, entry, local, row)
-    elif kind == UNBALANCE:
-        unbalance(laws.unbalance, entry, local, row)
-    elif kind == LINEAR_BEARING:
-        evaluate_linear(elements, local, e)
-
-
-@inner
-def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, float]:
-    """Return the energy element `e` stores, J, and its derivative in the position, J per base pitch."""
-    row, entry, laws = elements.first[e], elements.entry[e], elements.laws
-    kind = elements.law[e]
-    if kind == FLANK:
-        x = local.position[elements.mesh[e]]
-        return table_energy(laws.flank.table, entry, x, local.coordinate[row], local.hint[e])
-    if kind == ROLLING_CONTACT:
-        return rolling_contact_energy(laws.rolling_contact, entry, local, row), 0.0
-    if kind == SPRING_CURVE:
-        return spring_curve_energy(laws.spring_curve, entry, local, row), 0.0
-    if kind == SPATIAL_FLANK:
-        energy, slope, _, _ = spatial_energy(laws.spatial_flank, entry, local, row, elements.mesh[e])
-        return energy, slope
-    energy, slope = 0.0, 0.0
-    if kind == ROTATING_FRAME:
-        energy = rotating_frame_energy(laws.rotating_frame, entry, local, row, e)
-    elif kind == FRAME_COUPLING:
-        energy, slope = frame_coupling_energy(laws.frame_coupling, entry, local, row, elements.mesh[e])
-    elif kind == BALLS:
-        energy, slope = balls_energy(laws.balls, entry, local, row, elements.mesh[e])
-    elif kind == ROLLERS:
-        energy, slope = rollers_energy(laws.rollers, entry, local, row, elements.mesh[e])
-    elif kind == UNBALANCE:
-        energy = unbalance_energy(laws.unbalance, entry, local, row)
-    elif kind == LINEAR_BEARING:
-        energy = linear_bearing_energy(laws.linear_bearing, entry, local, row)
-    return energy, slope
 
 
 @inner
@@ -416,8 +217,7 @@ def power_along_axes(elements: Elements, local: LocalState, e: int) -> float:
 @inner
 def power_by_frames(elements: Elements, local: LocalState, e: int) -> float:
     """Return what the rotation of frames, and of cages, stores in what it turns, W."""
-    kind = elements.law[e]
-    if elements.mesh[e] < 0 or kind not in (FRAME_COUPLING, BALLS, ROLLERS):
+    if elements.mesh[e] < 0 or elements.law[e] not in TURNED:
         return 0.0
     return potential(elements, local, e)[1] * float(local.pace[elements.mesh[e]])
 

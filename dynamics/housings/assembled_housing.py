@@ -21,7 +21,7 @@ from dynamics.types import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
-class RigidFace:
+class _RigidFace:
     """Nodes that move as one body about a point (m); `fixed` ones do not move."""
 
     name: str
@@ -46,7 +46,7 @@ class Freedoms:
 
     motion: sp.csr_array
     free: IntArray
-    faces: tuple[RigidFace, ...]
+    faces: tuple[_RigidFace, ...]
 
     def face(self, name: str) -> IntArray:
         """Return the six freedoms of a rigid face."""
@@ -62,7 +62,7 @@ class Freedoms:
         return np.vstack(parts)
 
 
-def independent_freedoms(points: FloatArray, faces: tuple[RigidFace, ...]) -> Freedoms:
+def independent_freedoms(points: FloatArray, faces: tuple[_RigidFace, ...]) -> Freedoms:
     """Eliminate the nodes of rigid faces.
 
     Raises
@@ -145,7 +145,6 @@ def _element_matrices(
 
 
 def _assembled(matrices: FloatArray, freedoms: IntArray, size: int) -> sp.csr_array:
-    """Add element matrices."""
     short = freedoms.astype(np.int32)  # half the memory
     rows, columns = np.broadcast_arrays(short[:, :, None], short[:, None, :])
     entries = (matrices.ravel(), (rows.ravel(), columns.ravel()))
@@ -203,7 +202,7 @@ def assemble(housing: MeshedHousing) -> AssembledHousing:
     nodal_mass, stiffness = mass_and_stiffness(mesh, housing.material)
     motion = freedoms.motion
     mass = sp.csr_array(sp.kron(nodal_mass, sp.eye_array(3), format="csr"))
-    mounts = _mounts(housing.feet, freedoms)
+    mounts = _stiffness_and_damping_of_mounts(housing.feet, freedoms)
     seats = [_motion(mesh, pair, freedoms) for pair in zip(housing.seats, frames, strict=True)]
     return AssembledHousing(
         freedoms,
@@ -228,17 +227,17 @@ def _check_faces(housing: MeshedHousing) -> None:
     housing.nodes_of_points()
 
 
-def _rigid_seats(housing: MeshedHousing) -> list[RigidFace]:
+def _rigid_seats(housing: MeshedHousing) -> list[_RigidFace]:
     rigid = [seat for seat in housing.seats if seat.ring is Ring.RIGID]
     return [
-        RigidFace(f"seats.{seat.name}", wall_nodes(housing.mesh, seat.bore), np.array(seat.bore.position))
+        _RigidFace(f"seats.{seat.name}", wall_nodes(housing.mesh, seat.bore), np.array(seat.bore.position))
         for seat in rigid
     ]
 
 
-def _rigid_feet(housing: MeshedHousing) -> list[RigidFace]:
+def _rigid_feet(housing: MeshedHousing) -> list[_RigidFace]:
     return [
-        RigidFace(
+        _RigidFace(
             f"feet.{foot.name}",
             wall_nodes(housing.mesh, foot.face),
             _centroid(housing.mesh, foot),
@@ -266,8 +265,9 @@ def _motion(mesh: TetrahedralMesh, seat: tuple[SeatBore, SeatFrame], freedoms: F
     return sp.csr_array(sp.csr_array(in_axes(frame)) @ whole)
 
 
-def _mounts(feet: tuple[Foot, ...], freedoms: Freedoms) -> tuple[sp.csr_array, sp.csr_array]:
-    """Return stiffness and damping of the mounts."""
+def _stiffness_and_damping_of_mounts(
+    feet: tuple[Foot, ...], freedoms: Freedoms
+) -> tuple[sp.csr_array, sp.csr_array]:
     size = freedoms.motion.shape[1]
     both = [sp.csr_array((size, size)), sp.csr_array((size, size))]
     for foot in feet:

@@ -22,7 +22,7 @@ BLOCK = 3
 Solve = Callable[[FloatArray], FloatArray]
 
 
-def factorized(matrix: sp.csr_array) -> Solve:
+def _factorized(matrix: sp.csr_array) -> Solve:
     """Return x of matrix x = b; b is (f,) or (f, m).
 
     Raises
@@ -120,7 +120,7 @@ def free_modes(housing: AssembledHousing, count: int) -> FreeModes:
     loose = housing.loose.shape[1]
     shift = _shift(housing) if loose else 0.0
     shifted = sp.csr_array(housing.stiffness + shift * housing.mass) if loose else housing.stiffness
-    solve = factorized(shifted)
+    solve = _factorized(shifted)
     rigid = _orthonormal(housing.loose, housing.mass)
     square, shape = _lanczos(housing, solve, shift, count + loose)
     deflection, residual = _deflections(housing, solve, rigid)
@@ -140,7 +140,6 @@ def free_modes(housing: AssembledHousing, count: int) -> FreeModes:
 
 
 def _status(complete: bool, residual: float) -> ModeStatus:
-    """Say whether modes and deflections converged."""
     if not complete:
         return ModeStatus.ITERATION_LIMIT
     return ModeStatus.CONVERGED if residual <= ACCEPTED else ModeStatus.ILL_CONDITIONED

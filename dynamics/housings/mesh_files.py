@@ -69,7 +69,6 @@ def _check_quality(mesh: TetrahedralMesh) -> None:
 
 
 def _check_joined(mesh: TetrahedralMesh) -> None:
-    """Refuse a mesh in parts."""
     corners = mesh.tetrahedra[:, :4]
     row, column = np.repeat(corners[:, :1], 3, axis=1).ravel(), corners[:, 1:].ravel()
     count = len(mesh.points)
@@ -88,7 +87,7 @@ LINEAR_NODES = 4
 TEXTS = ("Abaqus", "Nastran")
 
 
-class Content(NamedTuple):
+class _Content(NamedTuple):
     """What a file holds: points, nodes of its tetrahedra, nodes of the named parts of its surface."""
 
     points: FloatArray
@@ -120,7 +119,7 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
     return _checked(_content(Path(path)), scale)
 
 
-def _content(file: Path) -> Content:
+def _content(file: Path) -> _Content:
     """Return what a confined child reads from a file: its format is by the suffix, and never another."""
     title = MESH_FORMATS[one_of(f"{FIELD}.suffix", file.suffix.lower(), MESH_SUFFIXES)]
     if not file.is_file():
@@ -145,10 +144,10 @@ def _content(file: Path) -> Content:
             raise InputError(f"{FIELD}.cells", cells, bound, "Mesh with tetrahedra.")
         with np.load(copy.with_name("mesh.npz"), allow_pickle=False) as arrays:
             groups = {name: arrays[f"group_{number}"] for number, name in enumerate(answer["groups"])}
-            return Content(arrays["points"], arrays["tetrahedra"], groups)
+            return _Content(arrays["points"], arrays["tetrahedra"], groups)
 
 
-def _checked(content: Content, scale: float) -> TetrahedralMesh:
+def _checked(content: _Content, scale: float) -> TetrahedralMesh:
     points, tetrahedra = _quadratic(content)
     points = scale * np.asarray(points, dtype=float)
     if not np.all(np.isfinite(points)):
@@ -163,7 +162,7 @@ def _checked(content: Content, scale: float) -> TetrahedralMesh:
     return mesh
 
 
-def _quadratic(content: Content) -> tuple[FloatArray, IntArray]:
+def _quadratic(content: _Content) -> tuple[FloatArray, IntArray]:
     """Return points and tetrahedra with ten nodes, linear ones raised."""
     points, cells = content.points, content.tetrahedra
     members = [cells, *content.groups.values()]
@@ -173,7 +172,6 @@ def _quadratic(content: Content) -> tuple[FloatArray, IntArray]:
 
 
 def _right_handed(points: FloatArray, corners: IntArray) -> IntArray:
-    """Turn linear tetrahedra of negative volume round."""
     corner = points[corners]
     turned = np.linalg.det(corner[:, 1:] - corner[:, :1]) < 0.0
     return np.where(turned[:, None], corners[:, [0, 2, 1, 3]], corners)

@@ -8,7 +8,7 @@ other files. It reads one JSON object from standard input and writes one to stan
     {"file": "housing.msh", "format": "gmsh", "seconds": 60}
     {"groups": ["base", ...]}   or   {"unreadable": true}   or   {"cells": ["hexahedron"]}
 
-Arrays: ``points``, ``tetrahedra`` (with four or ten nodes), ``group_0`` ... (nodes).
+Arrays: ``points``, ``_tetrahedra`` (with four or ten nodes), ``group_0`` ... (nodes).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ PHYSICAL, PROPERTY = "gmsh:physical", "nastran:ref"
 Nodes = NDArray[np.int64]
 
 
-class Unreadable(Exception):
+class _Unreadable(Exception):
     """The file is not what its format says."""
 
 
@@ -40,7 +40,7 @@ class _OtherCells(Exception):
     """The solid is not of one kind of tetrahedra."""
 
 
-def read(file: Path, title: str) -> tuple[dict[str, NDArray[Any]], list[str]]:
+def _read(file: Path, title: str) -> tuple[dict[str, NDArray[Any]], list[str]]:
     """Return the arrays of a file and the names of its groups."""
     reader = import_module(f"meshlane.{title}")
     try:
@@ -49,13 +49,13 @@ def read(file: Path, title: str) -> tuple[dict[str, NDArray[Any]], list[str]]:
     except (Exception, SystemExit) as error:
         if isinstance(error, MemoryError):
             raise
-        raise Unreadable from None
+        raise _Unreadable from None
     groups = dict(_named_parts(content))
     arrays = {f"group_{number}": nodes for number, nodes in enumerate(groups.values())}
-    return arrays | {"points": content.points, "tetrahedra": tetrahedra(content)}, list(groups)
+    return arrays | {"points": content.points, "tetrahedra": _tetrahedra(content)}, list(groups)
 
 
-def tetrahedra(content: Any) -> Nodes:
+def _tetrahedra(content: Any) -> Nodes:
     """Return the nodes of the tetrahedra of a file."""
     blocks: dict[str, list[Nodes]] = {}
     dimensions = {}
@@ -68,7 +68,7 @@ def tetrahedra(content: Any) -> Nodes:
         raise _OtherCells(others or solid or list(blocks))
     nodes = np.vstack(blocks[solid[0]])
     if nodes.shape[1] != NODES[solid[0]]:
-        raise Unreadable
+        raise _Unreadable
     return nodes
 
 
@@ -97,7 +97,7 @@ def _by_number(content: Any, key: str) -> dict[int, Nodes]:
     return {number: np.concatenate(nodes) for number, nodes in numbered.items()}
 
 
-def main() -> None:
+def _main() -> None:
     """Answer the one request on standard input."""
     answer_to = os.dup(1)
     os.dup2(2, 1)  # whatever meshlane prints must not mix with the answer
@@ -105,10 +105,10 @@ def main() -> None:
     end_after(int(request["seconds"]) + 1)
     confine(Path.cwd())
     try:
-        arrays, names = read(Path(request["file"]), request["format"])
+        arrays, names = _read(Path(request["file"]), request["format"])
         np.savez("mesh.npz", allow_pickle=False, **arrays)
         answer: dict[str, Any] = {"groups": names}
-    except Unreadable:
+    except _Unreadable:
         answer = {"unreadable": True}
     except _OtherCells as error:
         answer = {"cells": error.args[0]}
@@ -119,4 +119,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    _main()

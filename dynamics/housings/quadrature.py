@@ -13,7 +13,7 @@ ORDER = 4
 """Degree that is integrated exactly: products of two quadratic shape functions on straight elements."""
 
 
-class Reference(NamedTuple):
+class _ShapeFunctions(NamedTuple):
     """Shape functions on the reference element: points p, nodes a, local directions k.
 
     Attributes
@@ -28,14 +28,14 @@ class Reference(NamedTuple):
     slope: FloatArray
 
 
-class VolumeIntegral(NamedTuple):
+class _VolumeIntegral(NamedTuple):
     """Volumes in m^3 and gradients in 1/m at the quadrature points: (e, p) and (e, 10, 3, p)."""
 
     volume: FloatArray
     gradient: FloatArray
 
 
-class SurfaceIntegral(NamedTuple):
+class _SurfaceIntegral(NamedTuple):
     """Area vectors, outward, in m^2 and points in m at the quadrature points: both (t, p, 3)."""
 
     area: FloatArray
@@ -43,7 +43,7 @@ class SurfaceIntegral(NamedTuple):
 
 
 @cache
-def tetrahedron() -> Reference:
+def tetrahedron() -> _ShapeFunctions:
     """Return the reference of tetrahedra with ten nodes."""
     from skfem import ElementTetP2  # noqa: PLC0415 (start-up time)
     from skfem.refdom import RefTet  # noqa: PLC0415
@@ -52,7 +52,7 @@ def tetrahedron() -> Reference:
 
 
 @cache
-def triangle() -> Reference:
+def triangle() -> _ShapeFunctions:
     """Return the reference of triangles with six nodes."""
     from skfem import ElementTriP2  # noqa: PLC0415 (start-up time)
     from skfem.refdom import RefTri  # noqa: PLC0415
@@ -60,17 +60,17 @@ def triangle() -> Reference:
     return _reference(ElementTriP2(), RefTri, 6)
 
 
-def _reference(element: object, domain: object, nodes: int) -> Reference:
+def _reference(element: object, domain: object, nodes: int) -> _ShapeFunctions:
     """Evaluate an element of scikit-fem, whose nodes are ordered as ours."""
     from skfem.quadrature import get_quadrature  # noqa: PLC0415 (start-up time)
 
     points, weight = get_quadrature(domain, ORDER)
     values = [element.lbasis(points, node) for node in range(nodes)]  # type: ignore[attr-defined]
     shape = np.array([np.broadcast_to(value, weight.shape) for value, _ in values])
-    return Reference(weight, shape, np.array([slope for _, slope in values]))
+    return _ShapeFunctions(weight, shape, np.array([slope for _, slope in values]))
 
 
-def over_volume(points: FloatArray, tetrahedra: IntArray) -> VolumeIntegral:
+def over_volume(points: FloatArray, tetrahedra: IntArray) -> _VolumeIntegral:
     """Map the reference onto elements; a volume is negative where an element is turned inside out."""
     rule = tetrahedron()
     jacobian = np.einsum("eai,akp->epik", points[tetrahedra], rule.slope, optimize=True)
@@ -78,7 +78,7 @@ def over_volume(points: FloatArray, tetrahedra: IntArray) -> VolumeIntegral:
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = _inverse(jacobian, determinant)
     gradient = np.einsum("akp,epki->eaip", rule.slope, inverse, optimize=True)
-    return VolumeIntegral(determinant * rule.weight, gradient)
+    return _VolumeIntegral(determinant * rule.weight, gradient)
 
 
 def _inverse(matrix: FloatArray, determinant: FloatArray) -> FloatArray:
@@ -88,9 +88,9 @@ def _inverse(matrix: FloatArray, determinant: FloatArray) -> FloatArray:
     return np.asarray(rows / determinant[..., None, None])
 
 
-def over_surface(points: FloatArray, triangles: IntArray) -> SurfaceIntegral:
+def over_surface(points: FloatArray, triangles: IntArray) -> _SurfaceIntegral:
     """Map the reference onto triangles with six nodes."""
     rule = triangle()
     tangent = np.einsum("tai,akp->tpki", points[triangles], rule.slope, optimize=True)
     area = np.cross(tangent[:, :, 0], tangent[:, :, 1]) * rule.weight[:, None]
-    return SurfaceIntegral(area, np.einsum("tai,ap->tpi", points[triangles], rule.shape))
+    return _SurfaceIntegral(area, np.einsum("tai,ap->tpi", points[triangles], rule.shape))

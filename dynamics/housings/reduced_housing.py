@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from scipy.linalg import block_diag
 
 from bounds import Quantity, Text
-from dynamics.bearings.matrix import Matrix
+from dynamics.bearings.matrix import Matrix, matrix_rows
 from dynamics.checks import not_negative
 from dynamics.errors import InputError, ResultError
 from dynamics.housings.supports import SeatFrame
@@ -92,16 +92,6 @@ class SurfaceMotion:
     points: FloatArray
     triangles: IntArray
     motion: FloatArray
-
-    def normal_displacement(self) -> tuple[FloatArray, FloatArray]:
-        """Return mean outward displacements of triangles per coordinate, (t, r), and areas, (t,) in m^2."""
-        from dynamics.housings.quadrature import over_surface, triangle  # noqa: PLC0415 (extra)
-
-        area, _ = over_surface(self.points, self.triangles)
-        nodal = np.einsum("tpi,ap->tai", area, triangle().shape)
-        size = np.linalg.norm(area, axis=2).sum(axis=1)
-        flow = np.einsum("tai,tair->tr", nodal, self.motion[self.triangles], optimize=True)
-        return flow / size[:, None], size
 
 
 @dataclass(frozen=True)
@@ -328,12 +318,11 @@ def scene_housing(housing: ReducedHousing, name: str, bushings: tuple[str, ...] 
         _turned(housing.damping, turn) if massive or np.any(housing.damping) else None,
         _turned(housing.mass, turn) if massive else None,
         modal_coordinates=coordinates,
-        seat_positions=tuple(_point(seat) for seat in housing.seats),
+        seat_positions=tuple(_position(seat) for seat in housing.seats),
     )
 
 
-def _point(seat: SeatFrame) -> tuple[float, float, float]:
-    """Return the position of a seat, m."""
+def _position(seat: SeatFrame) -> tuple[float, float, float]:
     x, y, z = (float(value) for value in seat.position)
     return x, y, z
 
@@ -352,4 +341,4 @@ def _turn(seat: SeatFrame) -> FloatArray:
 def _turned(matrix: FloatArray, turn: FloatArray) -> Matrix:
     """Return the rows of a matrix over motions along the scene's axes; unchanged where they are the same."""
     own = matrix if np.array_equal(turn, np.eye(len(turn))) else turn.T @ matrix @ turn
-    return tuple(tuple(float(value) for value in row) for row in own)
+    return matrix_rows(own)

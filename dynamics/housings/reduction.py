@@ -43,7 +43,7 @@ SINGULAR = 1e-12
 
 
 @dataclass(frozen=True)
-class Coordinates:
+class _Coordinates:
     """Reduced coordinates: their mass and stiffness, and the housing's freedoms per coordinate, (f, r)."""
 
     mass: FloatArray
@@ -83,7 +83,7 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
         frequency,
         ratio[: len(frequency)],
         assembled.body,
-        _checks(housing, assembled, modes),
+        _residuals(housing, assembled, modes),
         _surface(housing, assembled, coordinates),
         _points(housing, assembled, coordinates),
         mounts if np.any(mounts) else None,
@@ -93,7 +93,6 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
 
 
 def _require_converged(modes: FreeModes, count: int) -> None:
-    """Raise where modes or deflections did not converge."""
     if modes.status is ModeStatus.ITERATION_LIMIT:
         advice = "Ask for fewer modes, or check the mesh for parts that hardly hold together."
         raise SolveError(f"{len(modes.frequency)} of {count} modes of the housing converged. {advice}")
@@ -122,7 +121,7 @@ def _independent(housing: AssembledHousing, modes: FreeModes) -> FloatArray:
     return np.hstack([kept, rest / np.sqrt(own) @ (vector / np.sqrt(value))])
 
 
-def _craig_bampton(housing: AssembledHousing, space: FloatArray) -> Coordinates:
+def _craig_bampton(housing: AssembledHousing, space: FloatArray) -> _Coordinates:
     """Change to coordinates of which the first are the motions of the seats."""
     mass, stiffness = (_symmetric(space.T @ (matrix @ space)) for matrix in (housing.mass, housing.stiffness))
     seats = housing.seats @ space
@@ -134,13 +133,13 @@ def _craig_bampton(housing: AssembledHousing, space: FloatArray) -> Coordinates:
     )
     _, shape = eigh(inside, held.T @ mass @ held)
     change = np.hstack([static, held @ shape])
-    return Coordinates(
+    return _Coordinates(
         _symmetric(change.T @ mass @ change), _symmetric(change.T @ stiffness @ change), space @ change
     )
 
 
 def _own_damping(
-    housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates, springs: FloatArray
+    housing: MeshedHousing, assembled: AssembledHousing, coordinates: _Coordinates, springs: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return damping ratios of all reduced modes, and their damping matrix, without that of the mounts."""
     square, shape = eigh(coordinates.stiffness, coordinates.mass)
@@ -153,8 +152,7 @@ def _own_damping(
     return ratio, _symmetric(own)
 
 
-def _checks(housing: MeshedHousing, assembled: AssembledHousing, modes: FreeModes) -> ReductionChecks:
-    """Measure what the reduction rests on."""
+def _residuals(housing: MeshedHousing, assembled: AssembledHousing, modes: FreeModes) -> ReductionChecks:
     mesh = housing.mesh
     area, point = over_surface(mesh.points, mesh.surface)
     volume = float(np.einsum("tpi,tpi->", area, point)) / 3.0
@@ -179,14 +177,14 @@ def _seat_rigid(housing: MeshedHousing, assembled: AssembledHousing) -> float:
     return float(np.abs(mean - expected).max() / np.abs(expected).max())
 
 
-def _surface(housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates) -> SurfaceMotion:
+def _surface(housing: MeshedHousing, assembled: AssembledHousing, coordinates: _Coordinates) -> SurfaceMotion:
     nodes, triangles = np.unique(housing.mesh.surface, return_inverse=True)
     motion = _motion_of(nodes, assembled, coordinates)
     return SurfaceMotion(housing.mesh.points[nodes], triangles.reshape(-1, 6), motion)
 
 
 def _points(
-    housing: MeshedHousing, assembled: AssembledHousing, coordinates: Coordinates
+    housing: MeshedHousing, assembled: AssembledHousing, coordinates: _Coordinates
 ) -> tuple[PointMotion, ...]:
     nodes = housing.nodes_of_points()
     motion = _motion_of(nodes, assembled, coordinates)
@@ -194,7 +192,7 @@ def _points(
     return tuple(PointMotion(*point) for point in zip(housing.points, position, motion, strict=True))
 
 
-def _motion_of(nodes: IntArray, assembled: AssembledHousing, coordinates: Coordinates) -> FloatArray:
+def _motion_of(nodes: IntArray, assembled: AssembledHousing, coordinates: _Coordinates) -> FloatArray:
     """Return displacements of nodes per coordinate, (n, 3, r)."""
     rows = (3 * nodes[:, None] + np.arange(3)).ravel()
     motion = assembled.freedoms.motion[rows] @ coordinates.motion
@@ -202,7 +200,6 @@ def _motion_of(nodes: IntArray, assembled: AssembledHousing, coordinates: Coordi
 
 
 def _symmetric(matrix: FloatArray) -> FloatArray:
-    """Return the symmetric part: rounding leaves another."""
     return np.asarray(0.5 * (matrix + matrix.T))
 
 
@@ -289,7 +286,7 @@ MESH_SCHEMA = "lineofaction housing mesh"
 
 
 @dataclass(frozen=True)
-class KeptMesh:
+class _KeptMesh:
     """Nodes and elements of a mesh, as `TetrahedralMesh` has them."""
 
     points: FloatArray
@@ -317,12 +314,12 @@ def meshed_step(
 
 
 def _read_mesh(file: Path) -> TetrahedralMesh:
-    kept = read_record(file, {MESH_SCHEMA: KeptMesh})
+    kept = read_record(file, {MESH_SCHEMA: _KeptMesh})
     return TetrahedralMesh(kept.points, kept.tetrahedra)
 
 
 def _write_mesh(mesh: TetrahedralMesh, file: Path) -> None:
-    write_record(KeptMesh(mesh.points, mesh.tetrahedra), file, MESH_SCHEMA)
+    write_record(_KeptMesh(mesh.points, mesh.tetrahedra), file, MESH_SCHEMA)
 
 
 def reduced_housing(

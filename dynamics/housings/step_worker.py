@@ -27,7 +27,7 @@ WORST = 0.05
 """Quality below which a mesh is made again: Delaunay's method leaves slivers in the walls of castings."""
 
 
-def start_gmsh() -> Any:
+def _start_gmsh() -> Any:
     """Import and start gmsh: one thread, silent, no user files, signal handlers left as they were."""
     import gmsh  # noqa: PLC0415
 
@@ -50,7 +50,7 @@ def start_gmsh() -> Any:
     return gmsh
 
 
-def mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
+def _mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
     """Mesh the one solid of a file, in mm."""
     try:
         gmsh.model.occ.importShapes(request["step"])
@@ -64,14 +64,14 @@ def mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
     gmsh.option.setNumber("Mesh.MeshSizeMax", size / MILLIMETER)
     gmsh.model.addPhysicalGroup(3, [solids[0][1]])  # only its elements are written
     try:
-        generate(gmsh)
+        _generate(gmsh)
     except Exception as error:  # noqa: BLE001 - gmsh says what is wrong with the geometry
         return {"error": str(error)}
     gmsh.write(request["mesh"])
     return {"solids": 1, "size": size}
 
 
-def generate(gmsh: Any) -> None:
+def _generate(gmsh: Any) -> None:
     """Mesh the solid, a second time if elements are bad."""
     gmsh.model.mesh.generate(3)
     if _worst_element(gmsh) < WORST:
@@ -93,7 +93,7 @@ def _wall_thickness(gmsh: Any, solid: int) -> float:
     return float(2.0 * volume / sum(gmsh.model.occ.getMass(2, face) for _, face in faces))
 
 
-def main() -> None:
+def _main() -> None:
     """Answer the one request on standard input."""
     answer_to = os.dup(1)
     os.dup2(2, 1)  # whatever gmsh prints must not mix with the answer
@@ -101,7 +101,7 @@ def main() -> None:
     end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
     confine(Path.cwd(), Limits(memory_mb=None, cpu_seconds=int(request["seconds"]) + 1))
     try:
-        answer = mesh(start_gmsh(), request)
+        answer = _mesh(_start_gmsh(), request)
     except MemoryError:
         answer = {"error": "MemoryError"}
     except Exception:  # noqa: BLE001 - bare Exception is what gmsh raises; its text may hold what is in the file
@@ -111,4 +111,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    _main()

@@ -146,7 +146,7 @@ class Mount:
 
     def matrices(self) -> tuple[FloatArray, FloatArray]:
         """Return stiffness and damping, both (6, 6)."""
-        return _six(self.stiffness), _six(self.damping)
+        return _with_rotations(self.stiffness), _with_rotations(self.damping)
 
 
 @dataclass(frozen=True)
@@ -170,8 +170,7 @@ class Foot:
             raise InputError("name", self.name, "a name")
 
 
-def _six(matrix: Matrix | None) -> FloatArray:
-    """Return a matrix with rows for rotations."""
+def _with_rotations(matrix: Matrix | None) -> FloatArray:
     whole = np.zeros((6, 6))
     if matrix is not None:
         rows = len(matrix)

@@ -92,8 +92,7 @@ class Face(Protocol):
         """
 
 
-def _vector(name: str, values: tuple[float, float, float]) -> None:
-    """Refuse what is not three finite numbers."""
+def _check_vector(name: str, values: tuple[float, float, float]) -> None:
     if len(values) != 3:
         raise InputError(name, values, "three numbers: x, y, z")
     for index, value in enumerate(values):
@@ -102,7 +101,7 @@ def _vector(name: str, values: tuple[float, float, float]) -> None:
 
 def unit(name: str, values: tuple[float, float, float]) -> FloatArray:
     """Return a direction of length 1."""
-    _vector(name, values)
+    _check_vector(name, values)
     length = float(np.linalg.norm(values))
     if length == 0.0:
         raise InputError(name, values, "a direction: not all zero")
@@ -123,7 +122,7 @@ class Bore:
     length: float = required(BORE_LENGTH)
 
     def __post_init__(self) -> None:
-        _vector("position", self.position)
+        _check_vector("position", self.position)
         unit("axis", self.axis)
         declared_fields(self)
 
@@ -158,7 +157,6 @@ class Bore:
         raise InputError("length", self.length, bound, Text.of(there, advice))
 
     def _refuse(self, area: float, radii: FloatArray) -> NoReturn:
-        """Refuse a bore of which too little is there."""
         share = area / (np.pi * self.diameter * self.length)
         others = Text.of("no wall faces the axis there")
         if radii.size:
@@ -180,7 +178,7 @@ class Plane:
     normal: tuple[float, float, float]
 
     def __post_init__(self) -> None:
-        _vector("point", self.point)
+        _check_vector("point", self.point)
         unit("normal", self.normal)
 
     def triangles(self, mesh: TetrahedralMesh) -> IntArray:
@@ -189,7 +187,9 @@ class Plane:
         height = (mesh.points[surface[:, :3]] - np.array(self.point)) @ direction
         size = np.sqrt(_normals(mesh, surface)[1])[:, None]
         facing = _normals(mesh, surface)[0] @ direction > 1.0 - NEAR
-        return _some("point", self.point, mesh, facing & np.all(np.abs(height) <= NEAR * size, axis=1))
+        return _require_some(
+            "point", self.point, mesh, facing & np.all(np.abs(height) <= NEAR * size, axis=1)
+        )
 
 
 @dataclass(frozen=True)
@@ -200,14 +200,14 @@ class Box:
     high: tuple[float, float, float]
 
     def __post_init__(self) -> None:
-        _vector("low", self.low)
-        _vector("high", self.high)
+        _check_vector("low", self.low)
+        _check_vector("high", self.high)
 
     def triangles(self, mesh: TetrahedralMesh) -> IntArray:
         """Return the triangles whose corners are all inside."""
         corner = mesh.points[mesh.surface[:, :3]]
         inside = np.all((corner >= np.array(self.low)) & (corner <= np.array(self.high)), axis=(1, 2))
-        return _some("low", self.low, mesh, inside)
+        return _require_some("low", self.low, mesh, inside)
 
 
 @dataclass(frozen=True)
@@ -239,7 +239,7 @@ class Group:
         one_of("name", self.name, list(mesh.groups), "Name the physical group or node set in the mesh file.")
         member = np.zeros(len(mesh.points), dtype=bool)
         member[mesh.groups[self.name]] = True
-        return _some("name", self.name, mesh, np.all(member[mesh.surface[:, :3]], axis=1))
+        return _require_some("name", self.name, mesh, np.all(member[mesh.surface[:, :3]], axis=1))
 
 
 def _normals(mesh: TetrahedralMesh, triangles: IntArray) -> tuple[FloatArray, FloatArray]:
@@ -250,16 +250,14 @@ def _normals(mesh: TetrahedralMesh, triangles: IntArray) -> tuple[FloatArray, Fl
     return area / size[:, None], size
 
 
-def _extent(low: FloatArray, high: FloatArray) -> Text:
-    """Say where a mesh is."""
+def _extent_in_words(low: FloatArray, high: FloatArray) -> Text:
     ends = (Quantity(float(end), "m", digits=6) for pair in zip(low, high, strict=True) for end in pair)
     words = ("The mesh spans ", " to ", ", ", " to ", ", ", " to ")
     return Text.of(*(part for pair in zip(words, ends, strict=True) for part in pair), " in x, y, z.")
 
 
-def _some(field: str, value: object, mesh: TetrahedralMesh, chosen: BoolArray) -> IntArray:
-    """Return the triangles chosen, of which there must be some."""
+def _require_some(field: str, value: object, mesh: TetrahedralMesh, chosen: BoolArray) -> IntArray:
     if not chosen.any():
         low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
-        raise InputError(field, value, "where the surface has triangles", _extent(low, high))
+        raise InputError(field, value, "where the surface has triangles", _extent_in_words(low, high))
     return np.asarray(mesh.surface[chosen])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from dynamics.arrays.arrays import LawArrays, SystemArrays
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.elements import FLANK, SPATIAL_FLANK, Elements
 from dynamics.integrators.explicit_step import accelerate, add_drive_work, explicit_step, write_powers
 from dynamics.integrators.implicit_step import implicit_step, solve_stage
@@ -13,13 +13,13 @@ from dynamics.integrators.sampler import Sampler, SampleRing, move_sampled_train
 from dynamics.integrators.tableaus import EXPLICIT_WEIGHTS, IMPLICIT_WEIGHTS
 from dynamics.integrators.workspace import LEVELS_PER_OCTAVE, LOSSES, Count, Power, StepEnd, Workspace
 from dynamics.kernels.compiled import compiled, inner
+from dynamics.kernels.cubics import Cubics, piece_at
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.meshes.packed_tables import BUCKETS_PER_KNOT, PackedTables
 from dynamics.meshes.spatial_flank import spatial_energy
-from dynamics.meshes.table_lookup import position_interval
-from dynamics.meshes.technique import table_energy
-from dynamics.motion.motion import SPEED, law_speed, piece_at, write_motion
+from dynamics.meshes.table_lookup import position_interval, table_energy
+from dynamics.motion.motion import SPEED, law_speed, write_motion
 from dynamics.motion.sampled_states import States
 from dynamics.types import RunStatus
 
@@ -285,7 +285,7 @@ SMOOTH = 1e-9
 
 
 @inner
-def _next_jump(laws: LawArrays, time: float) -> float:
+def _next_jump(laws: Cubics, time: float) -> float:
     """Return when the next piece of any law begins if the slope jumps there; infinite if none does."""
     nearest = math.inf
     for k in range(laws.first.size - 1):

@@ -26,7 +26,6 @@ from dynamics.integrators.tableaus import (
 from dynamics.integrators.workspace import Power, Workspace
 from dynamics.kernels.compiled import inner
 from dynamics.kernels.routine import routine
-from dynamics.motion.accelerations import settle_unbalance
 from dynamics.motion.motion import (
     ACCELERATION,
     SPEED,
@@ -35,6 +34,7 @@ from dynamics.motion.motion import (
     law_value,
     set_drift,
     set_phases,
+    settle_unbalance,
     write_motion,
 )
 from dynamics.types import FloatArray

@@ -25,8 +25,7 @@ from dynamics.integrators.tableaus import (
 from dynamics.integrators.workspace import Count, Workspace
 from dynamics.kernels.compiled import compiled, inner, inner_sums
 from dynamics.kernels.routine import routine
-from dynamics.motion.accelerations import set_acceleration
-from dynamics.motion.motion import add_motion
+from dynamics.motion.motion import add_motion, set_acceleration
 from dynamics.types import FloatArray
 
 

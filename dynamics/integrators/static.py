@@ -9,11 +9,15 @@ import numpy as np
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
 from dynamics.assembly.bearing_rest import bearing_rows, rest_on_bearings
-from dynamics.assembly.frame_couplings import stiffness_across
-from dynamics.kernels.law import Law
+from dynamics.forces.laws import Law
 from dynamics.meshes.table_lookup import table_deflection
-from dynamics.motion.force_balance import ForceBalance, force_balance
-from dynamics.motion.mean_loads import at_mean_loads, mean_loads
+from dynamics.motion.force_balance import (
+    ForceBalance,
+    at_mean_loads,
+    force_balance,
+    mean_loads,
+    stiffness_across,
+)
 from dynamics.motion.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray, StaticStatus
 

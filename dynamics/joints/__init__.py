@@ -1,9 +1,8 @@
 """Joints of the bodies: couplings, rotations imposed and free, housings."""
 
 from dynamics.joints.coupling import Coupling
-from dynamics.joints.free_rotation import FreeRotation
 from dynamics.joints.housing import Housing, read_housing
-from dynamics.joints.imposed_rotation import ImposedRotation
+from dynamics.joints.rotations import FreeRotation, ImposedRotation
 
 __all__ = [
     "Coupling",

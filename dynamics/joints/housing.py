@@ -154,7 +154,6 @@ class Housing:
         self._check_seat_positions()
 
     def _check_seat_positions(self) -> None:
-        """Refuse positions that are not three numbers per seat."""
         if self.seat_positions is None:
             return
         count = len(self.bushings)

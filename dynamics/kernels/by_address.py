@@ -37,7 +37,7 @@ ITEMS = {"d": types.float64, "l": types.int64, "q": types.int64, "?": types.bool
 Tuple = TypeVar("Tuple")
 
 
-class AddressType(types.Type):
+class _AddressType(types.Type):
     """The compiled type of an address: the fields of the tuple there, each with its type and first word."""
 
     def __init__(self, name: str, fields: tuple[tuple[str, Any, int], ...]) -> None:
@@ -50,7 +50,7 @@ class AddressType(types.Type):
         return next(((kind, first) for field, kind, first in self.fields if field == name), None)
 
 
-class Addressed:
+class _Addressed:
     """A named tuple and the words by which compiled functions find its arrays; attributes are the tuple's."""
 
     def __init__(self, value: Any) -> None:
@@ -78,15 +78,15 @@ def by_address(value: Tuple) -> Tuple:
     TypeError
         If an array is not C-contiguous, or the class has been seen with another layout.
     """
-    return value if isinstance(value, Addressed) else cast(Tuple, Addressed(value))
+    return value if isinstance(value, _Addressed) else cast(Tuple, _Addressed(value))
 
 
 def by_value(value: Tuple) -> Tuple:
     """Return the tuple itself."""
-    return cast(Tuple, value.value) if isinstance(value, Addressed) else value
+    return cast(Tuple, value.value) if isinstance(value, _Addressed) else value
 
 
-def _lay_out(value: Any, words: list[int]) -> AddressType:
+def _lay_out(value: Any, words: list[int]) -> _AddressType:
     """Append the words of a tuple, per array address and lengths, per number its bits; return its type."""
     kinds: list[Any] = []
     first: list[int] = []
@@ -114,32 +114,29 @@ def _lay_out(value: Any, words: list[int]) -> AddressType:
     return kind
 
 
-_seen: dict[type, AddressType] = {}
+_seen: dict[type, _AddressType] = {}
 
 
 @cache
-def _address_type(cls: Any, kinds: tuple[Any, ...], first: tuple[int, ...]) -> AddressType:
+def _address_type(cls: Any, kinds: tuple[Any, ...], first: tuple[int, ...]) -> _AddressType:
     fields = zip(cls._fields, (_field_type(kind) for kind in kinds), first, strict=True)
-    return AddressType(cls.__name__, tuple(fields))
+    return _AddressType(cls.__name__, tuple(fields))
 
 
 def _field_type(kind: Any) -> Any:
     if isinstance(kind, tuple):
         return types.Array(ITEMS[kind[0]], kind[1], "C")
-    return kind if isinstance(kind, AddressType) else SCALARS[kind]
+    return kind if isinstance(kind, _AddressType) else SCALARS[kind]
 
 
-@register_model(AddressType)
+@register_model(_AddressType)
 class _AddressModel(models.PrimitiveModel):
-    """A pointer to words."""
-
-    def __init__(self, manager: Any, kind: AddressType) -> None:
+    def __init__(self, manager: Any, kind: _AddressType) -> None:
         super().__init__(manager, kind, WORD.as_pointer())
 
 
-@unbox(AddressType)
-def _unbox(kind: AddressType, value: Any, c: Any) -> NativeValue:
-    """Read the address off the Python object."""
+@unbox(_AddressType)
+def _unbox(kind: _AddressType, value: Any, c: Any) -> NativeValue:
     number = c.pyapi.object_getattr_string(value, "_address")
     address = c.builder.inttoptr(c.pyapi.long_as_ulonglong(number), WORD.as_pointer())
     c.pyapi.decref(number)
@@ -148,24 +145,22 @@ def _unbox(kind: AddressType, value: Any, c: Any) -> NativeValue:
 
 @infer_getattr
 class _Fields(AttributeTemplate):
-    """Types of the attributes."""
+    key = _AddressType
 
-    key = AddressType
-
-    def generic_resolve(self, kind: AddressType, name: str) -> Any:
+    def generic_resolve(self, kind: _AddressType, name: str) -> Any:
         """Return the type of the field `name`."""
         entry = kind.find(name)
         return None if entry is None else entry[0]
 
 
-@lower_getattr_generic(AddressType)
-def _read_field(context: Any, builder: Any, kind: AddressType, address: Any, name: str) -> Any:
+@lower_getattr_generic(_AddressType)
+def _read_field(context: Any, builder: Any, kind: _AddressType, address: Any, name: str) -> Any:
     """Return a tuple inside as the address of its own words, arrays and numbers as they are."""
     entry = kind.find(name)
     assert entry is not None  # typing has found it
     field, first = entry
     location = builder.gep(address, [WORD(first)])
-    if isinstance(field, AddressType):
+    if isinstance(field, _AddressType):
         return location
     if isinstance(field, types.Array):
         return _array(context, builder, field, location)

@@ -59,21 +59,18 @@ class LocalState(NamedTuple):
     inertial: FloatArray
     hint: IntArray
 
-
-def alone(rows: int) -> LocalState:
-    """Allocate for one law of that many rows, and one position."""
-    per_row = {
-        name: np.zeros(rows) for name in ("coordinate", "rate", "drift", "acceleration", "force", "elastic")
-    }
-    square = {name: np.zeros((rows, rows)) for name in ("tangent", "viscous", "inertial")}
-    return LocalState(
-        position=np.zeros(1),
-        pace=np.zeros(1),
-        whole=np.zeros(0),
-        whole_part=np.zeros((1, 0)),
-        clock=np.zeros(1),
-        speed=np.zeros((1, 2)),
-        hint=np.zeros(1, dtype=np.int64),
-        **per_row,
-        **square,
-    )
+    @classmethod
+    def empty(cls, rows: int, most: int, positions: int = 1, elements: int = 1, laws: int = 0) -> LocalState:
+        """Allocate for that many rows R, at `most` P of an element; m + f positions, E elements, k laws."""
+        per_row = ("coordinate", "rate", "drift", "acceleration", "force", "elastic")
+        return cls(
+            position=np.zeros(positions),
+            pace=np.zeros(positions),
+            whole=np.full(laws, np.nan),
+            whole_part=np.zeros((positions, laws)),
+            clock=np.zeros(1),
+            speed=np.zeros((elements, 2)),
+            hint=np.zeros(elements, dtype=np.int64),
+            **{name: np.zeros(rows) for name in per_row},
+            **{name: np.zeros((rows, most)) for name in ("tangent", "viscous", "inertial")},
+        )

@@ -73,7 +73,6 @@ class Routine:
 
     @property
     def _result(self) -> Any:
-        """Compiled type of the result."""
         hint = self._hints["return"]
         if parts := get_args(hint):
             return types.UniTuple(SCALARS[parts[0]], len(parts))
@@ -84,8 +83,6 @@ routine = Routine
 
 
 def _typing(called: Routine) -> type:
-    """Return how numba types a call."""
-
     class Call(AbstractTemplate):
         key = called
 
@@ -96,8 +93,6 @@ def _typing(called: Routine) -> type:
 
 
 def _lowering(called: Routine) -> Callable[..., Any]:
-    """Return how numba makes machine code of a call."""
-
     def call(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         convention = context.call_conv
         address = builder.load(cgutils.add_global_variable(builder.module, WORD, called.symbol))

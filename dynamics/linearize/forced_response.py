@@ -8,11 +8,10 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.assembly.frame_couplings import frame_couplings
 from dynamics.assembly.references import drive_springs
 from dynamics.bearings.seat import SEAT
 from dynamics.errors import InputError
-from dynamics.kernels.law import Law
+from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import FlankCycle
 from dynamics.linearize.harmonic_response import HarmonicResponse, excited_harmonics, response_of
 from dynamics.linearize.linear_system import LinearSystem
@@ -27,6 +26,7 @@ from dynamics.linearize.steady_vibration import (
     steady_vibration,
 )
 from dynamics.mechanism.columns import elastic_columns, elastic_terms, housing_columns
+from dynamics.mechanism.connections import frame_couplings
 from dynamics.motion.force_balance import swept_by_frames
 from dynamics.motion.observation import local_state
 from dynamics.results.array_file import ArrayFile, stored

@@ -7,14 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.assembly.frame_couplings import frame_couplings, frame_joint
 from dynamics.assembly.references import drive_springs
 from dynamics.errors import InputError, SolveError
 from dynamics.integrators import StaticSolution, static_equilibrium
 from dynamics.mechanism.columns import elastic_terms
-from dynamics.meshes.spatial_flank import as_running
-from dynamics.motion.force_balance import force_balance
-from dynamics.motion.mean_loads import at_mean_loads
+from dynamics.mechanism.connections import frame_couplings, frame_joint
+from dynamics.motion.force_balance import at_mean_loads, force_balance
 from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray
 
@@ -72,7 +70,7 @@ def about_running(system: System) -> System:
     arrays = at_mean_loads(system.arrays)
     elements = arrays.elements
     if elements.laws.spatial_flank.running.size > 0:
-        laws = elements.laws._replace(spatial_flank=as_running(elements.laws.spatial_flank))
+        laws = elements.laws._replace(spatial_flank=elements.laws.spatial_flank.as_running())
         arrays = arrays._replace(elements=elements._replace(laws=laws))
     return replace(system, arrays=arrays)
 

@@ -8,12 +8,11 @@ from fractions import Fraction
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.assembly.phases import repeating_phases
-from dynamics.kernels.law import Law
+from dynamics.forces.laws import Law
 from dynamics.linearize.operating_speeds import CommonPeriod, law_speeds
 from dynamics.loads.load_course import BySpeed, Orders
 from dynamics.loads.time_law import TimeLaw
-from dynamics.mechanism.load_phases import load_orders
+from dynamics.mechanism.phases import load_orders, repeating_phases
 from dynamics.types import ComplexArray, FloatArray, IntArray
 
 Waves = dict[Fraction, ComplexArray]

@@ -10,9 +10,9 @@ import numpy as np
 
 from bounds import above, at_least
 from dynamics.assembly.assemble import System
-from dynamics.assembly.phases import repeating_phases
 from dynamics.checks import finite
 from dynamics.errors import InputError
+from dynamics.mechanism.phases import repeating_phases
 from dynamics.types import FloatArray
 
 # Speeds of all laws in proportion to that of the first that turns.

@@ -10,7 +10,7 @@ import numpy as np
 
 from dynamics.arrays.sparse_rows import ModalFreedoms
 from dynamics.assembly.assemble import System
-from dynamics.kernels.law import Law
+from dynamics.forces.laws import Law
 from dynamics.linearize.campbell import terms_at
 from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem, about_running, linearize

@@ -1,12 +1,66 @@
-"""A force and moment on a shaft, fixed in space or turning with a shaft, by time, speed or angle."""
+"""Loads on shafts: torques that resist, forces and moments by time, speed or angle, unbalances."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-from bounds import Declared, Kind, between, described, required
+from bounds import Declared, Kind, between, declared, described, required
 from dynamics.checks import declared_fields, finite
-from dynamics.loads.load_course import CONSTANT, Course
+from dynamics.loads.load_course import CONSTANT, Course, SpeedCurve
+from dynamics.loads.time_law import TimeLaw
+
+
+@dataclass(frozen=True)
+class LoadTorque:
+    """A resisting torque, independent of the speed.
+
+    Attributes
+    ----------
+    name : str
+        Unique among the loads.
+    shaft : str
+        The loaded shaft.
+    torque : TimeLaw
+        N m, > 0 against the sense in which the drive turns this shaft. The run starts in static
+        equilibrium with its value at t = 0, so a constant load excites nothing.
+    position : float
+        Where along a flexible shaft it acts, m from its left end.
+    """
+
+    name: str
+    shaft: str
+    torque: TimeLaw
+    position: float = 0.0
+
+    def __post_init__(self) -> None:
+        finite("position", self.position)
+
+
+@dataclass(frozen=True)
+class SpeedTorque:
+    """A torque by speed: a fan that resists, a motor that drives.
+
+    Attributes
+    ----------
+    name : str
+        Unique among the speed torques.
+    shaft : str
+        The shaft it acts on.
+    curve : SpeedCurve
+        Torque against the sense of the shaft's kinematic motion, N m, at the speed in that sense, rad/s.
+    position : float
+        Where along a flexible shaft it acts, m from its left end.
+    """
+
+    name: str
+    shaft: str
+    curve: SpeedCurve
+    position: float = 0.0
+
+    def __post_init__(self) -> None:
+        finite("position", self.position)
+
 
 Vector = tuple[float, float, float]
 
@@ -39,3 +93,37 @@ class AppliedForce:
         for name in ("force", "moment"):
             for axis, value in zip("xyz", getattr(self, name), strict=True):
                 finite(f"{name}.{axis}", value)
+
+
+_AMOUNT = Declared(
+    Kind.INERTIA,
+    "kg m",
+    between(1e-15, 1e6),
+    "Amount: mass times its distance from the axis",
+    1e-4,
+)
+_ANGLE = Declared(
+    Kind.ANGLE,
+    "rad",
+    between(-math.tau, math.tau),
+    "Angle of the heavy spot from +x about +z at the start",
+    0.0,
+)
+
+
+@described
+@dataclass(frozen=True)
+class Unbalance:
+    """A point of a shaft off whose axis mass lies; that mass is part of the shaft's and its bodies' mass.
+
+    `name` is unique among the unbalances. The shaft is described in the fixed frame.
+    """
+
+    name: str
+    shaft: str
+    position: float = required(POSITION)
+    amount: float = required(_AMOUNT)
+    angle: float = declared(0.0, _ANGLE)
+
+    def __post_init__(self) -> None:
+        declared_fields(self)

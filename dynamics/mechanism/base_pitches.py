@@ -69,7 +69,6 @@ def _check(scene: Scene) -> None:
 
 
 def _trains(scene: Scene) -> Sequence[list[GearBody]]:
-    """Return the gears that meshes connect, train by train."""
     trains: list[set[str]] = []
     for mesh in scene.meshes:
         joined = {mesh.driver, mesh.driven}

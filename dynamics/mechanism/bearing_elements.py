@@ -1,33 +1,22 @@
-"""The force elements of bearings that are not linear, whatever their laws are."""
+"""The force elements of bearings: of those that are not linear, and of linear ones in housings that move."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from dynamics.arrays.elements import Element
 from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.bearings.bearing_law import BearingDuty, BearingLaw
-from dynamics.bearings.rolling_contact import pack_rolling_contacts
-from dynamics.bearings.row_law import pack_ball_laws, pack_roller_laws
-from dynamics.bearings.spring_curve import pack_spring_curves
-from dynamics.kernels.law import Law
-from dynamics.mechanism.bodies import Bodies
-from dynamics.mechanism.rotor import Rotor
-from dynamics.mechanism.seat_motion import seat_axes, seat_error, seat_motion
+from dynamics.bearings.linear_bearing import LinearBearingLaws
+from dynamics.forces.elements import Element
+from dynamics.forces.laws import STATED_OF_BEARINGS, Law
+from dynamics.mechanism.bodies import Bodies, Rotor
+from dynamics.mechanism.supports import gather_supports, seat_axes, seat_error, seat_motion
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
-
-PACKED: Mapping[Law, Callable[..., Any]] = {
-    Law.ROLLING_CONTACT: pack_rolling_contacts,
-    Law.SPRING_CURVE: pack_spring_curves,
-    Law.BALLS: pack_ball_laws,
-    Law.ROLLERS: pack_roller_laws,
-}
-"""Kinds of laws of bearings, and what lays out those of a kind for compiled functions."""
 
 
 @dataclass(frozen=True)
@@ -71,24 +60,19 @@ class BearingElement:
         return bool(self.seat[2, 2] > 0.0)
 
 
-def bearing_loads(scene: Scene, rotors: Sequence[Rotor], forces: FloatArray) -> dict[str, float]:
-    """Return what each bearing typically carries, N: an equal share of its shaft's nominal mesh forces."""
-    on_shaft = {shaft.name: 0.0 for shaft in scene.shafts}
+def bearing_duties(scene: Scene, rotors: Sequence[Rotor], forces: FloatArray) -> dict[str, BearingDuty]:
+    """Return the duty of every bearing under the nominal mesh `forces` (m,), N.
+
+    It typically carries an equal share of those on its shaft.
+    """
+    lever, on_shaft = tilt_lever(scene), {shaft.name: 0.0 for shaft in scene.shafts}
     for mesh, force in zip(scene.meshes, forces, strict=True):
         for gear in (mesh.driver, mesh.driven):
             on_shaft[scene.gear(gear).shaft] += float(force)
     return {
-        part.name: on_shaft[part.shaft] / len(rotor.supports) for rotor in rotors for part in rotor.supports
-    }
-
-
-def bearing_duties(
-    scene: Scene, rotors: Sequence[Rotor], loads: Mapping[str, float]
-) -> dict[str, BearingDuty]:
-    """Return the duty of every bearing, which typically carries `loads` (N)."""
-    lever = tilt_lever(scene)
-    return {
-        part.name: BearingDuty(loads[part.name], rotor.inertia.mass / len(rotor.supports), lever)
+        part.name: BearingDuty(
+            on_shaft[part.shaft] / len(rotor.supports), rotor.inertia.mass / len(rotor.supports), lever
+        )
         for rotor in rotors
         for part in rotor.supports
     }
@@ -123,17 +107,16 @@ def bearing_elements(
     `phases` are the positions that the cages of some bearings are among.
     """
     supports, elements = supports_by_name(rotors), []
-    entries: dict[Law, list[Any]] = {law: [] for law in PACKED}
+    entries: dict[Any, list[Any]] = {arrays: [] for arrays in STATED_OF_BEARINGS}
     for part, at in zip(laws, bearings, strict=True):
         rotor, support = supports[at.name]
         gradient = at.way @ seat_motion(rotors, rotor, support)
         offset = -at.way @ seat_error(rotors, rotor, support)
-        number = len(entries[part.law])
-        elements.append(
-            Element(part.law, number, phases.get(at.name, -1), gradient, offset, stiffness=at.typical)
-        )
-        entries[part.law].append((part, duties[at.name]))
-    return tuple(elements), {law.name.lower(): PACKED[law](own) for law, own in entries.items()}
+        law, own, phase = STATED_OF_BEARINGS[part.arrays], entries[part.arrays], phases.get(at.name, -1)
+        elements.append(Element(law, len(own), phase, gradient, offset, stiffness=at.typical))
+        own.append(part.laid_out(duties[at.name]))
+    packed = {law.name.lower(): arrays.packed(entries[arrays]) for arrays, law in STATED_OF_BEARINGS.items()}
+    return tuple(elements), packed
 
 
 def tilt_lever(scene: Scene) -> float:
@@ -144,3 +127,42 @@ def tilt_lever(scene: Scene) -> float:
 def supports_by_name(rotors: Sequence[Rotor]) -> dict[str, tuple[int, Bushing | PlanetBearing]]:
     """Return the rotor and the bearing of every name."""
     return {part.name: (index, part) for index, rotor in enumerate(rotors) for part in rotor.supports}
+
+
+# Linear bearings in housings that move: where they act, and their force elements.
+
+
+def housed_bearings(scene: Scene, rotors: Bodies) -> tuple[BearingElement, ...]:
+    """Return the bearings with stiffness or damping in housings that move, tilts by a lever."""
+    supports = supports_by_name(rotors)
+    if not rotors.housings:
+        return ()
+    names, lever = gather_supports(rotors, frozenset()).name, tilt_lever(scene)
+    unit, bearings = np.diag([1.0, 1.0, 1.0, lever, lever]), []
+    for name in (name for housing in rotors.housings for name in housing.bearings):
+        part = supports[name][1]
+        acting = np.any((part.seat_stiffness != 0.0) | (part.seat_damping != 0.0), axis=0)
+        way = unit[acting]
+        if len(way):
+            typical = np.diag(_per_meter(way, part.seat_stiffness)).copy()
+            bearings.append(BearingElement(name, names.index(name), way, way, typical))
+    return tuple(bearings)
+
+
+def housed_bearing_elements(
+    rotors: Bodies, bearings: Sequence[BearingElement]
+) -> tuple[tuple[Element, ...], LinearBearingLaws]:
+    """Return the elements of `bearings`, and their laws."""
+    supports, elements, laws = supports_by_name(rotors), [], []
+    for entry, at in enumerate(bearings):
+        index, part = supports[at.name]
+        gradient, none = at.way @ seat_motion(rotors, index, part), np.zeros(len(at.way))
+        elements.append(Element(Law.LINEAR_BEARING, entry, -1, gradient, none, stiffness=at.typical))
+        laws.append((_per_meter(at.way, part.seat_stiffness), _per_meter(at.way, part.seat_damping)))
+    return tuple(elements), LinearBearingLaws.packed(laws)
+
+
+def _per_meter(way: FloatArray, matrix: FloatArray) -> FloatArray:
+    """Return a bearing's matrix (5, 5) in the rows `way` (p, 5), (p, p)."""
+    back = way / np.sum(way, axis=1, keepdims=True) ** 2
+    return np.asarray(back @ matrix @ back.T)

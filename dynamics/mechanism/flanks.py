@@ -70,7 +70,9 @@ def flank_laws(
             raise error.within(f"meshes[{index}]") from None
     packed = pack_tables(static)
     typical = np.where(nominal > 0.0, nominal, [table.level[1] for table in static])
-    stiffness = np.array([mean_stiffness(table, force) for table, force in zip(static, typical, strict=True)])
+    stiffness = np.array(
+        [_mean_stiffness(table, force) for table, force in zip(static, typical, strict=True)]
+    )
     damping = np.array(
         [_damping(scene, kinematics, f, stiffness[f], polar_inertia) for f in range(len(static))]
     )
@@ -80,7 +82,7 @@ def flank_laws(
 
 
 @identity_cached
-def mean_stiffness(table: PlainTable, force: float) -> float:
+def _mean_stiffness(table: PlainTable, force: float) -> float:
     """Return the tangent stiffness at `force` (N), mean over the positions of `table`, N/m."""
     packed = pack_tables([table])
     deflections = [(x, table_deflection(packed, 0, x, force)) for x in table.position]

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.mechanism.bodies import Bodies
+from dynamics.mechanism.bodies import Bodies, Rotor
 from dynamics.mechanism.columns import column_count, elastic_columns, housing_columns, rigid_motion
 from dynamics.mechanism.kinematics import Kinematics
-from dynamics.mechanism.rotor import Rotor
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 # Planets on their carrier: rigid in the kinematic motion and where nothing lets them move.

@@ -8,6 +8,8 @@ from fractions import Fraction
 import numpy as np
 
 from dynamics.errors import InputError
+from dynamics.mechanism.base_pitches import with_common_base_pitches
+from dynamics.mechanism.line_of_action import line_of_action
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
@@ -17,7 +19,7 @@ from dynamics.types import FloatArray
 Row = dict[int, Fraction]
 
 
-class TrainSpeeds:
+class _TrainSpeeds:
     """All sets of shaft speeds that the meshes joined so far allow, as an exact basis.
 
     Parameters
@@ -155,7 +157,7 @@ def solve_kinematics(scene: Scene) -> Kinematics:
         If a mesh requires another ratio than the rest of the train, two drives set the same train, or
         nothing sets a shaft's speed.
     """
-    speeds = TrainSpeeds(len(scene.shafts))
+    speeds = _TrainSpeeds(len(scene.shafts))
     for index in range(len(scene.meshes)):
         _add_mesh(scene, speeds, index)
     for index, coupling in enumerate(scene.couplings):
@@ -188,7 +190,7 @@ def mesh_shafts(scene: Scene, index: int) -> tuple[int, int, int | None]:
     return a, b, scene.frame_index(a)
 
 
-def _add_mesh(scene: Scene, speeds: TrainSpeeds, index: int) -> None:
+def _add_mesh(scene: Scene, speeds: _TrainSpeeds, index: int) -> None:
     mesh = scene.meshes[index]
     driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
     a, b, carrier = mesh_shafts(scene, index)
@@ -218,7 +220,6 @@ def _add_mesh(scene: Scene, speeds: TrainSpeeds, index: int) -> None:
 
 
 def _resolved(scene: Scene, ratio: tuple[tuple[Fraction, ...], ...]) -> Kinematics:
-    """Put the solution together with the senses of rotation."""
     law_shaft = tuple(scene.shaft_index(part.shaft) for part in scene.references)
     course = _speeds_over_time(scene)
     limit = STANDSTILL * float(np.max(np.abs(course), initial=0.0))
@@ -263,3 +264,38 @@ def _sense(row: tuple[Fraction, ...], course: FloatArray, limit: float) -> int:
     speed = np.array([float(value) for value in row]) @ course
     fastest = float(speed[np.argmax(np.abs(speed))])
     return 0 if abs(fastest) <= limit else (1 if fastest > 0.0 else -1)
+
+
+# Checks of a scene without its tables: it moves, its teeth fit and loads press its flanks.
+
+
+def check_motion(scene: Scene) -> Kinematics:
+    """Return the kinematic motion of a scene that can move.
+
+    Nothing here reads the tables of the meshes, so that it may be called before they exist.
+
+    Raises
+    ------
+    InputError
+        If gears cannot mesh, a train is locked or not driven, a load acts on a shaft at rest, or one
+        pulls flanks apart that have no coast flank behind them.
+    """
+    scene, _ = with_common_base_pitches(scene)
+    kinematics = solve_kinematics(scene)
+    for index, sense in enumerate(kinematics.mesh_sense):
+        line_of_action(scene, index, sense)
+    check_loads(scene, kinematics)
+    return kinematics
+
+
+def check_loads(scene: Scene, kinematics: Kinematics) -> None:
+    """Refuse a load on a shaft at rest in the kinematic motion.
+
+    Raises
+    ------
+    InputError
+    """
+    for index, load in enumerate(scene.loads):
+        if kinematics.sense[scene.shaft_index(load.shaft)] == 0:
+            bound, suggestion = "a shaft that turns", "A held shaft needs no load."
+            raise InputError(f"loads[{index}].shaft", load.shaft, bound, suggestion)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bounds import Quantity, above
-from dynamics.arrays.law_arrays import slope
+from dynamics.arrays.arrays import slope
 from dynamics.bearings.bearing_law import BearingDuty
 from dynamics.bearings.seat import SEAT
 from dynamics.errors import InputError
@@ -20,16 +20,14 @@ from dynamics.mechanism.base_pitches import Corrections, with_common_base_pitche
 from dynamics.mechanism.bearing_elements import (
     BearingElement,
     bearing_duties,
-    bearing_loads,
     bearing_locations,
     supports_by_name,
 )
-from dynamics.mechanism.bodies import Bodies
-from dynamics.mechanism.coupling_rows import full_matrix
+from dynamics.mechanism.bodies import Bodies, Rotor, build_rotor
+from dynamics.mechanism.connections import full_matrix
 from dynamics.mechanism.freedoms import kinematic_vectors, rotational_inertia
 from dynamics.mechanism.kinematics import Kinematics, mesh_shafts, solve_kinematics
 from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
-from dynamics.mechanism.rotor import Rotor, build_rotor
 from dynamics.mechanism.supports import gather_supports
 from dynamics.scene.scene import Scene
 from dynamics.types import BoolArray, FloatArray
@@ -68,7 +66,7 @@ def _balance(scene: Scene, kinematics: Kinematics, inertia: FloatArray, coasts: 
     lever = _levers(scene, kinematics)
     torque = _loads(scene, kinematics, np.zeros(1))[:, 0]
     torque -= inertia * _acceleration(scene, kinematics, inertia, torque)
-    free = _free_shafts(scene, kinematics)
+    free = _shafts_without_drive(scene, kinematics)
     force, _, rank, _ = np.linalg.lstsq(lever[free], torque[free], rcond=1e-12)
     suggestion = "Give every mesh its nominal_force."
     if rank < lever.shape[1] and all(shaft.frame is None for shaft in scene.shafts):
@@ -92,7 +90,7 @@ def mean_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, momen
     ratio = kinematics.float_ratio[:, : len(scene.drives)]
     torque -= inertia[:, None] * (ratio @ imposed)
     torque -= inertia[:, None] * _acceleration(scene, kinematics, inertia, torque)
-    free = _free_shafts(scene, kinematics)
+    free = _shafts_without_drive(scene, kinematics)
     lever = _levers(scene, kinematics)[free]
     force = np.linalg.lstsq(lever, torque[free], rcond=1e-12)[0]
     return np.asarray(force[: len(scene.meshes)], dtype=float)
@@ -110,8 +108,7 @@ def telling_moments(scene: Scene) -> FloatArray:
     return np.concatenate([knots[:1], between.ravel(), np.nextafter(knots[1:], 0.0)])
 
 
-def _free_shafts(scene: Scene, kinematics: Kinematics) -> list[int]:
-    """Shafts but those of drives."""
+def _shafts_without_drive(scene: Scene, kinematics: Kinematics) -> list[int]:
     driven = set(kinematics.law_shaft[: len(scene.drives)])
     return [index for index in range(len(scene.shafts)) if index not in driven]
 
@@ -213,7 +210,6 @@ def _lent(rotor: Rotor, behind: Rotor, coupling: Coupling) -> tuple[int, ...]:
 
 
 def _holding(scene: Scene, rotor: Rotor, coupling: Coupling, kinds: tuple[int, ...]) -> Rotor:
-    """Return the rotor with the coupling's stiffness in these directions."""
     matrix, kept = full_matrix(coupling.stiffness, 0.0)[:SEAT, :SEAT], np.zeros((SEAT, SEAT))
     at = np.ix_(kinds, kinds)
     kept[at] = matrix[at]
@@ -303,10 +299,10 @@ def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
     lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
     coasts = COAST_FLANKS in additions.possible
     forces = _nominal_forces(scene, kinematics, rotational_inertia(rotors), coasts=coasts)
-    duties = bearing_duties(scene, rotors, bearing_loads(scene, rotors, forces))
+    duties = bearing_duties(scene, rotors, forces)
     bearings, rotors = _with_bearings(scene, rotors, duties)
     rotors = Bodies(_with_couplings(scene, rotors))
-    _check_rotation(rotors, kinematics)
+    _require_polar_inertia(rotors, kinematics)
     return Mechanism(scene, kinematics, rotors, lines, forces, duties, bearings, corrected, additions)
 
 
@@ -324,8 +320,7 @@ def _with_bearings(
     return bearings, Bodies(tuple(stiffened))
 
 
-def _check_rotation(rotors: Sequence[Rotor], kinematics: Kinematics) -> None:
-    """Every shaft free to turn needs a moment of inertia."""
+def _require_polar_inertia(rotors: Sequence[Rotor], kinematics: Kinematics) -> None:
     for index, rotor in enumerate(rotors):
         if index not in kinematics.imposed and rotor.inertia.polar <= 0.0:
             raise InputError(f"shafts[{index}].inertia.polar", 0.0, above(0.0), GIVE_INERTIA)

@@ -6,14 +6,14 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from dynamics.bearings import PlanetBearing
 from dynamics.checks import integer, one_of
 from dynamics.errors import InputError
-from dynamics.forces import RollingContact, SpringCurve
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
 from dynamics.meshes import GearMesh
+from dynamics.parts import LAWS_OF_BEARINGS
 from dynamics.scene.scene import Scene, on_axis
 from dynamics.shafts import DiscBody, GearBody, Shaft
 
@@ -21,7 +21,6 @@ TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit
 
 Turn = Fraction | float
 Part = TypeVar("Part", GearBody, DiscBody, PlanetBearing)
-BearingLaw = TypeVar("BearingLaw", RollingContact, SpringCurve)
 
 
 def with_planets(
@@ -64,15 +63,18 @@ def with_planets(
         for part in scene.planet_bearings
         if part.shaft == shaft
     }
+    laws: dict[str, Any] = {kind: _on_copies(getattr(scene, kind), copied) for kind in LAWS_OF_BEARINGS}
     return replace(
         scene,
-        shafts=(*scene.shafts, *(_turned(planet, carrier.origin, turns[i], i) for i in range(1, number))),
+        shafts=(
+            *scene.shafts,
+            *(_turned_shaft(planet, carrier.origin, turns[i], i) for i in range(1, number)),
+        ),
         gears=_with_copies(scene.gears, shaft, number),
         discs=_with_copies(scene.discs, shaft, number),
         planet_bearings=_on_pins(_with_copies(scene.planet_bearings, shaft, number), shaft, pin_errors),
         meshes=(*scene.meshes, *_mesh_copies(scene, shaft, number, offsets)),
-        rolling_contacts=_on_copies(scene.rolling_contacts, copied),
-        spring_curves=_on_copies(scene.spring_curves, copied),
+        **laws,
     )
 
 
@@ -93,7 +95,6 @@ def _with_copies(parts: Sequence[Part], shaft: str, number: int) -> tuple[Part, 
 def _mesh_copies(
     scene: Scene, shaft: str, number: int, offsets: Mapping[str, Sequence[Turn]]
 ) -> list[GearMesh]:
-    """Return the meshes of all planets but the first."""
     of_shaft = {gear.name for gear in scene.gears if gear.shaft == shaft}
     meshes = [mesh for mesh in scene.meshes if {mesh.driver, mesh.driven} & of_shaft]
     return [
@@ -111,7 +112,7 @@ def _on_pins(
     return tuple(_with_error(bearing, of_pin.get(bearing.shaft)) for bearing in bearings)
 
 
-def _on_copies(laws: Sequence[BearingLaw], copied: Mapping[str, Sequence[str]]) -> tuple[BearingLaw, ...]:
+def _on_copies(laws: Sequence[Any], copied: Mapping[str, Sequence[str]]) -> tuple[Any, ...]:
     extended = list(laws)
     for law in laws:
         extended += [replace(law, bushing=name) for name in copied.get(law.bushing, ())]
@@ -169,8 +170,7 @@ def _copy(part: Part, index: int) -> Part:
     return replace(part, name=_numbered(part.name, index), shaft=_numbered(part.shaft, index))
 
 
-def _turned(shaft: Shaft, axis: tuple[float, float, float], turn: Turn, index: int) -> Shaft:
-    """Return the shaft of another planet, turned about the carrier's axis."""
+def _turned_shaft(shaft: Shaft, axis: tuple[float, float, float], turn: Turn, index: int) -> Shaft:
     c, s = math.cos(2.0 * math.pi * float(turn)), math.sin(2.0 * math.pi * float(turn))
     x, y = shaft.origin[0] - axis[0], shaft.origin[1] - axis[1]
     origin = (axis[0] + c * x - s * y, axis[1] + s * x + c * y, shaft.origin[2])
@@ -178,7 +178,6 @@ def _turned(shaft: Shaft, axis: tuple[float, float, float], turn: Turn, index: i
 
 
 def _copied_mesh(mesh: GearMesh, of_shaft: set[str], index: int, ahead: Turn) -> GearMesh:
-    """Return a mesh of another planet."""
     driver, driven = (_numbered(g, index) if g in of_shaft else g for g in (mesh.driver, mesh.driven))
     offset = mesh.position_offset + float(ahead)
     return replace(

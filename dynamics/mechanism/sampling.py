@@ -4,49 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, replace
-from fractions import Fraction
 from typing import Protocol
 
 import numpy as np
 from scipy.linalg import eigh
 
-from dynamics.bearings import RollingBearing
 from dynamics.mechanism.kinematics import Kinematics
-from dynamics.mechanism.load_phases import load_orders
+from dynamics.mechanism.phases import cage_turns, load_orders
 from dynamics.scene.scene import LEAST_RATE, Scene, check_samples
 from dynamics.types import FloatArray, Json
-
-# How the cages of bearings turn in the kinematic motion.
-
-
-LARGEST_DENOMINATOR = 1_000_000
-"""A cage's ratio is irrational: as a fraction it is off by at most a turn in 10^12."""
-
-
-def cage_turns(
-    scene: Scene, kinematics: Kinematics, passing: frozenset[str]
-) -> tuple[tuple[Fraction, ...], ...]:
-    """Return the revolutions per revolution of each law of the cages of the bearings `passing`, as given.
-
-    In the frame in which the shaft is described. Nothing slips: a cage turns at (1 - gamma)/2 of the inner
-    ring's speed and (1 + gamma)/2 of the outer's.
-    """
-    return tuple(
-        _cage_turn(scene, kinematics, bearing)
-        for bearing in scene.rolling_bearings
-        if bearing.name in passing
-    )
-
-
-def _cage_turn(scene: Scene, kinematics: Kinematics, bearing: RollingBearing) -> tuple[Fraction, ...]:
-    inner = Fraction(bearing.row.cage_ratio).limit_denominator(LARGEST_DENOMINATOR)
-    shaft = scene.shaft_index(bearing.shaft)
-    frame = scene.frame_index(shaft)
-    still = (Fraction(0),) * len(kinematics.law_shaft)
-    held = still if frame is None else kinematics.ratio[frame]
-    # the outer ring is at rest, so in a frame it turns against that
-    return tuple(inner * own - around for own, around in zip(kinematics.ratio[shaft], held, strict=True))
-
 
 PER_BAND = 2.56
 """Output rate over the highest frequency that is passed, as vibration analyzers choose it."""
@@ -67,8 +33,6 @@ DIGITS = 3  # of a rate that is chosen
 
 
 class _Matrices(Protocol):
-    """Of the freedoms: `SystemArrays`."""
-
     @property
     def mass(self) -> FloatArray: ...
     @property

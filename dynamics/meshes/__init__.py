@@ -1,8 +1,7 @@
 """Gear meshes: tables of the mesh force, their compiled look-up, flanks with backlash and in space."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from dynamics.meshes.coast_flank import CoastFlank
-from dynamics.meshes.gear_mesh import GearMesh
+from dynamics.meshes.gear_mesh import CoastFlank, GearMesh
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
 

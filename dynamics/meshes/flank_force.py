@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from dynamics.kernels.compiled import compiled
+from dynamics.kernels.compiled import compiled, inner
+from dynamics.kernels.local_state import LocalState
 from dynamics.meshes.packed_tables import PackedTables
-from dynamics.meshes.table_lookup import table_force
+from dynamics.meshes.table_lookup import table_energy, table_force
 from dynamics.types import FloatArray
 
 
@@ -47,3 +48,21 @@ def flank_force(
         return 0.0, elastic, 0.0, 0.0, k
     tangent = stiffness * (1.0 + law.damping[flank] * fade_slope * rate)
     return force, elastic, tangent, law.damping[flank] * fade, k
+
+
+@inner
+def flank(laws: FlankLaws, entry: int, local: LocalState, row: int, e: int, mesh: int) -> None:
+    """Write force and derivatives of element `e` into its `row`, and its next hint."""
+    force, elastic, tangent, viscous, hint = flank_force(
+        laws, entry, local.position[mesh], local.coordinate[row], local.rate[row], local.hint[e]
+    )
+    local.force[row], local.elastic[row], local.hint[e] = force, elastic, hint
+    local.tangent[row, 0], local.viscous[row, 0] = tangent, viscous
+
+
+@inner
+def flank_energy(
+    laws: FlankLaws, entry: int, local: LocalState, row: int, e: int, mesh: int
+) -> tuple[float, float]:
+    """Return the energy stored, J, and its derivative, J per base pitch."""
+    return table_energy(laws.table, entry, local.position[mesh], local.coordinate[row], local.hint[e])

@@ -152,7 +152,7 @@ def sample(number: FloatArray, cell: Cell, level: int, channel: int) -> Sample:
 
 
 @inner
-def grid_interval(
+def _grid_interval(
     grid: GridTables, flank: int, cell: Cell, deflection: float, hint: int
 ) -> tuple[int, Sample, Sample]:
     """Return the level interval that holds `deflection`, the first or last outside, and both deflections."""
@@ -174,7 +174,7 @@ def grid_interval(
 @inner
 def grid_force(grid: GridTables, flank: int, cell: Cell, deflection: float, hint: int) -> GridForce:
     """Return the transverse force: zero below lift-off, straight on above the last level."""
-    k, low, high = grid_interval(grid, flank, cell, deflection, hint)
+    k, low, high = _grid_interval(grid, flank, cell, deflection, hint)
     if deflection < low.value:
         return GridForce(0.0, 0.0, 0.0, 0.0, 0.0, k)
     level = grid.base.offset[flank, 4] + k

@@ -10,7 +10,7 @@ import numpy as np
 
 from dynamics.identity_cache import identity_cached
 from dynamics.meshes.mesh_table import LEVERS, MeshTable
-from dynamics.meshes.packed_tables import PackedTables, pack_tables
+from dynamics.meshes.packed_tables import PackedTables, kept_knots, pack_tables
 from dynamics.types import FloatArray, IntArray
 
 
@@ -44,24 +44,48 @@ class GridTables(NamedTuple):
     first: IntArray
     number: FloatArray
 
+    @classmethod
+    def packed(cls, tables: Sequence[MeshTable]) -> GridTables:
+        """Lay out `tables`; those with several operating points carry their derivatives along the axes."""
+        numbers = [_numbers(table) for table in tables]
+        axes = [
+            np.ravel(getattr(t, name)) for t in tables for name in ("misalignment", "center_distance_change")
+        ]
+        starts = np.cumsum([0, *(axis.size for axis in axes)])[:-1].reshape(-1, 2)
+        shape = [
+            [np.size(t.misalignment), np.size(t.center_distance_change), np.size(t.position)] for t in tables
+        ]
+        return cls(
+            pack_tables(tables),
+            np.array(shape, dtype=np.int64).reshape(-1, 3),
+            np.array([number.shape[4] for number in numbers], dtype=np.int64),
+            np.ascontiguousarray(starts, dtype=np.int64),
+            np.concatenate([*axes, np.empty(0)]).astype(float),
+            np.cumsum([0, *(number.size for number in numbers)], dtype=np.int64)[:-1],
+            np.concatenate([*(number.ravel() for number in numbers), np.empty(0)]),
+        )
 
-def pack_grids(tables: Sequence[MeshTable]) -> GridTables:
-    """Lay out `tables`; those with more than one operating point carry their derivatives along the axes."""
-    numbers = [_numbers(table) for table in tables]
-    axes = [np.ravel(getattr(t, name)) for t in tables for name in ("misalignment", "center_distance_change")]
-    starts = np.cumsum([0, *(axis.size for axis in axes)])[:-1].reshape(-1, 2)
-    shape = [
-        [np.size(t.misalignment), np.size(t.center_distance_change), np.size(t.position)] for t in tables
-    ]
-    return GridTables(
-        pack_tables(tables),
-        np.array(shape, dtype=np.int64).reshape(-1, 3),
-        np.array([number.shape[4] for number in numbers], dtype=np.int64),
-        np.ascontiguousarray(starts, dtype=np.int64),
-        np.concatenate([*axes, np.empty(0)]).astype(float),
-        np.cumsum([0, *(number.size for number in numbers)], dtype=np.int64)[:-1],
-        np.concatenate([*(number.ravel() for number in numbers), np.empty(0)]),
-    )
+    def decimated(self, every: int = 2) -> GridTables:
+        """Return the tables on each `every`-th knot of position."""
+        shape, first = self.shape.copy(), self.first.copy()
+        numbers: list[FloatArray] = []
+        for flank in range(len(self.first)):
+            m, a, knots = (int(size) for size in self.shape[flank])
+            levels, channels = int(self.base.offset[flank, 5]), int(self.channels[flank])
+            orders = 2 * min(m, 2) * min(a, 2)
+            size = m * a * knots * levels * channels * orders
+            number = self.number[self.first[flank] : self.first[flank] + size]
+            kept = kept_knots(knots, every)[:-1]
+            number = number.reshape(m * a, knots, levels * channels * orders)[:, kept]
+            first[flank] = sum(part.size for part in numbers)
+            shape[flank, 2] = kept.size
+            numbers.append(number.ravel())
+        return self._replace(
+            base=self.base.decimated(every),
+            shape=shape,
+            first=first,
+            number=np.concatenate([*numbers, np.empty(0)]),
+        )
 
 
 @identity_cached

@@ -92,15 +92,14 @@ def _check(table: MeshTable, field: str) -> None:
         values = np.asarray(getattr(table, name))
         if values.shape != shape or not np.all(np.isfinite(values)):
             raise InputError(f"{field}.{name}", f"shape {values.shape}", f"finite, of shape {shape}")
-    _check_optional(field, table, shape)
+    _check_optional_arrays(field, table, shape)
     if np.any(np.diff(table.deflection, axis=-1) <= 0.0):
         raise InputError(f"{field}.deflection", "not increasing", "strictly increasing along the levels")
     if np.any(np.asarray(table.stiffness) < 0.0) or np.any(np.asarray(table.stiffness)[..., -1] == 0.0):
         raise InputError(f"{field}.stiffness", "negative", "0 or above, and above 0 at the last level")
 
 
-def _check_optional(field: str, table: MeshTable, shape: tuple[int, ...]) -> None:
-    """Raise `InputError` if an array that a table may have is there with another shape."""
+def _check_optional_arrays(field: str, table: MeshTable, shape: tuple[int, ...]) -> None:
     for names, expected in ((DERIVATIVES, (2, 2, 2, *shape)), (LEVERS, shape)):
         for name in names:
             field_values = getattr(table, name, None)

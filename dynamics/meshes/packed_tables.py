@@ -20,7 +20,7 @@ ORDER = 9
 """Degree in the position: a width, cubic, squared, times a stiffness, cubic."""
 
 
-def energy_below(row: FloatArray, level: FloatArray) -> FloatArray:
+def _energy_below(row: FloatArray, level: FloatArray) -> FloatArray:
     """Return ascending coefficients (P L, ORDER + 1), J, of a table of P `row`s at the levels (L,).
 
     With levels F_k at deflections d_k(u) and stiffness K_k(u), an interval of width h = d_k+1 - d_k holds
@@ -50,6 +50,7 @@ def _add_intervals(row: FloatArray, level: FloatArray, energy: FloatArray) -> No
 
 
 BUCKETS_PER_KNOT = 4
+LEAST = 4  # knots of a table that can be decimated
 
 
 class PackedTables(NamedTuple):
@@ -75,7 +76,7 @@ class PackedTables(NamedTuple):
     level : flat array
         Forces, N.
     energy : (sum of P L, 10) array
-        See `energy_below`.
+        See `_energy_below`.
     """
 
     offset: IntArray
@@ -87,6 +88,57 @@ class PackedTables(NamedTuple):
     row: FloatArray
     level: FloatArray
     energy: FloatArray
+
+    def decimated(self, every: int = 2) -> PackedTables:
+        """Return the tables on each `every`-th knot of position, with the values and slopes they have there.
+
+        Tables of fewer than LEAST knots in what is left stay as they are.
+        """
+        parts = [_decimated(self, flank, every) for flank in range(self.period.size)]
+        starts = [np.cumsum([0, *(len(part[k]) for part in parts)]) for k in range(3)]
+        offset = self.offset.copy()
+        for flank, part in enumerate(parts):
+            offset[flank, :4] = starts[0][flank], starts[1][flank], len(part[1]), starts[2][flank]
+        row = np.ascontiguousarray(np.concatenate([*(part[2] for part in parts), np.empty((0, 8))]))
+        levels = [self.level[first : first + count] for first, count in self.offset[:, 4:]]
+        energies = [_energy_below(part[2], level) for part, level in zip(parts, levels, strict=True)]
+        return self._replace(
+            offset=offset,
+            density=np.array([float(len(part[1])) for part in parts]) / self.period,
+            knot=np.concatenate([*(part[0] for part in parts), np.empty(0)]),
+            bucket=np.concatenate([*(part[1] for part in parts), np.empty(0, dtype=np.int64)]),
+            row=row,
+            energy=np.concatenate([*energies, np.empty((0, ORDER + 1))]),
+        )
+
+
+def kept_knots(knots: int, every: int) -> IntArray:
+    """Return the knots that stay, and the one that closes the period."""
+    kept = np.arange(0, knots, every)
+    if kept.size < LEAST:
+        kept = np.arange(knots)
+    return np.append(kept, knots)
+
+
+def _decimated(tables: PackedTables, flank: int, every: int) -> tuple[FloatArray, IntArray, FloatArray]:
+    """Return knots, buckets and rows of one table on each `every`-th knot."""
+    first, bucket, buckets, row, _, levels = (int(value) for value in tables.offset[flank])
+    intervals = (tables.offset[flank + 1, 3] if flank + 1 < len(tables.offset) else len(tables.row)) - row
+    intervals = int(intervals) // levels
+    knot = tables.knot[first : first + intervals + 1]
+    kept = kept_knots(intervals, every)
+    if kept.size == intervals + 1:
+        return knot, tables.bucket[bucket : bucket + buckets], tables.row[row : row + intervals * levels]
+    cubic = tables.row[row : row + intervals * levels].reshape(intervals, levels, 2, 4)
+    width = np.diff(knot)[:, None, None]
+    left, left_slope = cubic[..., 0], cubic[..., 1] / width
+    end, end_slope = cubic.sum(axis=-1), (cubic @ np.array([0.0, 1.0, 2.0, 3.0])) / width
+    span = np.diff(knot[kept])[:, None, None]
+    start, stop = kept[:-1], kept[1:] - 1
+    value, rise, fall = left[start], left_slope[start] * span, end_slope[stop] * span
+    step = end[stop] - value
+    rows = np.stack([value, rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step], axis=-1)
+    return knot[kept], _bucket_starts(knot[kept]), rows.reshape(-1, 8)
 
 
 def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
@@ -124,14 +176,14 @@ def _laid_out(table: MeshTable) -> tuple[FloatArray, IntArray, FloatArray, Float
     knot = np.append(np.asarray(table.position, dtype=float), table.position[0] + table.period)
     knot -= knot[0]
     rows, level = _rows(table, knot), np.asarray(table.level, dtype=float)
-    return knot, bucket_starts(knot), rows, level, energy_below(rows, level)
+    return knot, _bucket_starts(knot), rows, level, _energy_below(rows, level)
 
 
 def _starts(parts: Sequence[FloatArray] | Sequence[IntArray]) -> list[int]:
     return [0, *np.cumsum([len(part) for part in parts]).tolist()]
 
 
-def bucket_starts(knot: FloatArray) -> IntArray:
+def _bucket_starts(knot: FloatArray) -> IntArray:
     """Return the interval that holds the start of each bucket; rounding puts it behind no position in it."""
     count = BUCKETS_PER_KNOT * (knot.size - 1)
     start = np.arange(count) / count * (knot[-1] * (1.0 - 1e-12))

@@ -9,7 +9,8 @@ each other at the centroid by d - lambda m.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,6 +31,7 @@ from dynamics.meshes.grid_lookup import (
     sample,
 )
 from dynamics.meshes.grid_tables import GridTables
+from dynamics.meshes.mesh_table import MeshTable
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 # Compiled Coulomb friction of sliding flanks: against the sliding velocity, never driving.
@@ -41,7 +43,7 @@ that stick in truth creep at up to it; a pair of 4 mm module at 10 rpm slides te
 ends of contact."""
 
 
-class Lever(NamedTuple):
+class _Lever(NamedTuple):
     """A quantity of the table with its derivatives in d, m and a."""
 
     value: float
@@ -50,7 +52,7 @@ class Lever(NamedTuple):
     a: float
 
 
-class Sliding(NamedTuple):
+class _Sliding(NamedTuple):
     """Friction over the normal force along sliding at the pitch point and about the axis, mu = 1.
 
     Attributes
@@ -63,15 +65,15 @@ class Sliding(NamedTuple):
         Derivatives of `along` in v, s/m; of `along` in w and of `about` in v, s; of `about` in w, m s.
     """
 
-    along: Lever
-    about: Lever
+    along: _Lever
+    about: _Lever
     along_rate: float
     mixed_rate: float
     about_rate: float
 
 
 @inner
-def direction(speed: float) -> tuple[float, float]:
+def _direction(speed: float) -> tuple[float, float]:
     """Return the direction of sliding at `speed` (m/s), from -1 to 1, and its derivative."""
     s = speed / CREEP_SPEED
     if s >= 1.0:
@@ -82,7 +84,7 @@ def direction(speed: float) -> tuple[float, float]:
 
 
 @inner
-def sliding(share: Lever, lever: Lever, slip: float, spin: float, running: bool) -> Sliding:
+def _friction(share: _Lever, lever: _Lever, slip: float, spin: float, running: bool) -> _Sliding:
     """Return the friction at sigma = `share`, kappa = `lever`, v = `slip` and w = `spin`.
 
     `running`: with the directions of gears that run in the sense of the scene, whatever slip and spin are.
@@ -92,20 +94,20 @@ def sliding(share: Lever, lever: Lever, slip: float, spin: float, running: bool)
     if running:
         up, up_rate, down, down_rate = 1.0, 0.0, -1.0, 0.0
     else:
-        up, up_rate = direction(slip + kappa * spin)
-        down, down_rate = direction(slip - kappa * spin)
+        up, up_rate = _direction(slip + kappa * spin)
+        down, down_rate = _direction(slip - kappa * spin)
     rate, turned = ahead * up_rate + behind * down_rate, ahead * up_rate - behind * down_rate
     along, about = ahead * up + behind * down, ahead * up - behind * down
     by_share, by_lever = 0.5 * (up - down), spin * turned
     about_share, about_lever = 0.5 * kappa * (up + down), about + kappa * spin * rate
-    return Sliding(
-        Lever(
+    return _Sliding(
+        _Lever(
             along,
             by_share * share.d + by_lever * lever.d,
             by_share * share.m + by_lever * lever.m,
             by_share * share.a + by_lever * lever.a,
         ),
-        Lever(
+        _Lever(
             kappa * about,
             about_share * share.d + about_lever * lever.d,
             about_share * share.m + about_lever * lever.m,
@@ -118,9 +120,9 @@ def sliding(share: Lever, lever: Lever, slip: float, spin: float, running: bool)
 
 
 @inner
-def scaled(lever: Lever, factor: float) -> Lever:
+def _scaled(lever: _Lever, factor: float) -> _Lever:
     """Return `factor` times `lever`."""
-    return Lever(factor * lever.value, factor * lever.d, factor * lever.m, factor * lever.a)
+    return _Lever(factor * lever.value, factor * lever.d, factor * lever.m, factor * lever.a)
 
 
 # Compiled potential energy of a table over all axes, with its derivatives in position and along the axes.
@@ -232,14 +234,34 @@ class SpatialFlankLaws(NamedTuple):
     radius: FloatArray
     running: BoolArray
 
+    @classmethod
+    def packed(cls, tables: Sequence[MeshTable], figures: Mapping[str, Sequence[Any]]) -> SpatialFlankLaws:
+        """Lay out the laws that read `tables`, their other fields by name."""
 
-def as_running(laws: SpatialFlankLaws) -> SpatialFlankLaws:
-    """Return `laws` with friction as of gears that run in the sense of the scene."""
-    return laws._replace(running=np.ones_like(laws.running))
+        def column(name: str, *width: int, dtype: Any = float) -> Any:
+            return np.array(figures[name], dtype=dtype).reshape(len(tables), *width)
+
+        return cls(
+            GridTables.packed(tables),
+            column("damping"),
+            column("reach"),
+            column("row", 3, dtype=np.int64),
+            column("fixed", 2),
+            column("follows", 2, dtype=np.int64),
+            column("per_face"),
+            column("mid_face"),
+            column("friction"),
+            column("radius"),
+            column("running", dtype=np.bool_),
+        )
+
+    def as_running(self) -> SpatialFlankLaws:
+        """Return the laws with friction as of gears that run in the sense of the scene."""
+        return self._replace(running=np.ones_like(self.running))
 
 
 @inner
-def _lever(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce, channel: int) -> Lever:
+def _lever(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce, channel: int) -> _Lever:
     """Return a per-level quantity at the force found: cubic in the force between two levels."""
     level = laws.grid.base.offset[entry, 4] + force.interval
     start = laws.grid.base.level[level]
@@ -254,17 +276,17 @@ def _lever(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce, cha
     slope = by[0] * low.value + by[1] * low_slope.value + by[2] * high.value + by[3] * high_slope.value
     in_m = at[0] * low.m + at[1] * low_slope.m + at[2] * high.m + at[3] * high_slope.m
     in_a = at[0] * low.a + at[1] * low_slope.a + at[2] * high.a + at[3] * high_slope.a
-    return Lever(value, slope * force.d, in_m + slope * force.m, in_a + slope * force.a)
+    return _Lever(value, slope * force.d, in_m + slope * force.m, in_a + slope * force.a)
 
 
 @inner
-def _centroid(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce) -> Lever:
+def _centroid(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce) -> _Lever:
     """Return lambda, the face centroid over the face width from the middle of the common face."""
     if laws.per_face[entry] == 0.0:
-        return Lever(0.0, 0.0, 0.0, 0.0)
+        return _Lever(0.0, 0.0, 0.0, 0.0)
     lever, per_face = _lever(laws, entry, cell, force, CENTROID), laws.per_face[entry]
     moved = lever.value - laws.mid_face[entry]
-    return Lever(moved * per_face, lever.d * per_face, lever.m * per_face, lever.a * per_face)
+    return _Lever(moved * per_face, lever.d * per_face, lever.m * per_face, lever.a * per_face)
 
 
 @inner
@@ -317,7 +339,7 @@ def spatial_flank(laws: SpatialFlankLaws, entry: int, local: LocalState, row: in
     if to_a > 0:
         tangent[row, to_a] = contact.a * gain - tilting * arm.a
     if to_m > 0:
-        back = Lever(-arm.value, -arm.d, -arm.m, -arm.a)
+        back = _Lever(-arm.value, -arm.d, -arm.m, -arm.a)
         _in_proportion(force, tangent, viscous, row, row + to_m, rows, back, read_m, to_a)
     if to_s > 0:
         slip, spin = (
@@ -336,15 +358,15 @@ def spatial_flank(laws: SpatialFlankLaws, entry: int, local: LocalState, row: in
 @inner
 def _sliding(
     laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce, slip: float, roll: float
-) -> Sliding:
+) -> _Sliding:
     """Return the forces along the rows of sliding and rolling, whose rates are `slip` and `roll`, m/s."""
     share = _lever(laws, entry, cell, force, SLIDING_SHARE)
     lever = _lever(laws, entry, cell, force, SLIDING_LEVER)
     mu, per_radius = laws.friction[entry], 1.0 / laws.radius[entry]
-    slid = sliding(share, lever, slip, roll * per_radius, laws.running[entry])
-    return Sliding(
-        scaled(slid.along, mu),
-        scaled(slid.about, mu * per_radius),
+    slid = _friction(share, lever, slip, roll * per_radius, laws.running[entry])
+    return _Sliding(
+        _scaled(slid.along, mu),
+        _scaled(slid.about, mu * per_radius),
         mu * slid.along_rate,
         mu * per_radius * slid.mixed_rate,
         mu * per_radius * per_radius * slid.about_rate,
@@ -359,7 +381,7 @@ def _in_proportion(
     row: int,
     here: int,
     rows: int,
-    factor: Lever,
+    factor: _Lever,
     to_m: int,
     to_a: int,
 ) -> None:

@@ -1,4 +1,4 @@
-"""The table by a mesh's technique: the table itself, or the secant stiffness at one force."""
+"""The table of a mesh at an operating point, and by its technique: itself, or the secant at one force."""
 
 from __future__ import annotations
 
@@ -9,119 +9,10 @@ import numpy as np
 from bounds import from_to
 from dynamics.errors import InputError
 from dynamics.identity_cache import identity_cached
-from dynamics.kernels.compiled import compiled, inner
 from dynamics.meshes.mesh_table import LEVERS, MeshTable
-from dynamics.meshes.packed_tables import ORDER, PackedTables, pack_tables
-from dynamics.meshes.table_lookup import (
-    cubic,
-    level_interval,
-    position_interval,
-    table_deflection,
-    table_force,
-)
+from dynamics.meshes.packed_tables import pack_tables
+from dynamics.meshes.table_lookup import deflection_slope, table_deflection
 from dynamics.types import FloatArray
-
-# Compiled potential energy of a mesh-force table and its derivative in position.
-
-
-@inner
-def cubic_slope(row: FloatArray, index: int, column: int, u: float) -> float:
-    """Return the derivative in u of the cubic in ``row[index, column : column + 4]``."""
-    return float(
-        row[index, column + 1] + u * (2.0 * row[index, column + 2] + 3.0 * u * row[index, column + 3])
-    )
-
-
-@compiled
-def table_energy(
-    table: PackedTables, flank: int, position: float, deflection: float, hint: int
-) -> tuple[float, float]:
-    """Return V = integral of the force over the deflection from lift-off, J, and dV/dx, J per base pitch.
-
-    The intervals below hold ``PackedTables.energy``; the last one is integrated up to `deflection`.
-    """
-    row, u, per_width = position_interval(table, flank, position)
-    k, low, high = level_interval(table, flank, row, u, deflection, hint)
-    if deflection < low:
-        return 0.0, 0.0
-    energy, slope = _energy_below(table, row + k, u)
-    low_slope = cubic_slope(table.row, row + k, 0, u)
-    high_slope = cubic_slope(table.row, row + k + 1, 0, u)
-    span, span_slope = high - low, high_slope - low_slope
-    w = min((deflection - low) / span, 1.0)
-    w_slope = 0.0 if w == 1.0 else -(low_slope + w * span_slope) / span
-    part, change = _interval_energy(table, flank, row, k, u, w, w_slope)
-    energy, slope = energy + part, slope + change
-    if deflection >= high:
-        force = table.level[table.offset[flank, 4] + k + 1]
-        stiffness, beyond = cubic(table.row, row + k + 1, 4, u), deflection - high
-        energy += beyond * (force + 0.5 * stiffness * beyond)
-        slope += 0.5 * cubic_slope(table.row, row + k + 1, 4, u) * beyond**2
-        slope -= high_slope * (force + stiffness * beyond)
-    return energy, slope * per_width
-
-
-@inner
-def _energy_below(table: PackedTables, row: int, u: float) -> tuple[float, float]:
-    energy, slope = table.energy[row, ORDER], 0.0
-    for power in range(ORDER - 1, -1, -1):
-        slope = slope * u + energy
-        energy = energy * u + table.energy[row, power]
-    return energy, slope
-
-
-@inner
-def _interval_energy(
-    table: PackedTables, flank: int, row: int, k: int, u: float, w: float, w_slope: float
-) -> tuple[float, float]:
-    """Energy and its derivative in u of level interval k, up to the fraction w of it (dw/du = w_slope)."""
-    level = table.offset[flank, 4] + k
-    span = cubic(table.row, row + k + 1, 0, u) - cubic(table.row, row + k, 0, u)
-    stiff, stiff_end = cubic(table.row, row + k, 4, u), cubic(table.row, row + k + 1, 4, u)
-    span_slope = cubic_slope(table.row, row + k + 1, 0, u) - cubic_slope(table.row, row + k, 0, u)
-    stiff_slope = cubic_slope(table.row, row + k, 4, u)
-    stiff_end_slope = cubic_slope(table.row, row + k + 1, 4, u)
-    start, step = table.level[level], table.level[level + 1] - table.level[level]
-    # force on the interval: start + rise w + c2 w^2 + c3 w^3
-    rise, fall = span * stiff, span * stiff_end
-    rise_slope = span_slope * stiff + span * stiff_slope
-    fall_slope = span_slope * stiff_end + span * stiff_end_slope
-    c2, c3 = 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
-    area = w * (start + w * (rise / 2.0 + w * (c2 / 3.0 + w * c3 / 4.0)))
-    force = start + w * (rise + w * (c2 + w * c3))
-    change = rise_slope / 2.0 + w * (
-        -(2.0 * rise_slope + fall_slope) / 3.0 + w * (rise_slope + fall_slope) / 4.0
-    )
-    return span * area, span_slope * area + span * (force * w_slope + w * w * change)
-
-
-# Compiled derivative in position of the deflection at constant force.
-
-
-@compiled
-def deflection_slope(table: PackedTables, flank: int, position: float, force: float) -> float:
-    """Return d(deflection)/d(position) at constant `force` > 0, m per base pitch: -F_x / F_d."""
-    deflection = table_deflection(table, flank, position, force)
-    row, u, per_width = position_interval(table, flank, position)
-    k, low, high = level_interval(table, flank, row, u, deflection, 0)
-    low_slope = cubic_slope(table.row, row + k, 0, u)
-    high_slope = cubic_slope(table.row, row + k + 1, 0, u)
-    stiff_slope, stiff_end_slope = (
-        cubic_slope(table.row, row + k, 4, u),
-        cubic_slope(table.row, row + k + 1, 4, u),
-    )
-    if deflection >= high:
-        stiffness = cubic(table.row, row + k + 1, 4, u)
-        return (high_slope - stiff_end_slope * (deflection - high) / stiffness) * per_width
-    span, span_slope = high - low, high_slope - low_slope
-    w = (deflection - low) / span
-    w_slope = -(low_slope + w * span_slope) / span
-    rise_slope = span_slope * cubic(table.row, row + k, 4, u) + span * stiff_slope
-    fall_slope = span_slope * cubic(table.row, row + k + 1, 4, u) + span * stiff_end_slope
-    tangent = table_force(table, flank, position, deflection, k)[1]
-    force_slope = w * (rise_slope + w * (-2.0 * rise_slope - fall_slope + w * (rise_slope + fall_slope)))
-    force_slope += tangent * span * w_slope
-    return -force_slope / tangent * per_width
 
 
 @dataclass(frozen=True)
@@ -229,3 +120,48 @@ def _weights(field: str, knots: FloatArray, value: float) -> FloatArray:
         bound = from_to(float(knots[0]), float(knots[-1]), "m", note=", the table's")
         raise InputError(field, value, bound, "Compute the table for this operating point.")
     return np.array([np.interp(value, knots, unit) for unit in np.eye(knots.size)])
+
+
+def table_at_operating_point(
+    table: MeshTable, misalignment: float, center_distance_change: float
+) -> PlainTable:
+    """Return `table` at one misalignment and center-distance change in m; ends are held beyond the axes.
+
+    Needs the table's derivatives along axes of more than one knot.
+    """
+    m = _hermite_weights(np.asarray(table.misalignment, dtype=float), misalignment)
+    a = _hermite_weights(np.asarray(table.center_distance_change, dtype=float), center_distance_change)
+
+    def here(name: str, order: int) -> FloatArray:
+        derivative = getattr(table, f"{name}_derivative", None)
+        if derivative is None:
+            return np.asarray(getattr(table, name if order == 0 else f"{name}_slope"), dtype=float)
+        values = np.einsum("um,vd,uvmdpl->pl", m, a, np.asarray(derivative, dtype=float)[:, :, order])
+        return np.asarray(values[None, None])
+
+    return PlainTable(
+        np.asarray(table.position, dtype=float),
+        np.asarray(table.level, dtype=float),
+        np.array([misalignment]),
+        np.array([center_distance_change]),
+        here("deflection", 0),
+        here("deflection", 1),
+        here("stiffness", 0),
+        here("stiffness", 1),
+        table.period,
+    )
+
+
+def _hermite_weights(knots: FloatArray, at: float) -> FloatArray:
+    """Hermite weights of the values and the slopes at all `knots` (k,), (2, k)."""
+    weight = np.zeros((2, knots.size))
+    if knots.size == 1:
+        weight[0, 0] = 1.0
+        return weight
+    left = int(np.clip(np.searchsorted(knots, at, side="right") - 1, 0, knots.size - 2))
+    width = knots[left + 1] - knots[left]
+    u = float(np.clip((at - knots[left]) / width, 0.0, 1.0))
+    s = 1.0 - u
+    weight[:, left] = (1.0 + 2.0 * u) * s * s, width * u * s * s
+    weight[:, left + 1] = u * u * (3.0 - 2.0 * u), -width * u * u * s
+    return weight

@@ -1,4 +1,4 @@
-"""All forces in one state and their derivatives: what statics, linearization and shooting start from."""
+"""All forces in one state and their derivatives, and loads at their means: what statics starts from."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.elements import Elements
-from dynamics.kernels.law import Law
+from dynamics.forces.laws import Law
 from dynamics.kernels.local_state import LocalState
 from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray
@@ -91,3 +91,46 @@ def block_diagonal(elements: Elements, derivative: FloatArray) -> FloatArray:
     for first, end in zip(elements.first[:-1], elements.first[1:], strict=True):
         matrix[first:end, first:end] = derivative[first:end, : end - first]
     return matrix
+
+
+# Loads at their means over a turn: what statics sees of them, and small motions about it.
+
+
+LOADS = (Law.SPEED_TORQUE, Law.APPLIED_FORCE)
+
+
+def at_mean_loads(arrays: SystemArrays) -> SystemArrays:
+    """Return `arrays` with the mean over a turn of every load that changes with an angle.
+
+    Of an unbalance, whose force and weight turn, nothing is left.
+    """
+    laws = arrays.elements.laws
+    if laws.applied_force.size.size + laws.unbalance.amount.size == 0:
+        return arrays
+    steady = np.ones(1, dtype=np.bool_)
+    mean = laws._replace(
+        applied_force=laws.applied_force._replace(steady=steady),
+        unbalance=laws.unbalance._replace(steady=steady),
+    )
+    return arrays._replace(elements=arrays.elements._replace(laws=mean))
+
+
+def mean_loads(arrays: SystemArrays, time: float) -> FloatArray:
+    """Return the forces (n,) of loads at the speeds of the kinematic motion at `time`, means over a turn."""
+    none = np.zeros(arrays.mass.shape[0])
+    local = local_state(at_mean_loads(arrays), time, none, none)
+    rows = np.repeat(np.isin(arrays.elements.law, LOADS), np.diff(arrays.elements.first))
+    return np.asarray(-local.force[rows] @ arrays.direction[rows])
+
+
+def stiffness_across(arrays: SystemArrays, time: float) -> FloatArray:
+    """Return the stiffness (n, n) of all couplings across frames, at their angles at `time`."""
+    elements, n = arrays.elements, arrays.mass.shape[0]
+    stiffness, crossing = np.zeros((n, n)), np.flatnonzero(elements.law == Law.FRAME_COUPLING)
+    if crossing.size:
+        tangent = local_state(arrays, time, np.zeros(n), np.zeros(n)).tangent
+        for e in crossing:
+            rows = slice(elements.first[e], elements.first[e + 1])
+            direction = arrays.direction[rows]
+            stiffness += direction.T @ tangent[rows, : direction.shape[0]] @ direction
+    return stiffness

@@ -1,14 +1,16 @@
-"""Compiled kinematic motion, mesh positions, local coordinates and external forces at a time."""
+"""Compiled kinematic motion, mesh positions, local coordinates, external forces, accelerations at a time."""
 
 from __future__ import annotations
 
 import math
 
-from dynamics.arrays.arrays import LawArrays, Reference, SystemArrays
+from dynamics.arrays.arrays import KinematicMotion, SystemArrays
 from dynamics.arrays.sparse_rows import add_modal_motion, row_product, row_products
-from dynamics.forces.elements import Elements
+from dynamics.forces.elements import UNBALANCE, Elements
 from dynamics.kernels.compiled import compiled, inner
+from dynamics.kernels.cubics import Cubics, area, piece_at, value_and_slope
 from dynamics.kernels.local_state import LocalState
+from dynamics.loads.load_laws import unbalance
 from dynamics.meshes.table_lookup import wrapped
 from dynamics.types import FloatArray, IntArray
 
@@ -21,67 +23,44 @@ exact power of two, so that counting them loses nothing."""
 QUANTUM = 2.0 * math.pi / QUANTA_PER_TURN
 
 
-@inner
-def piece_at(law: LawArrays, index: int, time: float) -> int:
-    """Return the piece of law `index` that holds `time`."""
-    piece = law.first[index]
-    while piece + 1 < law.first[index + 1] and time >= law.start[piece + 1]:
-        piece += 1
-    return int(piece)
-
-
 @compiled
-def law_value(law: LawArrays, index: int, time: float) -> float:
+def law_value(law: Cubics, index: int, time: float) -> float:
     """Return the value of law `index`."""
-    piece = piece_at(law, index, time)
-    s, c = time - law.start[piece], law.coefficient
-    return float(c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3])))
+    return value_and_slope(law, index, time)[0]
 
 
 @compiled
-def write_motion(reference: Reference, time: float, moved: IntArray, motion: FloatArray) -> None:
+def write_motion(reference: KinematicMotion, time: float, moved: IntArray, motion: FloatArray) -> None:
     """Write the motion of every law at `time` into `motion` (k, 4); the fraction may exceed 1 by `moved`.
 
     `moved` (k,) counts the quanta of a revolution that a free train's own rotation has been moved by.
     """
     for k in range(motion.shape[0]):
         piece = piece_at(reference.speed, k, time)
-        s, c = time - reference.speed.start[piece], reference.speed.coefficient
-        angle = s * (c[piece, 0] + s * (c[piece, 1] / 2.0 + s * (c[piece, 2] / 3.0 + s * c[piece, 3] / 4.0)))
+        angle = area(reference.speed, piece, time - reference.speed.start[piece])
         turns = reference.fraction[piece] + angle / (2.0 * math.pi)
         whole = math.floor(turns)
         motion[k, WHOLE] = reference.whole[piece] + whole + moved[k] // QUANTA_PER_TURN
         motion[k, FRACTION] = turns - whole + (moved[k] % QUANTA_PER_TURN) / QUANTA_PER_TURN
-        motion[k, SPEED] = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))
-        motion[k, ACCELERATION] = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])
-
-
-@compiled
-def flank_phase(reference: Reference, mesh: int, motion: FloatArray) -> float:
-    """Return a mesh's position in the kinematic motion, in [0, period): whole periods drop exactly.
-
-    Base pitches per revolution of a law are a fraction of integers, so that what whole revolutions add is an
-    integer number of periods and a remainder of integers: no digit is lost however far the shafts turn.
-    """
-    phase = reference.offset[mesh]
-    for k in range(motion.shape[0]):
-        phase += _whole_part(reference, mesh, k, motion[k, WHOLE])
-        phase += motion[k, FRACTION] * reference.numerator[mesh, k] / reference.denominator[mesh, k]
-    return wrapped(phase, float(reference.period[mesh]))
+        motion[k, SPEED], motion[k, ACCELERATION] = value_and_slope(reference.speed, k, time)
 
 
 @inner
-def _whole_part(reference: Reference, mesh: int, law: int, whole: float) -> float:
+def _whole_part(reference: KinematicMotion, mesh: int, law: int, whole: float) -> float:
     cycle = reference.denominator[mesh, law] * reference.period[mesh]
     remainder = (int(whole) % cycle) * reference.numerator[mesh, law] % cycle
     return float(remainder / reference.denominator[mesh, law])
 
 
 @inner
-def set_phases(reference: Reference, motion: FloatArray, position: FloatArray, local: LocalState) -> None:
+def set_phases(
+    reference: KinematicMotion, motion: FloatArray, position: FloatArray, local: LocalState
+) -> None:
     """Write the meshes' positions (base pitches) and their rates (per second) in the kinematic motion.
 
-    What whole revolutions add takes divisions of integers; it stays in `local` until a revolution is over.
+    Base pitches per revolution of a law are a fraction of integers, so that what whole revolutions add is an
+    integer number of periods, which drop exactly, and a remainder of integers: no digit is lost however far
+    the shafts turn. That takes divisions of integers; it stays in `local` until a revolution is over.
     """
     for k in range(motion.shape[0]):
         if local.whole[k] != motion[k, WHOLE]:
@@ -136,7 +115,7 @@ def add_motion(
 
 
 @inner
-def law_speed(reference: Reference, law: int, motion: FloatArray, velocity: FloatArray) -> float:
+def law_speed(reference: KinematicMotion, law: int, motion: FloatArray, velocity: FloatArray) -> float:
     """Return the speed of a law's shaft, rad/s; of a free train with its own rotation in `velocity` (n,)."""
     speed = motion[law, SPEED]
     if reference.freedom[law] >= 0:
@@ -145,7 +124,7 @@ def law_speed(reference: Reference, law: int, motion: FloatArray, velocity: Floa
 
 
 @inner
-def move_free_trains(reference: Reference, moved: IntArray, q: FloatArray) -> None:
+def move_free_trains(reference: KinematicMotion, moved: IntArray, q: FloatArray) -> None:
     """Move the own rotation of free trains from `q` into the reference, up to half a quantum.
 
     It moves along the kinematic vector of the law, which changes no transmission error, no spring and no
@@ -174,3 +153,66 @@ def external_force(system: SystemArrays, time: float, motion: FloatArray, force:
         torque = law_value(system.load.torque, load, time)
         for i in range(system.sparse.modal.first):
             force[i] += system.load.direction[load, i] * torque
+
+
+# Accelerations of local coordinates, for the laws that depend on them: unbalances.
+
+
+ITERATIONS = 30
+"""Each leaves of the error the part that the center of mass is off the axis, over the radius of gyration."""
+SETTLED = 1e-14
+"""Of the forces: the last change."""
+
+
+@inner
+def set_acceleration(
+    system: SystemArrays, motion: FloatArray, acceleration: FloatArray, target: FloatArray
+) -> None:
+    """Write accelerations of the local coordinates by q'' (n,), and by the kinematic motion, (R,), m/s^2."""
+    direction, drift = system.sparse.direction, system.elements.drift
+    for r in range(target.size):
+        target[r] = row_product(direction, direction.weight, r, acceleration)
+        for k in range(motion.shape[0]):
+            target[r] += drift[k, r] * motion[k, ACCELERATION]
+
+
+@inner
+def settle_unbalance(
+    system: SystemArrays,
+    motion: FloatArray,
+    local: LocalState,
+    external: FloatArray,
+    acceleration: FloatArray,
+) -> None:
+    """Make unbalances and the accelerations q'' (n,) that they depend on agree.
+
+    `external` (n,) are all forces with those of the elements in ``local.force``, and `acceleration` is what
+    they make; both change along.
+    """
+    elements, sparse = system.elements, system.sparse
+    for _ in range(ITERATIONS):
+        set_acceleration(system, motion, acceleration, local.acceleration)
+        change, size = 0.0, 0.0
+        for e in range(elements.law.size):
+            if elements.law[e] != UNBALANCE:
+                continue
+            first, end = elements.first[e], elements.first[e + 1]
+            for r in range(first, end):
+                _add_row(system, r, local.force[r], external)
+            before = local.force[first], local.force[first + 1], local.force[first + 2]
+            unbalance(elements.laws.unbalance, elements.entry[e], local, first)
+            for r in range(first, end):
+                _add_row(system, r, -local.force[r], external)
+                change = max(change, abs(local.force[r] - before[r - first]))
+                size = max(size, abs(local.force[r]))
+        for i in range(acceleration.size):
+            acceleration[i] = row_product(sparse.mobility, sparse.mobility.weight, i, external)
+        if change <= SETTLED * size:
+            break
+
+
+@inner
+def _add_row(system: SystemArrays, row: int, force: float, external: FloatArray) -> None:
+    direction = system.sparse.direction
+    for entry in range(direction.first[row], direction.first[row + 1]):
+        external[direction.column[entry]] += direction.weight[entry] * force

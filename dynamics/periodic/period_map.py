@@ -9,11 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from bounds import above, below
-from dynamics.arrays.arrays import LawArrays, SystemArrays
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
-from dynamics.assembly.static_reference import with_static_reference
+from dynamics.assembly.varied import with_static_reference
 from dynamics.checks import integer
 from dynamics.errors import InputError, SolveError
+from dynamics.forces.laws import Law
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.advance import prepare_steps
 from dynamics.integrators.explicit_step import accelerate, explicit_step
@@ -21,7 +22,7 @@ from dynamics.integrators.implicit_step import implicit_step
 from dynamics.integrators.workspace import Workspace, make_workspace
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled, inner
-from dynamics.kernels.law import Law
+from dynamics.kernels.cubics import Cubics
 from dynamics.linearize import Modes, natural_modes
 from dynamics.linearize.linear_system import about_running, require_freedoms
 from dynamics.linearize.load_harmonics import load_cycles
@@ -230,11 +231,11 @@ def _at_constant_speed(system: System, period: CommonPeriod, speed: float, time:
     return by_address(changed)
 
 
-def _constant(values: FloatArray) -> LawArrays:
+def _constant(values: FloatArray) -> Cubics:
     """Lay out laws that never change."""
     coefficient = np.zeros((values.size, 4))
     coefficient[:, 0] = values
-    return LawArrays(np.arange(values.size + 1), np.zeros(values.size), coefficient)
+    return Cubics(np.arange(values.size + 1), np.zeros(values.size), coefficient)
 
 
 # The typical sizes of forces and motions, by which a search for periodic motions measures its steps.

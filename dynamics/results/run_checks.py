@@ -11,9 +11,9 @@ import numpy as np
 from bounds import engineering
 from dynamics.assembly.assemble import System
 from dynamics.mechanism.additions import BEARING_LAWS, COAST_FLANKS, MISALIGNMENT
-from dynamics.mechanism.flank_gradients import distance_gradient, misalignment_gradient
+from dynamics.mechanism.line_of_action import distance_gradient, misalignment_gradient
 from dynamics.meshes import GearMesh
-from dynamics.meshes.operating_point_table import table_at_operating_point
+from dynamics.meshes.technique import table_at_operating_point
 from dynamics.motion.observation import static_deflections
 from dynamics.motion.sampled_states import States
 from dynamics.results.checks import Check, SeriesBlock

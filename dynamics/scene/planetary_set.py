@@ -202,7 +202,6 @@ class PlanetarySet:
         )
 
     def _bushing(self, name: str, stiffness: BearingStiffness) -> Bushing:
-        """Return the bearing of a central member."""
         return Bushing(
             self.called(f"{name} bearing"),
             self.called(name),

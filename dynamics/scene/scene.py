@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Protocol
 
 import numpy as np
@@ -22,11 +23,10 @@ from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.joints.housing import DEFINITE
 from dynamics.loads import AngleLaw, AppliedForce, LoadTorque, TimeLaw, Unbalance
 from dynamics.meshes import GearMesh
-from dynamics.parts import KINDS, ON_A_SHAFT
-from dynamics.scene.force_check import check_force_shafts
+from dynamics.parts import KINDS, LAWS_OF_BEARINGS, ON_A_SHAFT
 from dynamics.settings import Integration, Outputs
 from dynamics.shafts import DiscBody, GearBody, Shaft
-from dynamics.shafts.shaft_position import OnShaft, on_length
+from dynamics.shafts.shaft import OnShaft, on_length
 from dynamics.types import FloatArray
 
 # Housings and bushings with matrices: what they can carry, and where.
@@ -60,7 +60,7 @@ def _check_housings(
                 bound = "a bushing of a shaft described in the fixed frame"
                 raise InputError(field, name, bound, "A planetary set's frame turns against the housing.")
             taken[name] = housing.name
-        _housing_check_check_positions(index, housing, shafts, by_name)
+        _check_seat_positions(index, housing, shafts, by_name)
         if not lawful.isdisjoint(housing.bushings) and least_share(housing.matrices()[0]) <= DEFINITE:
             bound = "positive definite under bearings that are not linear"
             advice = "Hold the housing at its feet, or on mounts, in every direction that has a row."
@@ -70,10 +70,9 @@ def _check_housings(
             _check_isotropic(f"bushings[{index}]", bushing)
 
 
-def _housing_check_check_positions(
+def _check_seat_positions(
     index: int, housing: Housing, shafts: tuple[Shaft, ...], bushings: dict[str, Bushing]
 ) -> None:
-    """Refuse a seat of a housing that is not where its bearing is."""
     origins = {shaft.name: shaft.origin for shaft in shafts}
     for seat, (name, at) in enumerate(zip(housing.bushings, housing.seat_positions or (), strict=False)):
         bearing = bushings[name]
@@ -193,25 +192,21 @@ def on_axis(shaft: Shaft, carrier: Shaft) -> bool:
 
 def _check_bearing_laws(
     bearings: Sequence[str],
-    contacts: Sequence[RollingContact],
-    curves: Sequence[SpringCurve],
+    laws: Mapping[str, Sequence[BearingLaw]],
     rolling: Sequence[RollingBearing],
     rotating: frozenset[str],
 ) -> None:
-    """Every law has its own direction of one of `bearings`.
+    """Every law, by kind, has its own direction of one of `bearings`.
 
     `rotating` names the bearings of shafts described in a rotating frame.
     """
-    fields = [
-        *((f"rolling_contacts[{index}].bushing", part.bushing) for index, part in enumerate(contacts)),
-        *((f"spring_curves[{index}].bushing", part.bushing) for index, part in enumerate(curves)),
-    ]
-    for place, name in fields:
-        one_of(place, name, bearings)
-    distinct("rolling_contacts", [part.bushing for part in contacts])
-    distinct("spring_curves", [f"{part.bushing}.{part.direction}" for part in curves])
-    for index, curve in enumerate(curves):
-        if curve.bushing in rotating and curve.direction != "z":
+    for kind, parts in laws.items():
+        for index, part in enumerate(parts):
+            one_of(f"{kind}[{index}].bushing", part.bushing, bearings)
+    for kind, parts in laws.items():
+        distinct(kind, [part.acts_at for part in parts])
+    for index, curve in enumerate(laws["spring_curves"]):
+        if isinstance(curve, SpringCurve) and curve.bushing in rotating and curve.direction != "z":
             bound = '"z" on a shaft described in a carrier\'s frame, which turns against the bushing'
             raise InputError(f"spring_curves[{index}].direction", curve.direction, bound)
     for index, bearing in enumerate(rolling):
@@ -245,6 +240,14 @@ def _check_positions(shafts: Sequence[Shaft], kind: str, parts: Sequence[OnShaft
             raise InputError(f"{kind}[{index}].position", part.position, bound, advice)
 
 
+def _check_force_shafts(forces: Sequence[AppliedForce], shafts: Sequence[str]) -> None:
+    for index, force in enumerate(forces):
+        if force.turns_with is not None:
+            one_of(f"forces[{index}].turns_with", force.turns_with, shafts)
+        if not isinstance(force.course, TimeLaw):
+            one_of(f"forces[{index}].course.shaft", force.course.shaft, shafts)
+
+
 ON_VIOLATION = ("repeat", "fail", "report")
 TOLERANCES = (1e-6, 0.5)
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
@@ -256,15 +259,15 @@ class _Named(Protocol):
     def name(self) -> str: ...
 
 
-class Reference(Protocol):
+class _MotionLaw(Protocol):
     """The law that sets the speed of one shaft in the kinematic motion."""
 
     @property
-    def shaft(self) -> str: ...  # noqa: D102
+    def shaft(self) -> str: ...
     @property
-    def speed(self) -> TimeLaw | AngleLaw: ...  # noqa: D102
+    def speed(self) -> TimeLaw | AngleLaw: ...
     @property
-    def rigid(self) -> bool: ...  # noqa: D102
+    def rigid(self) -> bool: ...
 
 
 @dataclass(frozen=True)
@@ -340,7 +343,7 @@ class Scene:
         for kind in ON_A_SHAFT:
             for index, part in enumerate(getattr(self, kind)):
                 one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
-        check_force_shafts(self.forces, shafts)
+        _check_force_shafts(self.forces, shafts)
         placed = ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings")
         for kind in (*placed, "forces", "unbalances"):
             _check_positions(self.shafts, kind, getattr(self, kind))
@@ -365,8 +368,7 @@ class Scene:
         rotating = {shaft.name for shaft in self.shafts if shaft.frame is not None}
         _check_bearing_laws(
             [bearing.name for bearing in (*self.bushings, *self.planet_bearings)],
-            self.rolling_contacts,
-            self.spring_curves,
+            {kind: getattr(self, kind) for kind in LAWS_OF_BEARINGS},
             self.rolling_bearings,
             frozenset(bushing.name for bushing in self.bushings if bushing.shaft in rotating),
         )
@@ -381,7 +383,7 @@ class Scene:
             raise InputError("drives[0].speed", 0.0, "not zero all the time", suggestion)
 
     @property
-    def references(self) -> tuple[Reference, ...]:
+    def references(self) -> tuple[_MotionLaw, ...]:
         """The laws of the kinematic motion: the drives, then the free rotations."""
         return (*self.drives, *self.free_rotations)
 
@@ -398,7 +400,7 @@ class Scene:
     def laws_with(self, passing: frozenset[str]) -> tuple[BearingLaw, ...]:
         """Return all that bearings do which is not linear; the elements of those `passing` one by one."""
         rows = (row_law(bearing, bearing.name in passing) for bearing in self.rolling_bearings)
-        return (*self.rolling_contacts, *self.spring_curves, *rows)
+        return (*chain.from_iterable(getattr(self, kind) for kind in LAWS_OF_BEARINGS), *rows)
 
     def gear(self, name: str) -> GearBody:
         """Return the gear called `name`."""

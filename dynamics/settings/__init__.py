@@ -1,6 +1,5 @@
 """Settings of a run: what it stores, and how it integrates."""
 
-from dynamics.settings.integration import Integration
-from dynamics.settings.outputs import Outputs
+from dynamics.settings.run import Integration, Outputs
 
 __all__ = ["Integration", "Outputs"]

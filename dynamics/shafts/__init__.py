@@ -1,11 +1,8 @@
 """Shafts rigid and elastic, the gears and discs on them, their inertia and sections."""
 
 from dynamics.shafts.beam_section import BeamSection
-from dynamics.shafts.disc_body import DiscBody
-from dynamics.shafts.elastic_modes import ReducedBody, craig_bampton
-from dynamics.shafts.elastic_shaft import Disc, ElasticShaft, PointOfApplication, elastic_shaft
-from dynamics.shafts.gear_body import GearBody
-from dynamics.shafts.inertia import Inertia, hollow_cylinder
+from dynamics.shafts.bodies import DiscBody, GearBody, Inertia, hollow_cylinder
+from dynamics.shafts.elastic_shaft import Disc, ElasticShaft, PointOfApplication, craig_bampton, elastic_shaft
 from dynamics.shafts.shaft import Shaft
 from dynamics.shafts.timoshenko_beam import TimoshenkoBeam, timoshenko_beam
 
@@ -17,7 +14,6 @@ __all__ = [
     "GearBody",
     "Inertia",
     "PointOfApplication",
-    "ReducedBody",
     "Shaft",
     "TimoshenkoBeam",
     "craig_bampton",

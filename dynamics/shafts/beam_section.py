@@ -11,7 +11,7 @@ import numpy as np
 from bounds import Declared, Kind, below, between, declared, described, required, up_to
 from dynamics.checks import declared_fields
 from dynamics.errors import InputError
-from dynamics.shafts.inertia import (
+from dynamics.shafts.bodies import (
     STEEL_DENSITY,
     STEEL_POISSON_RATIO,
     STEEL_YOUNGS_MODULUS,
@@ -37,7 +37,7 @@ _POISSON = Declared(Kind.RATIO, "", between(0.0, 0.499), "Poisson's ratio", 0.3)
 _DENSITY = Declared(Kind.INERTIA, "kg/m^3", up_to(1e6), "Density", 7850.0)
 
 
-class CrossSection(NamedTuple):
+class _CrossSection(NamedTuple):
     """Cross sections: area in m^2, second moment of area about an axis across in m^4, shear coefficient."""
 
     area: FloatArray
@@ -88,7 +88,7 @@ class BeamSection:
         """Pa."""
         return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
 
-    def cross_section(self, share: float | FloatArray = 0.0) -> CrossSection:
+    def cross_section(self, share: float | FloatArray = 0.0) -> _CrossSection:
         """Return the cross sections at shares of the length (0: left end, 1: right end).
 
         The shear coefficient is the share of the area that carries shear: Cowper, J. Appl. Mech. 33 (1966)
@@ -98,7 +98,7 @@ class BeamSection:
         outer, bore = (d[0] + at * (d[1] - d[0]) for d in (self.outer_diameters, self.bore_diameters))
         nu, square = self.poissons_ratio, (bore / outer) ** 2
         whole = (1.0 + square) ** 2
-        return CrossSection(
+        return _CrossSection(
             math.pi / 4.0 * (outer**2 - bore**2),
             math.pi / 64.0 * (outer**4 - bore**4),
             6.0 * (1.0 + nu) * whole / ((7.0 + 6.0 * nu) * whole + (20.0 + 12.0 * nu) * square),

@@ -5,13 +5,46 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from itertools import accumulate
+from typing import Protocol
 
 from bounds import Declared, Kind, Quantity, Text, between, declared, described, required, up_to
 from dynamics.checks import declared_fields, finite
 from dynamics.errors import InputError
 from dynamics.shafts.beam_section import BeamSection
-from dynamics.shafts.inertia import Inertia
-from dynamics.shafts.shaft_position import SAME_POSITION
+from dynamics.shafts.bodies import Inertia
+
+SAME_POSITION = 1e-9
+"""Of the shaft's length: positions nearer than this coincide. n added lengths round by n eps of their sum."""
+
+
+class OnShaft(Protocol):
+    """A part at a position on a shaft, m from its left end."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        ...
+
+    @property
+    def shaft(self) -> str:
+        """Name of the shaft."""
+        ...
+
+    @property
+    def position(self) -> float:
+        """Position along the shaft."""
+        ...
+
+
+def on_length(position: float, length: float) -> bool:
+    """Whether `position` (m from the left end) is on a shaft of `length`, m, but for rounding."""
+    return -SAME_POSITION * length <= position <= (1.0 + SAME_POSITION) * length
+
+
+def nearest_on(position: float, length: float) -> float:
+    """Return the position on a shaft of `length` nearest to `position`, m from the left end."""
+    return min(max(position, 0.0), length)
+
 
 _LENGTH = Declared(Kind.LENGTH, "m", up_to(1000.0), "Length, from the left end towards +z", 0.2)
 _DAMPING = Declared(

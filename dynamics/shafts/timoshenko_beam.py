@@ -14,7 +14,7 @@ from bounds import Text, above, from_to
 from dynamics.checks import finite
 from dynamics.errors import InputError
 from dynamics.shafts.beam_section import BeamSection
-from dynamics.shafts.shaft_position import SAME_POSITION, nearest_on, on_length
+from dynamics.shafts.shaft import SAME_POSITION, nearest_on, on_length
 from dynamics.types import FloatArray, IntArray
 
 # Beam elements of varying cross section, from the flexibility of a clamped piece: exact under end forces.
@@ -28,7 +28,7 @@ _GAUSS = np.polynomial.legendre.leggauss(POINTS)
 _SHARE, _WEIGHT = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
 
 
-class Piece(NamedTuple):
+class _Piece(NamedTuple):
     """A part of a section: `start` and `end` in shares of its length."""
 
     section: BeamSection
@@ -41,7 +41,7 @@ class Piece(NamedTuple):
         return (self.end - self.start) * self.section.length
 
 
-class ElementMatrices(NamedTuple):
+class _ElementMatrices(NamedTuple):
     """Mass and stiffness of k elements, at their left and then their right ends.
 
     Attributes
@@ -71,16 +71,16 @@ class _Along(NamedTuple):
     diametral: FloatArray
 
 
-def _beam_elements(pieces: Sequence[Piece]) -> ElementMatrices:
+def _beam_elements(pieces: Sequence[_Piece]) -> _ElementMatrices:
     length = np.array([piece.length for piece in pieces])
     at, inside = _along(pieces, _SHARE), _along(pieces, np.outer(_SHARE, _SHARE))
     bending_mass, bending = _bending(length, at, inside)
     axial_mass, axial = _rod(length, at.pulled, inside.pulled, at.mass)
     torsional_mass, torsion = _rod(length, at.twisted, inside.twisted, 2.0 * at.diametral)
-    return ElementMatrices(bending_mass, bending, axial_mass, axial, torsional_mass, torsion)
+    return _ElementMatrices(bending_mass, bending, axial_mass, axial, torsional_mass, torsion)
 
 
-def _along(pieces: Sequence[Piece], share: FloatArray) -> _Along:
+def _along(pieces: Sequence[_Piece], share: FloatArray) -> _Along:
     """Return the properties at shares (...) of the pieces, (k, ...) each."""
     rows = []
     for section, start, end in pieces:
@@ -103,7 +103,7 @@ def _bending(length: FloatArray, at: _Along, inside: _Along) -> tuple[FloatArray
     """Mass and stiffness (k, 4, 4) in one plane."""
     far = length[:, None] * (1.0 - _SHARE)
     step = length[:, None] * _WEIGHT
-    tip = _matrix(
+    tip = _stacked(
         np.sum(step * (far**2 / at.bent + 1.0 / at.sheared), axis=1),
         np.sum(step * far / at.bent, axis=1),
         np.sum(step * far / at.bent, axis=1),
@@ -130,7 +130,7 @@ def _deflection(length: FloatArray, inside: _Along) -> FloatArray:
     s = length[:, None, None] * _SHARE[:, None]
     t, step = s * _SHARE, s * _WEIGHT
     rest, arm = s - t, length[:, None, None] - t
-    return _matrix(
+    return _stacked(
         np.sum(step * (rest * arm / inside.bent + 1.0 / inside.sheared), axis=-1),
         np.sum(step * rest / inside.bent, axis=-1),
         np.sum(step * arm / inside.bent, axis=-1),
@@ -150,8 +150,7 @@ def _rod(
     return np.einsum("kpi,kp,kpj->kij", shape, step * mass, shape), stiffness
 
 
-def _matrix(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> FloatArray:
-    """Stack entries (...) to matrices (..., 2, 2)."""
+def _stacked(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> FloatArray:
     return np.stack([np.stack([a, b], axis=-1), np.stack([c, d], axis=-1)], axis=-2)
 
 
@@ -222,7 +221,7 @@ def timoshenko_beam(
     node = _nodes(ends, [*graded, *(nearest_on(station, length) for station in stations)], longest)
     size = PER_NODE * node.size
     mass, stiffness = np.zeros((size, size)), np.zeros((size, size))
-    pieces = [_piece(sections, ends, left, right) for left, right in pairwise(node)]
+    pieces = [_piece_between(sections, ends, left, right) for left, right in pairwise(node)]
     for k, (m, s) in enumerate(zip(*_coupled(_beam_elements(pieces)), strict=True)):
         rows = slice(PER_NODE * k, PER_NODE * k + 2 * PER_NODE)
         mass[rows, rows] += m
@@ -242,14 +241,13 @@ def _nodes(ends: FloatArray, stations: Sequence[float], longest: float) -> Float
     return np.concatenate([*parts, nodes[-1:]])
 
 
-def _piece(sections: Sequence[BeamSection], ends: FloatArray, left: float, right: float) -> Piece:
-    """Return the part of its section between two nodes."""
+def _piece_between(sections: Sequence[BeamSection], ends: FloatArray, left: float, right: float) -> _Piece:
     index = int(np.searchsorted(ends, 0.5 * (left + right), side="right")) - 1
     start, length = ends[index], sections[index].length
-    return Piece(sections[index], float((left - start) / length), float((right - start) / length))
+    return _Piece(sections[index], float((left - start) / length), float((right - start) / length))
 
 
-def _coupled(elements: ElementMatrices) -> tuple[FloatArray, FloatArray]:
+def _coupled(elements: _ElementMatrices) -> tuple[FloatArray, FloatArray]:
     """Mass and stiffness (k, 12, 12) of elements in all freedoms of their nodes."""
     size = (elements.axial.shape[0], 2 * PER_NODE, 2 * PER_NODE)
     mass, stiffness = np.zeros(size), np.zeros(size)

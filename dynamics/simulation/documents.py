@@ -15,12 +15,12 @@ from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.bearings.row_law import row_law
 from dynamics.errors import SolveError
 from dynamics.forces.elements import Elements
+from dynamics.forces.laws import Law
 from dynamics.influence import Decided, Influence, estimate_influences
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.march import Ending
 from dynamics.integrators.method_choice import MethodChoice
 from dynamics.integrators.workspace import Count
-from dynamics.kernels.law import Law
 from dynamics.kernels.local_state import LocalState
 from dynamics.linearize import natural_modes
 from dynamics.linearize.campbell import whirl_branches
@@ -29,7 +29,7 @@ from dynamics.linearize.modes import freedom_parts
 from dynamics.linearize.operating_speeds import leading_law, mesh_frequencies
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.bearing_elements import BearingElement
-from dynamics.mechanism.rotor import Rotor
+from dynamics.mechanism.bodies import Rotor
 from dynamics.meshes import GearMesh
 from dynamics.motion.observation import local_state, observe, static_deflections
 from dynamics.motion.sampled_states import States

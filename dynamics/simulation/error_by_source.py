@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.assembly.decimated_tables import with_decimated_tables
-from dynamics.assembly.later_start import starting_at
+from dynamics.assembly.varied import starting_at, with_decimated_tables
 from dynamics.integrators import StaticSolution, integrate
 from dynamics.kernels.by_address import by_address
 from dynamics.motion.observation import observe

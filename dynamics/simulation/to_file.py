@@ -14,7 +14,7 @@ import numpy as np
 
 from bounds import warn_of
 from dynamics.assembly.assemble import System, assemble
-from dynamics.assembly.static_reference import with_static_reference
+from dynamics.assembly.varied import with_static_reference
 from dynamics.errors import ResultError, SolveError
 from dynamics.influence import Decided, decide_effects
 from dynamics.influence.neglected_check import NeglectedChecks

@@ -8,7 +8,7 @@ from sliced_face import sliced_database
 
 from dynamics.kernels.compiled import compiled
 from dynamics.meshes.grid_lookup import find_cell, grid_force
-from dynamics.meshes.grid_tables import pack_grids
+from dynamics.meshes.grid_tables import GridTables
 from dynamics.meshes.mesh_table import check_table
 from dynamics.meshes.spatial_flank import grid_energy
 from fe_contact.ste.mesh_force import MeshForce
@@ -30,7 +30,9 @@ def look_up(grid, position, deflection, m, a, found):
 
 def at(table, *query):
     found = np.empty((query[0].size, 9))
-    look_up(pack_grids([table]), *(np.ascontiguousarray(values, dtype=float) for values in query), found)
+    look_up(
+        GridTables.packed([table]), *(np.ascontiguousarray(values, dtype=float) for values in query), found
+    )
     return found
 
 

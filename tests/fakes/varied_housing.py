@@ -11,6 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 from geared_scenes import gear_pair_scene, square_wave_table, with_bushings, with_mesh
 from lattice_meshes import lattice_mesh
+from surface_motions import normal_displacement
 
 from dynamics.acoustics import Air, LevelBand, ModalResistance, OrderPower
 from dynamics.housings import (
@@ -68,7 +69,7 @@ def meshed(cells=COARSE, modes=24, mount=1.0) -> MeshedHousing:
 
 def plane_waves(housing: ReducedHousing, low=20.0, high=20e3) -> ModalResistance:
     """Return the resistance of all its surface by the equivalent radiated power."""
-    motion, area = housing.surface.normal_displacement()
+    motion, area = normal_displacement(housing.surface)
     matrix = Air().impedance * (motion.T * area) @ motion
     frequency = np.geomspace(low, high, 120)
     return ModalResistance(frequency, np.broadcast_to(matrix, (120, *matrix.shape)).astype(complex))

@@ -12,23 +12,17 @@ from pydantic import BaseModel
 
 from bounds import Declared, Reader, RefusedValue, Unit
 from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
-from dynamics.bearings.bushing import Bushing
-from dynamics.bearings.planet_bearing import PlanetBearing
 from dynamics.bearings.rolling_bearing import RollingBearing
+from dynamics.bearings.seat import Bushing, PlanetBearing
 from dynamics.errors import DynamicsError
 from dynamics.errors import InputError as DynamicsInputError
 from dynamics.joints.coupling import Coupling
-from dynamics.joints.free_rotation import FreeRotation
 from dynamics.joints.housing import Housing
-from dynamics.joints.imposed_rotation import ImposedRotation
-from dynamics.loads.applied_force import AppliedForce
-from dynamics.loads.unbalance import Unbalance
-from dynamics.settings.integration import Integration
-from dynamics.settings.outputs import Outputs
+from dynamics.joints.rotations import FreeRotation, ImposedRotation
+from dynamics.loads.applied_force import AppliedForce, Unbalance
+from dynamics.settings.run import Integration, Outputs
 from dynamics.shafts.beam_section import BeamSection
-from dynamics.shafts.disc_body import DiscBody
-from dynamics.shafts.gear_body import GearBody
-from dynamics.shafts.inertia import Inertia
+from dynamics.shafts.bodies import DiscBody, GearBody, Inertia
 from dynamics.shafts.shaft import Shaft as TurningShaft
 from dynamics.solid_housing import Material as HousingMaterial
 from dynamics.solid_housing import ReductionSettings, SeatWall

@@ -17,7 +17,7 @@ from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.loads import AngleLaw, AppliedForce, BySpeed, LoadTorque, Orders, SpeedCurve, TimeLaw, Unbalance
 from dynamics.loads.load_course import CONSTANT, Course
 from dynamics.mechanism import with_planets
-from dynamics.mechanism.motion_check import check_motion
+from dynamics.mechanism.kinematics import check_motion
 from dynamics.meshes import CoastFlank, GearMesh, MeshTable, straight_table
 from dynamics.scene import Integration, Outputs, Scene
 from dynamics.shafts import BeamSection, DiscBody, GearBody, Inertia, Shaft, hollow_cylinder

@@ -9,7 +9,7 @@ import numpy as np
 
 from bounds.types import FloatArray
 from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
-from dynamics.bearings.row import CLEARANCE
+from dynamics.bearings.rolling_bearing import CLEARANCE
 from dynamics.errors import DynamicsError, InputError
 from lineofaction.gearbox.from_rexs.gear_unit import Part
 from lineofaction.gearbox.rexs.vocabulary import words

@@ -11,8 +11,7 @@ import numpy as np
 from bounds.types import FloatArray
 from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
 from dynamics.bearings.matrix import least_share
-from dynamics.bearings.roller_bearing import BOTH, NEGATIVE, NONE, POSITIVE
-from dynamics.bearings.rolling_bearing import AXIAL_PRELOAD, DYNAMIC_CAPACITY
+from dynamics.bearings.rolling_bearing import AXIAL_PRELOAD, BOTH, DYNAMIC_CAPACITY, NEGATIVE, NONE, POSITIVE
 from dynamics.joints.housing import DEFINITE
 from lineofaction.gearbox.from_rexs.bearings import (
     BearingGeometry,

@@ -8,9 +8,8 @@ from typing import Annotated, Literal, Self
 from pydantic import ConfigDict, Field, Strict, model_validator
 
 from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
-from dynamics.bearings.bushing import Bushing
-from dynamics.bearings.planet_bearing import PlanetBearing
 from dynamics.bearings.rolling_bearing import RollingBearing
+from dynamics.bearings.seat import Bushing, PlanetBearing
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,

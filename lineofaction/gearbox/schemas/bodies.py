@@ -6,12 +6,10 @@ from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, Strict, model_validator
 
-from dynamics.bearings.planet_bearing import PlanetBearing
+from dynamics.bearings.seat import PlanetBearing
 from dynamics.joints.coupling import Coupling
 from dynamics.shafts.beam_section import BeamSection
-from dynamics.shafts.disc_body import DiscBody
-from dynamics.shafts.gear_body import GearBody
-from dynamics.shafts.inertia import Inertia
+from dynamics.shafts.bodies import DiscBody, GearBody, Inertia
 from dynamics.shafts.shaft import Shaft
 from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
 from lineofaction.gearbox.schemas.model import (

@@ -7,10 +7,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Field, Strict, model_validator
 
-from dynamics.joints.free_rotation import FreeRotation
-from dynamics.joints.imposed_rotation import ImposedRotation
-from dynamics.loads.applied_force import AppliedForce
-from dynamics.loads.unbalance import Unbalance
+from dynamics.joints.rotations import FreeRotation, ImposedRotation
+from dynamics.loads.applied_force import AppliedForce, Unbalance
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,

@@ -8,8 +8,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, Strict, model_validator
 
 from dynamics.parts import KINDS, ON_A_SHAFT
-from dynamics.settings.integration import Integration
-from dynamics.settings.outputs import Outputs
+from dynamics.settings.run import Integration, Outputs
 from lineofaction.gearbox.schemas.bearings import BushingInput, PlanetBearingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.bodies import (
     CouplingInput,

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from dynamics.assembly.assemble import assemble
 from dynamics.deflection import LoadCase, loaded_scene
-from dynamics.mechanism.flank_gradients import table_sense
+from dynamics.mechanism.line_of_action import table_sense
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.problems import BadInput

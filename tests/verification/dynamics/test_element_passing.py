@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from dynamics.bearings import BallBearing, RollerBearing
-from dynamics.bearings.element_passing import element_passing
-from dynamics.bearings.loaded_bearing import LoadedBearing
+from dynamics.bearings.loaded_bearing import LoadedBearing, element_passing
 
 # Case Western Reserve University, Bearing Data Center, drive end: SKF 6205, outer ring 3.5848 per revolution
 SKF_6205 = BallBearing(9, 0.3126 * 25.4e-3, 1.537 * 25.4e-3)

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import quad
 
 from dynamics.bearings import BallBearing, EllipticContact, RollerBearing
-from dynamics.bearings.ball_grooves import RowPlacement, pack_balls
+from dynamics.bearings.ball_elements import BallElements, RowPlacement
 from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.bearings.rating_life import rating_life
 from dynamics.errors import SolveError
@@ -197,7 +197,7 @@ def test_the_mirrored_bearing_answers_with_the_mirrored_force(kind):
 
 def test_force_and_moment_are_those_of_the_balls_on_the_ring():
     loaded, d = LoadedBearing(ANGULAR), np.array(PLACE["angular"])
-    at, laws = loaded.evaluate(d, ANGLE), pack_balls([(ANGULAR, RowPlacement())])
+    at, laws = loaded.evaluate(d, ANGLE), BallElements.packed([(ANGULAR, RowPlacement())])
     arm_radius, arm_axial, radial, axial = (
         float(laws[index][0])
         for index in map(laws._fields.index, ("arm_radius", "arm_axial", "radial", "axial"))

@@ -14,8 +14,8 @@ import pytest
 from wind_turbine import wind_turbine
 
 from dynamics.assembly.assemble import assemble
-from dynamics.assembly.frame_couplings import frame_turns
 from dynamics.integrators import static_equilibrium
+from dynamics.mechanism.phases import frame_turns
 from dynamics.motion.observation import local_state
 from dynamics.simulation import simulate
 

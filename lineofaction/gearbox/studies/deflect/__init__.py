@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import ConfigDict, Field, Strict, model_validator
 
 from dynamics.settings import load_case
-from dynamics.settings.case_force import CaseForce
+from dynamics.settings.load_case import CaseForce
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
 from lineofaction.gearbox.schemas.loads import ACTING, Vector

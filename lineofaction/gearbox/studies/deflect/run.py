@@ -10,8 +10,7 @@ from bounds import inside, leftover
 from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
 from dynamics.scene import Scene
-from dynamics.settings.case_force import CaseForce
-from dynamics.settings.load_case import LoadCase, check_forces
+from dynamics.settings.load_case import CaseForce, LoadCase, check_forces
 from fe_contact.analysis import pressure_map
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.types import FloatArray

@@ -13,7 +13,7 @@ from sliced_face import sliced_database
 from dynamics.assembly.assemble import assemble
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.loads import TimeLaw
-from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
+from dynamics.mechanism.line_of_action import common_face_width, misalignment_gradient
 from dynamics.meshes import CoastFlank
 from dynamics.results import EnergyAudit
 from dynamics.scene import Integration, Outputs

@@ -14,10 +14,10 @@ from planetary_scenes import driven_scene, published_set
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing
 from dynamics.errors import InputError
+from dynamics.forces.laws import Law
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.march import stored_energy
 from dynamics.joints import Coupling
-from dynamics.kernels.law import Law
 from dynamics.linearize import natural_modes
 from dynamics.linearize.operating_speeds import common_period
 from dynamics.loads import TimeLaw

@@ -9,13 +9,14 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table
+from mesh_phases import flank_phase
 
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import FreeRotation
 from dynamics.loads import LoadTorque, TimeLaw
-from dynamics.motion.motion import QUANTUM, flank_phase, move_free_trains, write_motion
+from dynamics.motion.motion import QUANTUM, move_free_trains, write_motion
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 

@@ -12,9 +12,9 @@ from planetary_scenes import driven_scene, published_set
 
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing
+from dynamics.forces.laws import Law
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.joints import Coupling, FreeRotation
-from dynamics.kernels.law import Law
 from dynamics.linearize import whirl_modes
 from dynamics.linearize.campbell import speed_terms
 from dynamics.loads import TimeLaw

@@ -9,7 +9,7 @@ import pytest
 from geared_scenes import gear_pair_scene, square_wave_table, with_mesh
 
 from dynamics.assembly.assemble import assemble
-from dynamics.meshes.coast_flank import CoastFlank
+from dynamics.meshes.gear_mesh import CoastFlank
 from dynamics.meshes.technique import PlainTable
 from dynamics.scene import Integration
 from dynamics.simulation import simulate

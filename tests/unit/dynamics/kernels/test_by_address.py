@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
@@ -13,11 +14,12 @@ from geared_scenes import gear_pair_scene, square_wave_table
 from dynamics.assembly.assemble import assemble
 from dynamics.forces import SpeedTorque
 from dynamics.forces import elements as element_laws
+from dynamics.forces.laws import Law
 from dynamics.kernels.by_address import by_address, by_value
 from dynamics.kernels.compiled import compiled
-from dynamics.kernels.law import Law
 from dynamics.kernels.routine import routine
 from dynamics.loads import SpeedCurve
+from dynamics.loads.load_laws import SpeedTorqueLaws
 
 
 class Inside(NamedTuple):
@@ -122,9 +124,10 @@ def test_a_scene_prepares_the_laws_it_has_and_no_others(monkeypatch):
         def prepare(self, laws, local):
             prepared.append((self.law, type(by_value(laws))))
 
-    monkeypatch.setattr(element_laws, "ROUTINES", {law: (Noted(law),) for law in Law if law != Law.FLANK})
+    rows = {law: SimpleNamespace(routines=(Noted(law),) if law != Law.FLANK else ()) for law in Law}
+    monkeypatch.setattr(element_laws, "COMPILED", rows)
     scene = gear_pair_scene(square_wave_table())
     assemble(scene)
     assert prepared == []
     assemble(replace(scene, speed_torques=(SpeedTorque("fan", "output", SpeedCurve.quadratic(1.0, 100.0)),)))
-    assert prepared == [(Law.SPEED_TORQUE, element_laws.SpeedTorqueLaws)]
+    assert prepared == [(Law.SPEED_TORQUE, SpeedTorqueLaws)]

@@ -10,7 +10,7 @@ from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, spring_table, with_
 from sliced_face import sliced_database
 
 from dynamics.assembly.assemble import assemble
-from dynamics.assembly.static_reference import operating_points_at, with_static_reference
+from dynamics.assembly.varied import operating_points_at, with_static_reference
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
 from dynamics.linearize import (

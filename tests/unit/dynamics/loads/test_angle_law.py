@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
 
-from dynamics.arrays.law_arrays import slope
+from dynamics.arrays.arrays import slope
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.joints import ImposedRotation

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.arrays.law_arrays import revolutions
+from dynamics.arrays.arrays import revolutions
 from dynamics.errors import InputError
 from dynamics.loads import TimeLaw
 

@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, repeated, spring_table
+from mesh_phases import flank_phase
 
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
@@ -17,7 +18,7 @@ from dynamics.joints import ImposedRotation
 from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.mechanism.kinematics import solve_kinematics
 from dynamics.meshes import GearMesh
-from dynamics.motion.motion import flank_phase, write_motion
+from dynamics.motion.motion import write_motion
 from dynamics.scene import Scene
 from dynamics.shafts import GearBody, Inertia, Shaft
 

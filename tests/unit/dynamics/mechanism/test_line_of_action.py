@@ -12,8 +12,7 @@ from geared_scenes import BASE_RADIUS, gear_pair_scene, with_gear
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.loads import TimeLaw
-from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
-from dynamics.mechanism.line_of_action import line_of_action
+from dynamics.mechanism.line_of_action import common_face_width, line_of_action, misalignment_gradient
 
 
 def helical(scene, angle):

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from geared_scenes import spring_table, square_wave_table
 
-from dynamics.meshes.decimated_tables import decimated, decimated_grids
-from dynamics.meshes.grid_tables import pack_grids
+from dynamics.meshes.grid_tables import GridTables
 from dynamics.meshes.mesh_table import FIELDS
 from dynamics.meshes.packed_tables import pack_tables
 from dynamics.meshes.table_lookup import table_force
@@ -30,7 +29,7 @@ def uneven(positions=31):
 @pytest.mark.parametrize("every", [2, 4])
 def test_decimating_packed_tables_is_packing_decimated_ones(every):
     tables = [uneven(), square_wave_table(64), spring_table(4e8, 1e-6, positions=16)]
-    found, expected = decimated(pack_tables(tables), every), pack_tables([each(t, every) for t in tables])
+    found, expected = pack_tables(tables).decimated(every), pack_tables([each(t, every) for t in tables])
     for name in found._fields:
         if name not in ("row", "energy"):
             np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=1e-12)
@@ -46,7 +45,7 @@ def test_decimating_packed_tables_is_packing_decimated_ones(every):
 
 def test_grids_keep_the_same_nodes():
     tables = [uneven(), square_wave_table(64)]
-    found, expected = decimated_grids(pack_grids(tables)), pack_grids([each(t, 2) for t in tables])
+    found, expected = GridTables.packed(tables).decimated(), GridTables.packed([each(t, 2) for t in tables])
     for name in ("shape", "first", "channels"):
         np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
     per_level = found.number.reshape(-1, int(found.channels[0]) * 2)[:, :4]  # levers have slopes of their own
@@ -55,4 +54,4 @@ def test_grids_keep_the_same_nodes():
 
 def test_a_table_of_few_nodes_stays_as_it_is():
     packed = pack_tables([spring_table(4e8, 1e-6, positions=4)])
-    np.testing.assert_array_equal(decimated(packed).row, packed.row)
+    np.testing.assert_array_equal(packed.decimated().row, packed.row)

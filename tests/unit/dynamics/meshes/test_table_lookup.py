@@ -11,8 +11,7 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
 from dynamics.meshes.packed_tables import pack_tables
-from dynamics.meshes.table_lookup import table_deflection, table_force
-from dynamics.meshes.technique import deflection_slope, table_energy
+from dynamics.meshes.table_lookup import deflection_slope, table_deflection, table_energy, table_force
 
 rng = np.random.default_rng(7)
 TABLE = square_wave_table()

@@ -11,6 +11,7 @@ from hulls import box
 from reduced_housings import PAIR, bare_housing
 from sounding_housings import part_of_scene, rigid_housing
 from sounding_scene import ON, SPEEDS, housing, oscillating, radiation, response, sound
+from surface_motions import normal_displacement
 
 from dynamics.acoustics import (
     Air,
@@ -113,7 +114,7 @@ def test_without_mass_to_speak_of_the_hull_follows_its_springs() -> None:
         driven, body, None, housing_radiation(body, EquivalentRadiatedPower(), driven.frequency)
     )
     velocity = 3.0 * 2.0 * np.pi * driven.frequency / stiffness
-    area = body.surface.normal_displacement()[1].sum()
+    area = normal_displacement(body.surface)[1].sum()
     np.testing.assert_allclose(found.power, AIR.impedance * area * velocity**2 / 6.0, rtol=0.03)
 
 

@@ -1,4 +1,4 @@
-"""The static reference where the bodies rest: tables read at the misalignment and center distance there."""
+"""An assembled system with decimated tables, a later start, or the static reference where it rests."""
 
 from __future__ import annotations
 
@@ -8,11 +8,49 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.forces.elements import SPATIAL_FLANK
-from dynamics.meshes.operating_point_table import table_at_operating_point
+from dynamics.kernels.by_address import by_address
 from dynamics.meshes.packed_tables import pack_tables
-from dynamics.meshes.technique import table_at
+from dynamics.meshes.technique import table_at, table_at_operating_point
+from dynamics.motion.motion import QUANTA_PER_TURN
 from dynamics.motion.observation import local_state
-from dynamics.types import FloatArray
+from dynamics.types import FloatArray, IntArray
+
+
+def with_decimated_tables(system: System, every: int = 2) -> System:
+    """Return `system` on each `every`-th position node of all tables that its flanks use."""
+    elements = system.arrays.elements
+    flank, spatial = elements.laws.flank, elements.laws.spatial_flank
+    laws = elements.laws._replace(
+        flank=flank._replace(table=flank.table.decimated(every)),
+        spatial_flank=spatial._replace(grid=spatial.grid.decimated(every)),
+    )
+    changed = by_address(elements._replace(laws=laws))
+    return replace(system, arrays=by_address(system.arrays._replace(elements=changed)))
+
+
+def starting_at(system: System, time: float, moved: IntArray) -> System:
+    """Return `system` as it is from `time` (s) on, with that time as 0.
+
+    `moved` (k,) counts the quanta of free trains that are in the reference by then.
+    """
+    arrays, reference = system.arrays, system.arrays.reference
+    pieces = np.diff(reference.speed.first)
+    turned = np.repeat(moved, pieces)
+    fraction = reference.fraction + (turned % QUANTA_PER_TURN) / QUANTA_PER_TURN
+    moved_on = reference._replace(
+        speed=reference.speed._replace(start=reference.speed.start - time),
+        whole=reference.whole + turned // QUANTA_PER_TURN,
+        fraction=fraction,
+    )
+    torque = arrays.load.torque
+    load = arrays.load._replace(torque=torque._replace(start=torque.start - time))
+    laws = arrays.elements.laws
+    elements = arrays.elements._replace(
+        laws=laws._replace(applied_force=laws.applied_force.starting_at(time))
+    )
+    return replace(
+        system, arrays=by_address(arrays._replace(reference=moved_on, load=load, elements=elements))
+    )
 
 
 def operating_points_at(system: System, displacement: FloatArray, time: float = 0.0) -> FloatArray:

@@ -1,4 +1,4 @@
-"""The angles that loads read: how fast they turn with the laws, and after how many turns loads repeat."""
+"""Phases behind the positions of the meshes: frames that couplings cross, angles of loads, cages."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from fractions import Fraction
 
 import numpy as np
 
-from dynamics.loads.applied_force import AppliedForce
+from dynamics.bearings import RollingBearing
+from dynamics.loads.applied_force import AppliedForce, Unbalance
 from dynamics.loads.load_course import Orders
-from dynamics.loads.unbalance import Unbalance
+from dynamics.mechanism.connections import frame_couplings
 from dynamics.mechanism.kinematics import Kinematics
+from dynamics.mechanism.mechanism import Mechanism
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
@@ -69,7 +71,7 @@ def _position(force: AppliedForce, shaft: str | None) -> float:
     return force.position if shaft == force.shaft else 0.0
 
 
-def load_phases(scene: Scene, kinematics: Kinematics) -> tuple[LoadPhase, ...]:
+def _load_phases(scene: Scene, kinematics: Kinematics) -> tuple[LoadPhase, ...]:
     """Return all phases that loads read, each once."""
     phases: list[LoadPhase | None] = []
     for force in scene.forces:
@@ -95,3 +97,68 @@ def load_orders(scene: Scene, kinematics: Kinematics) -> FloatArray:
 def _rates(phase: LoadPhase) -> FloatArray:
     """Return turns per turn of each law, without their senses, (k,)."""
     return np.abs([float(rate) for rate in phase.rate])
+
+
+# How frames that couplings cross turn against each other.
+
+
+def frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, ...], ...]:
+    """Return the revolutions of the second frame against the first per revolution of each law, for each."""
+    turns = []
+    for part in frame_couplings(scene):
+        first, second = (_frame_speed(scene, kinematics, end) for end in (part.first, part.second))
+        turns.append(tuple(b - a for a, b in zip(first, second, strict=True)))
+    return tuple(turns)
+
+
+def _frame_speed(scene: Scene, kinematics: Kinematics, shaft: int) -> tuple[Fraction, ...]:
+    frame = scene.frame_index(shaft)
+    return kinematics.ratio[frame] if frame is not None else (Fraction(0),) * len(kinematics.law_shaft)
+
+
+# How the cages of bearings turn in the kinematic motion.
+
+
+LARGEST_DENOMINATOR = 1_000_000
+"""A cage's ratio is irrational: as a fraction it is off by at most a turn in 10^12."""
+
+
+def cage_turns(
+    scene: Scene, kinematics: Kinematics, passing: frozenset[str]
+) -> tuple[tuple[Fraction, ...], ...]:
+    """Return the revolutions per revolution of each law of the cages of the bearings `passing`, as given.
+
+    In the frame in which the shaft is described. Nothing slips: a cage turns at (1 - gamma)/2 of the inner
+    ring's speed and (1 + gamma)/2 of the outer's.
+    """
+    return tuple(
+        _cage_turn(scene, kinematics, bearing)
+        for bearing in scene.rolling_bearings
+        if bearing.name in passing
+    )
+
+
+def _cage_turn(scene: Scene, kinematics: Kinematics, bearing: RollingBearing) -> tuple[Fraction, ...]:
+    inner = Fraction(bearing.row.cage_ratio).limit_denominator(LARGEST_DENOMINATOR)
+    shaft = scene.shaft_index(bearing.shaft)
+    frame = scene.frame_index(shaft)
+    still = (Fraction(0),) * len(kinematics.law_shaft)
+    held = still if frame is None else kinematics.ratio[frame]
+    # the outer ring is at rest, so in a frame it turns against that
+    return tuple(inner * own - around for own, around in zip(kinematics.ratio[shaft], held, strict=True))
+
+
+# All phases of a scene, in their order.
+
+
+def repeating_phases(scene: Scene, kinematics: Kinematics) -> tuple[LoadPhase, ...]:
+    """Return the phases of exact ratio, of frames and loads, in their order behind the last mesh."""
+    frames = tuple(LoadPhase(rate, 1, None) for rate in frame_turns(scene, kinematics))
+    return (*frames, *_load_phases(scene, kinematics))
+
+
+def phases(mechanism: Mechanism) -> tuple[LoadPhase, ...]:
+    """Return all phases: those of exact ratio, then cages whose elements pass."""
+    scene, kinematics = mechanism.scene, mechanism.kinematics
+    cages = cage_turns(scene, kinematics, mechanism.passing)
+    return (*repeating_phases(scene, kinematics), *(LoadPhase(rate, 1, None) for rate in cages))

@@ -1,0 +1,125 @@
+"""The list of force laws: the arrays that hold those of a kind, and the compiled functions of them.
+
+An element has p local coordinates y = G q + y0 in meters and gives p local forces f(y, y', x) in newtons,
+which act on the freedoms as -G^T f. To add a law: its file (what a scene holds, packed arrays, compiled
+functions), and here its number, its arrays and its row of `COMPILED`.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+from dynamics.bearings.ball_elements import BallElements, axial_seat, balls, balls_energy
+from dynamics.bearings.linear_bearing import LinearBearingLaws, linear_bearing, linear_bearing_energy
+from dynamics.bearings.roller_elements import RollerElements, rollers, rollers_energy
+from dynamics.bearings.rolling_contact import RollingContactLaws, rolling_contact, rolling_contact_energy
+from dynamics.bearings.spring_curve import SpringCurveLaws, spring_curve, spring_curve_energy
+from dynamics.forces.frames import (
+    FrameCouplingLaws,
+    RotatingFrameLaws,
+    frame_coupling,
+    frame_coupling_energy,
+    rotating_frame,
+    rotating_frame_energy,
+)
+from dynamics.kernels.routine import Routine
+from dynamics.loads.load_laws import (
+    ForceCourseLaws,
+    SpeedTorqueLaws,
+    UnbalanceLaws,
+    applied_force,
+    speed_torque,
+    unbalance,
+    unbalance_energy,
+)
+from dynamics.meshes.flank_force import FlankLaws, flank, flank_energy
+from dynamics.meshes.spatial_flank import SpatialFlankLaws, spatial_energy, spatial_flank
+
+
+class Law(IntEnum):
+    """Kinds of force laws by number, as compiled functions tell them apart."""
+
+    FLANK = 0  # p = 1: a flank in contact, from its table
+    SPEED_TORQUE = 1  # p = 1: a torque that depends on a shaft's speed
+    ROLLING_CONTACT = 2  # p = 2: a rolling bearing's radial force
+    SPRING_CURVE = 3  # p = 1: a bearing's force by displacement in one direction
+    SPATIAL_FLANK = 4  # p = 1 to 5: a flank that feels misalignment, center distance, friction
+    ROTATING_FRAME = 5  # p = 2 or 3: gyroscopic moments, Coriolis and centripetal terms
+    FRAME_COUPLING = 6  # p = 4 or 8: a coupling of shafts in frames that turn against each other
+    BALLS = 7  # p = 5: a bearing's row of balls
+    ROLLERS = 8  # p = 5: a bearing's row of rollers
+    APPLIED_FORCE = 9  # p = 1 to 4: a force on a shaft by time, speed or angle
+    UNBALANCE = 10  # p = 3: mass off a shaft's axis
+    LINEAR_BEARING = 11  # p = 1 to 5: a linear bearing in a housing that moves
+
+
+class ElementLaws(NamedTuple):
+    """The packed laws of all kinds, one field per kind: its name in small letters."""
+
+    flank: FlankLaws
+    speed_torque: SpeedTorqueLaws
+    rolling_contact: RollingContactLaws
+    spring_curve: SpringCurveLaws
+    spatial_flank: SpatialFlankLaws
+    rotating_frame: RotatingFrameLaws
+    frame_coupling: FrameCouplingLaws
+    balls: BallElements
+    rollers: RollerElements
+    applied_force: ForceCourseLaws
+    unbalance: UnbalanceLaws
+    linear_bearing: LinearBearingLaws
+
+
+class Compiled(NamedTuple):
+    """The compiled functions of a kind of law.
+
+    Their parameters say what they read: `laws`, `entry`, `local`, `row` the arrays of the kind, the place in
+    them, the state and the first row; `e` the element; `mesh` the mesh, or `turned` the frame or cage, whose
+    position it reads.
+
+    Attributes
+    ----------
+    force : Routine or compiled function
+        Writes forces and derivatives.
+    energy : Routine, compiled function or None
+        Returns the energy stored, J, then any derivatives, that in the position first, J per base pitch or
+        revolution. None: no energy.
+    inside : tuple of Routine
+        What both call.
+    """
+
+    force: Any
+    energy: Any = None
+    inside: tuple[Routine, ...] = ()
+
+    @property
+    def routines(self) -> tuple[Routine, ...]:
+        """All that is compiled apart, when a scene first has the law: flanks are part of every loop."""
+        return tuple(each for each in (*self.inside, self.force, self.energy) if isinstance(each, Routine))
+
+
+COMPILED = {
+    Law.FLANK: Compiled(flank, flank_energy),
+    Law.SPEED_TORQUE: Compiled(speed_torque),
+    Law.ROLLING_CONTACT: Compiled(rolling_contact, rolling_contact_energy),
+    Law.SPRING_CURVE: Compiled(spring_curve, spring_curve_energy),
+    Law.SPATIAL_FLANK: Compiled(spatial_flank, spatial_energy),
+    Law.ROTATING_FRAME: Compiled(rotating_frame, rotating_frame_energy),
+    Law.FRAME_COUPLING: Compiled(frame_coupling, frame_coupling_energy),
+    Law.BALLS: Compiled(balls, balls_energy, (axial_seat,)),
+    Law.ROLLERS: Compiled(rollers, rollers_energy),
+    Law.APPLIED_FORCE: Compiled(applied_force),
+    Law.UNBALANCE: Compiled(unbalance, unbalance_energy),
+    Law.LINEAR_BEARING: Compiled(linear_bearing, linear_bearing_energy),
+}
+
+STATED_OF_BEARINGS: dict[Any, Law] = {
+    RollingContactLaws: Law.ROLLING_CONTACT,
+    SpringCurveLaws: Law.SPRING_CURVE,
+    BallElements: Law.BALLS,
+    RollerElements: Law.ROLLERS,
+}
+"""Kinds of a `BearingLaw`, by their arrays."""
+OF_BEARINGS = (*STATED_OF_BEARINGS.values(), Law.LINEAR_BEARING)
+"""Laws of bearings; each is the gradient of an energy without hollows."""

@@ -1,0 +1,241 @@
+"""The compiled laws of loads: torques by speed, forces by time, speed or angle, unbalances."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dynamics.kernels.cubics import Cubics, value_and_slope
+from dynamics.kernels.local_state import LocalState
+from dynamics.kernels.routine import routine
+from dynamics.loads.applied_force import SpeedTorque
+from dynamics.loads.load_course import BySpeed, Course, Orders
+from dynamics.loads.time_law import TimeLaw
+from dynamics.types import BoolArray, FloatArray, IntArray
+
+# Torques that depend on speed.
+
+
+class SpeedTorqueLaws(NamedTuple):
+    """Curves.
+
+    Attributes
+    ----------
+    torque : Cubics
+        N m by rad/s.
+    radius : (l,) array
+        At which torques count as forces and angles as displacements, m.
+    """
+
+    torque: Cubics
+    radius: FloatArray
+
+    @classmethod
+    def packed(cls, parts: Sequence[SpeedTorque], radius: float) -> SpeedTorqueLaws:
+        """Lay out the curves of `parts`."""
+        curves = [(part.curve.start, np.asarray(part.curve.coefficient)) for part in parts]
+        return cls(Cubics.packed(curves), np.full(len(parts), radius))
+
+
+@routine
+def speed_torque(laws: SpeedTorqueLaws, entry: int, local: LocalState, row: int) -> None:
+    """Write force and derivative at the speed that the rate of `row` and the kinematic motion make."""
+    radius = laws.radius[entry]
+    speed = (local.rate[row] + local.drift[row]) / radius
+    torque, slope = value_and_slope(laws.torque, entry, speed)
+    local.force[row], local.viscous[row, 0] = torque / radius, slope / (radius * radius)
+
+
+# Applied forces: a factor by time, speed or angle, turned with a shaft.
+
+
+BY_TIME, BY_SPEED, BY_ANGLE = 0, 1, 2
+
+
+class ForceCourseLaws(NamedTuple):
+    """l applied forces in y: along, and where they turn across, then along the axis if they have such a part.
+
+    With the factor s and the angle a of the frame they act by size s along the first row, or by size s cos a,
+    size s sin a and size s along the three. A last row, of the shaft whose speed counts, carries no force.
+
+    Attributes
+    ----------
+    kind : (l,) int array
+        What the factor depends on.
+    size, lever, sense : (l,) arrays
+        N; last row over rotation, m; +1 or -1: the sense in which the speed counts.
+    rows : (l,) int array
+        1, 2 or 3 rows that carry force.
+    phase, frame : (l,) int arrays
+        Phases among the positions, in turns: of the factor, of the frame; -1: none.
+    factor : Cubics
+        Factors by time (s) and by speed (rad/s).
+    first_order, order, amplitude, angle : (l + 1,) int, (O,), (O,), (O,) arrays
+        Of factors by angle; rad.
+    constant : (l,) array
+        Constant part of factors by angle.
+    mean : (l, 2) array
+        Mean of s cos a and s sin a over a turn, of factors by angle.
+    steady : (1,) bool array
+        Whether means act in place of what changes with an angle.
+    """
+
+    kind: IntArray
+    size: FloatArray
+    lever: FloatArray
+    sense: FloatArray
+    rows: IntArray
+    phase: IntArray
+    frame: IntArray
+    factor: Cubics
+    first_order: IntArray
+    order: FloatArray
+    amplitude: FloatArray
+    angle: FloatArray
+    constant: FloatArray
+    mean: FloatArray
+    steady: BoolArray
+
+    @classmethod
+    def packed(cls, courses: Sequence[Course], **others: Any) -> ForceCourseLaws:
+        """Lay out courses; `others` are the fields that do not follow from them."""
+        angular = [course if isinstance(course, Orders) else Orders("", (), (), ()) for course in courses]
+        kinds = {TimeLaw: BY_TIME, BySpeed: BY_SPEED, Orders: BY_ANGLE}
+        return cls(
+            kind=np.array([kinds[type(course)] for course in courses], dtype=np.int64),
+            factor=Cubics.packed([_pieces(course) for course in courses]),
+            first_order=np.cumsum([0, *(len(part.order) for part in angular)], dtype=np.int64),
+            order=np.array([float(order) for part in angular for order in part.multiple], dtype=float),
+            amplitude=np.array([size for part in angular for size in part.amplitude], dtype=float),
+            angle=np.array([phase for part in angular for phase in part.phase], dtype=float),
+            constant=np.array([part.mean for part in angular], dtype=float),
+            steady=np.zeros(1, dtype=np.bool_),
+            **others,
+        )
+
+    def starting_at(self, time: float) -> ForceCourseLaws:
+        """Return the laws with `time` (s) as 0."""
+        by_time = np.repeat(self.kind == BY_TIME, np.diff(self.factor.first))
+        return self._replace(factor=self.factor._replace(start=self.factor.start - time * by_time))
+
+    def held_at(self, time: float) -> ForceCourseLaws:
+        """Return the laws with factors by time for ever as they are at `time`, s."""
+        factor, coefficient = self.factor, self.factor.coefficient.copy()
+        for entry in np.flatnonzero(self.kind == BY_TIME):
+            first, end = factor.first[entry], factor.first[entry + 1]
+            piece = first + int(np.searchsorted(factor.start[first + 1 : end], time, side="right"))
+            elapsed, cubic = time - factor.start[piece], factor.coefficient[piece]
+            value = cubic[0] + elapsed * (cubic[1] + elapsed * (cubic[2] + elapsed * cubic[3]))
+            coefficient[first:end] = [value, 0.0, 0.0, 0.0]
+        return self._replace(factor=factor._replace(coefficient=coefficient))
+
+
+def _pieces(course: Course) -> tuple[FloatArray, FloatArray]:
+    """Start and coefficients of the pieces of a factor by time or by speed."""
+    if isinstance(course, TimeLaw):
+        return course.polynomials()
+    if isinstance(course, BySpeed):
+        return course.curve.start, np.asarray(course.curve.coefficient, dtype=float)
+    return np.empty(0), np.empty((0, 4))
+
+
+@routine
+def applied_force(laws: ForceCourseLaws, entry: int, local: LocalState, row: int) -> None:
+    """Write forces, which resist as all do, and how they change with the speed."""
+    rows, size, steady = laws.rows[entry], laws.size[entry], laws.steady[0]
+    kind, factor, slope = laws.kind[entry], 0.0, 0.0
+    if kind == BY_ANGLE:
+        factor = laws.constant[entry]
+        if not steady:
+            turned = 2.0 * math.pi * local.position[laws.phase[entry]]
+            for k in range(laws.first_order[entry], laws.first_order[entry + 1]):
+                factor += laws.amplitude[k] * math.cos(laws.order[k] * turned + laws.angle[k])
+    else:
+        at = local.clock[0]
+        if kind == BY_SPEED:
+            lever = laws.sense[entry] * laws.lever[entry]
+            at = (local.rate[row + rows] + local.drift[row + rows]) / lever
+        factor, slope = value_and_slope(laws.factor, entry, at)
+    cosine, sine = 1.0, 0.0
+    if laws.frame[entry] >= 0:
+        angle = 2.0 * math.pi * local.position[laws.frame[entry]]
+        cosine, sine = math.cos(angle), math.sin(angle)
+    for k in range(rows):
+        share = 1.0 if k == 2 else (sine if k == 1 else cosine)
+        value = factor * share
+        if steady and k < 2 and rows > 1:
+            value, share = laws.mean[entry, k], 0.0
+        local.force[row + k] = -size * value
+        if kind == BY_SPEED:
+            lever = laws.sense[entry] * laws.lever[entry]
+            local.viscous[row + k, rows] = -size * slope * share / lever
+
+
+# The inertia and the weight of a mass off the axis.
+
+
+class UnbalanceLaws(NamedTuple):
+    """l unbalances in y = (x, y, lever times the rotation) of the shaft's section.
+
+    With the angle a of the heavy spot from +x, kinetic and potential energy have the terms
+
+        T = U a' (-x' sin a + y' cos a),    V = -U (g_x cos a + g_y sin a),
+
+    from which by Lagrange, with all rotation of the shaft in a, follow the forces
+
+        F_x = U (a'^2 cos a + a'' sin a),   F_y = U (a'^2 sin a - a'' cos a),
+        M = U (x'' sin a - y'' cos a + g_y cos a - g_x sin a).
+
+    Attributes
+    ----------
+    amount, angle, lever : (l,) arrays
+        U, kg m; a at the phase 0, rad; row over rotation, m.
+    phase : (l,) int array
+        The phase of the shaft's rotation among the positions.
+    gravity : (2,) array
+        g, m/s^2.
+    steady : (1,) bool array
+        Whether only the mean over a turn acts, which is none.
+    """
+
+    amount: FloatArray
+    angle: FloatArray
+    lever: FloatArray
+    phase: IntArray
+    gravity: FloatArray
+    steady: BoolArray
+
+
+@routine
+def unbalance(laws: UnbalanceLaws, entry: int, local: LocalState, row: int) -> None:
+    """Write forces and their derivatives in rates and accelerations; the forces resist, as all do.
+
+    How they change with the angle is left to the phase.
+    """
+    rate, acceleration, lever = local.rate, local.acceleration, laws.lever[entry]
+    amount = 0.0 if laws.steady[0] else laws.amount[entry]
+    angle = laws.angle[entry] + 2.0 * math.pi * local.position[laws.phase[entry]]
+    c, s = amount * math.cos(angle), amount * math.sin(angle)
+    spin = (rate[row + 2] + local.drift[row + 2]) / lever
+    faster = acceleration[row + 2] / lever
+    weight = laws.gravity[1] * c - laws.gravity[0] * s
+    local.force[row] = -spin * spin * c - faster * s
+    local.force[row + 1] = -spin * spin * s + faster * c
+    local.force[row + 2] = -(acceleration[row] * s - acceleration[row + 1] * c + weight) / lever
+    local.viscous[row, 2], local.viscous[row + 1, 2] = -2.0 * spin * c / lever, -2.0 * spin * s / lever
+    local.inertial[row, 2], local.inertial[row + 1, 2] = -s / lever, c / lever
+    local.inertial[row + 2, 0], local.inertial[row + 2, 1] = -s / lever, c / lever
+
+
+@routine
+def unbalance_energy(laws: UnbalanceLaws, entry: int, local: LocalState, row: int) -> float:
+    """Return T + V, J: T is linear in the motion across the axis."""
+    amount = 0.0 if laws.steady[0] else laws.amount[entry]
+    angle = laws.angle[entry] + 2.0 * math.pi * local.position[laws.phase[entry]]
+    c, s = amount * math.cos(angle), amount * math.sin(angle)
+    spin = (local.rate[row + 2] + local.drift[row + 2]) / laws.lever[entry]
+    kinetic = spin * (c * local.rate[row + 1] - s * local.rate[row])
+    return float(kinetic - laws.gravity[0] * c - laws.gravity[1] * s)
