@@ -9,18 +9,19 @@ import numpy as np
 
 from benchmarks.assessed import HARMONICS
 from benchmarks.pair_cases import PairCase
-from fe_contact.analysis import check_request
 from fe_contact.analysis.pairs.pair_contact import PairContact, operating_points, pair_contact
 from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
-from fe_contact.planning.discretization import (
+from fe_contact.planning.plan import (
     FINER_SLICES,
     Discretization,
     FaceDiscretization,
+    Plan,
     PlaneDiscretization,
+    make_plan,
 )
-from fe_contact.planning.plan import Plan, make_plan
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray
 

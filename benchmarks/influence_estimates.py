@@ -25,8 +25,8 @@ from benchmarks.influence_cases import influence_cases
 from benchmarks.marked_section import replace_section
 from benchmarks.pair_cases import PairCase
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis import check_request
 from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies.ablation import EffectAblation, ablate
 from fe_contact.effects.face_load_distribution import FaceLoadDistribution
 from fe_contact.effects.finite_width import FiniteWidth

@@ -11,24 +11,14 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fe_contact.allowed_error import AllowedError
-    from fe_contact.analysis import (
-        Ablation,
-        ContactPattern,
-        DeformedPair,
-        Frontier,
-        LoadDistribution,
-        RootStress,
-        Sensitivity,
-        ablate,
-        analyze,
-        contact_pattern,
-        deformed_pairs,
-        flank_results,
-        frontier,
-        root_stress,
-        ste_database,
-        study_sensitivity,
-    )
+    from fe_contact.analysis.analyze import analyze, ste_database
+    from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pairs
+    from fe_contact.analysis.flanks.flank_file import ContactPattern, contact_pattern, flank_results
+    from fe_contact.analysis.flanks.load_distribution import LoadDistribution
+    from fe_contact.analysis.flanks.root_stress import RootStress, root_stress
+    from fe_contact.analysis.studies.ablation import Ablation, ablate
+    from fe_contact.analysis.studies.frontier import Frontier, frontier
+    from fe_contact.analysis.studies.sensitivity import Sensitivity, study_sensitivity
     from fe_contact.geometry import (
         BoreSeat,
         FlankGrid,
@@ -42,19 +32,14 @@ if TYPE_CHECKING:
         Shaft,
     )
     from fe_contact.material import STEEL, Material
-    from fe_contact.microgeometry import (
-        DesignVariable,
-        Limits,
-        Optimization,
-        OptimizationRequest,
-        Sampling,
-        Scatter,
-        Search,
-        Tolerances,
-        ToleranceStudy,
-        optimize,
-        scatter,
-    )
+    from fe_contact.microgeometry.objective import Limits
+    from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest
+    from fe_contact.microgeometry.optimize import optimize
+    from fe_contact.microgeometry.scatter import Scatter
+    from fe_contact.microgeometry.search import Search
+    from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, scatter
+    from fe_contact.microgeometry.tolerances import Tolerances
+    from fe_contact.microgeometry.variables import DesignVariable
     from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
     from fe_contact.ste import SteDatabase
     from fe_contact.types import Estimate, Status
@@ -109,55 +94,34 @@ __all__ = [
     "study_sensitivity",
 ]
 
-_HOME = {
-    "ablate": "fe_contact.analysis",
-    "Ablation": "fe_contact.analysis",
-    "analyze": "fe_contact.analysis",
-    "contact_pattern": "fe_contact.analysis",
-    "deformed_pairs": "fe_contact.analysis",
-    "flank_results": "fe_contact.analysis",
-    "frontier": "fe_contact.analysis",
-    "Frontier": "fe_contact.analysis",
-    "root_stress": "fe_contact.analysis",
-    "study_sensitivity": "fe_contact.analysis",
-    "ste_database": "fe_contact.analysis",
-    "ContactPattern": "fe_contact.analysis",
-    "DeformedPair": "fe_contact.analysis",
-    "LoadDistribution": "fe_contact.analysis",
-    "RootStress": "fe_contact.analysis",
-    "Sensitivity": "fe_contact.analysis",
-    "BoreSeat": "fe_contact.geometry",
-    "FlankGrid": "fe_contact.geometry",
-    "FlankModification": "fe_contact.geometry",
-    "Gear": "fe_contact.geometry",
-    "GearBlank": "fe_contact.geometry",
-    "GearPair": "fe_contact.geometry",
-    "InternalGearPair": "fe_contact.geometry",
-    "PitchDeviation": "fe_contact.geometry",
-    "RingGear": "fe_contact.geometry",
-    "Shaft": "fe_contact.geometry",
-    "STEEL": "fe_contact.material",
-    "Material": "fe_contact.material",
-    "DesignVariable": "fe_contact.microgeometry",
-    "Limits": "fe_contact.microgeometry",
-    "Optimization": "fe_contact.microgeometry",
-    "OptimizationRequest": "fe_contact.microgeometry",
-    "optimize": "fe_contact.microgeometry",
-    "Sampling": "fe_contact.microgeometry",
-    "Scatter": "fe_contact.microgeometry",
-    "scatter": "fe_contact.microgeometry",
-    "Search": "fe_contact.microgeometry",
-    "Tolerances": "fe_contact.microgeometry",
-    "ToleranceStudy": "fe_contact.microgeometry",
-    "AllowedError": "fe_contact.allowed_error",
-    "AnalysisOptions": "fe_contact.options",
-    "OperatingPoint": "fe_contact.options",
-    "Run": "fe_contact.options",
-    "TableAxes": "fe_contact.options",
-    "SteDatabase": "fe_contact.ste",
-    "Estimate": "fe_contact.types",
-    "Status": "fe_contact.types",
+_NAMES = {
+    "fe_contact.allowed_error": "AllowedError",
+    "fe_contact.analysis.analyze": "analyze ste_database",
+    "fe_contact.analysis.flanks.deformed_pair": "DeformedPair deformed_pairs",
+    "fe_contact.analysis.flanks.flank_file": "ContactPattern contact_pattern flank_results",
+    "fe_contact.analysis.flanks.load_distribution": "LoadDistribution",
+    "fe_contact.analysis.flanks.root_stress": "RootStress root_stress",
+    "fe_contact.analysis.studies.ablation": "Ablation ablate",
+    "fe_contact.analysis.studies.frontier": "Frontier frontier",
+    "fe_contact.analysis.studies.sensitivity": "Sensitivity study_sensitivity",
+    "fe_contact.geometry": (
+        "BoreSeat FlankGrid FlankModification Gear GearBlank GearPair InternalGearPair PitchDeviation "
+        "RingGear Shaft"
+    ),
+    "fe_contact.material": "STEEL Material",
+    "fe_contact.microgeometry.objective": "Limits",
+    "fe_contact.microgeometry.optimization": "Optimization OptimizationRequest",
+    "fe_contact.microgeometry.optimize": "optimize",
+    "fe_contact.microgeometry.scatter": "Scatter",
+    "fe_contact.microgeometry.search": "Search",
+    "fe_contact.microgeometry.tolerance_study": "Sampling ToleranceStudy scatter",
+    "fe_contact.microgeometry.tolerances": "Tolerances",
+    "fe_contact.microgeometry.variables": "DesignVariable",
+    "fe_contact.options": "AnalysisOptions OperatingPoint Run TableAxes",
+    "fe_contact.ste": "SteDatabase",
+    "fe_contact.types": "Estimate Status",
 }
+_HOME = {name: home for home, names in _NAMES.items() for name in names.split()}
 
 
 def __getattr__(name: str) -> object:

@@ -75,7 +75,6 @@ class StageClock:
         }
 
     def _book(self, name: str, begun: tuple[float, float]) -> None:
-        """Add a stage that ends now."""
         self._last = self._reading()
         self.stages.append(_Stage(name, self._last[0] - begun[0], self._last[1] - begun[1]))
 

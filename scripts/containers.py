@@ -10,7 +10,7 @@ from pathlib import Path
 import httpx2
 import numpy as np
 
-from fe_contact.analysis import ste_database
+from fe_contact.analysis.analyze import ste_database
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.convert.case import analysis_options, case_json, check_case, table_axes
 from lineofaction.gearbox.schemas import Case, read_model

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bounds import engineering
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
-from fe_contact.analysis.request.model_choice import Decided, decide, expected_curves, model_name
+from fe_contact.analysis.request.model_choice import Decided, decide, expected_curves
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import positive
@@ -73,7 +73,7 @@ class RunPlan:
     def to_json(self) -> Json:
         """Return plain JSON."""
         return {
-            "choice": {"model": model_name(self.checked)} | self.choice.to_json(),
+            "choice": {"model": self.checked.model_name} | self.choice.to_json(),
             "prediction": self.chosen.cost.to_json(),
             "error": self.chosen.error.to_json(),
             "levels": [entry.to_json() for entry in self.levels],
@@ -133,20 +133,18 @@ def _decided(decided: Decided, curves: ExpectedCurves | None, cache: Path | None
     request, option = decided.checked.request, decided.mesh.option
     error = option.error if option.error.mean else expected_error(request.pair, decided.plan, curves)
     cost = decided.predicted(cache)
-    return PlannedLevel(model_name(decided.checked), option.level, option.slices, cost, error)
+    return PlannedLevel(decided.checked.model_name, option.level, option.slices, cost, error)
 
 
 def _planned(checked: Checked, level: str, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
-    """Predict another mesh level of the request's model, in the usual slices."""
     request = checked.request
     plan = make_plan(request.pair, request.load, replace(request.options, level=None), checked.model, level)
     cost = predict_run(request.pair, plan, checked.model, request.alignments, cache)
     error = expected_error(request.pair, plan, curves)
-    return PlannedLevel(model_name(checked), level, plan.discretization.slices, cost, error)
+    return PlannedLevel(checked.model_name, level, plan.discretization.slices, cost, error)
 
 
 def _conflict(decided: Decided, time_budget: float, cache: Path | None) -> str:
-    """Say why what is requested does not fit into the time; empty if it does."""
     within = f"within {time_budget:.3g} CPU s"
     tolerance = decided.checked.request.options.tolerance
     goal = f"level {decided.mesh.level}" if tolerance is None else tolerance.words

@@ -13,17 +13,18 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from fe_contact.analysis.pairs.contact_lines import (
+    Solved,
+    deflected_operating_points,
+    solve_operating_points,
+)
 from fe_contact.analysis.pairs.pair_contact import (
     OperatingPoints,
     PairContact,
     operating_points,
     pair_contact,
 )
-from fe_contact.analysis.pairs.solved_operating_points import (
-    Solved,
-    deflected_operating_points,
-    solve_operating_points,
-)
+from fe_contact.analysis.pairs.solved_run import SolvedRun
 from fe_contact.analysis.pairs.tabulate import pair_facts, table_fields, table_support
 from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.request.request import Checked, Request
@@ -32,8 +33,7 @@ from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run
 from fe_contact.planning.cost_model import Prediction, expected_tries, predict_run
-from fe_contact.planning.discretization import FaceDiscretization
-from fe_contact.planning.plan import MOST_ROWS, NodeRule, Plan
+from fe_contact.planning.plan import MOST_ROWS, FaceDiscretization, NodeRule, Plan
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.interpolation import Axis, interpolate
@@ -214,7 +214,7 @@ def _curves(points: OperatingPoints, load: FloatArray, position: FloatArray, pit
 
 
 @dataclass(frozen=True)
-class SolvedTable:
+class SolvedTable(SolvedRun):
     """One run up to its table.
 
     Attributes
@@ -223,10 +223,9 @@ class SolvedTable:
         Model and discretization.
     prediction : Prediction
         What it was expected to cost.
-    places : OperatingPoints
     nodes : PositionNodes
-    solved, support : list of (ContactProblem, ContactSolution)
-        Of every place, at the requested and at the support loads.
+    support : list of (ContactProblem, ContactSolution)
+        Of every place at the support loads.
     table : SteDatabase
         Its errors not yet estimated.
     condition : ndarray or None
@@ -235,22 +234,10 @@ class SolvedTable:
 
     decided: Decided
     prediction: Prediction
-    places: OperatingPoints
     nodes: PositionNodes
-    solved: Solved
     support: Solved
     table: SteDatabase
     condition: FloatArray | None = None
-
-    @property
-    def checked(self) -> Checked:
-        """The request with the model that was chosen."""
-        return self.decided.checked
-
-    @property
-    def plan(self) -> Plan:
-        """Discretization."""
-        return self.decided.plan
 
 
 def solve_table(
@@ -292,7 +279,7 @@ def solve_table(
         )
         table = assembled_table(request, points, nodes, solved, support)
         run.progress("contact", 1.0)
-    return SolvedTable(decided, prediction, points, nodes, solved, support, table, condition)
+    return SolvedTable(checked, plan, points, solved, decided, prediction, nodes, support, table, condition)
 
 
 def condensed_bodies(
@@ -330,7 +317,6 @@ def _condensed(
 
 
 def _same_bodies(own: Plan, other: Plan) -> bool:
-    """Whether two plans of one pair have the same finite elements."""
     first, second = ((plan.discretization, plan.parts) for plan in (own, other))
     return first == second
 

@@ -65,7 +65,6 @@ def _least_tip_gap(pair: ParallelAxes) -> float:
 
 
 def _what_is_missing(pair: ParallelAxes) -> str:
-    """Return what keeps the tip edges apart, in words."""
     sharp = all(gear.tip_form_radius == gear.tip_radius for gear in (pair.pinion, pair.wheel))
     return "tip relief" if sharp else "relief, rounding or chamfer of the tips"
 

@@ -137,3 +137,18 @@ class Effect:
 def named(registry: Sequence[Effect], brings: str) -> str:
     """Return the name of the effect that brings something; empty where there is none."""
     return next((effect.name for effect in registry if effect.brings == brings), "")
+
+
+# Everything in a scene that acts across the face, so that a plane cannot hold it.
+
+
+def across_face(scene: ContactScene) -> list[str]:
+    """List what in the scene acts across the face."""
+    pair = scene.pair
+    reasons = []
+    if pair.pinion.helix_angle != 0.0:
+        reasons.append(f"helix angle {np.degrees(pair.pinion.helix_angle):.4g} deg")
+    reasons += [reason for effect in scene.registry if (reason := effect.across_face(scene))]
+    if pair.pinion.face_width != pair.wheel.face_width or pair.axial_offset != 0.0:
+        reasons.append("unequal or offset faces")
+    return reasons

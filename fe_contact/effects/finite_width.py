@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from fe_contact.contact.model import ContactModel
-from fe_contact.effects.across_face import across_face
-from fe_contact.effects.effect import ContactScene, Effect, Verdict
+from fe_contact.effects.effect import ContactScene, Effect, Verdict, across_face
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,6 @@ _FACE = Direction.FACE
 
 @dataclass(frozen=True, kw_only=True)
 class _OneSidedRelief(FaceRelief):
-    """Relief to one end of the face."""
-
     _side: ClassVar[int]
 
     def _outwards(self, face_position: FloatArray) -> FloatArray:
@@ -30,8 +28,6 @@ class _OneSidedRelief(FaceRelief):
 
 @dataclass(frozen=True, kw_only=True)
 class _HelixCrowning(Polynomial):
-    """Crowning over the face."""
-
     helix_crowning: float = amount(_FACE, "Lead crowning at both ends of the face", 5e-6)
     powers: ClassVar[tuple[int, int]] = (0, 2)
 
@@ -66,8 +62,6 @@ class _HelixCrowningNonDatumFace(_OneSidedRelief):
 
 @dataclass(frozen=True, kw_only=True)
 class _HelixSlope(Polynomial):
-    """Slope over the face."""
-
     helix_slope: float = slope(
         _FACE,
         "Helix slope over the face width; > 0 removes half at the end of positive z, adds half at the other",
@@ -94,8 +88,6 @@ class _EndRelief(FaceRelief):
 
 @dataclass(frozen=True, kw_only=True)
 class _EndReliefDatumFace(_OneSidedRelief):
-    """End relief at the datum face alone."""
-
     _side: ClassVar[int] = -1
 
     end_relief_datum_face: float = amount(
@@ -111,8 +103,6 @@ class _EndReliefDatumFace(_OneSidedRelief):
 
 @dataclass(frozen=True, kw_only=True)
 class _EndReliefNonDatumFace(_OneSidedRelief):
-    """End relief at the non-datum face alone."""
-
     _side: ClassVar[int] = 1
 
     end_relief_non_datum_face: float = amount(

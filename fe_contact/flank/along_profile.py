@@ -21,8 +21,6 @@ _PROFILE = Direction.PROFILE
 
 @dataclass(frozen=True, kw_only=True)
 class _ProfileCrowning(Polynomial):
-    """Crowning over the roll length."""
-
     profile_crowning: float = amount(_PROFILE, "Profile crowning at both ends of the profile", 5e-6)
     powers: ClassVar[tuple[int, int]] = (2, 0)
 
@@ -63,8 +61,6 @@ class _ProfileCrowningRoot(ProfileRelief):
 
 @dataclass(frozen=True, kw_only=True)
 class _ProfileSlope(Polynomial):
-    """Slope over the roll length."""
-
     profile_slope: float = slope(
         _PROFILE,
         "Profile slope, linear over the roll length; > 0 removes half at the tip, adds half at the root",
@@ -76,8 +72,6 @@ class _ProfileSlope(Polynomial):
 
 @dataclass(frozen=True, kw_only=True)
 class _TipRelief(ProfileRelief):
-    """Relief from a radius to the tip circle."""
-
     _at_tip: ClassVar[bool] = True
 
     tip_relief: float = amount(_PROFILE, "Tip relief at the tip diameter", 20e-6)
@@ -87,8 +81,6 @@ class _TipRelief(ProfileRelief):
 
 @dataclass(frozen=True, kw_only=True)
 class _RootRelief(ProfileRelief):
-    """Relief from a radius to the form circle."""
-
     _at_tip: ClassVar[bool] = False
 
     root_relief: float = amount(_PROFILE, "Root relief at the start of the involute", 10e-6)

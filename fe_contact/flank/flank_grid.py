@@ -99,7 +99,6 @@ def _axis(name: str, values: Sequence[float]) -> tuple[float, ...]:
 
 
 def _row(index: int, row: Sequence[float], length: int) -> tuple[float, ...]:
-    """Check a row of the grid."""
     if len(row) != length:
         raise InputError(f"removed[{index}]", f"{len(row)} values", f"{length} values, one per face position")
     advice = SiNote("In m: 5 um is 5e-6.")

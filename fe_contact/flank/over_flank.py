@@ -74,8 +74,6 @@ class _CornerRelief(ProfileRelief):
 
 @dataclass(frozen=True, kw_only=True)
 class _TriangularTipRelief(_CornerRelief):
-    """Relief of the corner at the tip."""
-
     _at_tip: ClassVar[bool] = True
 
     triangular_tip_relief: float = amount(
@@ -95,8 +93,6 @@ class _TriangularTipRelief(_CornerRelief):
 
 @dataclass(frozen=True, kw_only=True)
 class _TriangularRootRelief(_CornerRelief):
-    """Relief of the corner at the form circle."""
-
     _at_tip: ClassVar[bool] = False
 
     triangular_root_relief: float = amount(
@@ -125,8 +121,6 @@ _SURFACE = Declared(
 
 @dataclass(frozen=True, kw_only=True)
 class _FreeForm(FlankPart):
-    """A free-form flank, if there is one."""
-
     flank_grid: FlankGrid | None = declared(None, _SURFACE)
 
     @cached_property

@@ -100,7 +100,6 @@ def _on_axis(axis: FloatArray, misalignment: FloatArray) -> FloatArray:
 
 
 def _misalignments(given: Misalignments, loads: int) -> FloatArray:
-    """Check misalignments: one, or one for each load."""
     values = np.atleast_1d(np.asarray(given, dtype=object)).tolist()
     if len(values) not in (1, loads):
         raise InputError("misalignment", values, f"one number, or {loads}, one for each torque")

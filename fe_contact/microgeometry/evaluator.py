@@ -108,7 +108,9 @@ class Evaluator:
 
     def evaluate(self, values: Mapping[str, float]) -> Evaluation:
         """Solve the contact of one design, ``gear.quantity`` to m, at every node and load."""
-        return self.evaluation(figures(problem, solution) for _, problem, solution in self.solved(values))
+        return self.evaluation(
+            LoadFigures.of(problem, solution) for _, problem, solution in self.solved(values)
+        )
 
     def solved(
         self, values: Mapping[str, float]
@@ -186,7 +188,6 @@ def least_deviation(pair: ParallelAxes, name: str) -> float:
 
 
 def _in_all_pitches(problem: ContactProblem, model: ContactModel) -> ContactProblem:
-    """Return the problem of the whole period where teeth differ."""
     if model.period == 1:
         return problem
     rows = np.repeat(np.arange(model.period), problem.candidates.position.size)
@@ -214,14 +215,14 @@ class LoadFigures:
     face_load: FloatArray
     edge_load_share: FloatArray
 
-
-def figures(problem: ContactProblem, solution: ContactSolution) -> LoadFigures:
-    """Read the figures off a solution."""
-    ste = np.where(solution.status == Status.CONVERGED, solution.deflection, np.nan)
-    face_load = over_face(problem, solution.force)
-    at_edges = on_edges(problem, solution.force) / carried(problem, solution.force).sum(axis=2)
-    pressure = contact_pressure(problem, solution.force)
-    return LoadFigures(ste, pressure, face_load / face_load.mean(axis=1, keepdims=True), at_edges)
+    @classmethod
+    def of(cls, problem: ContactProblem, solution: ContactSolution) -> LoadFigures:
+        """Read the figures off a solution."""
+        ste = np.where(solution.status == Status.CONVERGED, solution.deflection, np.nan)
+        face_load = over_face(problem, solution.force)
+        at_edges = on_edges(problem, solution.force) / carried(problem, solution.force).sum(axis=2)
+        pressure = contact_pressure(problem, solution.force)
+        return cls(ste, pressure, face_load / face_load.mean(axis=1, keepdims=True), at_edges)
 
 
 def over_face(problem: ContactProblem, force: FloatArray) -> FloatArray:

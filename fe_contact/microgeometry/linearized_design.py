@@ -12,8 +12,8 @@ import numpy as np
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.request.request import Checked
 from fe_contact.contact import CarryingStrips, ContactProblem, ContactSolution, adjoint, force_changes
+from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.effects.misalignment import MisalignmentGap
-from fe_contact.effects.modification_gap import ModificationGap
 from fe_contact.errors import InputError, SolveError
 from fe_contact.flank.modification import UNMODIFIED
 from fe_contact.geometry import ParallelAxes
@@ -23,7 +23,6 @@ from fe_contact.microgeometry.evaluator import (
     LoadFigures,
     carried,
     edges,
-    figures,
     on_edges,
     over_face,
 )
@@ -200,7 +199,6 @@ def _all_names(pair: ParallelAxes, checked: Checked) -> tuple[str, ...]:
 
 
 def _acts(name: str, checked: Checked) -> bool:
-    """Whether a figure has an effect in the model of the bodies."""
     if name in (TORQUE, CENTER_DISTANCE):
         return True
     request = checked.request
@@ -210,7 +208,6 @@ def _acts(name: str, checked: Checked) -> bool:
 
 
 def _check_name(name: str, pair: ParallelAxes, checked: Checked) -> None:
-    """Refuse what is no figure, or does not act."""
     if name not in (MISALIGNMENT, CENTER_DISTANCE, TORQUE):
         gear_and_quantity("by", name)
         if lacks_length(pair, name.removesuffix("_length")):
@@ -221,7 +218,6 @@ def _check_name(name: str, pair: ParallelAxes, checked: Checked) -> None:
 
 
 def _require_solved(solution: ContactSolution) -> None:
-    """Refuse to differentiate what is not solved."""
     if not solution.converged:
         raise SolveError("the contact of a position cannot be solved", solution.status)
 
@@ -322,7 +318,7 @@ def _differentiated(
 ) -> _Solved:
     strips = CarryingStrips.of(pair, problem.candidates, adjoint(problem, solution))
     opened = np.stack([_opened_by(strips, pair, name) for name in names])
-    return _Solved(pair, problem, solution, figures(problem, solution), names, strips, opened)
+    return _Solved(pair, problem, solution, LoadFigures.of(problem, solution), names, strips, opened)
 
 
 def _limit_rows(solved: _Solved, limits: Limits) -> list[Rows]:

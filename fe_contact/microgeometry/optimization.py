@@ -20,7 +20,7 @@ from fe_contact.microgeometry.confirmation import (
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits, Objective, WeightedMean
 from fe_contact.microgeometry.scatter import NO_SCATTER, Scatter, ScatterNodes
 from fe_contact.microgeometry.search import Search, SearchRun
-from fe_contact.microgeometry.variables import LENGTHS, DesignVariable, check_variables, start_of
+from fe_contact.microgeometry.variables import LENGTHS, DesignVariable, check_variables, figure
 from fe_contact.options import AnalysisOptions, Levels
 from fe_contact.types import Estimate, FloatArray, IntArray, Json
 from model_studies import Record, in_unit
@@ -76,8 +76,8 @@ class OptimizationRequest:
 
     @property
     def own(self) -> tuple[float, ...]:
-        """The start design: the variables as they are in the pair, m."""
-        return start_of(self.pair, self.variables)
+        """The start design: the variables as they are in the pair, m; they may lie outside their bounds."""
+        return tuple(figure(self.pair, variable.name) for variable in self.variables)
 
     @property
     def space(self) -> DesignSpace:

@@ -2,25 +2,261 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import contextlib
+import hashlib
+import os
+import struct
+import zlib
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 from scipy.stats import qmc
 
-from bounds import engineering
-from fe_contact.microgeometry.choice import SLACK, Choice, choose, perturbation, posed
-from fe_contact.microgeometry.confirmation import DesignStudy, design_study, rising
+from bounds import engineering, written
+from fe_contact.errors import SolveError
+from fe_contact.microgeometry.confirmation import ConfirmedDesign, DesignStudy, confirm, design_study, rising
 from fe_contact.microgeometry.design_problem import DesignProblem
+from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest, Outcome, Perturbation
-from fe_contact.microgeometry.scatter import MISALIGNMENT
-from fe_contact.microgeometry.search import Cancel, Ended, Search, SearchRun, never, search_from
-from fe_contact.microgeometry.search_method import Cancelled
-from fe_contact.microgeometry.variables import GEARS, QUANTITIES
+from fe_contact.microgeometry.scatter import MISALIGNMENT, Scatter
+from fe_contact.microgeometry.search import (
+    Cancel,
+    Cancelled,
+    Ended,
+    Search,
+    SearchRun,
+    SequentialLinearProgramming,
+    never,
+    search_from,
+)
+from fe_contact.microgeometry.variables import GEARS, QUANTITIES, DesignVariable
 from fe_contact.options import Run
+from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
+from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray
 from fe_contact.workers import InProcess
+
+# The best design of all searches, assessed by full analyses of it and of the design to begin with.
+
+
+# Assessed designs on disk: a search that was killed, or may use more evaluations, continues.
+
+
+KEPT_FILES = 200
+"""Newest files that a directory keeps: about 0.1 MB for a thousand designs each."""
+_FOUND = struct.Struct("<ddQ")  # objective, violation, checksum
+_POSITIONS = 8  # bytes of their digest
+
+Figures = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class _DesignMemory:
+    """Objective in m and violation of designs of one problem, by their values and the positions.
+
+    Attributes
+    ----------
+    file : Path
+    known : dict
+        What is in it.
+    """
+
+    file: Path
+    known: dict[bytes, Figures] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def of(cls, directory: Path, request: OptimizationRequest, evaluator: Evaluator) -> _DesignMemory:
+        """Open the file of a problem; one that is damaged counts up to the damage."""
+        content = {
+            "pair": written(request.pair),
+            "variables": [variable.name for variable in request.variables],
+            "bodies": _digest_of_bodies(evaluator),
+            "effects": dict(evaluator.choices),
+            "load": evaluator.load.tolist(),
+            "misalignment": evaluator.misalignment.tolist(),
+            "scatter": request.scatter.to_json(),
+            "objective": request.objective.to_json(),
+            "limits": request.limits.to_json(),
+        }
+        key = content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)
+        memory = cls(directory / f"designs-{key}.bin")
+        with contextlib.suppress(OSError):
+            directory.mkdir(parents=True, exist_ok=True)
+            _prune(directory)
+            memory._read(_POSITIONS + 8 * len(request.variables))
+        return memory
+
+    def find(self, values: FloatArray, position: FloatArray) -> Figures | None:
+        """Return what is known of a design (d,) in m at some positions."""
+        return self.known.get(_name(values, position))
+
+    def add(self, values: FloatArray, position: FloatArray, figures: Figures) -> None:
+        """Keep a design; where the file cannot be written it is kept in this process."""
+        name = _name(values, position)
+        self.known[name] = figures
+        text = name + struct.pack("<dd", *figures)
+        record = text + struct.pack("<Q", zlib.crc32(text))
+        with contextlib.suppress(OSError), self.file.open("ab", buffering=0) as stream:
+            stream.write(record)  # one write: whole, or the last of the file
+
+    def _read(self, name_size: int) -> None:
+        """Read whole records, and cut off what a killed writer left of one."""
+        size, text = name_size + _FOUND.size, self.file.read_bytes() if self.file.exists() else b""
+        whole = 0
+        for begin in range(0, len(text) - size + 1, size):
+            record = text[begin : begin + size]
+            objective, violation, checksum = _FOUND.unpack(record[name_size:])
+            if zlib.crc32(record[: name_size + 16]) != checksum:
+                break
+            self.known[record[:name_size]] = objective, violation
+            whole = begin + size
+        if whole < len(text):
+            os.truncate(self.file, whole)
+
+
+def _name(values: FloatArray, position: FloatArray) -> bytes:
+    return hashlib.sha256(position.tobytes()).digest()[:_POSITIONS] + np.asarray(values, "<f8").tobytes()
+
+
+def _digest_of_bodies(evaluator: Evaluator) -> str:
+    """Digest of the compliance of both gears: its bits decide those of the objective."""
+    digest = hashlib.sha256()
+    contact = evaluator.contact
+    for body in contact.plane or ():
+        digest.update(body.matrix.tobytes())
+    for solid in contact.face or ():
+        digest.update(solid.blocks.tobytes())
+    return digest.hexdigest()
+
+
+def _prune(directory: Path) -> None:
+    files = sorted(directory.glob("designs-*.bin"), key=lambda file: file.stat().st_mtime)
+    for file in files[:-KEPT_FILES]:
+        file.unlink(missing_ok=True)
+
+
+SLACK = 0.005
+"""Limits exceeded by less, in parts of them, are kept: the full analysis has more positions than a search."""
+REFINED = 4
+"""Where they are exceeded by more, the search goes on at those positions, with a quarter of the designs."""
+ROUNDS = 3
+"""How often: the full analysis of another design has positions of its own, which join those of all before."""
+STEP = 0.05
+"""Perturbation of the optimum in parts of a variable's range, where it does not scatter."""
+
+
+@dataclass(frozen=True)
+class _Choice:
+    """Both designs in full, and the search that the better one came from.
+
+    Attributes
+    ----------
+    problem : DesignProblem
+        By which `run` was assessed.
+    start, optimum : ConfirmedDesign
+    runs : tuple of SearchRun
+    best : int
+        Index of the run of the optimum.
+    """
+
+    problem: DesignProblem
+    start: ConfirmedDesign
+    optimum: ConfirmedDesign
+    runs: tuple[SearchRun, ...]
+    best: int
+
+    @property
+    def run(self) -> SearchRun:
+        """The search that counts."""
+        return self.runs[self.best]
+
+
+def _posed(study: DesignStudy, request: OptimizationRequest, memory: Path | None) -> DesignProblem:
+    """Return the problem of the search, its scale the start inside the bounds.
+
+    `memory` is a directory of designs that were assessed before.
+
+    Raises
+    ------
+    SolveError
+        Its contact cannot be solved.
+    """
+    problem = DesignProblem(study.evaluator, request.variables, request.objective, request.limits, 1.0)
+    if memory is not None:
+        problem = replace(problem, memory=_DesignMemory.of(memory, request, study.evaluator))
+    assessed = problem.assess(problem.place(request.own))
+    if not np.isfinite(assessed.objective) or assessed.objective <= 0.0:
+        raise SolveError("the contact of the start design cannot be solved at every position and load")
+    return replace(problem, scale=assessed.objective)
+
+
+def _choose(
+    problem: DesignProblem,
+    runs: tuple[SearchRun, ...],
+    request: OptimizationRequest,
+    study: DesignStudy,
+    clock: StageClock,
+    cache: Path | None,
+    cancel: Cancel,
+) -> _Choice:
+    """Confirm the start and the best of all runs; go on searching where that exceeds the limits after all.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+    runs : tuple of SearchRun
+    request : OptimizationRequest
+    study : DesignStudy
+    clock : StageClock
+    cache : Path, optional
+    cancel : callable
+    """
+    best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
+    with clock.stage("confirmation"):
+        start = confirm(problem, dict(zip(problem.names, request.own, strict=True)), study, cache)
+        optimum = confirm(problem, problem.values(runs[best].place), study, cache)
+    choice = _Choice(problem, start, optimum, runs, best)
+    for _ in range(ROUNDS):
+        if choice.optimum.violation <= SLACK or choice.run.assessed.violation > SLACK or cancel():
+            break
+        choice = _refined(choice, request.search, study, clock, cache, cancel)
+    return choice
+
+
+def _refined(
+    choice: _Choice, search: Search, study: DesignStudy, clock: StageClock, cache: Path | None, cancel: Cancel
+) -> _Choice:
+    """Search on from a design that exceeds the limits between the positions of the search."""
+    shorter = replace(
+        search,
+        method=SequentialLinearProgramming(sample=0),
+        evaluations=max(1, search.evaluations // REFINED),
+    )
+    seen = choice.problem.evaluator.position, choice.optimum.harris_map.position
+    evaluator = choice.problem.evaluator.at(np.union1d(*seen))
+    problem = replace(choice.problem, evaluator=evaluator)
+    with clock.stage("search"):
+        run = search_from(problem, shorter, choice.run.place, search.starts, cancel=cancel)
+    with clock.stage("confirmation"):
+        optimum = confirm(problem, problem.values(run.place), study, cache)
+    return _Choice(problem, choice.start, optimum, (*choice.runs, run), len(choice.runs))
+
+
+def _perturbation(
+    problem: DesignProblem, run: SearchRun, scatter: Scatter, variable: DesignVariable
+) -> Perturbation:
+    """Take a step of one variable from the best design of a run to both sides."""
+    values = problem.values(run.place)
+    step = scatter.modification.get(variable.name, STEP * (variable.high - variable.low))
+    ends = max(variable.low, values[variable.name] - step), min(variable.high, values[variable.name] + step)
+    changes = []
+    for end in ends:
+        evaluation = problem.evaluator.evaluate(values | {variable.name: end})
+        changes.append(problem.objective.of(problem.evaluator.expected(evaluation)) - run.assessed.objective)
+    return Perturbation(variable.name, *ends, *changes)
+
 
 # The conclusion of an optimization in words: the gain, its end, and what was not tried.
 
@@ -29,8 +265,7 @@ AT_BOUND = 1e-3
 """A variable this near to a bound, in parts of its range, lies on it."""
 
 
-def _conclusion(choice: Choice, request: OptimizationRequest) -> tuple[Outcome, str]:
-    """Return the outcome and the reason for it."""
+def _conclusion(choice: _Choice, request: OptimizationRequest) -> tuple[Outcome, str]:
     start, optimum, ended = choice.start, choice.optimum, _ended(choice, request)
     gain = start.objective.value - optimum.objective.value
     error = start.objective.error + optimum.objective.error
@@ -53,7 +288,7 @@ def _conclusion(choice: Choice, request: OptimizationRequest) -> tuple[Outcome, 
     return outcome, f"{change}; {_why_not(choice, request, error)}{ended}"
 
 
-def _worse(choice: Choice) -> str:
+def _worse(choice: _Choice) -> str:
     """Name the torques at which the best design ripples more than the start, whether they count or not."""
     before, after = choice.start.harris_map, choice.optimum.harris_map
     worse = rising(before, after)
@@ -65,7 +300,7 @@ def _worse(choice: Choice) -> str:
     return f"; it rises at {torques} N m, most at {before.torque[most]:.6g} N m from {change}"
 
 
-def _ended(choice: Choice, request: OptimizationRequest) -> str:
+def _ended(choice: _Choice, request: OptimizationRequest) -> str:
     """Say how the search ended; one that was interrupted may have had more to find in any of its starts."""
     cut = any(run.ended is Ended.CANCELLED for run in choice.runs)
     if cut or len(choice.runs) < request.search.starts:
@@ -75,8 +310,7 @@ def _ended(choice: Choice, request: OptimizationRequest) -> str:
     return "the search converged" if choice.run.converged else "the search used all its evaluations"
 
 
-def _why_not(choice: Choice, request: OptimizationRequest, error: float) -> str:
-    """Say why nothing was won, where the search shows it."""
+def _why_not(choice: _Choice, request: OptimizationRequest, error: float) -> str:
     if request.outside:
         return f"the start lies beyond the bounds of {', '.join(request.outside)}; "
     spread = max(run.spread for run in choice.runs)
@@ -85,7 +319,7 @@ def _why_not(choice: Choice, request: OptimizationRequest, error: float) -> str:
     return ""
 
 
-def _not_tried(choice: Choice, request: OptimizationRequest, study: DesignStudy) -> tuple[str, ...]:
+def _not_tried(choice: _Choice, request: OptimizationRequest, study: DesignStudy) -> tuple[str, ...]:
     """Say what the design is the best without: what did not vary, what did not scatter, what was left out."""
     free = {variable.name for variable in request.variables}
     kept = [f"{gear}.{name}" for gear in GEARS for name in QUANTITIES if f"{gear}.{name}" not in free]
@@ -105,7 +339,7 @@ def _not_tried(choice: Choice, request: OptimizationRequest, study: DesignStudy)
     return tuple(filter(None, untried))
 
 
-def _on_bounds(choice: Choice, request: OptimizationRequest) -> list[str]:
+def _on_bounds(choice: _Choice, request: OptimizationRequest) -> list[str]:
     """Variables whose optimum lies on a bound that is not the end of what there is: nothing removed."""
     names = []
     for variable, part in zip(request.variables, np.asarray(choice.run.place), strict=True):
@@ -146,7 +380,6 @@ def _here(
     run: Run,
     cancel: Cancel,
 ) -> list[SearchRun]:
-    """Search from one start after the other."""
     runs: list[SearchRun] = []
     for index, start in begins:
         if cancel():
@@ -222,23 +455,24 @@ def optimize(
     request.check()
     study = design_study(request.space, request.torques, request.further_torques, clock, run)
     with clock.stage("search"):
-        problem = posed(study, request, memory)
+        problem = _posed(study, request, memory)
         runs = _search_all(problem, request.search, request.own, run, cancel)
-    choice = choose(problem, runs, request, study, clock, run.cache, cancel)
+    choice = _choose(problem, runs, request, study, clock, run.cache, cancel)
     run.progress("confirmation", 1.0)
     with clock.stage("sensitivity"):
-        aside = tuple(perturbation(choice.problem, choice.run, request.scatter, v) for v in request.variables)
+        aside = tuple(
+            _perturbation(choice.problem, choice.run, request.scatter, v) for v in request.variables
+        )
     return _result(request, study, choice, aside, clock)
 
 
 def _result(
     request: OptimizationRequest,
     study: DesignStudy,
-    choice: Choice,
+    choice: _Choice,
     aside: tuple[Perturbation, ...],
     clock: StageClock,
 ) -> Optimization:
-    """Put the result together."""
     outcome, reason = _conclusion(choice, request)
     return Optimization(
         outcome=outcome,

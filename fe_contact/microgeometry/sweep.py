@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.live.condensed_contacts import CondensedSolution
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condense
+from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import at_edges, contact_pressure
@@ -147,7 +147,6 @@ class SweepRequest:
         return check_request(self.flanks(acting), axes, options, whole_table=False, spare=False)
 
     def _check_axes(self) -> None:
-        """Refuse axes that make no map."""
         names = [axis.name for axis in self.axes]
         if not 1 <= len(names) <= 2:
             raise InputError("axes", names, "one or two")
@@ -328,7 +327,7 @@ def _of_curves(table: SteDatabase, solved: BoolArray) -> Iterator[FloatArray]:
         yield np.array([[each.value for each in figures], [each.error for each in figures]])
 
 
-def _on_flanks(solved: CondensedSolution, every: int = 1) -> FloatArray:
+def _on_flanks(solved: SolvedOperatingPoint, every: int = 1) -> FloatArray:
     """Return largest pressure in Pa and face load factor of the cycle (L, 2), of each `every`-th position."""
     problem, force = solved.problem, solved.solution.force
     pressure = contact_pressure(problem, force)
@@ -352,7 +351,6 @@ def _on_grid(request: SweepRequest, rows: FloatArray) -> FloatArray:
 
 
 def _held(request: SweepRequest) -> Json:
-    """Return the operating conditions that are not swept."""
     swept = {axis.name for axis in request.axes}
     point = request.point
     held: Json = {"misalignment": point.misalignment, "center_distance_change": point.center_distance_change}

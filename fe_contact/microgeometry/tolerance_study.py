@@ -260,7 +260,6 @@ def toleranced(
 
 
 def _evaluated(evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArray, run: Run) -> FloatArray:
-    """Evaluate all samples (N, L), task by task."""
     tasks = [deviation[k : k + IN_A_TASK] for k in range(0, deviation.shape[0], IN_A_TASK)]
     parts = []
     for count, part in enumerate(run.workers.run(_ripple_of_samples, (evaluator, names), tasks)):

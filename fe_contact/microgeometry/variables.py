@@ -119,11 +119,6 @@ def lacks_length(pair: ParallelAxes, relief: str) -> bool:
     return bool(getattr(getattr(pair, gear).modification, f"{quantity}_length", None) == 0.0)
 
 
-def start_of(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> tuple[float, ...]:
-    """Return the values of the variables in the pair as it is, m; they may lie outside their bounds."""
-    return tuple(figure(pair, variable.name) for variable in variables)
-
-
 def figure(pair: ParallelAxes, name: str) -> float:
     """Return ``gear.quantity`` of the pair's own modifications, m."""
     gear, _, quantity = name.partition(".")

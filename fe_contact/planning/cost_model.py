@@ -19,8 +19,7 @@ from fe_contact.contact import ContactModel, teeth_in_reach
 from fe_contact.contact.problem import POINTS
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
-from fe_contact.planning.plan import Plan
+from fe_contact.planning.plan import FaceDiscretization, Plan, PlaneDiscretization
 from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, some_positions
 from fe_contact.types import Json
 from model_studies.host_speed import host_slowness
@@ -69,7 +68,7 @@ class _Work(NamedTuple):
         return positions * self.position + points * self.point
 
 
-def contact_seconds(
+def _contact_seconds(
     pair: ParallelAxes,
     plan: Plan,
     model: ContactModel,
@@ -108,7 +107,6 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
 
 
 def _held_out_loads(loads: int) -> int:
-    """Return how many loads are held out between so many."""
     return (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
 
 
@@ -271,7 +269,7 @@ def predict_run(
     kind = "face" if isinstance(made, FaceDiscretization) else "plane"
     fine = _compliance(pair, plan, cache, coarse=False)
     coarse = _compliance(pair, plan, cache, coarse=True) if with_errors else _Cost(0.0, 0.0, 0.0)
-    search, solve, check = contact_seconds(pair, plan, model, alignments, with_errors=with_errors)
+    search, solve, check = _contact_seconds(pair, plan, model, alignments, with_errors=with_errors)
     slowness = host_slowness(cache)
     # dense algebra has its own measurement of the host in it
     speed = slowness if kind == "plane" else 1.0
@@ -288,7 +286,6 @@ def predict_run(
 
 
 def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: bool) -> _Cost:
-    """Cost of both gears' compliance; gears alike are computed once."""
     made = plan.discretization
     bodies = plan.bodies(pair)
     recipes = made.coarse_recipes if coarse else made.recipes
@@ -306,7 +303,6 @@ def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: b
 
 
 def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> _Cost:
-    """One gear over the face."""
     if kept := solid_kept(gear, recipe, cache):
         return _Cost(_READ_SOLID[gear.helix_angle != 0.0], 0.0, kept)
     predicted = predict_cost(gear, recipe, cache=cache)
@@ -336,10 +332,10 @@ def _section(
 ) -> _Cost:
     if kept := section_kept(gear, recipe, hypothesis, condensed_teeth(pair), cache):
         return _Cost(_READ_PLANE, 0.0, kept)
-    return _Cost(*section_cost(gear, recipe), 0.0)
+    return _Cost(*_section_cost(gear, recipe), 0.0)
 
 
-def section_cost(gear: Toothing, recipe: MeshRecipe) -> tuple[float, float]:
+def _section_cost(gear: Toothing, recipe: MeshRecipe) -> tuple[float, float]:
     """CPU seconds and bytes of one gear in the plane on the reference host."""
     fineness = 0.05 * gear.normal_module / recipe.flank_size
     sector = 5000.0 * fineness**1.73
@@ -358,3 +354,46 @@ def condensed_teeth(pair: ParallelAxes) -> int:
     """Return the number of teeth in the plane that can touch at once, as many as both gears have."""
     fits = min(pair.pinion.teeth, pair.wheel.teeth)
     return min(teeth_in_reach(pair), fits - 1 + fits % 2)
+
+
+# Work of a run in seconds of one certain host: what alternatives are weighed by.
+#
+# The choice of a mesh must not depend on the host, nor on what is in the cache, nor on earlier runs: the
+# same case has the same table everywhere. So this knows none of them. It is also quick, since several
+# alternatives are weighed before a run: finite elements over the face are a fit, within a factor 1.8, to
+# the operations that `fe_contact.compliance.cyclic_compliance` counts, of gears of 18 to 60 teeth and
+# faces of 4 to 14 modules.
+
+
+# one gear over the face: mesher, factor, powers of layers and teeth, part of it for the coarse mesh
+_SOLID_MESHER = 0.15
+_SOLID_EFFORT = {
+    "draft": (9.3e-5, 2.28, 1.11, 0.34),
+    "standard": (1.05e-4, 2.58, 0.89, 0.25),
+    "fine": (7.3e-4, 2.35, 0.81, 0.19),
+}
+_FREE_ENDS = 0.35
+"""The solids that correct one gear for its finite width."""
+
+
+def effort(pair: ParallelAxes, plan: Plan, model: ContactModel, alignments: tuple[int, int]) -> float:
+    """Return the work of a run with nothing in the cache, CPU seconds of the host of the constants.
+
+    Parameters are those of `fe_contact.planning.predict_run`.
+    """
+    made = plan.discretization
+    bodies = tuple(body.right_handed() for body in plan.bodies(pair))
+    work = sum(_contact_seconds(pair, plan, model, alignments))
+    if isinstance(made, FaceDiscretization):
+        gears = dict.fromkeys(zip(bodies, made.recipes, strict=True))
+        return work + sum(_solid_effort(gear.teeth, recipe, plan.level) for gear, recipe in gears)
+    for recipes in (made.recipes, made.coarse_recipes):
+        sections = dict.fromkeys(zip(bodies, recipes, strict=True))
+        work += sum(_section_cost(gear, recipe)[0] for gear, recipe in sections)
+    return work + (_FREE_ENDS * len(dict.fromkeys(bodies)) if made.corrected else 0.0)
+
+
+def _solid_effort(teeth: int, recipe: SectorRecipe, level: str) -> float:
+    factor, layers, number, coarse = _SOLID_EFFORT[level]
+    seconds = float(factor * recipe.layers**layers * teeth**number)
+    return 2.0 * _SOLID_MESHER + (1.0 + coarse) * seconds

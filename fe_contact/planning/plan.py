@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
@@ -14,9 +15,184 @@ from fe_contact.contact import ContactModel, PatchRule
 from fe_contact.errors import InputError, increasing
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
+from fe_contact.mesh import MeshRecipe, SectorRecipe
+from fe_contact.mesh.recipe import HELICAL_BODY_LAYERS
 from fe_contact.options import AnalysisOptions
-from fe_contact.planning.discretization import Discretization, face_discretization, plane_discretization
 from fe_contact.types import FloatArray, Json
+
+# Meshes and slices of a run, in the plane or over the face width.
+
+
+PLANE_REFINEMENT = {"draft": 0.6, "standard": 1.0, "fine": 2.0}
+SECTOR_RECIPE: dict[str, Callable[[Toothing], SectorRecipe]] = {
+    "draft": SectorRecipe.draft,
+    "standard": SectorRecipe.standard,
+    "fine": SectorRecipe.fine,
+}
+SLICES = 15
+"""Of the face; false orders of helical pairs are then about 1 nm."""
+FINER_SLICES = (23, 31)
+"""What a tolerance may ask for beside them."""
+RESOLVED = 2.0
+"""Elements in the half-width of a load patch over the face."""
+SLICE_ORDER = 2.3
+"""Of STE in the number of slices: measured 2.2 to 2.9 on helical pairs between 7 and 15."""
+SLICE_OVER_PATCH = 1.0
+"""Least width of a slice over the half-width of the load patches: of narrower ones the bodies less what is in
+the local law lose definiteness, and heavy loads have no unique solution."""
+COARSER = 1.5
+"""Elements of the coarse mesh of a solid over those of its own."""
+
+
+@dataclass(frozen=True)
+class PlaneDiscretization:
+    """Transverse sections.
+
+    Attributes
+    ----------
+    hypothesis : PlaneHypothesis
+    recipes, coarse_recipes : (MeshRecipe, MeshRecipe)
+        Driving and driven gear; the coarse ones are half as fine, for the discretization error.
+    finite_width : (SectorRecipe, SectorRecipe) or None
+        Solids of half the face that give what a finite width adds; None: the plane alone.
+    """
+
+    hypothesis: PlaneHypothesis
+    recipes: tuple[MeshRecipe, MeshRecipe]
+    coarse_recipes: tuple[MeshRecipe, MeshRecipe]
+    finite_width: tuple[SectorRecipe, SectorRecipe] | None = None
+
+    slices = 1
+    remaining = 1.0 / 3.0
+    """Error left over the difference of the two meshes: ratio two, second order or better."""
+    coarse_slices = 1
+    remaining_slices = 0.0
+    least_edge = 0.0
+
+    @property
+    def least_patch(self) -> float:
+        """Half-width in m that both meshes resolve: one and a half elements of the coarse one."""
+        return 1.5 * max(recipe.flank_size for recipe in self.coarse_recipes)
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        plane = {"model": self.hypothesis.value, "mesh": [recipe.content() for recipe in self.recipes]}
+        if self.finite_width is None:
+            return plane
+        return plane | {"finite_width": [recipe.content() for recipe in self.finite_width]}
+
+    @property
+    def corrected(self) -> bool:
+        """Whether the plane is corrected for the finite width."""
+        return self.finite_width is not None
+
+
+@dataclass(frozen=True)
+class FaceDiscretization:
+    """Tooth sectors over the face width.
+
+    Attributes
+    ----------
+    recipes, coarse_recipes : (SectorRecipe, SectorRecipe)
+        Driving and driven gear; the coarse ones for the discretization error.
+    slices : int
+        Of the common face width.
+    most_slices : int
+        Of two thirds of a layer of either gear, narrower ones would move the same freedoms of the bodies, and
+        of `SLICE_OVER_PATCH`.
+    """
+
+    recipes: tuple[SectorRecipe, SectorRecipe]
+    coarse_recipes: tuple[SectorRecipe, SectorRecipe]
+    slices: int
+    most_slices: int
+
+    corrected = False
+
+    @property
+    def remaining(self) -> float:
+        """Error left over the difference of the two meshes: second order.
+
+        Layers come in whole groups, so that the coarse mesh may have more of them than two thirds.
+        """
+        pairs = zip(self.recipes, self.coarse_recipes, strict=True)
+        ratio = min(COARSER, *(fine.layers / coarse.layers for fine, coarse in pairs))
+        return 1.0 / (ratio**2 - 1.0)
+
+    def in_slices(self, count: int) -> FaceDiscretization:
+        """Return the same meshes in another number of slices, or in `most_slices`."""
+        return replace(self, slices=min(count, self.most_slices))
+
+    @property
+    def coarse_slices(self) -> int:
+        """Half the slices."""
+        return max(self.slices // 2, 1)
+
+    @property
+    def remaining_slices(self) -> float:
+        """Error left over the difference to half the slices; no slices left out leave no error."""
+        if self.slices == self.coarse_slices:
+            return 0.0
+        return 1.0 / (float((self.slices / self.coarse_slices) ** SLICE_ORDER) - 1.0)
+
+    @property
+    def least_edge(self) -> float:
+        """Length in m of a patch at a tip edge that the mesh resolves: two elements."""
+        return 2.0 * max(recipe.tip_size for recipe in self.recipes)
+
+    @property
+    def least_patch(self) -> float:
+        """Half-width in m that the mesh resolves along the profile and, as well as that, along the face."""
+        return RESOLVED * max(recipe.flank_size for recipe in self.recipes)
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {"model": "3d", "mesh": [asdict(recipe) for recipe in self.recipes], "slices": self.slices}
+
+
+Discretization = PlaneDiscretization | FaceDiscretization
+
+
+def _plane_discretization(
+    pair: ParallelAxes, level: str, hypothesis: PlaneHypothesis, finite_width: bool = False
+) -> PlaneDiscretization:
+    """Choose the sections of both gears, and the solids that correct them for their finite width."""
+    factor = PLANE_REFINEMENT[level]
+    standard = (MeshRecipe.standard(pair.pinion), MeshRecipe.standard(pair.wheel))
+    first, second = (recipe if factor == 1.0 else recipe.refined(factor) for recipe in standard)
+    solids = (SectorRecipe.even_load(pair.pinion), SectorRecipe.even_load(pair.wheel))
+    return PlaneDiscretization(
+        hypothesis,
+        (first, second),
+        (first.refined(0.5), second.refined(0.5)),
+        solids if finite_width else None,
+    )
+
+
+def face_discretization(pair: ParallelAxes, level: str, slices: int | None = None) -> FaceDiscretization:
+    """Choose the sectors of both gears and, unless they are given, the slices."""
+    first, second = (SECTOR_RECIPE[level](gear) for gear in (pair.pinion, pair.wheel))
+    coarse = _coarser(first, pair.pinion), _coarser(second, pair.wheel)
+    most = min(_most_slices(pair, *side) for side in ((pair.pinion, first), (pair.wheel, second)))
+    return FaceDiscretization((first, second), coarse, min(slices or SLICES, most), most)
+
+
+def _most_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:
+    """Return how many slices of the common face a mesh tells apart, by its layers and load patches."""
+    layers = recipe.layers * pair.face_width / gear.face_width
+    patches = pair.face_width / (RESOLVED * recipe.flank_size)
+    return max(math.floor(min(1.5 * layers, patches / SLICE_OVER_PATCH) * (1.0 + 1e-9)), 1)
+
+
+def _coarser(recipe: SectorRecipe, gear: Toothing) -> SectorRecipe:
+    """Return the recipe with elements and layers one and a half times as large.
+
+    Layers of a helical body are not merged where too few would be left.
+    """
+    larger = recipe.scaled(COARSER)
+    few = gear.helix_angle and larger.layers < larger.layer_group * HELICAL_BODY_LAYERS
+    return replace(larger, merge_rows=()) if few else larger
+
 
 EDGE_PATCH = 0.0125
 """Least length of the patch at a tip edge in modules: two to three elements of the tip (factors of two move
@@ -169,7 +345,7 @@ def make_plan(
     else:
         stress = options.model == "plane_stress"
         hypothesis = PlaneHypothesis.PLANE_STRESS if stress else PlaneHypothesis.PLANE_STRAIN
-        discretization = plane_discretization(pair, level, hypothesis, model.finite_width)
+        discretization = _plane_discretization(pair, level, hypothesis, model.finite_width)
     patch = _patch_rule(pair, float(levels[-1]), discretization)
     nodes = FACE_NODES if model.across_face else PLANE_NODES
     if options.tolerance is not None:
@@ -265,19 +441,38 @@ class CycleCost:
         """Return plain JSON."""
         return asdict(self)
 
+    @classmethod
+    def of(cls, pair: ParallelAxes, plan: Plan, pitches: int, alignments: int) -> CycleCost:
+        """Predict the cost of a table over `pitches` base pitches."""
+        positions = plan.positions or plan.nodes.start
+        pairs = math.ceil(pair.transverse_contact_ratio + pair.overlap_ratio) + 2
+        candidates = pairs * plan.discretization.slices
+        assessed = min(alignments, _JUDGED_ALIGNMENTS) * plan.load.size
+        solves = pitches * alignments * (2 * plan.load.size + plan.support.size)  # the loads on both meshes
+        solves += assessed * (2 * pitches + _SEARCH * min(plan.nodes.assessed_pitches, pitches))
+        per_point = _SECONDS_PER_POINT + _SECONDS_PER_CANDIDATE * candidates
+        return cls(pitches, positions, alignments, _expected(plan, pitches * alignments) * solves * per_point)
 
-def cycle_cost(pair: ParallelAxes, plan: Plan, pitches: int, alignments: int) -> CycleCost:
-    """Predict the cost of a table over `pitches` base pitches."""
-    positions = plan.positions or plan.nodes.start
-    pairs = math.ceil(pair.transverse_contact_ratio + pair.overlap_ratio) + 2
-    candidates = pairs * plan.discretization.slices
-    assessed = min(alignments, _JUDGED_ALIGNMENTS) * plan.load.size
-    solves = pitches * alignments * (2 * plan.load.size + plan.support.size)  # the loads on both meshes
-    solves += assessed * (2 * pitches + _SEARCH * min(plan.nodes.assessed_pitches, pitches))
-    per_point = _SECONDS_PER_POINT + _SECONDS_PER_CANDIDATE * candidates
-    return CycleCost(
-        pitches, positions, alignments, _expected(plan, pitches * alignments) * solves * per_point
-    )
+    def refuse_too_long(self) -> None:
+        """Refuse a table of more than `MOST_ROWS` rows, saying what it would cost and what to ask for.
+
+        Raises
+        ------
+        InputError
+            Of the field "pitches".
+        """
+        if self.rows <= MOST_ROWS:
+            return
+        longest = MOST_ROWS // (self.positions * self.alignments)
+        note = f" with {self.positions} positions a pitch and {self.alignments} alignments"
+        gigabytes = self.rows * _BYTES_PER_ROW / 1e9
+        advice = (
+            f"The table would have {self.rows} rows, about "
+            f"{engineering(self.cpu_seconds, 2)} CPU s and {engineering(gigabytes, 2)} GB. "
+            "Request fewer pitches (for example the teeth of one gear), positions or alignments, or give the "
+            "deviations of one gear only."
+        )
+        raise InputError("pitches", self.pitches, at_most(longest, note=note), advice)
 
 
 def _expected(plan: Plan, times: int) -> int:
@@ -285,25 +480,3 @@ def _expected(plan: Plan, times: int) -> int:
     if plan.positions is not None:
         return plan.positions
     return max(min(_ADAPTIVE * plan.nodes.start, MOST_ROWS // times), plan.nodes.start)
-
-
-def refuse_long_cycle(cost: CycleCost) -> None:
-    """Refuse a table of more than `MOST_ROWS` rows, saying what it would cost and what to ask for.
-
-    Raises
-    ------
-    InputError
-        Of the field "pitches".
-    """
-    if cost.rows <= MOST_ROWS:
-        return
-    longest = MOST_ROWS // (cost.positions * cost.alignments)
-    note = f" with {cost.positions} positions a pitch and {cost.alignments} alignments"
-    gigabytes = cost.rows * _BYTES_PER_ROW / 1e9
-    advice = (
-        f"The table would have {cost.rows} rows, about "
-        f"{engineering(cost.cpu_seconds, 2)} CPU s and {engineering(gigabytes, 2)} GB. "
-        "Request fewer pitches (for example the teeth of one gear), positions or alignments, or give the "
-        "deviations of one gear only."
-    )
-    raise InputError("pitches", cost.pitches, at_most(longest, note=note), advice)

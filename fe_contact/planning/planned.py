@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,19 +14,17 @@ from fe_contact.compliance import PlaneHypothesis
 from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.web_compliance import finite_width_excess, plane_stress_excess
-from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.options import LEVELS, AnalysisOptions
-from fe_contact.planning.cost_model import predict_run
-from fe_contact.planning.discretization import (
+from fe_contact.planning.cost_model import effort, predict_run
+from fe_contact.planning.model_error import in_small_displacements, model_errors, of_bending
+from fe_contact.planning.plan import (
     FINER_SLICES,
     SLICE_ORDER,
     Discretization,
     FaceDiscretization,
-    PlaneDiscretization,
+    Plan,
+    make_plan,
 )
-from fe_contact.planning.effort import effort
-from fe_contact.planning.model_error import in_small_displacements, model_errors, of_bending
-from fe_contact.planning.plan import Plan, make_plan
 from fe_contact.types import FloatArray, Json
 
 # Mean and peak-to-peak transmission error as expected before anything is computed.
@@ -379,66 +377,3 @@ def chosen_mesh(
     if options.tolerance is not None:
         return _mesh_for_tolerance(options.tolerance, meshes)
     return _mesh_for_time(options.time_budget or 0.0, meshes, seconds)
-
-
-# Meshes for the stress of the tooth roots, and coarser ones that tell its error.
-
-FINER_LAND, FINER_DEPTH = 2, 2.0 / 3.0
-"""Elements along the root, and their depth below both flanks, against those of the contact's sectors."""
-
-
-@dataclass(frozen=True)
-class PlaneRootMeshes:
-    """Sections of both gears: those of the contact.
-
-    Attributes
-    ----------
-    hypothesis : PlaneHypothesis
-    recipes, coarse_recipes : (MeshRecipe, MeshRecipe)
-        Driving and driven gear; the coarse ones are half as fine.
-    """
-
-    hypothesis: PlaneHypothesis
-    recipes: tuple[MeshRecipe, MeshRecipe]
-    coarse_recipes: tuple[MeshRecipe, MeshRecipe]
-
-    remaining = 1.0 / 3.0
-    """Error left over the difference of the two meshes: ratio two, second order."""
-
-
-@dataclass(frozen=True)
-class FaceRootMeshes:
-    """Sectors of both gears: those of the contact, finer at the root.
-
-    Attributes
-    ----------
-    recipes, coarse_recipes : (SectorRecipe, SectorRecipe)
-        Driving and driven gear; the coarse ones are the contact's own, with layers of the next coarser mesh.
-    """
-
-    recipes: tuple[SectorRecipe, SectorRecipe]
-    coarse_recipes: tuple[SectorRecipe, SectorRecipe]
-
-    remaining = 0.8
-    """Error left over the difference of the two meshes: ratio one and a half or more, second order."""
-
-
-def root_meshes(made: PlaneDiscretization | FaceDiscretization) -> PlaneRootMeshes | FaceRootMeshes:
-    """Choose the meshes of the root stress for a contact discretized as `made`."""
-    if isinstance(made, PlaneDiscretization):
-        return PlaneRootMeshes(made.hypothesis, made.recipes, made.coarse_recipes)
-    first, second = (_finer_root(recipe) for recipe in made.recipes)
-    coarse = tuple(
-        replace(recipe, layers=coarser.layers)
-        for recipe, coarser in zip(made.recipes, made.coarse_recipes, strict=True)
-    )
-    return FaceRootMeshes((first, second), (coarse[0], coarse[1]))
-
-
-def _finer_root(recipe: SectorRecipe) -> SectorRecipe:
-    """Return the recipe with a root fine enough for its stress; the flank stays as it is."""
-    return replace(
-        recipe,
-        land_elements=FINER_LAND * recipe.land_elements,
-        depth_size=FINER_DEPTH * recipe.depth_size,
-    )

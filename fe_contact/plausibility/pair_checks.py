@@ -128,7 +128,6 @@ def pair_findings(
 
 
 def _sizes(pair: ParallelAxes) -> Iterator[Finding]:
-    """Check module and angles, which both gears share."""
     gear = pair.pinion
     yield from assessed(
         "module", "normal_module", gear.normal_module, "m", whole=", here and in all other lengths"
@@ -139,7 +138,6 @@ def _sizes(pair: ParallelAxes) -> Iterator[Finding]:
 
 
 def _gear(name: str, gear: Toothing) -> Iterator[Finding]:
-    """Check face, bore and deviations of one gear."""
     yield from _material(name, gear.material)
     module = gear.normal_module
     ratio = f"{gear.face_width / module:.3g} modules of face width are unusual"
@@ -179,7 +177,6 @@ def _amount(field: str, amount: float, module: float) -> Iterator[Finding]:
 
 
 def _material(name: str, material: Material) -> Iterator[Finding]:
-    """Check stiffness and density."""
     yield from assessed("youngs_modulus", f"{name}.material.youngs_modulus", material.youngs_modulus, "Pa")
     yield from assessed("density", f"{name}.material.density", material.density, "kg/m^3")
 
@@ -191,7 +188,6 @@ def _shafts(pair: ParallelAxes) -> Iterator[Finding]:
 
 
 def _shaft(name: str, shaft: Shaft) -> Iterator[Finding]:
-    """Check one shaft between its bearings."""
     reason = f"{engineering(shaft.length / shaft.diameter, 2)} diameters between the bearings are unusual"
     yield from assessed(
         "shaft_slenderness", f"{name}.length", shaft.length, "m", scale=shaft.diameter, reason=reason
@@ -256,7 +252,6 @@ def mesh_findings(pair: ParallelAxes) -> tuple[Finding, ...]:
 
 
 def _findings(pair: ParallelAxes) -> Iterator[Finding]:
-    """Yield the findings on each gear, then those on the mesh."""
     module = pair.pinion.normal_module
     for name, gear, clearance in zip(
         ("pinion", "wheel"), (pair.pinion, pair.wheel), pair.tip_clearances, strict=True
@@ -309,7 +304,6 @@ def root_findings(gear: str, stress: float) -> tuple[Finding, ...]:
 
 
 def _transmission_error(values: FloatArray, module: float) -> Iterator[Finding]:
-    """Check the largest mean over the positions."""
     solved = np.where(np.isfinite(values), values, 0.0)
     largest = float(np.max(np.mean(solved, axis=0), initial=0.0))
     reason = f"tooth deflections of {engineering(largest / module, 2)} modules are beyond linear elasticity"

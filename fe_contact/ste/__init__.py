@@ -2,11 +2,10 @@
 
 from fe_contact.ste.curve import Curve
 from fe_contact.ste.curve_quantities import Spectrum
-from fe_contact.ste.database import SteDatabase
+from fe_contact.ste.database import Repair, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.mesh_force import ForceSample, MeshForce, Validity
-from fe_contact.ste.repair import Repair
 
 __all__ = [
     "SCHEMA_VERSION",

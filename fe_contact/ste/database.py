@@ -4,26 +4,147 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, TypedDict, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import isotonic_regression
 
-from fe_contact.ste import curve as curves
-from fe_contact.ste import extraction, netcdf, repair
-from fe_contact.ste.curve import Curve
-from fe_contact.ste.curve_errors import default_value, operating_point
+from fe_contact.errors import SolveError
+from fe_contact.ste import extraction, netcdf
+from fe_contact.ste.curve import Curve, curve, default_value, operating_point
 from fe_contact.ste.curve_quantities import Spectrum
-from fe_contact.ste.fields import SteFields
+from fe_contact.ste.fields import GRID, SteFields
 from fe_contact.ste.force_table import ForceTable, LevelGrid
 from fe_contact.ste.mesh_force import ForceSample, MeshForce
-from fe_contact.types import Estimate, FloatArray
+from fe_contact.types import BoolArray, Estimate, FloatArray, IntArray
 
 if TYPE_CHECKING:
     import xarray
+
+
+# Repair of a table with failed points or with noise.
+
+
+Table = TypeVar("Table", bound=SteFields)
+
+# the lift-off level is closed-form geometry, so it outweighs any solve
+_LIFT_OFF_WEIGHT = 1e6
+# repaired neighbors stay apart by at least this part of the smallest stored tangent compliance
+_LEAST_COMPLIANCE = 0.1
+
+
+@dataclass(frozen=True)
+class Repair:
+    """The change by `SteDatabase.monotone_repaired`.
+
+    Attributes
+    ----------
+    curves : int
+        Load series (one per position and alignment) that were changed.
+    largest_change : float
+        Largest change of a stored transmission error, m.
+    position, force, misalignment, center_distance_change : float
+        Where that is (base pitches, N, m, m).
+    """
+
+    curves: int
+    largest_change: float
+    position: float
+    force: float
+    misalignment: float
+    center_distance_change: float
+
+
+def _without_failed(table: Table) -> Table:
+    """Leave out the fewest rows (of any axis, greedily) so that no failed point remains.
+
+    Raises
+    ------
+    SolveError
+        If nothing remains.
+    """
+    if not table.n_failed:
+        return table
+    keep = _complete_rows(table.failed)
+    if any(rows.size == 0 for rows in keep.values()):
+        raise SolveError(f"{table.failure_message()}. No complete row remains.", table)
+    arrays = {}
+    for name, dimensions in table.stored.items():
+        array = getattr(table, name)
+        for i, dimension in enumerate(dimensions):
+            array = np.take(array, keep[dimension], axis=i) if dimension in keep else array
+        arrays[name] = array
+    return replace(table, **arrays)
+
+
+def _monotone_repaired(table: Table) -> tuple[Table, Repair]:
+    """Make the transmission error increase with load by isotonic regression, and report the change.
+
+    Only the load series that fall somewhere are touched. The change is added to their error bands, from which
+    the errors of mean, peak-to-peak and harmonics then follow, and the report to the receipt, as
+    ``monotone_repair``. Support loads are dropped: beside mended ones they might fall.
+
+    Raises
+    ------
+    SolveError
+        If any point failed.
+    """
+    table.require_complete()
+    levels = _deflection_levels(table)
+    falling = np.argwhere(np.any(np.diff(levels, axis=-1) <= 0.0, axis=-1))
+    least = _LEAST_COMPLIANCE * float(table.tangent_compliance.min())
+    mended = levels.copy()
+    for index in map(tuple, falling):
+        mended[index] = _isotonic(levels[index], table.force, least)
+    change = np.moveaxis(np.abs(mended - levels)[..., 1:], -1, 1)
+    report = _report(table, len(falling), change)
+    metadata = replace(table.metadata, receipt=table.metadata.receipt | {"monotone_repair": asdict(report)})
+    repaired = replace(
+        table,
+        static_transmission_error=np.moveaxis(mended[..., 1:], -1, 1),
+        no_load_transmission_error=mended[..., 0],
+        error_estimate=table.error_estimate + change,
+        curve_error=table.curve_error[:0],
+        metadata=metadata,
+        support_force=np.empty(0),
+    )
+    return repaired, report
+
+
+def _deflection_levels(database: SteFields) -> FloatArray:
+    """Lift-off and the loads as one stack of deflections (P, M, D, F + 1) in m."""
+    loaded = np.moveaxis(database.static_transmission_error, 1, -1)
+    return np.concatenate([database.no_load_transmission_error[..., None], loaded], axis=-1)
+
+
+def _complete_rows(failed: BoolArray) -> dict[str, IntArray]:
+    """Rows of each axis to keep: the row with the largest failed part goes first."""
+    keep: list[IntArray] = [np.arange(size) for size in failed.shape]
+    while failed.size and failed.any():
+        parts = [failed.mean(axis=tuple(set(range(4)) - {i})) for i in range(4)]
+        # among equals the longest axis gives, since it loses least
+        axis = max(range(4), key=lambda i: (parts[i].max(), failed.shape[i]))
+        worst = int(np.argmax(parts[axis]))
+        failed, keep[axis] = np.delete(failed, worst, axis=axis), np.delete(keep[axis], worst)
+    return dict(zip(GRID, keep, strict=True))
+
+
+def _isotonic(levels: FloatArray, force: FloatArray, least: float) -> FloatArray:
+    """Nearest levels whose compliance is at least `least` everywhere."""
+    tilt = least * np.concatenate([[0.0], force])
+    weights = np.ones_like(levels)
+    weights[0] = _LIFT_OFF_WEIGHT
+    return np.asarray(isotonic_regression(levels - tilt, weights=weights).x + tilt)
+
+
+def _report(table: SteFields, curves: int, change: FloatArray) -> Repair:
+    worst = np.unravel_index(int(np.argmax(change)), change.shape)
+    where = {name: float(getattr(table, name)[i]) for name, i in zip(GRID, worst, strict=True)}
+    return Repair(curves, float(change[worst]), **where)
 
 
 # The derivatives along all axes of a mesh-force table: plain arrays that make it C1 in every coordinate.
@@ -137,9 +258,9 @@ class SteDatabase(SteFields):
         SolveError
             If any stored point failed, unless `allow_failed`.
         """
-        table = repair.without_failed(self) if allow_failed else self
+        table = _without_failed(self) if allow_failed else self
         point = operating_point(table, torque, force, misalignment, center_distance_change)
-        return curves.curve(table, table._mesh_force, point, at)
+        return curve(table, table._mesh_force, point, at)
 
     def mean(self, **point: Unpack[_StoredPoint]) -> Estimate:
         """Mean transmission error over one period, m; raises as `curve`."""
@@ -161,11 +282,11 @@ class SteDatabase(SteFields):
         """Return the table of plain arrays for dynamics; raises as `extraction.force_table`."""
         if not allow_failed:
             return self._force_table
-        return _with_axis_derivatives(MeshForce(extraction.force_table(repair.without_failed(self))))
+        return _with_axis_derivatives(MeshForce(extraction.force_table(_without_failed(self))))
 
-    def monotone_repaired(self) -> tuple[SteDatabase, repair.Repair]:
+    def monotone_repaired(self) -> tuple[SteDatabase, Repair]:
         """Return a table whose transmission error increases with load, and the changes."""
-        return repair.monotone_repaired(self)
+        return _monotone_repaired(self)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write one netCDF-4 file atomically."""
@@ -182,7 +303,6 @@ class SteDatabase(SteFields):
 
     @cached_property
     def _mesh_force(self) -> MeshForce:
-        """The extraction, built at the first question."""
         return MeshForce(extraction.force_table(self))
 
     @cached_property

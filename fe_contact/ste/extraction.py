@@ -128,7 +128,6 @@ def _on_cubic(levels: _LoadLevels, k: int, force: FloatArray) -> Pair:
 
 
 def _load_refinement_merged(pieces: list[_LoadLevels]) -> _LoadLevels:
-    """All levels in the order of their forces."""
     force = np.concatenate([piece.force for piece in pieces])
     order = np.argsort(force)
     deflection = np.concatenate([piece.deflection for piece in pieces], axis=-1)
@@ -253,12 +252,6 @@ def _pairs_in_contact(database: SteFields) -> IntArray:
     _, order = _all_loads(database)
     loaded = _merged(database.pairs_in_contact, database.support_pairs_in_contact, order).astype(np.int64)
     return np.concatenate([np.zeros_like(loaded[..., :1]), loaded], axis=-1)
-
-
-def deflection_levels(database: SteFields) -> FloatArray:
-    """Lift-off and the loads as one stack of deflections (P, M, D, F + 1) in m."""
-    loaded = np.moveaxis(database.static_transmission_error, 1, -1)
-    return np.concatenate([database.no_load_transmission_error[..., None], loaded], axis=-1)
 
 
 def _require_increasing(database: SteFields, force: FloatArray, deflection: FloatArray) -> None:

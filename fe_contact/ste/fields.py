@@ -100,7 +100,7 @@ class SteFields:
     period : int
         Whole base pitches after which everything repeats: 1 where all teeth of a gear are alike.
     curve_error : (9, 22, F, M, D) array
-        Errors of mean, peak-to-peak and 20 harmonics in m, >= 0, by source (`ste.curve_errors.SOURCES`); NaN:
+        Errors of mean, peak-to-peak and 20 harmonics in m, >= 0, by source (`ste.curve.SOURCES`); NaN:
         not estimated. Empty for tables without, whose errors follow from the bands.
     edge_pressure : (P, F, M, D) array
         Largest pressure of the contacts that reach an edge of a flank, Pa: Hertz's as if the flank went on,
@@ -147,7 +147,6 @@ class SteFields:
         _check_values(self)
 
     def _default_support(self) -> None:
-        """Give a table without support loads empty arrays."""
         if np.size(self.support_force) == 0:
             shape = tuple(np.size(getattr(self, name)) for name in SUPPORT)
             for name in ("transmission_error", "tangent_compliance", "pairs_in_contact"):
@@ -191,7 +190,6 @@ class SteFields:
         return f"{len(points)} of {self.status.size} points FAILED ({listed}{more})"
 
     def _describe(self, point: tuple[int, ...]) -> str:
-        """Coordinates and status of one grid point."""
         units = ("", " N", " m", " m")
         coordinates = (
             f"{name} {getattr(self, name)[i]:.6g}{unit}"
@@ -227,7 +225,6 @@ def _frozen_copy(name: str, values: Any) -> NDArray[Any]:
 
 
 def _check_shapes(table: SteFields) -> None:
-    """Every array has the shape its dimensions say."""
     sizes = {name: getattr(table, name).size for name in (*GRID, "pair", "support_force")} | {
         "residual": len(RESIDUALS)
     }
@@ -304,7 +301,6 @@ def _check_values(table: SteFields) -> None:
 
 
 def _refuse(wrong: bool, name: str, demand: str) -> None:
-    """Raise `DatabaseError` if `wrong`."""
     if wrong:
         raise DatabaseError(f"{name} must {demand}")
 

@@ -133,7 +133,6 @@ def interpolate(axis: Axis, values: FloatArray, query: FloatArray) -> FloatArray
 
 
 def _secants(axis: Axis, values: FloatArray) -> FloatArray:
-    """Slope of the chord of every interval."""
     following = np.roll(values, -1, axis=0)
     rise = following - values if axis.period else values[1:] - values[:-1]
     return np.asarray(rise / axis.spacing.reshape(-1, *(1,) * (values.ndim - 1)))

@@ -182,7 +182,6 @@ class MeshForce:
 
 
 def _outside(at: tuple[Stencil, ...]) -> NDArray[np.int64]:
-    """Flag the axes a query leaves."""
     misaligned = Validity.OUTSIDE_MISALIGNMENT * at[1].outside
     return np.asarray(misaligned + Validity.OUTSIDE_CENTER_DISTANCE * at[2].outside)
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from fe_contact.errors import DatabaseError
-from fe_contact.ste.curve_errors import AT_NODES, SOURCES
+from fe_contact.ste.curve import AT_NODES, SOURCES
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import DIMENSIONS, OPTIONAL, RESIDUALS, SteFields
 from fe_contact.types import Json, Status
@@ -44,7 +44,6 @@ def _read_variables(path: Path) -> tuple[dict[str, Any], Json]:
 
 
 def _is_text(dataset: Any) -> bool:
-    """Whether a variable holds texts, which h5netcdf decodes."""
     return bool(dataset.dtype.kind in "OS")
 
 
@@ -186,7 +185,6 @@ def read(path: Path) -> dict[str, Any]:
 
 
 def _described(name: str) -> Json:
-    """CF-style attributes of one variable."""
     units, long_name = ATTRIBUTES[name]
     attributes: Json = {"units": units, "long_name": long_name}
     if name == "status":
@@ -196,7 +194,6 @@ def _described(name: str) -> Json:
 
 
 def _global_attributes(database: SteFields) -> Json:
-    """Format, schema, the JSON documents, and a checksum of the arrays."""
     metadata = asdict(database.metadata)
     return {
         "Conventions": "CF-1.11",
@@ -237,7 +234,6 @@ def _facts(path: Path, attributes: Json) -> PairFacts:
 
 
 def _metadata(path: Path, attributes: Json) -> Metadata:
-    """Read the metadata of a file."""
     documents = {name: json_attribute(path, attributes, name) for name in _JSON_ATTRIBUTES}
     return Metadata(
         content_hash=str(attributes.get("content_hash", "")),

@@ -164,7 +164,6 @@ class ByExecutor:
         return self._in_order(futures)
 
     def _pack(self, shared: object) -> Packed:
-        """Pickle what is shared, unless that was done."""
         known = self._packed.get(id(shared))
         if known is not None:
             return known[1]
@@ -193,7 +192,6 @@ class ByExecutor:
 
 
 def _lost(done: int, of: int) -> WorkersLost:
-    """Say what is known of a pool that broke."""
     reason = "A process of the pool ended during the run; it may have run out of memory"
     return WorkersLost(f"{reason}: {done} of {of} tasks were done.")
 

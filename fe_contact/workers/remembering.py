@@ -38,7 +38,6 @@ def content_digest(content: object) -> str:
 
 
 def _parts(content: object) -> list[bytes]:
-    """Spell it out."""
     if content is None or isinstance(content, bool | int | float | str | bytes | np.generic):
         return [type(content).__name__.encode(), repr(content).encode()]
     if isinstance(content, np.ndarray):
@@ -118,7 +117,6 @@ class Remembering:
         return [self.folder / hashlib.sha256(name.encode()).hexdigest() for name in names]
 
     def _digest(self, shared: object) -> str:
-        """Hash what is shared, once."""
         known = self._digests.get(id(shared))
         if known is None:
             known = self._digests[id(shared)] = shared, content_digest(shared)
@@ -139,7 +137,6 @@ def _write(file: Path, result: Any) -> None:
 
 
 def _read(file: Path) -> tuple[Any] | None:
-    """Return what is kept, None if it is damaged."""
     try:
         content = file.read_bytes()
     except OSError:

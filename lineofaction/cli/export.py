@@ -15,7 +15,7 @@ from dynamics.engines.fmu import export_fmu
 from dynamics.export import FUNCTIONS, write_universal_file
 from dynamics.mechanism.flanks import DAMPING_REACH
 from dynamics.meshes import CoastFlank
-from fe_contact.analysis import DeformedPair, deformed_pairs
+from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pairs
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray

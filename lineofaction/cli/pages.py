@@ -45,7 +45,7 @@ from lineofaction.report.tables.pair import (
 from lineofaction.report.tables.ste import aligned, headline_load
 
 if TYPE_CHECKING:
-    from fe_contact.analysis import LoadDistribution
+    from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 
 _ENDINGS = (".html", ".png", ".svg")
 _WORDS = ("quantity", "symbol", "unit", "point")

@@ -10,7 +10,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from fe_contact.analysis import ste_database
+from fe_contact.analysis.analyze import ste_database
 from fe_contact.options import Run
 from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers

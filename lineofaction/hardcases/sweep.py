@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from fe_contact.analysis import analyze
+from fe_contact.analysis.analyze import analyze
 from fe_contact.analysis.studies.frontier import warm_up
 from fe_contact.geometry import (
     FlankGrid,

@@ -8,7 +8,7 @@ from collections import OrderedDict
 from pathlib import Path
 from typing import Any
 
-from fe_contact.analysis import CondensedPair
+from fe_contact.analysis.live.condensed_pair import CondensedPair
 from lineofaction.gearbox.convert.live import condensed_of, live_curves, plan_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.schemas import Case

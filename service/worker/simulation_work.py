@@ -13,7 +13,7 @@ from typing import Any
 from dynamics.errors import ResultError
 from dynamics.scene import Scene
 from dynamics.simulation import simulate_to_file
-from fe_contact.analysis import ste_database
+from fe_contact.analysis.analyze import ste_database
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.answers import draft_line

@@ -12,7 +12,7 @@ import pytest
 from study_service import CASE, Served, figures_alone, prepared, scene_by_hash, study_service, without
 
 from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
-from fe_contact.analysis.studies.accuracy_study import FIDELITIES
+from fe_contact.analysis.studies.frontier import FIDELITIES
 from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase
 from lineofaction.client import JobState

@@ -17,7 +17,7 @@ from fastapi.testclient import TestClient
 from running_service import until
 
 from dynamics.simulation import simulate
-from fe_contact.analysis import ste_database
+from fe_contact.analysis.analyze import ste_database
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.convert.case import analysis_options, case_json, gear_pair, table_axes
 from lineofaction.gearbox.problems import BadInput

@@ -10,13 +10,12 @@ import pytest
 from pydantic import ValidationError
 
 from bounds import Direction, Kind, written
-from fe_contact.analysis import analyze
+from fe_contact.analysis.analyze import analyze
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry import BoreSeat, Gear, GearBlank, GearPair, Key, RingGear, Shaft
 from fe_contact.material import Material
-from fe_contact.microgeometry import QUANTITIES
-from fe_contact.microgeometry.variables import ACROSS_FACE
+from fe_contact.microgeometry.variables import ACROSS_FACE, QUANTITIES
 from fe_contact.plausibility import pair_findings
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.errors import boundary_name, case_field

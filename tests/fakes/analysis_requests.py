@@ -8,7 +8,9 @@ from typing import Any
 
 from fe_contact.allowed_error import AllowedError
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry import DesignVariable, OptimizationRequest, Scatter
+from fe_contact.microgeometry.optimization import OptimizationRequest
+from fe_contact.microgeometry.scatter import Scatter
+from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Levels, OperatingPoint, TableAxes
 
 

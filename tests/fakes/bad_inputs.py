@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from fe_contact.analysis import analyze
+from fe_contact.analysis.analyze import analyze
 from fe_contact.geometry import FlankModification, Gear, GearPair
 from fe_contact.material import Material
 

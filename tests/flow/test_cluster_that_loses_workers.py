@@ -18,9 +18,10 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, SteDatabase, analyze, study_sensitivity
-from fe_contact.analysis.pairs import contact_lines, solved_operating_points
+from fe_contact.analysis.pairs import contact_lines
 from fe_contact.errors import WorkersLost
-from fe_contact.microgeometry import Sampling, Tolerances, scatter
+from fe_contact.microgeometry.tolerance_study import Sampling, scatter
+from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.workers import ByDask, InProcess, OrHere, RunCost, Workers
 
@@ -100,8 +101,7 @@ def cluster() -> Iterator[Cluster]:
 @pytest.fixture(autouse=True)
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut small tables as large ones are."""
-    for module in (contact_lines, solved_operating_points):
-        monkeypatch.setattr(module, "TASK_SECONDS", 0.01)
+    monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.01)
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ import pytest
 from bad_inputs import BAD_INPUTS
 
 from fe_contact import Gear, GearPair
-from fe_contact.analysis import analyze
+from fe_contact.analysis.analyze import analyze
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, PitchDeviation
 from fe_contact.material import Material

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from printed_pairs import Row, printed_case, printed_pairs
 
-from fe_contact.analysis import ste_database
+from fe_contact.analysis.analyze import ste_database
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import ParallelAxes, Toothing

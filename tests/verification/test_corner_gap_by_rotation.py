@@ -16,7 +16,7 @@ import pytest
 from scipy.optimize import brentq
 
 from fe_contact.contact.touch import conjugate_touch, modified_touch
-from fe_contact.effects.modification_gap import ModificationGap
+from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.geometry import (
     FlankModification,
     Gear,

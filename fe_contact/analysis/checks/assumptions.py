@@ -4,25 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 from bounds import engineering
 from fe_contact.allowed_error import AllowedError
+from fe_contact.analysis.pairs.contact_lines import assemble_remotely
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
-from fe_contact.analysis.pairs.solved_operating_points import assemble_remotely
+from fe_contact.analysis.pairs.solved_run import SolvedRun
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution
-from fe_contact.effects.across_face import across_face
+from fe_contact.effects.effect import across_face
 from fe_contact.effects.influence.estimate import EstimatedInfluence, estimate_influence
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.printed_data import backlash_rounding
-from fe_contact.planning.plan import Plan
 from fe_contact.planning.planned import left_out
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json
@@ -132,26 +132,6 @@ class Assumption:
         }
 
 
-class SolvedRun(Protocol):
-    """A run as its checks see it: a request, its plan, and the contact solved at its operating points."""
-
-    @property
-    def checked(self) -> Checked:
-        """The request."""
-
-    @property
-    def plan(self) -> Plan:
-        """Discretization."""
-
-    @property
-    def places(self) -> OperatingPoints:
-        """Misalignments and center distances."""
-
-    @property
-    def solved(self) -> Sequence[tuple[ContactProblem, ContactSolution]]:
-        """Problem and solution of every place."""
-
-
 def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
     """Check everything that a table took for granted on what it computed."""
     return (
@@ -176,7 +156,6 @@ def check_cheaply(run: SolvedRun) -> tuple[Assumption, ...]:
 
 
 def _allowed(run: SolvedRun) -> AllowedError:
-    """Return what an assumption may change mean or peak-to-peak by."""
     return run.checked.request.options.allowed
 
 
@@ -305,7 +284,6 @@ def _over_nodes(run: SolvedRun, figure: Callable[..., Any]) -> FloatArray:
 
 
 def _violated(assumptions: Sequence[Assumption]) -> tuple[Assumption, ...]:
-    """Return those that do not hold."""
     return tuple(assumption for assumption in assumptions if assumption.holds is False)
 
 

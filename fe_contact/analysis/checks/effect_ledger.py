@@ -59,7 +59,6 @@ def effect_ledger(
 def _entry(
     entry: LedgerEntry, influence: Influence | None, seconds: float | None, assumptions: Sequence[Assumption]
 ) -> Json:
-    """One effect."""
     checks = [check for check in assumptions if check.effect == entry.name]
     return entry.to_json() | {
         "influence": None if influence is None else influence.to_json(),
@@ -105,7 +104,6 @@ def _predicted(checked: Checked, cache: Path | None, run: Plan | None) -> float:
 
 
 def _price(entry: LedgerEntry, influence: Influence | None, seconds: float | None) -> str:
-    """Say what a choice against the scene costs; empty where it does not."""
     if entry.on == entry.verdict.on:
         return ""
     if entry.on:

@@ -15,8 +15,12 @@ from bounds import Finding
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.checks.assumptions import check_assumptions, settled, with_effects
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
-from fe_contact.analysis.estimates.assessed_table import AssessedTable, assessed_table, unassessed_table
-from fe_contact.analysis.estimates.error_estimate import worst_residual
+from fe_contact.analysis.estimates.assessed_table import (
+    AssessedTable,
+    assessed_table,
+    unassessed_table,
+    worst_residual,
+)
 from fe_contact.analysis.request.model_choice import Decided
 from fe_contact.analysis.request.request import Checked, Influences, Request, started_influences
 from fe_contact.analysis.tables import SolvedTable, condensed_bodies, solve_table
@@ -28,7 +32,7 @@ from fe_contact.plausibility import merged, table_findings
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
-from fe_contact.ste.curve_errors import AT_NODES, BETWEEN_NODES, all_sources
+from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, all_sources
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray, Json, Status
@@ -271,7 +275,6 @@ def _planned(made: SolvedTable) -> Json:
 
 
 def _metadata(case: Json, made: SolvedTable, receipt: Json, ledger: list[Json]) -> Metadata:
-    """Everything about the making of the table."""
     request = made.checked.request
     findings = merged(request.findings, solved_findings(request, made.table))
     return Metadata(

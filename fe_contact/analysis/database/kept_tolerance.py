@@ -11,21 +11,22 @@ import numpy as np
 
 from bounds import engineering
 from fe_contact.analysis.database.compute_database import compute_pass, error_shares
-from fe_contact.analysis.request.model_choice import Decided, decide, model_name, next_model
+from fe_contact.analysis.request.model_choice import Decided, decide, next_model
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import FeContactError
 from fe_contact.options import LEVELS, Run
-from fe_contact.planning.discretization import (
+from fe_contact.planning.plan import (
+    CLOSEST,
     FINER_SLICES,
     SLICE_ORDER,
     SLICES,
     FaceDiscretization,
+    NodeRule,
     face_discretization,
 )
-from fe_contact.planning.plan import CLOSEST, NodeRule
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve_errors import AT_NODES, all_sources
+from fe_contact.ste.curve import AT_NODES, all_sources
 from fe_contact.types import FloatArray, Json
 
 # The refinement of the next pass, decided by the errors that a pass has measured.
@@ -112,7 +113,6 @@ class _Resolution:
         return None
 
     def _next_level(self, *, across_face: bool) -> _Resolution | None:
-        """Go up one mesh level, with at least the usual slices."""
         if self.level == LEVELS[-1] or not self.level_left:
             return None
         higher = LEVELS[LEVELS.index(self.level) + 1]
@@ -137,14 +137,12 @@ class _Resolution:
         return face_discretization(self.decided.checked.request.pair, level, slices).slices
 
     def _in_slices(self, count: int) -> _Resolution:
-        """Return the same mesh in so many slices."""
         if count == self.slices:
             return self
         part = (self.slices / count) ** SLICE_ORDER
         return replace(self._with(_SLICES, part, f"slices {self.slices} -> {count}"), slices=count)
 
     def _closer_positions(self) -> _Resolution | None:
-        """Search positions more closely, and let there be twice as many."""
         usual = self.decided.usual_nodes.tolerance
         if self.nodes.tolerance * CLOSER < usual * CLOSEST:
             return None
@@ -231,7 +229,7 @@ def _by_source(values: FloatArray, shares: FloatArray) -> FloatArray:
 
 def _of_model(model: Decided, begun: _Resolution) -> _Refinement:
     """Return the pass of a more exact model; what lies between positions stays, the rest is expected."""
-    step = f"model {model_name(begun.decided.checked)} -> {model_name(model.checked)}"
+    step = f"model {begun.decided.checked.model_name} -> {model.checked.model_name}"
     tolerance = model.checked.request.options.allowed.relative
     expected = float(np.hypot(model.mesh.option.error.total / tolerance, begun.shares[_POSITION].max()))
     return _Refinement(model, AT_NODES[_WIDTH], (step,), expected)
@@ -288,14 +286,14 @@ class _Pass:
     @property
     def name(self) -> str:
         """Model, mesh and slices in words."""
-        return f"{model_name(self.decided.checked)}, {self.decided.mesh.option.name}"
+        return f"{self.decided.checked.model_name}, {self.decided.mesh.option.name}"
 
     def to_json(self) -> Json:
         """Return what ran, what it cost, what it used, and what was refined before it and why."""
         mesh, made, table = self.decided.mesh, self.refinement, self.table
         failed = {"failure": self.failure} if self.failure else {}
         return failed | {
-            "model": model_name(self.decided.checked),
+            "model": self.decided.checked.model_name,
             "level": mesh.level,
             "slices": mesh.slices,
             "positions": None if table is None else int(table.position.size),
@@ -408,7 +406,6 @@ def kept_tolerance(checked: Checked, case: Json, run: Run, on_draft: OnDraft) ->
 
 
 def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
-    """Refine until there is a reason not to."""
     best = shared.first(checked)
     passes = [best]
     assert best.table is not None
@@ -432,7 +429,6 @@ def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
 
 
 def _following(table: SteDatabase, last: _Pass) -> _Refinement | str:
-    """Return what to refine after a pass, or why nothing."""
     tolerance = last.decided.checked.request.options.allowed
     if table.metadata.receipt["tolerance"]["met"]:
         return "met"

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints
-from fe_contact.analysis.pairs.solved_operating_points import deflected_operating_points
 from fe_contact.analysis.tables import PositionNodes
 from fe_contact.contact import ContactSolution
 from fe_contact.planning.plan import NodeRule, Plan
@@ -178,7 +178,6 @@ def _by_bands(nodes: PositionNodes, left: FloatArray, period: int) -> FloatArray
 
 
 def _told(nodes: PositionNodes, curves: FloatArray, loads: int) -> PositionErrors:
-    """Take the largest of the assessed operating points at each load."""
     band: FloatArray = nodes.error.reshape(len(nodes.error), -1, loads).max(axis=1)
     worst: FloatArray = curves.reshape(QUANTITIES, -1, loads).max(axis=1)
     return PositionErrors(band, worst)

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_contact.analysis.flanks.solved_operating_point import (
-    SolvedOperatingPoint,
     checked_positions,
     solve_operating_point,
 )
+from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint
 from fe_contact.analysis.request.request_check import check_point
 from fe_contact.compliance.deformation_3d import deformed_solids
 from fe_contact.compliance.deformed_gear import DeformedGear, deformed_sections
@@ -22,7 +22,7 @@ from fe_contact.errors import integer
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.mesh.export import write_cells
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
-from fe_contact.planning.discretization import FaceDiscretization
+from fe_contact.planning.plan import FaceDiscretization
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
 

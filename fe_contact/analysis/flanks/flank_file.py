@@ -175,7 +175,6 @@ def _derived(results: LoadDistribution) -> dict[str, Variable]:
 
 
 def _attributes(results: LoadDistribution, arrays: dict[str, Any]) -> Json:
-    """Format, schema, the JSON documents, and a checksum of the arrays."""
     return {
         "Conventions": "CF-1.11",
         "title": "Load and pressure on the flanks of a gear pair",

@@ -300,7 +300,6 @@ def _loaded_gap(problem: ContactProblem, force: FloatArray, deflection: FloatArr
 
 
 def _largest_over_mean(values: FloatArray) -> FloatArray:
-    """Largest over mean of the last axis."""
     return np.asarray(values.max(axis=-1) / values.mean(axis=-1))
 
 

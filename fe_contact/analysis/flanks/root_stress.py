@@ -10,14 +10,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import Finding, warn_of
-from fe_contact.analysis.flanks.solved_operating_point import SolvedOperatingPoint, solved_point
-from fe_contact.compliance import UnitRootStress, unit_root_stresses, unit_root_stresses_3d
+from fe_contact.analysis.flanks.solved_operating_point import solved_point
+from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint
+from fe_contact.compliance import PlaneHypothesis, UnitRootStress, unit_root_stresses, unit_root_stresses_3d
 from fe_contact.contact import face_flank_forces, plane_flank_forces
 from fe_contact.contact.patch import Patches
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.geometry.flank_profile import critical_section
+from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
-from fe_contact.planning.planned import FaceRootMeshes, PlaneRootMeshes, root_meshes
+from fe_contact.planning.plan import FaceDiscretization, PlaneDiscretization
 from fe_contact.plausibility import root_findings, unexpected
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import BoolArray, Estimate, FloatArray, IntArray, Json
@@ -199,6 +201,69 @@ def _crest_values(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatA
     return value, position
 
 
+# Meshes for the stress of the tooth roots, and coarser ones that tell its error.
+
+FINER_LAND, FINER_DEPTH = 2, 2.0 / 3.0
+"""Elements along the root, and their depth below both flanks, against those of the contact's sectors."""
+
+
+@dataclass(frozen=True)
+class _PlaneRootMeshes:
+    """Sections of both gears: those of the contact.
+
+    Attributes
+    ----------
+    hypothesis : PlaneHypothesis
+    recipes, coarse_recipes : (MeshRecipe, MeshRecipe)
+        Driving and driven gear; the coarse ones are half as fine.
+    """
+
+    hypothesis: PlaneHypothesis
+    recipes: tuple[MeshRecipe, MeshRecipe]
+    coarse_recipes: tuple[MeshRecipe, MeshRecipe]
+
+    remaining = 1.0 / 3.0
+    """Error left over the difference of the two meshes: ratio two, second order."""
+
+
+@dataclass(frozen=True)
+class _FaceRootMeshes:
+    """Sectors of both gears: those of the contact, finer at the root.
+
+    Attributes
+    ----------
+    recipes, coarse_recipes : (SectorRecipe, SectorRecipe)
+        Driving and driven gear; the coarse ones are the contact's own, with layers of the next coarser mesh.
+    """
+
+    recipes: tuple[SectorRecipe, SectorRecipe]
+    coarse_recipes: tuple[SectorRecipe, SectorRecipe]
+
+    remaining = 0.8
+    """Error left over the difference of the two meshes: ratio one and a half or more, second order."""
+
+
+def _root_meshes(made: PlaneDiscretization | FaceDiscretization) -> _PlaneRootMeshes | _FaceRootMeshes:
+    """Choose the meshes of the root stress for a contact discretized as `made`."""
+    if isinstance(made, PlaneDiscretization):
+        return _PlaneRootMeshes(made.hypothesis, made.recipes, made.coarse_recipes)
+    first, second = (_finer_root(recipe) for recipe in made.recipes)
+    coarse = tuple(
+        replace(recipe, layers=coarser.layers)
+        for recipe, coarser in zip(made.recipes, made.coarse_recipes, strict=True)
+    )
+    return _FaceRootMeshes((first, second), (coarse[0], coarse[1]))
+
+
+def _finer_root(recipe: SectorRecipe) -> SectorRecipe:
+    """Return the recipe with a root fine enough for its stress; the flank stays as it is."""
+    return replace(
+        recipe,
+        land_elements=FINER_LAND * recipe.land_elements,
+        depth_size=FINER_DEPTH * recipe.depth_size,
+    )
+
+
 UnitStresses = tuple[UnitRootStress, UnitRootStress]
 
 
@@ -244,7 +309,7 @@ def root_stress(
     clock = StageClock(run.workers.cost)
     solved, receipt = solved_point(pair, point, options, at, clock, run)
     with clock.stage("root stress"):
-        pinion, wheel = _histories(solved, root_meshes(solved.contact.plan.discretization), run.cache)
+        pinion, wheel = _histories(solved, _root_meshes(solved.contact.plan.discretization), run.cache)
     run.progress("root stress", 1.0)
     request = solved.checked.request
     findings = [
@@ -266,12 +331,11 @@ def root_stress(
 
 
 def _not_root(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
-    """Return findings without the estimated root stress, which is solved here."""
     return tuple(finding for finding in findings if finding.check != "root_stress")
 
 
 def _histories(
-    solved: SolvedOperatingPoint, meshes: PlaneRootMeshes | FaceRootMeshes, cache: Path | None
+    solved: SolvedOperatingPoint, meshes: _PlaneRootMeshes | _FaceRootMeshes, cache: Path | None
 ) -> list[RootStressHistory]:
     """Return the histories of both gears, with the error that coarser meshes show."""
     fine, rough = (
@@ -287,12 +351,12 @@ def _histories(
 
 
 def _unit_stresses(
-    solved: SolvedOperatingPoint, meshes: PlaneRootMeshes | FaceRootMeshes, coarse: bool, cache: Path | None
+    solved: SolvedOperatingPoint, meshes: _PlaneRootMeshes | _FaceRootMeshes, coarse: bool, cache: Path | None
 ) -> UnitStresses:
     """Compute or fetch the unit-load stress of both gears; identical gears are computed once."""
     pair = solved.contact.pair
     gears = solved.contact.plan.bodies(pair)
-    if isinstance(meshes, FaceRootMeshes):
+    if isinstance(meshes, _FaceRootMeshes):
         sectors = meshes.coarse_recipes if coarse else meshes.recipes
         first, second = unit_root_stresses_3d(gears, sectors, cache=cache)
         # a ring's right flank is the loaded one as seen from the other side: its z runs against the pinion's

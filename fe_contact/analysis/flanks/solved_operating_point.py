@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -11,49 +10,22 @@ from numpy.typing import ArrayLike
 
 from fe_contact.analysis.checks.assumptions import check_one_place, settled, with_effects
 from fe_contact.analysis.pairs.pair_contact import (
-    OperatingPoints,
-    PairContact,
     operating_points,
     pair_contact,
 )
+from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_point
-from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact import ContactSolution
 from fe_contact.errors import InputError, SolveError, finite
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
-from fe_contact.planning.plan import Plan
 from fe_contact.planning.planned import planned
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json, Status
 
 POSITIONS = 64
 """Over one mesh cycle, where none are requested."""
-
-
-@dataclass(frozen=True)
-class SolvedOperatingPoint:
-    """A converged solution with the pair it was made for, which stands at its center distance."""
-
-    checked: Checked
-    places: OperatingPoints
-    problem: ContactProblem
-    solution: ContactSolution
-
-    @property
-    def contact(self) -> PairContact:
-        """The pair with its compliances."""
-        return self.places.places[0].contact
-
-    @property
-    def plan(self) -> Plan:
-        """Discretization."""
-        return self.contact.plan
-
-    @property
-    def solved(self) -> tuple[tuple[ContactProblem, ContactSolution], ...]:
-        """Problem and solution of the one place."""
-        return ((self.problem, self.solution),)
 
 
 def solved_point(
@@ -129,11 +101,10 @@ def solve_operating_point(
     run.progress("contact", 1.0)
     if not solution.converged:
         raise SolveError(_failure(position, solution), partial=solution)
-    return SolvedOperatingPoint(checked, points, problem, solution)
+    return SolvedOperatingPoint(checked, plan, points, [(problem, solution)])
 
 
 def _failure(position: FloatArray, solution: ContactSolution, shown: int = 5) -> str:
-    """Say how many positions failed, which (the first `shown`) and why."""
     codes = solution.status[:, 0]
     failed = np.flatnonzero(codes)
     listed = "; ".join(f"position {position[i]:.6g}: {Status(int(codes[i])).name}" for i in failed[:shown])

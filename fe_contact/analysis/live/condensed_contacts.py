@@ -8,16 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from fe_contact.analysis.estimates.error_estimate import TableSample
-from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact
-from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.tables import PositionNodes
-from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
+from fe_contact.analysis.estimates.assessed_table import TableSample
+from fe_contact.analysis.pairs.pair_contact import PairContact
+from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.plan import LARGEST_SUPPORT, Plan, wanted_patch
-from fe_contact.types import FloatArray
 
 # The error of load patches wider than the contact strips, because the mesh asks for it.
 #
@@ -117,34 +112,3 @@ class CondensedContacts:
         for other in (self.sliced, self.patched):
             if other is not None:
                 other.assemble(model, other.candidates(model, candidates.position))
-
-
-# Contact of other flanks on condensed bodies: what a table is made of, and results on the flanks.
-
-
-@dataclass(frozen=True)
-class CondensedSolution:
-    """One alignment at all positions and loads of a question.
-
-    Attributes
-    ----------
-    pair : GearPair or InternalGearPair
-        At its center distance.
-    checked : Checked
-    problem : ContactProblem
-    solution : ContactSolution
-    """
-
-    pair: ParallelAxes
-    checked: Checked
-    problem: ContactProblem
-    solution: ContactSolution
-
-    @classmethod
-    def of(
-        cls, checked: Checked, points: OperatingPoints, nodes: PositionNodes, load: FloatArray
-    ) -> CondensedSolution:
-        """Solve the one operating point at all positions of a period, under forces (L,) in N."""
-        point = points.places[0]
-        problem, solution = point.solve_pitches(nodes.position, load, np.arange(points.period))
-        return cls(point.contact.pair, checked, problem, solution)

@@ -15,17 +15,24 @@ from typing import Any
 import numpy as np
 
 from bounds import at_most
-from fe_contact.analysis.checks.assumptions import Assumption, SolvedRun, check_cheaply
+from fe_contact.analysis.checks.assumptions import Assumption, check_cheaply
 from fe_contact.analysis.database.compute_database import failed_points
-from fe_contact.analysis.estimates.assessed_table import AssessedTable, curve_errors, with_axes
-from fe_contact.analysis.estimates.error_estimate import Nested, TableSample, estimate_errors, worst_residual
+from fe_contact.analysis.estimates.assessed_table import (
+    AssessedTable,
+    Nested,
+    TableSample,
+    curve_errors,
+    estimate_errors,
+    with_axes,
+    worst_residual,
+)
 from fe_contact.analysis.estimates.position_errors import errors_by_halves
-from fe_contact.analysis.live.condensed_contacts import CondensedContacts, CondensedSolution
+from fe_contact.analysis.live.condensed_contacts import CondensedContacts
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact, operating_points
+from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint, SolvedRun
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.analysis.tables import PositionNodes, assembled_table, unmeasured_nodes
-from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, ParallelAxes
 from fe_contact.options import TableAxes
@@ -34,7 +41,7 @@ from fe_contact.planning.plan import LARGEST_SUPPORT, Plan
 from fe_contact.planning.planned import usual_mesh_error
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
-from fe_contact.ste.curve_errors import AT_NODES, BETWEEN_NODES
+from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES
 from fe_contact.ste.curve_quantities import MEAN, QUANTITIES, quantity_changes
 from fe_contact.types import FloatArray, Json
 
@@ -51,35 +58,16 @@ BY_MESH = AT_NODES.index("discretisation")
 
 
 def _condensed_errors(
-    table: SteDatabase,
-    points: OperatingPoints,
-    solution: ContactSolution,
-    contacts: CondensedContacts,
-    sample: TableSample,
-    plan: Plan,
+    table: SteDatabase, run: SolvedOperatingPoint, contacts: CondensedContacts, sample: TableSample
 ) -> AssessedTable:
     """Estimate the errors of a table of one alignment.
 
-    Parameters
-    ----------
-    table : SteDatabase
-    points : OperatingPoints
-        Its one place, on the discretization of the table.
-    solution : ContactSolution
-    contacts : CondensedContacts
-        The same flanks on rougher discretizations, assembled at the sample.
-    sample : TableSample
-        Points that are solved again.
-    plan : Plan
-
-    Returns
-    -------
-    AssessedTable
-        Between the loads nothing is estimated (NaN): the table is of the loads asked.
+    `contacts` have the same flanks on rougher discretizations, assembled at the `sample`, whose points are
+    solved again. Between the loads nothing is estimated (NaN): the table is of the loads asked.
     """
+    points, solution, plan = run.places, run.solution, run.plan
 
     def solved(rougher: PairContact | None, otherwise: FloatArray) -> FloatArray:
-        """Solve the sample on a rougher discretization, (T R, f, 1, 1) in m."""
         if rougher is None:
             return otherwise
         return sample.solved(points.on(rougher), points)
@@ -127,29 +115,11 @@ def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[Flo
 # Assumptions of a condensed pair's table: what costs nothing is checked, the rest is named.
 
 
-@dataclass(frozen=True)
-class _CondensedRun:
-    """A table of a condensed pair as its checks see it, after `SolvedRun`."""
-
-    checked: Checked
-    plan: Plan
-    places: OperatingPoints
-    solved: Sequence[tuple[ContactProblem, ContactSolution]]
-
-
 def _check_condensed(run: SolvedRun, neglected: Mapping[str, str]) -> tuple[Assumption, ...]:
     """Check what can be checked on the solution alone.
 
-    Parameters
-    ----------
-    run : SolvedRun
-    neglected : mapping of str to str
-        Effects of the bodies that the tolerance of the table's case neglected, and why: off here too.
-
-    Returns
-    -------
-    tuple of Assumption
-        What was not checked has no verdict (`holds` None) and says so.
+    `neglected` are effects of the bodies that the tolerance of the table's case neglected, and why: off here
+    too. What was not checked has no verdict (`holds` None) and says so.
     """
     return (*check_cheaply(run), *_edges(run), *_neglected(neglected))
 
@@ -173,13 +143,8 @@ def _neglected(neglected: Mapping[str, str]) -> Iterator[Assumption]:
 
 
 def _condensed_receipt(
-    plan: Plan,
-    solution: ContactSolution,
-    assessed: AssessedTable,
-    assumptions: Sequence[Assumption],
-    clock: StageClock,
+    run: SolvedOperatingPoint, assessed: AssessedTable, assumptions: Sequence[Assumption], clock: StageClock
 ) -> Json:
-    """Return the receipt of a table at the requested loads, between which nothing is known."""
     errors = assessed.to_json()
     missing = [name for name in errors["not_estimated"] if name not in BETWEEN_NODES]
     known = {name: value for name, value in errors["curve_error"].items() if name not in BETWEEN_NODES}
@@ -189,10 +154,10 @@ def _condensed_receipt(
         | {
             "curve_error": known,
             "not_estimated": missing,
-            "plan": plan.to_json(),
-            "beyond_load_patches": int(solution.beyond.sum()),
-            "residuals_max": worst_residual(solution),
-            "failed_points": failed_points([solution]),
+            "plan": run.plan.to_json(),
+            "beyond_load_patches": int(run.solution.beyond.sum()),
+            "residuals_max": worst_residual(run.solution),
+            "failed_points": failed_points([run.solution]),
             "assumptions": [assumption.to_json() for assumption in assumptions],
         }
     )
@@ -278,7 +243,7 @@ class CondensedPair:
         torques: FloatArray,
         misalignment: float = 0.0,
         center_distance_change: float = 0.0,
-    ) -> tuple[SteDatabase, CondensedSolution]:
+    ) -> tuple[SteDatabase, SolvedOperatingPoint]:
         """Return the table, as `table` does, and the contact solution that it is of."""
         clock = StageClock()
         checked = self._asked(pair, torques, misalignment, center_distance_change)
@@ -289,13 +254,11 @@ class CondensedPair:
             contacts, points = self._placed(checked)
             contacts.assemble(points.places[0].model, sample)
         with clock.stage("contact"):
-            solved = CondensedSolution.of(checked, points, nodes, load)
-            pairs = [(solved.problem, solved.solution)]
-            table = assembled_table(checked.request, points, nodes, pairs, [])
+            solved = _solved(checked, plan, points, nodes)
+            table = assembled_table(checked.request, points, nodes, solved.solved, [])
         with clock.stage("error estimate"):
-            assessed = _condensed_errors(table, points, solved.solution, contacts, sample, plan)
-        assumptions = _check_condensed(_CondensedRun(checked, plan, points, pairs), self.neglected)
-        receipt = _condensed_receipt(plan, solved.solution, assessed, assumptions, clock)
+            assessed = _condensed_errors(table, solved, contacts, sample)
+        receipt = _condensed_receipt(solved, assessed, _check_condensed(solved, self.neglected), clock)
         receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
         metadata = Metadata(effect_ledger=ledger, receipt=receipt)
@@ -308,13 +271,13 @@ class CondensedPair:
         torques: FloatArray,
         misalignment: float = 0.0,
         center_distance_change: float = 0.0,
-    ) -> CondensedSolution:
+    ) -> SolvedOperatingPoint:
         """Solve the contact alone, at the positions of `table`: no table, no errors.
 
         Parameters and errors are those of `table`.
         """
-        checked, _, points, nodes, load = self._posed(pair, torques, misalignment, center_distance_change)
-        return CondensedSolution.of(checked, points, nodes, load)
+        checked, _, points, nodes, plan = self._posed(pair, torques, misalignment, center_distance_change)
+        return _solved(checked, plan, points, nodes)
 
     def solve_rougher(
         self,
@@ -322,30 +285,28 @@ class CondensedPair:
         torques: FloatArray,
         misalignment: float = 0.0,
         center_distance_change: float = 0.0,
-    ) -> tuple[CondensedSolution, ...]:
+    ) -> tuple[SolvedOperatingPoint, ...]:
         """Solve the contact in half the slices and on the coarse meshes, whichever there are.
 
         What this changes of a result on the flanks is a measure of its error. Parameters and errors are those
         of `table`.
         """
         question = pair, torques, misalignment, center_distance_change
-        checked, contacts, points, nodes, load = self._posed(*question)
+        checked, contacts, points, nodes, plan = self._posed(*question)
         return tuple(
-            CondensedSolution.of(checked, points.on(rougher), nodes, load)
+            _solved(checked, plan, points.on(rougher), nodes)
             for rougher in (contacts.sliced, contacts.coarse)
             if rougher is not None
         )
 
     def _posed(
         self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float
-    ) -> tuple[Checked, CondensedContacts, OperatingPoints, PositionNodes, FloatArray]:
-        """Return the checked question, where its contacts stand, the positions and the loads."""
+    ) -> tuple[Checked, CondensedContacts, OperatingPoints, PositionNodes, Plan]:
         checked = self._asked(pair, torques, misalignment, change)
         nodes, plan = self._laid_out(checked)
-        return checked, *self._placed(checked), nodes, plan.load
+        return checked, *self._placed(checked), nodes, plan
 
     def _asked(self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float) -> Checked:
-        """Check a question, and compose its model."""
         self._refuse_other_bodies(pair)
         axes = TableAxes(torques=torques, misalignments=[misalignment], center_distance_changes=[change])
         self._refuse_beyond_patches(pair, torques, axes.load(pair))
@@ -417,6 +378,14 @@ class CondensedPair:
         return self._apart[change]
 
 
+def _solved(
+    checked: Checked, plan: Plan, points: OperatingPoints, nodes: PositionNodes
+) -> SolvedOperatingPoint:
+    """Solve the one place of a question at all positions of a period."""
+    solved = points.places[0].solve_pitches(nodes.position, plan.load, np.arange(points.period))
+    return SolvedOperatingPoint(checked, plan, points, [solved])
+
+
 def _refuse_more_teeth(contact: PairContact, change: float) -> None:
     """Refuse a distance at which more teeth may touch than the compliance in the plane has."""
     if contact.plane is None:
@@ -429,7 +398,6 @@ def _refuse_more_teeth(contact: PairContact, change: float) -> None:
 
 
 def _plain(pair: Any) -> Any:
-    """Return a pair, external or internal, without its flank modifications."""
     none = FlankModification()
     pinion, wheel = (replace(gear, modification=none) for gear in (pair.pinion, pair.wheel))
     return replace(pair, pinion=pinion, wheel=wheel)

@@ -39,8 +39,7 @@ from fe_contact.effects import ContactScene, compose
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe
 from fe_contact.planning.cost_model import condensed_teeth
-from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
-from fe_contact.planning.plan import Plan
+from fe_contact.planning.plan import FaceDiscretization, Plan, PlaneDiscretization
 from fe_contact.types import FloatArray, IntArray
 from fe_contact.workers import InProcess, Workers
 from model_studies.progress import Report, unreported

@@ -20,10 +20,8 @@ from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.request.request_check import check_asked
 from fe_contact.effects.influence.estimate import estimate_influence
 from fe_contact.options import LEVELS, AnalysisOptions
-from fe_contact.planning.cost_model import Prediction, predict_run
-from fe_contact.planning.discretization import FaceDiscretization
-from fe_contact.planning.effort import effort
-from fe_contact.planning.plan import NodeRule, Plan, make_plan
+from fe_contact.planning.cost_model import Prediction, effort, predict_run
+from fe_contact.planning.plan import FaceDiscretization, NodeRule, Plan, make_plan
 from fe_contact.planning.planned import ExpectedCurves, MeshChoice, MeshOption, chosen_mesh, expected_error
 from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of
 from fe_contact.types import FloatArray, Json
@@ -129,17 +127,7 @@ class Decided:
 
     def to_json(self) -> Json:
         """Return what was chosen, as plain JSON."""
-        return {"model": model_name(self.checked)} | self.mesh.to_json()
-
-
-def model_name(checked: Checked) -> str:
-    """Name the model of a request in words."""
-    if checked.model.across_face:
-        return "three dimensions"
-    if checked.request.options.model == "plane_stress":
-        return "plane stress"
-    corrected = "plane strain corrected for the finite width"
-    return corrected if checked.model.finite_width else "plane strain"
+        return {"model": self.checked.model_name} | self.mesh.to_json()
 
 
 WIDTH_SHARE = 0.8
@@ -210,7 +198,6 @@ def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, trie
 def _meshes(
     models: Sequence[Checked], curves: ExpectedCurves | None, cache: Path | None, stretch: float
 ) -> list[tuple[Checked, MeshChoice]]:
-    """Choose a mesh for every model, by `stretch` times the tolerance."""
     meshes: list[tuple[Checked, MeshChoice]] = []
     for model in models:
         # what the coarsest mesh in the plane meets, three dimensions meet no cheaper
@@ -220,15 +207,13 @@ def _meshes(
 
 
 def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshChoice) -> MeshChoice:
-    """Say why something cheaper is tried first than what is expected to meet the tolerance."""
-    dearer = f"{model_name(checked)}, {chosen.option.name}"
+    dearer = f"{checked.model_name}, {chosen.option.name}"
     error = f"{engineering(100.0 * first.option.error.total, 2)} %"
     reason = f"expected error {error}, tried first: much less work than {dearer}"
     return MeshChoice(first.option, chosen.met, reason)
 
 
 def _wishes(checked: Checked) -> bool:
-    """Whether an error or a time is requested."""
     options = checked.request.options
     return options.tolerance is not None or options.time_budget is not None
 
@@ -282,14 +267,12 @@ def _width_is_small(checked: Checked) -> bool:
 
 
 def _again(request: Request) -> Checked:
-    """Compose a request anew; nothing more is neglected."""
     return check_asked(request, spare=False)
 
 
 def _mesh(
     checked: Checked, curves: ExpectedCurves | None, cache: Path | None, stretch: float = 1.0
 ) -> MeshChoice:
-    """Choose the mesh of one model."""
     request, options = checked.request, checked.request.options
     if options.tolerance is not None:
         options = replace(options, tolerance=options.tolerance.stretched(stretch))
@@ -331,7 +314,6 @@ def _reason(tells: bool, text: str, parts: str) -> str:
 
 
 def _planned(checked: Checked, mesh: MeshChoice) -> Decided:
-    """Make the plan."""
     request = checked.request
     plan = make_plan(request.pair, request.load, request.options, checked.model, mesh.level, mesh.slices)
     return Decided(checked, mesh, plan)

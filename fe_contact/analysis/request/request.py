@@ -154,6 +154,16 @@ class Checked:
         """Every effect "on" or "off", as the whole request decides it."""
         return {entry.name: "on" if entry.on else "off" for entry in self.ledger}
 
+    @property
+    def model_name(self) -> str:
+        """The model in words."""
+        if self.model.across_face:
+            return "three dimensions"
+        if self.request.options.model == "plane_stress":
+            return "plane stress"
+        corrected = "plane strain corrected for the finite width"
+        return corrected if self.model.finite_width else "plane strain"
+
     def assessing(self, name: str) -> tuple[ContactScene, dict[str, str]]:
         """Return the scene and the decisions by which the influence of an effect is estimated.
 
@@ -212,7 +222,6 @@ def started_influences(checked: Checked, workers: Workers, shared: object) -> It
 
 
 def _influences_of_request(_shared: object, checked: Checked) -> Influences:
-    """Estimate every effect of a request: one task."""
     return estimated_influences(checked)
 
 

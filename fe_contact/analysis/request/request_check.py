@@ -19,7 +19,7 @@ from fe_contact.flank.modification import fields_of
 from fe_contact.geometry import FlankModification, ParallelAxes
 from fe_contact.mesh import SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
-from fe_contact.planning.plan import CycleCost, cycle_cost, make_plan, refuse_long_cycle
+from fe_contact.planning.plan import CycleCost, make_plan
 
 # Automatic effects that a requested tolerance does not need.
 
@@ -90,7 +90,6 @@ def _refuse_beyond_plane(scene: ContactScene, model: ContactModel, ledger: Seque
 
 
 def _refuse_face_effects(scene: ContactScene) -> None:
-    """Refuse what varies or moves across the face."""
     pair, advice = scene.pair, "Use the 3-D model for it."
     if pair.pinion.helix_angle != 0.0:
         raise InputError("pinion.helix_angle", pair.pinion.helix_angle, "0 for a plane model", advice)
@@ -191,7 +190,6 @@ def _composed(request: Request) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
 
 
 def _refuse_idle_pitches(request: Request) -> None:
-    """Refuse a number of pitches where all of them are alike."""
     gears = (request.pair.pinion, request.pair.wheel)
     if request.pitches is not None and all(gear.pitch_deviation.neutral for gear in gears):
         bound = "left out where all teeth are alike"
@@ -202,8 +200,8 @@ def _cycle_cost(request: Request, model: ContactModel) -> CycleCost:
     """Predict the cost of the whole table; refuse one that is too long to be made."""
     plan = make_plan(request.pair, request.load, request.options, model)
     alignments = request.misalignment.size * request.center_distance_change.size
-    cost = cycle_cost(request.pair, plan, model.period, alignments)
-    refuse_long_cycle(cost)
+    cost = CycleCost.of(request.pair, plan, model.period, alignments)
+    cost.refuse_too_long()
     return cost
 
 

@@ -173,7 +173,6 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:
 
 
 def _figures(checked: Checked, run: Run) -> Figures:
-    """Compute the table of a request, without its errors, and read its curves."""
     request = checked.request
     table = compute_database(checked, request.to_json(), run.silent)
     table.require_complete()

@@ -6,16 +6,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import product
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 import model_studies
 from fe_contact.analysis.analyze import analyze
+from fe_contact.analysis.database.compute_database import compute_database, software_versions
+from fe_contact.analysis.pairs.pair_contact import OperatingPoints, operating_points
+from fe_contact.analysis.pairs.slice_springs import (
+    SliceLaw,
+    SpringContact,
+    mean_stiffness,
+    parabolic_stiffness,
+)
+from fe_contact.analysis.pairs.tabulate import pair_facts, table_fields, table_support
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import check_request
-from fe_contact.analysis.studies.accuracy_study import FIDELITIES, Fidelity
+from fe_contact.analysis.request.request_check import check_asked, check_request
 from fe_contact.analysis.studies.measured_full_contact import (
     NAME,
     ORIGIN,
@@ -25,10 +33,15 @@ from fe_contact.analysis.studies.measured_full_contact import (
     known_full_contact,
     measure_full_contact,
 )
-from fe_contact.errors import MeshError, SolveError, chosen, integer
+from fe_contact.contact import ContactSolution
+from fe_contact.errors import InputError, MeshError, SolveError, chosen, integer
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
-from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.ste import SteDatabase
+from fe_contact.options import AnalysisOptions, Run, TableAxes
+from fe_contact.planning.plan import PLANE_REFINEMENT, Plan, make_plan
+from fe_contact.solver_version import SOLVER_VERSION
+from fe_contact.stage_clock import StageClock
+from fe_contact.ste import Metadata, SteDatabase
+from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray, Json
 from model_studies import (
     Outcome,
@@ -41,6 +54,219 @@ from model_studies import (
     silent,
 )
 from model_studies.frontier import Errors
+
+# The accuracy study: ways to the transmission error from a closed form to fine finite elements.
+
+
+# A fidelity of the accuracy study.
+
+
+class _Fidelity(model_studies.Fidelity[Checked], Protocol):
+    """One way to a table of transmission error; those of one family differ by their mesh only.
+
+    Attributes
+    ----------
+    element_size : float
+        What a convergence is assessed by.
+    """
+
+    @property
+    def element_size(self) -> float:
+        """Size of the elements beside that of the other fidelities of the family; 0 without elements."""
+
+    def as_computed(self, checked: Checked) -> Checked:
+        """Return the request as this fidelity computes it: with its model and mesh.
+
+        Raises
+        ------
+        InputError
+            The fidelity is not valid for it.
+        """
+
+    def run(self, checked: Checked) -> SteDatabase:
+        """Compute the table without a cache, with its time, memory and error in the receipt."""
+
+
+# The fidelities without finite elements: tooth stiffness of ISO 6336-1 over contact lines, thin slices.
+#
+# Both take the stiffness of the series of ISO 6336-1, method B, which was fitted to external steel pairs.
+#
+# - **ISO 6336**: the mesh stiffness follows the length of the contact lines and has the standard's mean
+#   value, k(x) = c_gamma_alpha b l(x)/mean(l). Nothing but the macro geometry enters.
+# - **Thin slices**: uncoupled slices of the face between the true gaps, so that modifications, misalignment
+#   and corner contact act. Measured gears are softer than the theory by C_M = 0.8; finite elements are not,
+#   so c'/C_M is taken. Along the path of contact the stiffness falls from the middle by a parabola to both
+#   ends, as deep as the standard's mean asks: c_gamma_alpha = c'(0.75 eps_alpha + 0.25) for eps_alpha pairs.
+
+POSITIONS = 64
+
+ISO_ERROR, SLICE_ERROR = 0.45, 0.6
+"""Relative error of the mean stated for the fidelities: above the worst of docs/frontier.md."""
+
+
+@dataclass(frozen=True)
+class _ClosedFormFidelity:
+    """A fidelity of uncoupled slices.
+
+    Attributes
+    ----------
+    name, title : str
+    law : SliceLaw
+    relative_error : float
+        Of the transmission error, stated with every point of its table.
+    """
+
+    name: str
+    title: str
+    law: SliceLaw
+    relative_error: float
+
+    element_size = 0.0
+
+    @property
+    def family(self) -> str:
+        """A family of its own."""
+        return self.name
+
+    def refusal(self, checked: Checked) -> str | None:
+        """Say why it is not valid: the series is for external pairs, and shafts couple the slices."""
+        pair = checked.request.pair
+        if pair.internal:
+            return "the stiffness of ISO 6336-1 applies to external pairs only"
+        if checked.model.compliances:
+            return "flexible shafts couple the slices"
+        return None
+
+    def as_computed(self, checked: Checked) -> Checked:
+        """Return the request as it is: there is no mesh to choose."""
+        return checked
+
+    def run(self, checked: Checked) -> SteDatabase:
+        """Compute the table."""
+        clock = StageClock()
+        request = checked.request
+        plan = make_plan(request.pair, request.load, request.options, checked.model)
+        with clock.stage("contact"):
+            nominal = SpringContact(request.pair, plan, law=self.law)
+            points = operating_points(request.scene, request.choices, nominal)
+            table = self._table(checked, plan, points)
+        case = request.to_json() | {"rung": self.name}
+        ledger = [entry.to_json() for entry in checked.ledger]
+        receipt = clock.to_json() | {"plan": {"model": self.name, "positions": table.position.size}}
+        name = content_hash(case, SOLVER_VERSION, SCHEMA_VERSION)
+        return replace(table, metadata=Metadata(case, ledger, receipt, name, software_versions()))
+
+    def _table(self, checked: Checked, plan: Plan, points: OperatingPoints) -> SteDatabase:
+        request = checked.request
+        count = plan.positions or POSITIONS
+        position, pitches = np.arange(count) / count, np.arange(points.period)
+        solved = [point.solve_pitches(position, plan.load, pitches) for point in points.places]
+        support = [point.solve_pitches(position, plan.support, pitches) for point in points.places]
+        error = [self._error(solution) for _, solution in solved]
+        return SteDatabase(
+            position=(pitches[:, None] + position).ravel(),
+            force=plan.load,
+            torque=request.torque,
+            misalignment=request.misalignment,
+            center_distance_change=request.center_distance_change,
+            facts=pair_facts(request.pair),
+            period=points.period,
+            error_estimate=points.gathered(error),
+            metadata=Metadata(),
+            **table_fields(points, solved),
+            **table_support(points, support),
+        )
+
+    def _error(self, solution: ContactSolution) -> FloatArray:
+        """State the error (P, L) as a part of the elastic deflection, m."""
+        return self.relative_error * np.abs(solution.deflection - solution.no_load[:, None])
+
+
+ISO6336 = _ClosedFormFidelity(
+    "iso6336", "ISO 6336 stiffness over contact lines", SliceLaw(mean_stiffness, with_gaps=False), ISO_ERROR
+)
+THIN_SLICES = _ClosedFormFidelity(
+    "thin_slices", "thin slices", SliceLaw(parabolic_stiffness, with_gaps=True), SLICE_ERROR
+)
+
+
+# The fidelities of finite elements: `analyze` with a model and a mesh.
+
+SECTOR_FLANK_SIZE = {"draft": 0.2, "standard": 0.15, "fine": 0.1}
+"""Modules; of `SectorRecipe`."""
+
+
+@dataclass(frozen=True)
+class _FiniteElementFidelity:
+    """A model and a mesh of `analyze`.
+
+    Attributes
+    ----------
+    name, title : str
+    model : str
+        "plane_strain", "3d", or "auto" for the plane corrected for its finite width.
+    level : str
+        "draft", "standard" or "fine".
+    slices : int, optional
+        Of the face; default: those that usually go with the mesh.
+    """
+
+    name: str
+    title: str
+    model: str
+    level: str
+    slices: int | None = None
+
+    @property
+    def family(self) -> str:
+        """Fidelities of one family differ by their mesh only."""
+        return self.model
+
+    @property
+    def element_size(self) -> float:
+        """Size of the elements beside that of the other fidelities of the family."""
+        return SECTOR_FLANK_SIZE[self.level] if self.model == "3d" else 1.0 / PLANE_REFINEMENT[self.level]
+
+    def refusal(self, checked: Checked) -> str | None:
+        """Say why the fidelity is not valid: no plane holds what acts across the face."""
+        try:
+            self.as_computed(checked)
+        except InputError as error:
+            return f"{error.field} must be {error.bound}"
+        return None
+
+    def as_computed(self, checked: Checked) -> Checked:
+        """Return the request with this model and mesh; explicit choices of other effects stay."""
+        request = checked.request
+        own = face, width = request.model_effects
+        effects = {name: choice for name, choice in request.options.effects.items() if name not in own}
+        if self.model == "auto":
+            effects |= {face: "off", width: "on"}
+        options = request.options.at_level(self.level)
+        options = replace(options, model=self.model, effects=effects, receipt="full")
+        return check_asked(replace(request, options=options))
+
+    def run(self, checked: Checked) -> SteDatabase:
+        """Compute the table."""
+        computed = self.as_computed(checked)
+        decided = decide(computed)
+        if self.slices is not None:
+            decided = decided.in_slices(self.slices)
+        return compute_database(computed, computed.request.to_json(), Run(), decided)
+
+
+FIDELITIES: tuple[_Fidelity, ...] = (
+    ISO6336,
+    THIN_SLICES,
+    _FiniteElementFidelity("plane_strain", "2-D plane strain", "plane_strain", "standard"),
+    _FiniteElementFidelity("corrected_draft", "2-D corrected for the width, draft", "auto", "draft"),
+    _FiniteElementFidelity("corrected", "2-D corrected for the width, standard", "auto", "standard"),
+    _FiniteElementFidelity("corrected_fine", "2-D corrected for the width, fine", "auto", "fine"),
+    _FiniteElementFidelity("3d_draft", "3-D, draft", "3d", "draft"),
+    _FiniteElementFidelity("3d_standard", "3-D, standard", "3d", "standard"),
+    _FiniteElementFidelity("3d_fine", "3-D, fine, 23 slices", "3d", "fine", 23),
+)
+
 
 # Loading, and at the first use compiling, what a measured run shall not pay for.
 
@@ -96,8 +322,7 @@ class FidelityResult(model_studies.FidelityResult):
     peak_to_peak_error: float = NAN
 
 
-def _fidelity_results(outcomes: Sequence[Outcome[Fidelity, SteDatabase]]) -> tuple[FidelityResult, ...]:
-    """Measure every table against the last one, and that one by its convergence."""
+def _fidelity_results(outcomes: Sequence[Outcome[_Fidelity, SteDatabase]]) -> tuple[FidelityResult, ...]:
     read = [Outcome(outcome.fidelity, _result(outcome), outcome.cpu_seconds) for outcome in outcomes]
     errors = against_finest(read, _errors, _remaining)
     return tuple(
@@ -112,7 +337,7 @@ def _errors(result: FidelityResult, reference: FidelityResult) -> Errors:
     return dict(zip(FIGURES, worst, strict=True))
 
 
-def _remaining(coarser: Sequence[tuple[Fidelity, Errors]], finest: Fidelity) -> Errors:
+def _remaining(coarser: Sequence[tuple[_Fidelity, Errors]], finest: _Fidelity) -> Errors:
     """Return the part of the difference to the next coarser mesh that the finest one leaves: second order."""
     if not coarser:
         return dict.fromkeys(FIGURES, NAN)
@@ -121,7 +346,7 @@ def _remaining(coarser: Sequence[tuple[Fidelity, Errors]], finest: Fidelity) -> 
     return {name: part * error for name, error in errors.items()}
 
 
-def _result(outcome: Outcome[Fidelity, SteDatabase]) -> FidelityResult:
+def _result(outcome: Outcome[_Fidelity, SteDatabase]) -> FidelityResult:
     """Read a table; time and memory are those of its receipt, which has those of child processes too."""
     fidelity, table = outcome.fidelity, outcome.result
     axes = (table.force, table.misalignment, table.center_distance_change)
@@ -143,7 +368,6 @@ def _result(outcome: Outcome[Fidelity, SteDatabase]) -> FidelityResult:
     )
 
 
-POSITIONS = 64
 MOST_FULL_CONTACT = 64
 
 
@@ -234,12 +458,11 @@ def frontier(
     return study if full_contact is None else _beside(study, checked, full_contact, tables, progress)
 
 
-def _warm_up(fidelities: Sequence[Fidelity]) -> None:
+def _warm_up(fidelities: Sequence[_Fidelity]) -> None:
     warm_up(across_face=any(fidelity.name.startswith("3d") for fidelity in fidelities))
 
 
-def _whole_table(fidelity: Fidelity, checked: Checked) -> SteDatabase:
-    """Return the table of a fidelity, of which no point is missing."""
+def _whole_table(fidelity: _Fidelity, checked: Checked) -> SteDatabase:
     table = fidelity.run(checked)
     table.require_complete()
     return table
@@ -248,7 +471,6 @@ def _whole_table(fidelity: Fidelity, checked: Checked) -> SteDatabase:
 def _beside(
     study: Frontier, checked: Checked, positions: int, tables: dict[str, SteDatabase], progress: Progress
 ) -> Frontier:
-    """Add full contact of the case, or why there is none."""
     reason = full_contact_refusal(checked)
     if reason is None:
         try:

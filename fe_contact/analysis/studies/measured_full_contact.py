@@ -178,7 +178,6 @@ class MeasuredFullContact:
         return _worst(means), _worst(swings)
 
     def _curves(self) -> Iterator[tuple[float, float, FloatArray, FloatArray]]:
-        """Give misalignment, torque, positions and STE of every curve."""
         for misalignment, table in zip(self.misalignments, self.tables, strict=True):
             for torque, lag in zip(table.torque, table.transmission_error.T, strict=True):
                 yield misalignment, float(torque), table.position, lag
@@ -287,6 +286,5 @@ def _errors(curve: FloatArray, reference: FloatArray) -> tuple[float, float]:
 
 
 def _worst(errors: FloatArray) -> float:
-    """Return the largest error that is known, NaN if none is."""
     known = errors[np.isfinite(errors)]
     return float(known.max()) if known.size else float("nan")

@@ -92,7 +92,6 @@ def _with_corners(options: AnalysisOptions, choice: str) -> AnalysisOptions:
 def _curves(
     pair: ParallelAxes, axes: TableAxes, options: AnalysisOptions, run: Run
 ) -> tuple[RippleCurve, RippleCurve]:
-    """Compute the table over each axis, the other one at zero, and read its ripple."""
     nominal = replace(axes, misalignments=(0.0,), center_distance_changes=(0.0,))
     skews = replace(nominal, misalignments=np.union1d([0.0], axes.misalignments))
     changes = replace(nominal, center_distance_changes=np.union1d([0.0], axes.center_distance_changes))

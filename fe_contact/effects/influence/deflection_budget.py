@@ -101,7 +101,6 @@ class Springs:
         return self._known[key]
 
     def _candidates(self, model: ContactModel) -> Candidates:
-        """Return where plain involutes can touch."""
         key = model.corner_contact, model.across_face
         if key not in self._plain:
             module, count = self.pair.pinion.normal_module, _positions(model)

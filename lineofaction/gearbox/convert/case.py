@@ -172,7 +172,7 @@ def check_case(case: Case, *, whole_table: bool = True) -> ParallelAxes:
     BadInput
         No such pair, or a request that no plan can meet.
     """
-    from fe_contact.analysis import check_request  # noqa: PLC0415 (start-up time)
+    from fe_contact.analysis.request.request_check import check_request  # noqa: PLC0415 (start-up time)
 
     pair = gear_pair(case)
     with boundary_errors():

@@ -11,17 +11,13 @@ from typing import Any, cast
 
 import numpy as np
 
-from fe_contact.analysis import (
-    CondensedPair,
-    LoadDistribution,
-    condensed_pair,
-    load_distribution,
-    pressure_map,
-)
 from fe_contact.analysis.flanks.deformed_pair import mesh_angles
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution, pressure_map
+from fe_contact.analysis.live.condensed_pair import CondensedPair
+from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.analysis.run_plan import RunPlan, plan_run
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
-from fe_contact.microgeometry import CurveDerivatives, FlankDerivatives, curve_derivatives
+from fe_contact.microgeometry.linearized_design import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.answers import curve_json

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.optimize import brentq
 
-from fe_contact.analysis import analyze
+from fe_contact.analysis.analyze import analyze
 from fe_contact.contact import ContactProblem, ContactSolution, solve_contact
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair, PitchDeviation

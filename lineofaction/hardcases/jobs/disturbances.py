@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis import ste_database
+from fe_contact.analysis.analyze import ste_database
 from fe_contact.types import FloatArray
 from host import kill as end
 from host import limit_file_size, memory_figure

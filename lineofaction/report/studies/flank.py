@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from bounds import engineering
-from fe_contact.analysis import LoadDistribution
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.effects import assumption_lines
 from lineofaction.gearbox.units import UM

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from bounds import engineering
-from fe_contact.microgeometry import Optimization
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
+from fe_contact.microgeometry.optimization import Optimization
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.units import UM, factor
 from lineofaction.report.drawing import palette

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fe_contact.microgeometry import ToleranceStudy
+from fe_contact.microgeometry.tolerance_study import ToleranceStudy
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.units import UM
 from lineofaction.report.drawing import palette

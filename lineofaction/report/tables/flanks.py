@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from fe_contact.analysis import LoadDistribution, pressure_map
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
 from fe_contact.types import IntArray
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from benchmarks.drawn_pairs import assessed_pairs, drawn_pairs, fresh_pairs, in_plane
-from fe_contact.analysis import check_request
+from fe_contact.analysis.request.request_check import check_request
 
 
 def test_a_seed_has_the_same_pairs_every_time_and_more_of_them_begin_alike() -> None:

@@ -8,7 +8,7 @@ from analysis_requests import table_request
 from benchmarks.assessed_influence import within_factor
 from benchmarks.influence_cases import influence_cases
 from benchmarks.influence_estimates import STUDY, LoadedInfluence, markdown
-from fe_contact.analysis import check_request
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.effects import EFFECTS
 
 

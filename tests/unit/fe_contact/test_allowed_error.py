@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
-from fe_contact.analysis import check_request
 from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import _adaptive_nodes
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes

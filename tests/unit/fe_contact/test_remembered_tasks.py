@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, PitchDeviation, analyze
-from fe_contact.analysis.pairs import contact_lines, solved_operating_points
+from fe_contact.analysis.pairs import contact_lines
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.workers import Remembering, RunCost
 from fe_contact.workers.remembering import content_digest
@@ -44,8 +44,7 @@ class Here:
 @pytest.fixture(autouse=True)
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut small tables as large ones are."""
-    for module in (contact_lines, solved_operating_points):
-        monkeypatch.setattr(module, "TASK_SECONDS", 0.005)
+    monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.005)
 
 
 @pytest.fixture(scope="module")

@@ -17,16 +17,11 @@ from analysis_requests import design_request
 
 from fe_contact import Gear, GearPair
 from fe_contact.errors import InputError, WorkersLost
-from fe_contact.microgeometry import (
-    DesignVariable,
-    NelderMead,
-    Sampling,
-    Search,
-    Tolerances,
-    ToleranceStudy,
-    optimize,
-    scatter,
-)
+from fe_contact.microgeometry.optimize import optimize
+from fe_contact.microgeometry.search import NelderMead, Search
+from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, scatter
+from fe_contact.microgeometry.tolerances import Tolerances
+from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers
 from fe_contact.workers.executor import Packed

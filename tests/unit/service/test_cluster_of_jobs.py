@@ -16,7 +16,7 @@ from running_service import bench
 from service_fakes import REGISTRY
 from structlog.testing import capture_logs
 
-from fe_contact.analysis.pairs import contact_lines, solved_operating_points
+from fe_contact.analysis.pairs import contact_lines
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import RunCost, dask_cluster
 from lineofaction.gearbox.problems import BadInput
@@ -44,8 +44,7 @@ NOTHING_STORED = SimpleNamespace(find=lambda *_: None)
 @pytest.fixture(autouse=True)
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut small tables as large ones are."""
-    for module in (contact_lines, solved_operating_points):
-        monkeypatch.setattr(module, "TASK_SECONDS", 1e-3)
+    monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e-3)
 
 
 @pytest.fixture(scope="module")
@@ -129,7 +128,7 @@ def test_a_job_whose_cluster_is_away_is_done_here_and_says_so(
 def test_a_job_without_tasks_does_not_look_for_the_cluster(
     data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(solved_operating_points, "TASK_SECONDS", 1e3)
+    monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e3)
     monkeypatch.setattr(cluster, "_connected", None)  # were it called, it would be a TypeError
     assert done(ANALYZE, {"case": CASE}, data, ADDRESS).exists()
 

@@ -10,7 +10,7 @@ import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis import plan_run
+from fe_contact.analysis.run_plan import plan_run
 from fe_contact.options import AnalysisOptions, TableAxes
 from lineofaction.gearbox.convert.effects import assumption_lines, ledger_lines, run_lines
 

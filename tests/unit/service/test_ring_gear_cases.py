@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from fe_contact.analysis import analyze
+from fe_contact.analysis.analyze import analyze
 from fe_contact.geometry import InternalGearPair, RingGear
 from lineofaction.gearbox.convert.case import case_json, check_case, gear_pair
 from lineofaction.gearbox.problems import BadInput

@@ -14,7 +14,8 @@ import pytest
 from declared_figures import check_declared
 from typer.testing import CliRunner, Result
 
-from fe_contact.analysis import RippleCurve, Sensitivity, check_request
+from fe_contact.analysis.request.request_check import check_request
+from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
 from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import TableAxes

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, SteDatabase, analyze
-from fe_contact.analysis import check_request
-from fe_contact.analysis.estimates import error_estimate
-from fe_contact.analysis.estimates.error_estimate import CORRECTION_ERROR
+from fe_contact.analysis.estimates import assessed_table
+from fe_contact.analysis.estimates.assessed_table import CORRECTION_ERROR
 from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import FlankCompliance3D, flank_compliances_3d
 from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear
 from fe_contact.material import Material
@@ -167,7 +167,7 @@ def test_its_error_is_stated_by_source_and_in_the_band(cache, monkeypatch):
     assert stated["finite_width_m"][0] == pytest.approx(CORRECTION_ERROR * change.max(), rel=1e-9, abs=0.0)
     assert stated["plane_for_finite_width_relative"] == 0.0
     assert stated["discretisation_m"] == plain.metadata.receipt["error_by_source"]["discretisation_m"]
-    monkeypatch.setattr(error_estimate, "CORRECTION_ERROR", 0.0)
+    monkeypatch.setattr(assessed_table, "CORRECTION_ERROR", 0.0)
     exact = table(SIX, cache, **options)
     part = corrected.error_estimate - exact.error_estimate
     assert part == pytest.approx(CORRECTION_ERROR * change, rel=1e-9, abs=0.0)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.analysis import check_request
 from fe_contact.analysis.pairs.pair_contact import pair_contact
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.options import TableAxes
 from fe_contact.planning.plan import make_plan
 

@@ -15,7 +15,7 @@ import numpy as np
 from fe_contact import Gear, GearPair, SteDatabase, analyze
 from fe_contact.material import Material
 from fe_contact.planning.model_error import _flank_tilt
-from fe_contact.ste.curve_errors import AT_NODES, all_sources
+from fe_contact.ste.curve import AT_NODES, all_sources
 
 REFERENCE = Path(__file__).parents[2] / "reference" / "soft_24_36_full_contact.csv"
 SOURCE = "CalculiX 2.20, resolved edges, plane strain, uncertainty 0.1 %"

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.analysis import check_request
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint, operating_points
 from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import condensed_bodies
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, solve_contact
 from fe_contact.options import AnalysisOptions, Run, TableAxes

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
-from fe_contact.analysis import CondensedPair, condensed_pair
+from fe_contact.analysis.live.condensed_pair import CondensedPair
+from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.contact import adjoint, force_changes, solve_contact
 from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear
-from fe_contact.microgeometry import curve_derivatives
+from fe_contact.microgeometry.linearized_design import curve_derivatives
 from fe_contact.microgeometry.variables import modified
 from fe_contact.ste.curve_quantities import quantity_derivatives
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.analysis import LoadDistribution, load_distribution
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution
 from fe_contact.contact import (
     ContactModel,
     ContactProblem,
@@ -19,8 +19,8 @@ from fe_contact.contact import (
     solve_contact,
     with_gaps,
 )
+from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.effects.misalignment import MisalignmentGap
-from fe_contact.effects.modification_gap import ModificationGap
 
 SOURCE = "thin slices, closed form"
 WIDTH, STIFFNESS, FORCE = 20e-3, 15e9, 3000.0  # m, N/m per m of face, N

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_contact.analysis import analyze, flank_results
+from fe_contact.analysis.analyze import analyze
+from fe_contact.analysis.flanks.flank_file import flank_results
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.contact import ContactModel
 from fe_contact.effects.misalignment import MisalignmentGap
@@ -23,8 +24,7 @@ from fe_contact.geometry import (
 )
 from fe_contact.mesh import SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint
-from fe_contact.planning.discretization import FaceDiscretization
-from fe_contact.planning.plan import make_plan
+from fe_contact.planning.plan import FaceDiscretization, make_plan
 from fe_contact.ste import SteDatabase
 
 MODULE, WIDTH = 2e-3, 20e-3

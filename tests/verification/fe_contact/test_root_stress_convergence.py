@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 
 from fe_contact import GearPair, root_stress
-from fe_contact.analysis.flanks.root_stress import _crest_values
+from fe_contact.analysis.flanks.root_stress import _crest_values, _finer_root
 from fe_contact.compliance import UnitRootStress, unit_root_stress, unit_root_stress_3d
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
 from fe_contact.geometry import Gear
 from fe_contact.mesh import MeshRecipe, PlaneStrain, SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint
-from fe_contact.planning.planned import _finer_root
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 PEAKS = ("tension", "compression")

@@ -11,8 +11,7 @@ from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
 from dynamics.scene import Scene
 from dynamics.settings.load_case import CaseForce, LoadCase, check_forces
-from fe_contact.analysis import pressure_map
-from fe_contact.analysis.flanks.load_distribution import LoadDistribution
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
 from fe_contact.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors

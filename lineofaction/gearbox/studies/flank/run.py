@@ -6,8 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from fe_contact.analysis import LoadDistribution, flank_results
-from fe_contact.analysis.flanks.flank_file import FORMAT
+from fe_contact.analysis.flanks.flank_file import FORMAT, flank_results
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import (
     analysis_options,

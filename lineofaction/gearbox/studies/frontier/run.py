@@ -8,8 +8,7 @@ from bounds.types import Json
 from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
 from dynamics.accuracy import Frontier as SceneFrontier
 from dynamics.accuracy import frontier as frontier_of_scene
-from fe_contact.analysis.studies.accuracy_study import FIDELITIES
-from fe_contact.analysis.studies.frontier import Frontier, frontier
+from fe_contact.analysis.studies.frontier import FIDELITIES, Frontier, frontier
 from fe_contact.errors import chosen
 from lineofaction.gearbox.convert.case import (
     boundary_errors,

@@ -9,25 +9,20 @@ from typing import Any
 import numpy as np
 
 from bounds import engineering
-from fe_contact.microgeometry import (
-    DesignVariable,
+from fe_contact.microgeometry.confirmation import ConfirmedDesign, HarrisMap
+from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
+from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest
+from fe_contact.microgeometry.optimize import optimize
+from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
+from fe_contact.microgeometry.search import (
     DifferentialEvolution,
-    GaussHermite,
-    Limits,
     Method,
     NelderMead,
-    Optimization,
-    OptimizationRequest,
-    Scatter,
     Search,
     SequentialLinearProgramming,
-    SobolSample,
-    WeightedMean,
-    Worst,
-    optimize,
+    never,
 )
-from fe_contact.microgeometry.confirmation import ConfirmedDesign, HarrisMap
-from fe_contact.microgeometry.search import never
+from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair
 from lineofaction.gearbox.convert.errors import boundary_name

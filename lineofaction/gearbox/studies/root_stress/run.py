@@ -5,8 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from fe_contact.analysis import RootStressHistory, root_stress
-from fe_contact.analysis.flanks.root_stress import ROOTS, RootPassage, RootPeak
+from fe_contact.analysis.flanks.root_stress import (
+    ROOTS,
+    RootPassage,
+    RootPeak,
+    RootStressHistory,
+    root_stress,
+)
 from fe_contact.options import Run
 from fe_contact.plausibility.pair_checks import nominal_root_stresses
 from lineofaction.gearbox.convert.case import (

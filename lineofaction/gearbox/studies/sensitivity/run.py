@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.analysis import check_request
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity, study_sensitivity
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run, TableAxes

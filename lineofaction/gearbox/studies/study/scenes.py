@@ -14,7 +14,8 @@ import numpy as np
 from pydantic import ValidationError
 
 from dynamics.scene import Scene
-from fe_contact.analysis import CondensedPair, condensed_pair
+from fe_contact.analysis.live.condensed_pair import CondensedPair
+from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.case import gear_pair

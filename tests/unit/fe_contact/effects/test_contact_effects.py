@@ -11,7 +11,7 @@ from fe_contact.contact import PatchRule, Slices, contact_candidates, with_gaps
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene
 from fe_contact.effects.corner_contact import CornerContact
-from fe_contact.effects.profile_modification import ProfileModification
+from fe_contact.effects.flank_modification import ProfileModification
 from fe_contact.effects.tooth_coupling import ToothCoupling
 from fe_contact.geometry import FlankModification, Gear, GearPair
 

@@ -9,7 +9,7 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.analysis import check_request
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.effects import EFFECTS, ContactScene
 from fe_contact.effects.face_load_distribution import FaceLoadDistribution
 from fe_contact.effects.finite_width import FiniteWidth

@@ -10,8 +10,8 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.analysis import check_request
 from fe_contact.analysis.pairs.pair_contact import pair_contact
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import flank_compliance
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, contact_problem
 from fe_contact.effects.influence.deflection_budget import Springs

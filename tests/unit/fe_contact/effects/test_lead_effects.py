@@ -12,8 +12,7 @@ from fe_contact.contact import PatchRule, Slices, contact_candidates, with_gaps
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.corner_contact import CornerContact
-from fe_contact.effects.lead_modification import LeadModification
-from fe_contact.effects.profile_modification import ProfileModification
+from fe_contact.effects.flank_modification import LeadModification, ProfileModification
 from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=24e-3, bore_diameter=40e-3)

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fe_contact.analysis import check_request
 from fe_contact.analysis.pairs.pair_contact import operating_points, pair_contact
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactProblem, PatchRule, Slices, contact_candidates, in_pitches
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, compose

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fe_contact.effects import EFFECTS, ContactScene, compose
-from fe_contact.effects.across_face import across_face
+from fe_contact.effects.effect import across_face
 from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation, Shaft
 
 GEAR = Gear(

@@ -9,9 +9,11 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from fe_contact.microgeometry import DesignVariable, Limits, Search, SearchRun, WeightedMean, choice
+from fe_contact.microgeometry import optimize as choice
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
-from fe_contact.microgeometry.search import Ended
+from fe_contact.microgeometry.objective import Limits, WeightedMean
+from fe_contact.microgeometry.search import Ended, Search, SearchRun
+from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
 
@@ -53,7 +55,7 @@ def test_positions_of_every_analysis_join_until_the_limits_are_kept(
         cast(Any, Places(np.array([0.0, 0.5]))), (VARIABLE,), WeightedMean(), Limits(), 1.0
     )
     asked: Any = SimpleNamespace(own=(0.0,), search=Search())
-    found = choice.choose(problem, (RUN,), asked, cast(Any, None), StageClock(), None, lambda: False)
+    found = choice._choose(problem, (RUN,), asked, cast(Any, None), StageClock(), None, lambda: False)
     places = [0.1 * k for k in range(1, rounds + 1)]
     assert searched == [sorted([0.0, 0.5, *places[: k + 1]]) for k in range(rounds)]
     assert len(found.runs) == rounds + 1 and found.best == rounds

@@ -10,15 +10,11 @@ from typing import Any
 from analysis_requests import design_request
 
 from fe_contact import GearPair
-from fe_contact.microgeometry import (
-    DesignVariable,
-    NelderMead,
-    Sampling,
-    Search,
-    Tolerances,
-    optimize,
-    scatter,
-)
+from fe_contact.microgeometry.optimize import optimize
+from fe_contact.microgeometry.search import NelderMead, Search
+from fe_contact.microgeometry.tolerance_study import Sampling, scatter
+from fe_contact.microgeometry.tolerances import Tolerances
+from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.workers import RunCost
 from fe_contact.workers.executor import _Done

@@ -10,18 +10,12 @@ import pytest
 from analysis_requests import design_request
 
 from fe_contact import GearPair
-from fe_contact.microgeometry import (
-    DesignVariable,
-    DifferentialEvolution,
-    Limits,
-    Optimization,
-    Search,
-    WeightedMean,
-    Worst,
-    optimize,
-)
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.search import Cancel, never
+from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
+from fe_contact.microgeometry.optimization import Optimization
+from fe_contact.microgeometry.optimize import optimize
+from fe_contact.microgeometry.search import Cancel, DifferentialEvolution, Search, never
+from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
 
 FREE = (

@@ -10,26 +10,22 @@ from analysis_requests import design_request
 from helical_pairs import helical
 
 from fe_contact import GearPair, analyze
-from fe_contact.microgeometry import (
-    DesignVariable,
-    GaussHermite,
-    Limits,
-    NelderMead,
-    Outcome,
-    Scatter,
-    Search,
-    SearchRun,
-    WeightedMean,
-    optimize,
-)
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.objective import NO_LIMITS
-from fe_contact.microgeometry.scatter import NO_SCATTER
-from fe_contact.microgeometry.search import search_from
-from fe_contact.microgeometry.search_method import SIMPLEX_MERIT, SIMPLEX_SIZE
-from fe_contact.microgeometry.variables import modified
+from fe_contact.microgeometry.objective import NO_LIMITS, Limits, WeightedMean
+from fe_contact.microgeometry.optimization import Outcome
+from fe_contact.microgeometry.optimize import optimize
+from fe_contact.microgeometry.scatter import NO_SCATTER, GaussHermite, Scatter
+from fe_contact.microgeometry.search import (
+    SIMPLEX_MERIT,
+    SIMPLEX_SIZE,
+    NelderMead,
+    Search,
+    SearchRun,
+    search_from,
+)
+from fe_contact.microgeometry.variables import DesignVariable, modified
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.stage_clock import StageClock
 

@@ -15,8 +15,12 @@ import pytest
 
 from fe_contact import Gear, GearPair
 from fe_contact.errors import InputError
-from fe_contact.microgeometry import iso1328_tolerances
-from fe_contact.microgeometry.tolerances import _helix_slope_tolerance, _profile_slope_tolerance, _rounded
+from fe_contact.microgeometry.tolerances import (
+    _helix_slope_tolerance,
+    _profile_slope_tolerance,
+    _rounded,
+    iso1328_tolerances,
+)
 
 
 def gear_of(module_mm: float, teeth: int, width_mm: float, helix_deg: float = 0.0) -> Gear:

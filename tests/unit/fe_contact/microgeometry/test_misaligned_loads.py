@@ -13,24 +13,16 @@ from analysis_requests import design_request
 from helical_pairs import helical
 
 from fe_contact import GearPair, analyze
-from fe_contact.microgeometry import (
-    DesignVariable,
-    GaussHermite,
-    NelderMead,
-    Optimization,
-    Scatter,
-    Search,
-    WeightedMean,
-    optimize,
-)
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.linearized_design import linearized
-from fe_contact.microgeometry.objective import NO_LIMITS, Limits
-from fe_contact.microgeometry.scatter import NO_SCATTER
-from fe_contact.microgeometry.search import search_from
-from fe_contact.microgeometry.variables import modified
+from fe_contact.microgeometry.objective import NO_LIMITS, Limits, WeightedMean
+from fe_contact.microgeometry.optimization import Optimization
+from fe_contact.microgeometry.optimize import optimize
+from fe_contact.microgeometry.scatter import NO_SCATTER, GaussHermite, Scatter
+from fe_contact.microgeometry.search import NelderMead, Search, search_from
+from fe_contact.microgeometry.variables import DesignVariable, modified
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.stage_clock import StageClock
 

@@ -14,20 +14,13 @@ from analysis_requests import design_request
 
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
-from fe_contact.microgeometry import (
-    DesignVariable,
-    Limits,
-    NelderMead,
-    Optimization,
-    Outcome,
-    Scatter,
-    Search,
-    WeightedMean,
-    Worst,
-    optimize,
-)
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study
-from fe_contact.microgeometry.variables import modified
+from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
+from fe_contact.microgeometry.optimization import Optimization, Outcome
+from fe_contact.microgeometry.optimize import optimize
+from fe_contact.microgeometry.scatter import Scatter
+from fe_contact.microgeometry.search import NelderMead, Search
+from fe_contact.microgeometry.variables import DesignVariable, modified
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray

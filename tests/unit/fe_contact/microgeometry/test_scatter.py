@@ -10,9 +10,9 @@ import pytest
 
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
-from fe_contact.microgeometry import GaussHermite, Scatter, SobolSample
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
+from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.stage_clock import StageClock

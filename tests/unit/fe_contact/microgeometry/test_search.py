@@ -10,16 +10,17 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import InputError
-from fe_contact.microgeometry import (
+from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
+from fe_contact.microgeometry.optimize import _search_all, _search_one
+from fe_contact.microgeometry.search import (
+    EXPLORED,
     DifferentialEvolution,
     Ended,
     NelderMead,
     Search,
     SequentialLinearProgramming,
+    search_from,
 )
-from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
-from fe_contact.microgeometry.optimize import _search_all, _search_one
-from fe_contact.microgeometry.search import EXPLORED, search_from
 from fe_contact.options import Run
 from fe_contact.types import FloatArray
 from fe_contact.workers import InProcess

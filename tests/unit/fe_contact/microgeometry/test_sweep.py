@@ -12,7 +12,7 @@ import pytest
 
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
-from fe_contact.microgeometry import Sweep, SweepAxis, SweepRequest, sweep
+from fe_contact.microgeometry.sweep import Sweep, SweepAxis, SweepRequest, sweep
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.workers import Remembering, RunCost

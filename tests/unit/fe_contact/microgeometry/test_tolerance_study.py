@@ -11,8 +11,8 @@ from scipy.special import ndtr
 
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
-from fe_contact.microgeometry import Sampling, Tolerances, ToleranceStudy, scatter
-from fe_contact.microgeometry.tolerance_study import _quantile
+from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, _quantile, scatter
+from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, Run
 from model_studies.spread import rank_correlation

@@ -8,12 +8,11 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from fe_contact.microgeometry import Search, SearchRun
 from fe_contact.microgeometry.confirmation import HarrisMap, rising
 from fe_contact.microgeometry.design_problem import Assessed
 from fe_contact.microgeometry.optimization import Outcome
 from fe_contact.microgeometry.optimize import _conclusion
-from fe_contact.microgeometry.search import Ended
+from fe_contact.microgeometry.search import Ended, Search, SearchRun
 from fe_contact.types import Estimate
 
 UM = 1e-6

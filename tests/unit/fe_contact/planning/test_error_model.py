@@ -10,14 +10,13 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material, SteDatabase, analyze
-from fe_contact.analysis import check_request
 from fe_contact.analysis.request.model_choice import TRIED, decide
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.geometry import InternalGearPair
 from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning.discretization import SLICE_ORDER
-from fe_contact.planning.plan import CLOSEST, FACE_NODES, PLANE_NODES, POSITION_SHARE
+from fe_contact.planning.plan import CLOSEST, FACE_NODES, PLANE_NODES, POSITION_SHARE, SLICE_ORDER
 
 FACTOR = 3.0
 

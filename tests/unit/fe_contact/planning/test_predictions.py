@@ -10,14 +10,14 @@ from analysis_requests import table_request
 
 from bounds import engineering
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
-from fe_contact.analysis import check_request
 from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.compliance.cache import kept_size
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import cost_model
-from fe_contact.planning.cost_model import _contact_bytes, _expected_positions, contact_seconds, predict_run
+from fe_contact.planning.cost_model import _contact_bytes, _contact_seconds, _expected_positions, predict_run
 from fe_contact.planning.planned import ExpectedError, MeshOption, _mesh_for_time, _mesh_for_tolerance
 from model_studies.run_log import FILE as LOG
 
@@ -127,7 +127,9 @@ def test_slices_change_no_positions_but_their_cost():
     asked = check_request(wide, TableAxes(normal_forces=[500.0]), AnalysisOptions(level="fine"))
     few, many = (decide(asked).in_slices(count).plan for count in (15, 31))
     assert _expected_positions(few) == _expected_positions(many)
-    costs = [sum(contact_seconds(wide, plan, asked.model, (1, 1), with_errors=False)) for plan in (few, many)]
+    costs = [
+        sum(_contact_seconds(wide, plan, asked.model, (1, 1), with_errors=False)) for plan in (few, many)
+    ]
     assert 2.0 < costs[1] / costs[0] < 4.0
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import DatabaseError, SolveError
-from fe_contact.ste.repair import without_failed
+from fe_contact.ste.database import _without_failed
 from fe_contact.types import Status
 
 
@@ -22,27 +22,27 @@ def failed_at(database, *places):
 
 class TestWithoutFailed:
     def test_a_complete_table_is_returned_as_it_is(self, spur):
-        assert without_failed(spur) is spur
+        assert _without_failed(spur) is spur
 
     def test_a_failed_load_goes_as_a_load(self, spur):
-        rest = without_failed(failed_at(spur, np.s_[:, 4]))
+        rest = _without_failed(failed_at(spur, np.s_[:, 4]))
         assert rest.force.tolist() == spur.force[:4].tolist()
         assert rest.position.size == 64
 
     def test_scattered_points_go_as_positions(self, spur):
-        rest = without_failed(failed_at(spur, (3, 0), (17, 4)))
+        rest = _without_failed(failed_at(spur, (3, 0), (17, 4)))
         assert rest.position.tolist() == np.delete(spur.position, [3, 17]).tolist()
         assert rest.force.size == 5
 
     def test_what_stays_is_unchanged(self, four_axes):
-        rest = without_failed(failed_at(four_axes, np.s_[:, :, 3]))
+        rest = _without_failed(failed_at(four_axes, np.s_[:, :, 3]))
         assert rest.misalignment.tolist() == four_axes.misalignment[:3].tolist()
         assert np.array_equal(rest.load_share, four_axes.load_share[:, :, :3])
         assert np.array_equal(rest.no_load_transmission_error, four_axes.no_load_transmission_error[:, :3])
 
     def test_nothing_left_is_an_error(self, spur):
         with pytest.raises(SolveError, match="No complete row remains"):
-            without_failed(failed_at(spur, np.s_[:]))
+            _without_failed(failed_at(spur, np.s_[:]))
 
 
 def noisy(make, size, seed=2):

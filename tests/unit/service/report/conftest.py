@@ -12,8 +12,7 @@ import pytest
 
 from dynamics.results import EnergyAudit, RunResult, StepStatistics
 from dynamics.types import RunStatus
-from fe_contact.analysis import LoadDistribution
-from fe_contact.analysis.flanks.load_distribution import _flank_scene
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution, _flank_scene
 from fe_contact.effects.influence.estimate import Influence
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, PairFacts, SteDatabase

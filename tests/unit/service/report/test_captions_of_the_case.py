@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fe_contact.analysis import LoadDistribution
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.ste import SteDatabase
 from lineofaction.report.drawing.figure import Panel
 from lineofaction.report.tables.flanks import line_load_figure

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis import Frontier
-from fe_contact.analysis.studies.frontier import FidelityResult
+from fe_contact.analysis.studies.frontier import FidelityResult, Frontier
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.document.content import page_json, page_of, stored_figures

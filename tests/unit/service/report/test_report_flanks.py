@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fe_contact.analysis import LoadDistribution, pressure_map
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
 from fe_contact.ste import SteDatabase
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from dynamics.results import RunResult
-from fe_contact.analysis import LoadDistribution
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import SteDatabase
 from lineofaction.report.document.content import page_of

@@ -16,20 +16,16 @@ from geared_scenes import gear_pair_scene
 from dynamics.ablation import ablate as ablate_scene
 from dynamics.accuracy import FidelityResult as SceneFidelity
 from dynamics.accuracy import Frontier as SceneFrontier
-from fe_contact.analysis import ablate
+from fe_contact.analysis.studies.ablation import ablate
 from fe_contact.geometry import FlankModification, Gear, GearPair
-from fe_contact.microgeometry import (
-    DesignVariable,
-    GaussHermite,
-    Optimization,
-    Sampling,
-    Scatter,
-    Search,
-    iso1328_tolerances,
-    optimize,
-    scatter,
-)
 from fe_contact.microgeometry.confirmation import HarrisMap
+from fe_contact.microgeometry.optimization import Optimization
+from fe_contact.microgeometry.optimize import optimize
+from fe_contact.microgeometry.scatter import GaussHermite, Scatter
+from fe_contact.microgeometry.search import Search
+from fe_contact.microgeometry.tolerance_study import Sampling, scatter
+from fe_contact.microgeometry.tolerances import iso1328_tolerances
+from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray

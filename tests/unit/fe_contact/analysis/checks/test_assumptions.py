@@ -10,8 +10,8 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, Shaft, analyze
-from fe_contact.analysis import check_request
 from fe_contact.analysis.request import request_check as neglected_effects
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import InputError, SolveError
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.ste import SteDatabase

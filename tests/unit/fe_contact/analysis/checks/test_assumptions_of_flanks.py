@@ -11,8 +11,10 @@ import pytest
 from analysis_requests import point_request
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
-from fe_contact.analysis import check_request, flank_results, root_stress
 from fe_contact.analysis.checks.assumptions import OUTSIDE, _handovers
+from fe_contact.analysis.flanks.flank_file import flank_results
+from fe_contact.analysis.flanks.root_stress import root_stress
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import SolveError
 from fe_contact.options import Run, TableAxes
 from fe_contact.types import Json

@@ -12,12 +12,11 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
-from fe_contact.analysis import check_request
 from fe_contact.analysis.database import kept_tolerance
 from fe_contact.analysis.database.compute_database import _Computed, compute_database, compute_pass
-from fe_contact.analysis.estimates import assessed_table as curve_error_estimate
-from fe_contact.analysis.estimates import error_estimate
+from fe_contact.analysis.estimates import assessed_table
 from fe_contact.analysis.request.model_choice import Decided, decide
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import MeshError, SolveError
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning import model_error
@@ -34,7 +33,7 @@ def nothing_but_discretization(monkeypatch) -> None:
     """No refinement mends what the method and plane strain leave out: it would end every run here."""
     for name in ("FLOOR", "LARGE_DISPLACEMENT", "TILT"):
         monkeypatch.setattr(model_error, name, (0.0, 0.0, 0.0))
-    for module in (error_model, error_estimate, curve_error_estimate):
+    for module in (error_model, assessed_table):
         monkeypatch.setattr(module, "LEFT_OUT", 0.0)
 
 

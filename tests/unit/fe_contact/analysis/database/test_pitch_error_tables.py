@@ -9,8 +9,8 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
-from fe_contact.analysis import check_request
 from fe_contact.analysis.estimates.position_errors import _measured_nodes
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import _adaptive_nodes, _assessed_windows
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.errors import InputError

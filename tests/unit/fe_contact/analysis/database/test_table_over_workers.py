@@ -14,7 +14,7 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, SteDatabase, analyze, study_sensitivity
-from fe_contact.analysis.pairs import contact_lines, solved_operating_points
+from fe_contact.analysis.pairs import contact_lines
 from fe_contact.analysis.pairs.contact_lines import _ContactBlock
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.options import Run
@@ -53,8 +53,7 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(autouse=True)
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut small tables as large ones are."""
-    for module in (contact_lines, solved_operating_points):
-        monkeypatch.setattr(module, "TASK_SECONDS", 0.002)
+    monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.002)
 
 
 def gear(**other: Any) -> Gear:
@@ -158,7 +157,7 @@ def test_tasks_do_not_depend_on_who_works(cache: Path) -> None:
 
 
 def test_too_little_to_send_stays_here(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(solved_operating_points, "TASK_SECONDS", 1e3)
+    monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e3)
     workers = Elsewhere()
     analyze(helical(), torques=[60.0], level="draft", positions=16, cache=cache, workers=workers)
     assert not workers.tasks

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
-from fe_contact.analysis import check_request
 from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.estimates.assessed_table import HARMONIC_SHARE
 from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.options import LEVELS, AnalysisOptions, Run, TableAxes
-from fe_contact.planning.discretization import SLICE_ORDER, face_discretization
-from fe_contact.ste.curve_errors import SOURCES
+from fe_contact.planning.plan import SLICE_ORDER, face_discretization
+from fe_contact.ste.curve import SOURCES
 from fe_contact.ste.fields import DIMENSIONS
 
 FORCE = 3000.0

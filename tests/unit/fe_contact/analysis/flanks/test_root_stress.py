@@ -12,15 +12,15 @@ from analysis_requests import point_request
 from numpy.typing import ArrayLike
 
 from fe_contact import Gear, GearPair, RootStress, root_stress
-from fe_contact.analysis.flanks.root_stress import _crest_values, _pair_histories
-from fe_contact.analysis.flanks.solved_operating_point import SolvedOperatingPoint, solve_operating_point
+from fe_contact.analysis.flanks.root_stress import _crest_values, _finer_root, _pair_histories
+from fe_contact.analysis.flanks.solved_operating_point import solve_operating_point
+from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import unit_root_stress, unit_root_stress_3d
 from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, RingGear
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
-from fe_contact.planning.planned import _finer_root
 from fe_contact.stage_clock import StageClock
 
 FORCE = 2000.0
@@ -54,7 +54,8 @@ def place(pair: GearPair, cache: Path, model: str) -> SolvedOperatingPoint:
 
 def with_forces(found: SolvedOperatingPoint, keep: np.ndarray, factor: float = 1.0) -> SolvedOperatingPoint:
     solution = found.solution
-    return replace(found, solution=replace(solution, force=factor * np.where(keep, solution.force, 0.0)))
+    changed = replace(solution, force=factor * np.where(keep, solution.force, 0.0))
+    return replace(found, solved=[(found.problem, changed)])
 
 
 @pytest.mark.parametrize("model", ["plane_strain", "3d"])

@@ -9,14 +9,15 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.analysis import CondensedPair, condensed_pair
 from fe_contact.analysis.live.condensed_contacts import _left_by_patches
+from fe_contact.analysis.live.condensed_pair import CondensedPair
+from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.geometry import FlankModification
 from fe_contact.geometry.web_compliance import finite_width_excess
 from fe_contact.planning.planned import LEFT_OUT
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve_errors import AT_NODES, SOURCES
+from fe_contact.ste.curve import AT_NODES, SOURCES
 from fe_contact.types import FloatArray
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")

@@ -15,7 +15,7 @@ from fe_contact.analysis.request.model_choice import _alternatives, decide, expe
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.geometry.web_compliance import finite_width_excess
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.ste.curve_errors import SOURCES
+from fe_contact.ste.curve import SOURCES
 
 LOADS = [400.0, 1600.0]
 

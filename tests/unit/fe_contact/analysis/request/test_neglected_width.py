@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis import check_request
 from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.options import AnalysisOptions, TableAxes
 
 GEAR = Gear(teeth=25, normal_module=3e-3, face_width=18e-3, bore_diameter=37.5e-3)

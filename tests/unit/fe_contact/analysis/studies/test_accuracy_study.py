@@ -11,8 +11,7 @@ from analysis_requests import table_request
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
 from fe_contact.analysis.pairs.slice_springs import SpringContact, _slice_stiffness
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.analysis.studies.accuracy_study import FIDELITIES, ISO6336, THIN_SLICES
-from fe_contact.analysis.studies.frontier import _chosen_fidelity, frontier
+from fe_contact.analysis.studies.frontier import FIDELITIES, ISO6336, THIN_SLICES, _chosen_fidelity, frontier
 from fe_contact.contact import solve_contact
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.errors import InputError

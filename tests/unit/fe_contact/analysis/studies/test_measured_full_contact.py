@@ -14,8 +14,7 @@ from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies import measured_full_contact as measuring
-from fe_contact.analysis.studies.accuracy_study import THIN_SLICES
-from fe_contact.analysis.studies.frontier import frontier
+from fe_contact.analysis.studies.frontier import THIN_SLICES, frontier
 from fe_contact.analysis.studies.measured_full_contact import (
     _over_face,
     full_contact_refusal,

@@ -5,7 +5,7 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, analyze, study_sensitivity
-from fe_contact.analysis import RippleCurve
+from fe_contact.analysis.studies.sensitivity import RippleCurve
 from fe_contact.errors import InputError
 from fe_contact.options import Run
 
