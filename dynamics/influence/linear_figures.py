@@ -9,8 +9,8 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.linearize.harmonic_response import HarmonicResponse, extremes, parametric_response
+from dynamics.linearize.linear_system import natural_modes
 from dynamics.linearize.load_harmonics import load_multiples
-from dynamics.linearize.modes import natural_modes
 from dynamics.linearize.operating_speeds import mesh_frequencies
 from dynamics.linearize.steady_vibration import Excited, excited
 from dynamics.loads import BySpeed, TimeLaw

@@ -3,9 +3,8 @@
 from dynamics.linearize.campbell import whirl_modes
 from dynamics.linearize.forced_response import ForcedResponse, PowerBalance, forced_response, peaks
 from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_response
-from dynamics.linearize.linear_system import linearize
+from dynamics.linearize.linear_system import Modes, linearize, natural_modes
 from dynamics.linearize.modal_analysis import ModalAnalysis, modal_analysis
-from dynamics.linearize.modes import Modes, natural_modes
 from dynamics.linearize.operating_speeds import common_period
 
 __all__ = [

@@ -11,8 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from dynamics.assembly.assemble import System
 from dynamics.bearings.seat import SEAT
-from dynamics.linearize.linear_system import LinearSystem, linearize
-from dynamics.linearize.modes import kinetic_shares, strain_shares
+from dynamics.linearize.linear_system import LinearSystem, kinetic_shares, linearize, strain_shares
 from dynamics.linearize.operating_speeds import law_speeds
 from dynamics.mechanism.columns import column_count
 from dynamics.mechanism.spun_shaft import pair_rows, spun_inertia

@@ -14,9 +14,8 @@ from dynamics.errors import InputError
 from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import FlankCycle
 from dynamics.linearize.harmonic_response import HarmonicResponse, excited_harmonics, response_of
-from dynamics.linearize.linear_system import LinearSystem
+from dynamics.linearize.linear_system import HELD_BY, LinearSystem, natural_modes
 from dynamics.linearize.load_harmonics import load_harmonics
-from dynamics.linearize.modes import HELD_BY, natural_modes
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law
 from dynamics.linearize.steady_vibration import (
     EXCITATIONS,

@@ -12,8 +12,16 @@ from dynamics.checks import integer, positive
 from dynamics.linearize.campbell import WhirlBranches, whirl_branches
 from dynamics.linearize.critical_speeds import CriticalSpeeds, critical_speeds
 from dynamics.linearize.flank_cycles import averaged, flank_cycles
-from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, require_freedoms
-from dynamics.linearize.modes import Modes, freedom_parts, natural_modes, spring_parts
+from dynamics.linearize.linear_system import (
+    LinearSystem,
+    Modes,
+    about_running,
+    freedom_parts,
+    linearize,
+    natural_modes,
+    require_freedoms,
+    spring_parts,
+)
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law, mesh_frequencies
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.force_check import checked_ledger

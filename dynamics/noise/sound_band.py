@@ -211,6 +211,7 @@ GUESSES = {
 }
 """By name. Cast iron with bolted joints has ratios of 0.002 to 0.01 about 0.005; a mesh reads natural
 frequencies too high, and walls of castings vary by some per cent."""
+USUAL_RANGES = {name: guess.usual for name, guess in GUESSES.items()}
 
 
 STEPS, JOINT = 5, 16
@@ -313,7 +314,7 @@ def sound_band(
     SolveError
         As `forced_power`.
     """
-    ranges = usual_ranges() if ranges is None else ranges
+    ranges = USUAL_RANGES if ranges is None else ranges
     for name in ranges:
         one_of("ranges", name, GUESSES)
     ranges = {name: span for name, span in ranges.items() if _has(model, name)}
@@ -332,11 +333,6 @@ def sound_band(
 
 def _has(model: SoundModel, name: str) -> bool:
     return GUESSES[name].varied(model, 2.0) is not model
-
-
-def usual_ranges() -> dict[str, Range]:
-    """Return the usual ranges of all guesses by name."""
-    return {name: guess.usual for name, guess in GUESSES.items()}
 
 
 def _band(

@@ -22,7 +22,7 @@ class Instability(Enum):
     NEIMARK_SACKER = "complex pair"
 
 
-def floquet_multipliers(monodromy: FloatArray) -> ComplexArray:
+def _floquet_multipliers(monodromy: FloatArray) -> ComplexArray:
     """Return the eigenvalues of the derivative of the map over one period, by falling size, (2n,)."""
     values = np.linalg.eigvals(monodromy).astype(complex)
     return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
@@ -159,7 +159,7 @@ def make_orbit(
     multipliers = np.full(y.size, np.nan + 0j)
     error = np.inf
     if np.all(np.isfinite(jacobian)):
-        multipliers = floquet_multipliers(jacobian)
+        multipliers = _floquet_multipliers(jacobian)
         error = float(np.max(np.abs(_solve(np.eye(y.size) - jacobian, over_period.step_error(y)))))
     residual = float(np.max(np.abs(left)))
     duration, speed = over_period.duration, over_period.speed

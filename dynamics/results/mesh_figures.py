@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bounds import at_most
 from dynamics.checks import integer, positive
@@ -27,15 +26,11 @@ class ContactState(IntEnum):
     BOTH = 3
 
 
-def contact_state(result: RunResult) -> NDArray[np.int8]:
-    """Return a `ContactState` per mesh and sample, (m, T)."""
-    return result.contact.astype(np.int8)
-
-
 def contact_shares(result: RunResult) -> list[dict[str, float]]:
     """Return per mesh the share of the samples in each state, by its name in lower case."""
-    states = contact_state(result)
-    return [{state.name.lower(): float(np.mean(row == state)) for state in ContactState} for row in states]
+    return [
+        {state.name.lower(): float(np.mean(row == state)) for state in ContactState} for row in result.contact
+    ]
 
 
 # Dynamic factor: what vibration makes of the static mesh force.

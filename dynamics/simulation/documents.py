@@ -24,8 +24,7 @@ from dynamics.integrators.workspace import Count
 from dynamics.kernels.local_state import LocalState
 from dynamics.linearize import natural_modes
 from dynamics.linearize.campbell import whirl_branches
-from dynamics.linearize.linear_system import LinearSystem, linearize
-from dynamics.linearize.modes import freedom_parts
+from dynamics.linearize.linear_system import LinearSystem, freedom_parts, linearize
 from dynamics.linearize.operating_speeds import leading_law, mesh_frequencies
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.bearing_elements import BearingElement

@@ -20,7 +20,7 @@ from dynamics.acoustics import Range
 from dynamics.errors import InputError
 from dynamics.housings import reduced_housing
 from dynamics.noise import GUESSES, forced_power, sound_band
-from dynamics.noise.sound_band import missed_between, usual_ranges
+from dynamics.noise.sound_band import USUAL_RANGES, missed_between
 
 SPEED = np.geomspace(60.0, 300.0, 24)
 MESH_ERROR = Range(0.945, 1.0, 1.0)
@@ -49,7 +49,7 @@ def test_without_ranges_only_modes_and_speeds_are_uncertain(model):
 def test_a_wider_range_never_narrows_the_band(model):
     before = [(np.inf, -np.inf)] * 100
     for width in (0.0, 0.3, 1.0):
-        usual = usual_ranges()["housing_damping"]
+        usual = USUAL_RANGES["housing_damping"]
         span = Range(1.0 + width * (usual.low - 1.0), 1.0, 1.0 + width * (usual.high - 1.0))
         band = sound_band(model, SPEED, 3, NONE | {"housing_damping": span}, steps=3)
         now = [(each.low, each.high) for each in (band.largest_total, *band.largest)]
@@ -81,7 +81,7 @@ def test_the_band_holds_nine_of_ten_blind_variations(speeds, mounts, cases):
     """A finer mesh, more modes, other mounts, dampings and bearings: none of them made the band."""
     model = sound_model(reduced_housing(meshed(MESH)))
     speed = np.geomspace(60.0, 300.0, speeds)
-    band = sound_band(model, speed, 4, usual_ranges() | {"housing_frequency": MESH_ERROR})
+    band = sound_band(model, speed, 4, USUAL_RANGES | {"housing_frequency": MESH_ERROR})
     shares = covered(band, blind_levels(band, speed, FINE, mounts, cases))
     assert shares.largest_total >= 0.9
     assert np.all(shares.largest >= 0.9)

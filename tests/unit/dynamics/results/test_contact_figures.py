@@ -15,7 +15,6 @@ from dynamics.results import RunResult
 from dynamics.results.mesh_figures import (
     ContactState,
     contact_shares,
-    contact_state,
     dynamic_factor,
     planet_load_sharing,
 )
@@ -69,7 +68,7 @@ def test_contact_states_tell_the_flanks_that_carry():
     contact = np.zeros((1, 41))
     contact[0, 10:20] += 1.0
     contact[0, 15:30] += 2.0
-    state = contact_state(replace(run, contact=contact))[0]
+    state = replace(run, contact=contact).contact[0]
     assert [int(state[k]) for k in (0, 12, 17, 25)] == [
         ContactState.OFF,
         ContactState.DRIVING,
