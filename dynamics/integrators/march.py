@@ -6,6 +6,7 @@ import time as clock
 from collections.abc import Callable
 from copy import deepcopy
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -172,6 +173,16 @@ NEWTON_SHARE = 0.01
 """Error of Newton's method over the error allowed per step."""
 
 
+class _Passed(NamedTuple):
+    """What compiled loops get, by address."""
+
+    arrays: SystemArrays
+    work: Workspace
+    control: Control
+    sampler: Sampler
+    ring: SampleRing
+
+
 @dataclass(frozen=True)
 class March:
     """The state from which a run continues.
@@ -196,7 +207,7 @@ class March:
     ring: SampleRing
     control: Control
     sampler: Sampler
-    compiled: tuple[SystemArrays, Workspace, Control, Sampler, SampleRing]
+    compiled: _Passed
     initial: FloatArray
     samples: int
 
@@ -268,18 +279,18 @@ def start_march(
     sampler = make_sampler(system)
     ring = make_ring(system.arrays, sampler)
     run = by_address(system.arrays), by_address(work)
-    samples_of = by_address(sampler), by_address(ring)
-    compiled = (*run, by_address(control), *samples_of)
-    march = March(system, work, ring, control, sampler, compiled, initial, samples)
+    passed = _Passed(*run, by_address(control), by_address(sampler), by_address(ring))
+    march = March(system, work, ring, control, sampler, passed, initial, samples)
     prepare_steps(*run, control.implicit, control.audit)
-    prepare_samples(*run, *samples_of, by_address(march.widths.states(0)))
+    prepare_samples(*run, passed.sampler, passed.ring, by_address(march.widths.states(0)))
     return march
 
 
 def sample_rest(march: March, sink: StateSink) -> None:
     """Sample the start of a march that goes nowhere."""
-    arrays, work, _, sampler, ring = march.compiled
-    sample_start(arrays, work, sampler, ring, by_address(sink.room(0, 1)))
+    passed = march.compiled
+    room = by_address(sink.room(0, 1))
+    sample_start(passed.arrays, passed.work, passed.sampler, passed.ring, room)
 
 
 def march_on(
@@ -337,7 +348,7 @@ def ending(march: March, sink: StateSink, status: RunStatus, seconds: float) -> 
     samples = min(due, march.samples)
     room = sink.room(before, samples - before)
     counted.counts[Count.FIRST_ROW] = before
-    held = by_address(counted), march.compiled[3], by_address(ring)
+    held = by_address(counted), march.compiled.sampler, by_address(ring)
     continue_past_the_end(*held, march.sampler.taps.size // 2, by_address(room))
     sink.keep(before, samples - before)
     final = stored_energy(march.system.arrays, end, work.q, work.v, work.moved)
