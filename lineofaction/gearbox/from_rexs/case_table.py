@@ -234,32 +234,27 @@ def case_of(pair: ToothedPair, pairs: Sequence[ToothedPair], shifts: Mapping[int
 def _refuse_strangers(pair: ToothedPair) -> None:
     """Refuse gears of different module or pressure angle, or of helix angles that do not mate.
 
-    The sign of a ring gear's helix angle depends on the writer's sign of its teeth; its size must fit.
+    Hands must be opposite, but the sign of a ring gear's helix angle depends on the writer's sign of its
+    teeth: its size must fit.
     """
     gears = pinion, wheel = pair.gears
-    if not math.isclose(pinion.normal_module, wheel.normal_module, rel_tol=1e-9):
-        modules = [f"module {gear.normal_module / MM:.9g} mm" for gear in gears]
-        raise _strangers(pair, modules, "of one normal module", "normal_module")
-    if abs(pinion.pressure_angle - wheel.pressure_angle) >= _SAME_ANGLE:
-        angles = [f"pressure angle {gear.pressure_angle / DEGREE:.9g} deg" for gear in gears]
-        raise _strangers(pair, angles, "of one normal pressure angle")
-    _refuse_hands(pair)
-    if wheel.sign < 0 and wheel.helix_angle:
-        wheel.part.say(_HELIX, "derived", "the hand is that of its mate")
-
-
-def _refuse_hands(pair: ToothedPair) -> None:
-    """Refuse helix angles of different size, or of one hand where they must be opposite."""
-    gears = pair.gears
+    first, second = pinion.helix_angle, wheel.helix_angle
+    modules = [f"module {gear.normal_module / MM:.9g} mm" for gear in gears]
+    angles = [f"pressure angle {gear.pressure_angle / DEGREE:.9g} deg" for gear in gears]
     hands = [
         f"{'right' if gear.helix_angle > 0.0 else 'left'} hand, {abs(gear.helix_angle) / DEGREE:.9g} deg"
         for gear in gears
     ]
-    first, second = (gear.helix_angle for gear in gears)
-    if gears[1].sign > 0 and abs(first + second) >= _SAME_ANGLE:
+    if not math.isclose(pinion.normal_module, wheel.normal_module, rel_tol=1e-9):
+        raise _strangers(pair, modules, "of one normal module", "normal_module")
+    if abs(pinion.pressure_angle - wheel.pressure_angle) >= _SAME_ANGLE:
+        raise _strangers(pair, angles, "of one normal pressure angle")
+    if wheel.sign > 0 and abs(first + second) >= _SAME_ANGLE:
         raise _strangers(pair, hands, "of helix angles of one size and of opposite hands", _HELIX, -1)
     if abs(abs(first) - abs(second)) >= _SAME_ANGLE:
         raise _strangers(pair, hands, "of helix angles of one size", _HELIX)
+    if wheel.sign < 0 and wheel.helix_angle:
+        wheel.part.say(_HELIX, "derived", "the hand is that of its mate")
 
 
 def _strangers(

@@ -280,15 +280,7 @@ GROUND = ("gear_casing", "assembly_group", "gear_unit")
 
 @dataclass(frozen=True)
 class Connection:
-    """A bearing or a coupling, and the components on its sides.
-
-    Attributes
-    ----------
-    part : Part
-        The bearing or coupling.
-    inner, outer : Part
-        The components it joins.
-    """
+    """A bearing or a coupling, and the components that it joins, on its inner and its outer side."""
 
     part: Part
     inner: Part
@@ -357,8 +349,6 @@ class GearStage:
 
     Attributes
     ----------
-    stage : Part
-        The stage.
     gears, shafts : (Part, Part)
         Gear 1 and gear 2 of the file, and what carries them.
     teeth : (int, int)

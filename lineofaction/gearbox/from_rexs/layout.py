@@ -211,8 +211,6 @@ class Layout:
 
     Attributes
     ----------
-    unit : GearUnit
-        The components.
     axes : SceneAxes
         The frame of the scene.
     shafts : mapping of int to PlacedShaft

@@ -165,8 +165,6 @@ class LoadCase:
 
     Attributes
     ----------
-    name : str
-        Its name.
     number : int
         Its place in the spectrum of the file, from 1.
     share : float

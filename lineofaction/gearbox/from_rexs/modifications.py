@@ -28,7 +28,6 @@ class Modification:
 
     Attributes
     ----------
-    removed : callable
     fields : mapping
         Empty where the case has none for it.
     rolls, faces : tuple of float
@@ -79,6 +78,14 @@ class FlankPlace:
             bound = f"above the base diameter {2.0 * base / MM:.7g} mm"
             raise BadInput.of(f"{part.place}, {diameter}", value / MM, bound)
         return math.sqrt(radius**2 - base**2)
+
+    def stated_roll(self, part: Part, diameter: str, length: str, end: float) -> float:
+        """Return the roll length where an amount is stated, by a diameter or as such; else an end."""
+        words = "where the amount is stated"
+        stated = self.roll_length(part, diameter, words)
+        if stated is None:
+            stated = part.number(length, f"{words}: a roll length")
+        return stated or end
 
     def roll_range(self, part: Part, start: str, ends: Sequence[str]) -> tuple[float, float]:
         """Return the roll lengths over which an amount is stated, those of the whole flank by default."""
@@ -197,11 +204,8 @@ def _profile_relief(place: FlankPlace, part: Part) -> Modification:
     depth = part.required(f"{name}_depth", f"{name}_um")
     shape = _shape_of(part)
     start = _relief_start(place, part, end)
-    words = "where the amount is stated"
-    stated = place.roll_length(part, f"{name}_evaluation_reference", words)
-    if stated is None:
-        stated = part.number(f"{name}_evaluation_reference_length", f"{words}: a roll length")
-    growth = _Growth(depth, shape, start, stated or end)
+    item = f"{name}_evaluation_reference"
+    growth = _Growth(depth, shape, start, place.stated_roll(part, item, f"{item}_length", end))
     if not (growth.stated - start) * (end - start) > 0.0:
         lengths = [start / MM, growth.stated / MM]
         bound = "roll lengths in mm of its start and, towards the end of the involute, of its depth"
@@ -267,7 +271,7 @@ def _profile_crowning(place: FlankPlace, part: Part) -> Modification:
     amounts = _both_amounts(
         part, items, "profile_crowning_um", "given, or that at the root", "as at the other end"
     )
-    ends = (_crowning_end(place, part, "tip"), _crowning_end(place, part, "root"))
+    ends = (_crowning_end(place, part, "tip", place.tip), _crowning_end(place, part, "root", place.root))
     middle = 0.5 * (ends[0] + ends[1])
     highest = place.roll_length(part, "profile_highest_point", "highest point")
     highest = middle if highest is None else highest
@@ -292,13 +296,9 @@ def _profile_crowning(place: FlankPlace, part: Part) -> Modification:
     )
 
 
-def _crowning_end(place: FlankPlace, part: Part, side: str) -> float:
-    """Return the roll length where the amount at tip or root is stated, by default the involute's end."""
-    words = "where the amount is stated"
-    stated = place.roll_length(part, f"diameter_where_profile_crowning_{side}_is_specified", words)
-    if stated is None:
-        stated = part.number(f"length_where_profile_crowning_{side}_is_specified", f"{words}: a roll length")
-    return stated or (place.tip if side == "tip" else place.root)
+def _crowning_end(place: FlankPlace, part: Part, side: str, end: float) -> float:
+    item = f"where_profile_crowning_{side}_is_specified"
+    return place.stated_roll(part, f"diameter_{item}", f"length_{item}", end)
 
 
 def _profile_slope(place: FlankPlace, part: Part) -> Modification:

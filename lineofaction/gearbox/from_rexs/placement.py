@@ -202,8 +202,6 @@ class PlacedShaft:
 
     Attributes
     ----------
-    part : Part
-        The component.
     place : Placement
         In the frame of the model; its origin is u = 0.
     start : (3,) array

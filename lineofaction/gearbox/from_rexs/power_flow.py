@@ -38,8 +38,6 @@ class OperatingPoint:
 
     Attributes
     ----------
-    name : str
-        Name of the case.
     number : int
         Its place in the spectrum, from 1.
     share : float
@@ -172,12 +170,6 @@ class PowerFlow:
 
     Attributes
     ----------
-    point : OperatingPoint
-        The operating point.
-    layout : Layout
-        Where everything is.
-    train : Train
-        The ratios.
     speeds : (rotors,) array
         rad/s.
     loads : mapping of int to float

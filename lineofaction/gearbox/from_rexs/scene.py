@@ -40,7 +40,6 @@ class ShaftPart:
 
     Attributes
     ----------
-    component : int
     turn : (3, 3) array
         Takes components along u, v, w to x, y, z.
     sense : int
@@ -61,7 +60,6 @@ class BearingPart:
 
     Attributes
     ----------
-    component : int
     turn : (3, 3) array
         Takes components along its u, v, w to x, y, z.
     shaft_inside : bool
@@ -79,7 +77,6 @@ class MeshPart:
 
     Attributes
     ----------
-    component : int
     case : str
         Name of its case.
     sense : int

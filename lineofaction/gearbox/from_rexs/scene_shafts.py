@@ -221,12 +221,10 @@ def _section(section: BeamSection) -> dict[str, Any]:
     if section.end_outer_diameter is not None:
         table["end_outer_diameter_mm"] = section.outer_diameters[1] / MM
         table["end_bore_diameter_mm"] = section.bore_diameters[1] / MM
-    if section.youngs_modulus != steel.youngs_modulus:
-        table["youngs_modulus_gpa"] = section.youngs_modulus / 1e9
-    if section.poissons_ratio != steel.poissons_ratio:
-        table["poissons_ratio"] = section.poissons_ratio
-    if section.density != steel.density:
-        table["density_kg_per_m3"] = section.density
+    material = {"youngs_modulus": "_gpa", "poissons_ratio": "", "density": "_kg_per_m3"}
+    for name, unit in material.items():
+        if (value := getattr(section, name)) != getattr(steel, name):
+            table[f"{name}{unit}"] = value / 1e9 if unit == "_gpa" else value
     return table
 
 

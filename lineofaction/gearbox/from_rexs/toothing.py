@@ -283,25 +283,29 @@ def _dedendum(gear: ToothingData, tool: Part | None, shift: float) -> float:
             gear.part.say("root_diameter", "derived", words)
             return depth
         gear.part.say("root_diameter", "refused", f"h_fP would be {depth:.4g}, outside 0.1 to 4")
-    item = "addendum_coefficient_reference_profile"
-    depth_of_tool = None if tool is None else tool.number(item, "dedendum_coefficient: the tool's addendum")
-    if depth_of_tool is None and tool is not None:
-        length = tool.number("addendum_reference_profile", "dedendum_coefficient: the tool's addendum / m_n")
-        depth_of_tool = None if length is None else length / gear.normal_module
+    items = ("addendum_coefficient_reference_profile", "addendum_reference_profile")
+    words = "dedendum_coefficient: the tool's addendum"
+    depth_of_tool = None if tool is None else _in_modules(gear, tool, items, (words, f"{words} / m_n"))
     if depth_of_tool is not None:
         return depth_of_tool
     gear.part.say("dedendum_coefficient", "defaulted", f"{_DEDENDUM} (ISO 53): no root diameter, no tool")
     return _DEDENDUM
 
 
+def _in_modules(
+    gear: ToothingData, tool: Part, items: tuple[str, str], words: tuple[str, str]
+) -> float | None:
+    """Return a size of a tool in normal modules: by its factor, else by its length."""
+    factor = tool.number(items[0], words[0])
+    length = tool.number(items[1], words[1]) if factor is None else None
+    return factor if length is None else length / gear.normal_module
+
+
 def _root_radius(gear: ToothingData, tool: Part | None) -> float:
     """Return the tip rounding of the tool in normal modules, at most the full fillet by default."""
     if tool is not None:
-        words = "root_radius_coefficient: the tool's tip rounding"
-        value = tool.number("tip_corner_radius_factor_reference_profile", words)
-        if value is None:
-            length = tool.number("tip_corner_radius_reference_profile", words)
-            value = None if length is None else length / gear.normal_module
+        items = ("tip_corner_radius_factor_reference_profile", "tip_corner_radius_reference_profile")
+        value = _in_modules(gear, tool, items, ("root_radius_coefficient: the tool's tip rounding",) * 2)
         if value is not None:
             for item in ("protuberance_amount", "protuberance_amount_factor"):
                 if tool.attribute(item) is not None:
