@@ -28,7 +28,7 @@ from lineofaction.gearbox.from_rexs.loads import AppliedTorque, SceneMotion
 from lineofaction.gearbox.from_rexs.placement import FIXED, SAME_PLACE, PlacedShaft, placement
 from lineofaction.gearbox.from_rexs.power_flow import FORCES, OperatingPoint, PowerFlow
 from lineofaction.gearbox.from_rexs.scene_bearings import SceneBearings
-from lineofaction.gearbox.from_rexs.scene_shafts import SceneShaft, SceneShafts
+from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.units import MM
 
 # Which component each part of a scene is, and how its axes u, v, w lie in the scene.
@@ -232,14 +232,10 @@ def _placed(layout: Layout, load: Part, shafts: SceneShafts) -> tuple[PlacedShaf
     if shaft.id in {planet.id for planets in layout.rotors.sets for planet in planets.planets}:
         return None, "acts on a planet, and a scene has one for all of its set"
     placed = layout.shafts[shaft.id]
-    if not _coaxial(placed, shafts.by_rotor[layout.rotor(shaft.id)]):
+    axis = MM * np.array(shafts.by_rotor[layout.rotor(shaft.id)].table["origin_mm"][:2])
+    if not np.hypot(*(np.array(placed.origin[:2]) - axis)) <= 1e2 * SAME_PLACE:
         return None, "acts off the axis of the planet carrier that its shaft is part of"
     return placed, ""
-
-
-def _coaxial(placed: PlacedShaft, shaft: SceneShaft) -> bool:
-    apart = np.array(placed.origin[:2]) - MM * np.array(shaft.table["origin_mm"][:2])
-    return bool(np.hypot(*apart) <= 1e2 * SAME_PLACE)
 
 
 def _refuse(layout: Layout, load: Part, reason: str) -> None:
@@ -247,8 +243,7 @@ def _refuse(layout: Layout, load: Part, reason: str) -> None:
     cases = (part for case in layout.unit.load_cases() for part in case if part.id == load.id)
     for part in (load, *cases):
         for item in FORCES:
-            attribute = part.attribute(item)
-            if attribute is not None and attribute.value:
+            if part.value(item):
                 part.say(item, "refused", reason)
 
 
