@@ -65,7 +65,7 @@ if TYPE_CHECKING:
         sweep,
         vibration,
     )
-    from lineofaction.report.written import facts, write
+    from lineofaction.report.document import facts, write
 
 _HOME = {
     "ablate": ("lineofaction.gearbox.workbench", "ablate"),
@@ -78,7 +78,7 @@ _HOME = {
     "Client": ("lineofaction.client", "LineOfActionClient"),
     "deflect": ("lineofaction.gearbox.workbench", "deflect"),
     "Estimate": ("fe_contact.types", "Estimate"),
-    "facts": ("lineofaction.report.written", "facts"),
+    "facts": ("lineofaction.report.document", "facts"),
     "flank": ("lineofaction.gearbox.workbench", "flank"),
     "FlankGrid": ("fe_contact", "FlankGrid"),
     "FlankModification": ("fe_contact", "FlankModification"),
@@ -119,7 +119,7 @@ _HOME = {
     "Tolerances": ("fe_contact", "Tolerances"),
     "Unit": ("lineofaction.gearbox.from_rexs.opened", "OpenedUnit"),
     "vibration": ("lineofaction.gearbox.workbench", "vibration"),
-    "write": ("lineofaction.report.written", "write"),
+    "write": ("lineofaction.report.document", "write"),
 }
 
 __all__ = [

@@ -38,7 +38,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.subjects import scene_of
 from lineofaction.gearbox.tabled_scene import ExecutorChoice, database_of, open_executor
 from lineofaction.gearbox.units import MM, NM, UM
-from lineofaction.report.tables.static_part import static_headlines
+from lineofaction.report.ste.page import static_headlines
 
 
 def assessed_case(file: InputFile, point: FlankPoint | None = None) -> Case:

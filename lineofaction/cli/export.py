@@ -36,7 +36,7 @@ from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.to_rexs import CALCULATED, deflected, exported, left_out
 from lineofaction.gearbox.units import UM
-from lineofaction.report.document.inputs import file_attributes, read_run, read_stored, stored_study
+from lineofaction.report.document import file_attributes, read_run, read_stored, stored_study
 
 _MOST_POSITIONS = 256
 

@@ -11,7 +11,7 @@ from lineofaction.cli.output import check_writable, console, print_json, progres
 from lineofaction.gearbox.problems import EXIT_FAILED, BadInput
 from lineofaction.hardcases import HARD_SCENES, HardScene, Outcome, run_scenes
 from lineofaction.hardcases.page import hardcases_page
-from lineofaction.report.document.write import write_whole
+from lineofaction.report.document import write_whole
 
 
 def run_hardcases(only: Sequence[str], output: Path | None, *, as_json: bool) -> None:

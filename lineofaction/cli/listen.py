@@ -28,11 +28,11 @@ from lineofaction.gearbox.studies.listen.heard_run import (
 from lineofaction.gearbox.studies.listen.sound_figures import SoundFigures
 from lineofaction.gearbox.studies.listen.through_housing import SceneHousings
 from lineofaction.report.comparison.compare import named_files
-from lineofaction.report.document.inputs import read_run
+from lineofaction.report.document import read_run
 from lineofaction.report.drawing.figure import number, unit_of
-from lineofaction.report.runs.levels import Loudest, loudest
-from lineofaction.report.runs.run_view import RunView
-from lineofaction.report.runs.sound import full_scale_of, heard_runs
+from lineofaction.report.run.levels import Loudest, loudest
+from lineofaction.report.run.sound import full_scale_of, heard_runs
+from lineofaction.report.run.view import RunView
 
 Json = dict[str, Any]
 FAINT = 1e-3
@@ -62,7 +62,7 @@ class RunSound:
 def _bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[RunSound], str]:
     """Return runs by what they hold, e.g. forces on a bearing, and what to say of all."""
     sounds = []
-    for one in heard_runs(dict(runs), view):
+    for one in tuple(heard_runs(dict(runs), view)):
         recording, moment = one.recording(), loudest(one.run, one.signal)
         facts = {"loudest": None if moment is None else _moment_facts(moment)}
         sounds.append(RunSound(one.name, recording, facts, _moment_cells(moment, recording.unit)))

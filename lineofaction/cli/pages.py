@@ -26,14 +26,18 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.units import UM
 from lineofaction.report.comparison.compare import compare
-from lineofaction.report.document.content import nominal_force
-from lineofaction.report.document.inputs import Inputs, page_beside, read_inputs
-from lineofaction.report.document.write import write_page, write_whole
+from lineofaction.report.document import (
+    Inputs,
+    nominal_force,
+    page_beside,
+    read_inputs,
+    write_page,
+    write_whole,
+)
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.image import png, svg
 from lineofaction.report.drawing.page import Page
-from lineofaction.report.runs.run_view import RunView
-from lineofaction.report.tables.pair import (
+from lineofaction.report.pair import (
     data_sheet,
     data_sheet_json,
     data_sheet_section,
@@ -42,7 +46,8 @@ from lineofaction.report.tables.pair import (
     pair_remarks,
     pair_title,
 )
-from lineofaction.report.tables.ste import aligned, headline_load
+from lineofaction.report.run.view import RunView
+from lineofaction.report.ste.curves import aligned, headline_load
 
 if TYPE_CHECKING:
     from fe_contact.analysis.flanks.load_distribution import LoadDistribution

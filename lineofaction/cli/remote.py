@@ -224,8 +224,10 @@ def _show_result(key: str, kind: str, file: Path | None) -> None:
 def _headlines(file: Path) -> Sequence[Headline]:
     """Return the main figures of a result; none where the extra that reads all kinds is not installed."""
     try:
-        from lineofaction.report.document.content import headlines_of  # noqa: PLC0415 (start-up time)
-        from lineofaction.report.document.inputs import read_inputs  # noqa: PLC0415 (start-up time)
+        from lineofaction.report.document import (  # noqa: PLC0415 (start-up time)
+            headlines_of,
+            read_inputs,
+        )
     except MissingExtra:
         return ()
     return headlines_of(read_inputs([file]))

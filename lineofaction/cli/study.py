@@ -42,8 +42,7 @@ from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.tabled_scene import ExecutorChoice, open_executor
-from lineofaction.report.document.inputs import read_run
-from lineofaction.report.document.write import write_whole
+from lineofaction.report.document import read_run, write_whole
 from lineofaction.report.drawing.image import png
 from lineofaction.report.presentation import presentation_of
 from service.version import solver_version

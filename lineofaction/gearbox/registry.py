@@ -2,7 +2,7 @@
 
 Process, routes, result kind, client method, verb, report and example follow from the row and from the package
 ``lineofaction.gearbox.studies.NAME``, which is loaded when it is requested: its inputs and its `run`.
-What it shows is in `lineofaction.report.studies.NAME`.
+What it shows is in the file of its name in a subject of `lineofaction.report`.
 """
 
 from __future__ import annotations

@@ -1,38 +1,27 @@
-"""How a study shows its result: the interface of the modules in `lineofaction.report.studies`."""
+"""How a study shows its result: its figure, its page, its text, each in the file of its name."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.effects import run_lines
+from lineofaction.gearbox.convert.effects import model_lines, run_lines
 from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.registry import Study
 from lineofaction.report.drawing.figure import Figure, Table
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
-from lineofaction.report.drawing.tables import cost_tables
-from lineofaction.report.runs.dynamic_part import ledger_section
+from lineofaction.report.drawing.tables import cost_tables, ledger_section
 
 
 @dataclass(frozen=True)
 class Presentation:
-    """A result as people see it.
+    """A result as people see it: the plot of ``-o FILE.png``, the report, tables and lines of the terminal.
 
-    Attributes
-    ----------
-    figure : callable
-        The one plot of ``-o FILE.png``.
-    page : callable
-        The report.
-    text : callable
-        Tables and lines of the terminal.
-    series : callable, optional
-        The numbers of the plot, which are written as CSV.
-    beside : callable, optional
-        The report beside that of an STE database, called with both; default: the same.
+    `series` are the numbers of the plot, which are written as CSV; `beside` is the report beside that of an
+    STE database, called with both, by default the same.
     """
 
     figure: Callable[[Any], Figure]
@@ -42,11 +31,48 @@ class Presentation:
     beside: Callable[[Any, SteDatabase], Page] | None = None
 
 
+_STUDIES_OF = {
+    "flank": ("flank", "root_stress"),
+    "effects": ("ablate", "frontier"),
+    "design": ("sensitivity", "optimize", "scatter", "sweep", "study"),
+    "response": ("modes", "response", "steady"),
+    "housing": ("noise", "vibration", "listen"),
+    "deflection": ("deflect",),
+}
+"""By the subject in whose folder they are shown."""
+
+
 def presentation_of(study: Study) -> Presentation:
     """Return how a study shows its result; the module of its name is loaded on demand."""
+    subject = next(subject for subject, names in _STUDIES_OF.items() if study.package in names)
     with LOADING:
-        shown: Presentation = import_module(f"lineofaction.report.studies.{study.package}").PAGE
+        shown: Presentation = import_module(f"lineofaction.report.{subject}.{study.package}").PAGE
     return shown
+
+
+def dynamics_presentation(
+    title: str,
+    figures: Callable[[Any], tuple[Figure, ...]],
+    headlines: Callable[[Any], tuple[Headline, ...]],
+    text: Callable[[Any], Iterable[Table | str]],
+) -> Presentation:
+    """Return how a study of a scene shows its result, whose `facts` say what its model neglects."""
+
+    def whole_text(result: Any) -> Iterator[Table | str]:
+        yield from text(result)
+        yield from model_text(result.facts)
+
+    return Presentation(
+        lambda result: figures(result)[0],
+        lambda result: dynamics_page(title, figures(result), headlines(result), result.facts),
+        whole_text,
+    )
+
+
+def model_text(facts: Mapping[str, Any]) -> Iterator[Table | str]:
+    """Yield the cost of the housings of a scene, and what its model neglects."""
+    yield from cost_tables(facts)
+    yield from model_lines(facts)
 
 
 def dynamics_page(

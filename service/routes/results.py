@@ -228,7 +228,7 @@ def _known(request: Request, tag: str) -> bool:
 # Figures and tables of stored results, as `loa report` draws them.
 
 
-FIGURES = "lineofaction.report.document.content:stored_figures"
+FIGURES = "lineofaction.report.document:stored_figures"
 COMPARISON = "lineofaction.report.comparison.compare:stored_comparison"
 
 
@@ -272,7 +272,7 @@ async def result_figures(
 # Stored runs and recordings to listen to, as `loa listen` writes them.
 
 
-SOUND = "lineofaction.report.runs.sound:stored_sound"
+SOUND = "lineofaction.report.run.sound:stored_sound"
 HEARD = ("run", "recording")
 """Kinds of results that have a sound."""
 _NAME = 200  # characters

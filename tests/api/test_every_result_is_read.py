@@ -78,7 +78,7 @@ def test_a_few_of_every_kind_are_read(
     def undrawn(_figure: Figure) -> bytes:
         return b""
 
-    monkeypatch.setattr("lineofaction.report.document.write.png", undrawn)
+    monkeypatch.setattr("lineofaction.report.document.png", undrawn)
     monkeypatch.setattr("lineofaction.cli.study.png", undrawn)
     assert read(home, http, process, FEW, tmp_path) >= FEW
 

@@ -15,8 +15,8 @@ from playwright.sync_api import Browser, Route, expect
 from running_service import until
 
 from lineofaction.report.comparison.compare import stored_comparison
-from lineofaction.report.document.content import stored_figures
-from lineofaction.report.runs.sound import stored_sound
+from lineofaction.report.document import stored_figures
+from lineofaction.report.run.sound import stored_sound
 
 LOUD, QUIET = "a" * 64, "b" * 64
 SHOW = """async ([hash, against]) => {

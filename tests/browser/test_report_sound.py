@@ -12,9 +12,8 @@ from page_visit import PATIENCE
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from lineofaction.report.comparison.compare import compare
-from lineofaction.report.document import write_report
-from lineofaction.report.document.write import write_whole
-from lineofaction.report.runs.run_view import RunView
+from lineofaction.report.document import write_report, write_whole
+from lineofaction.report.run.view import RunView
 
 DURATION, TOP = 2.0, 900.0  # s, rpm of the run-up from standstill
 

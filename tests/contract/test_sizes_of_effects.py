@@ -20,10 +20,9 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.studies.ablate import Inputs
 from lineofaction.gearbox.studies.ablate.run import ablation_of, facts
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.report.document.content import page_of, stored_figures
-from lineofaction.report.document.inputs import read_inputs
+from lineofaction.report.document import page_of, read_inputs, stored_figures
 from lineofaction.report.drawing.page import html
-from lineofaction.report.studies.ablate import ablation_table
+from lineofaction.report.effects.ablate import _look
 from service.live.work import live_plan
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
@@ -164,7 +163,7 @@ def ablated(case: Json, home: Path, monkeypatch: pytest.MonkeyPatch) -> Json:
     monkeypatch.setattr(ablation, "_figures", lambda *_: figures)
     means = Means(home, lambda *_: None)
     found = ablation_of(Case.model_validate_json(json.dumps(case)), Inputs(), means)
-    rows = {row[0]: row for row in ablation_table(found).rows}
+    rows = {row[0]: row for row in _look(found).table(found).rows}
     content = facts(found)
     for entry in content["effects"]:
         if entry["estimate"] is not None and not entry["estimate"]["trifle"]:

@@ -29,7 +29,6 @@ BUDGETS = {
 MOST_FILES = 962
 LONGEST = 500
 LONGER = {
-    "lineofaction/report/tables/over_torque.py": 529,
     "lineofaction/hardcases/dynamics/stepping.py": 510,
 }
 """Files above it: they get no longer, and none joins them."""

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from lineofaction.cli import study
-from lineofaction.report.document import write
+from lineofaction.report import document as write
 from lineofaction.report.drawing.figure import Figure
 
 

@@ -15,7 +15,7 @@ LONG = (
     "fe_contact.microgeometry", "fe_contact.workers", "dynamics.accuracy", "dynamics.engines",
     "dynamics.integrators", "dynamics.periodic", "dynamics.simulation", "service.app",
     "lineofaction.cli", "lineofaction.client", "lineofaction.report.document", "lineofaction.report.drawing",
-    "lineofaction.report.runs", "lineofaction.report.tables",
+    "lineofaction.report.run", "lineofaction.report.ste",
     "service.live", "service.queue", "service.store", "service.worker", "benchmarks", "concurrent",
     "fastapi", "multiprocessing", "subprocess", "typer",
 )  # fmt: skip

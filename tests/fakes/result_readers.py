@@ -17,7 +17,7 @@ from lineofaction.cli.output import print_json
 from lineofaction.cli.study import _show, _writers
 from lineofaction.client.report import Report
 from lineofaction.gearbox.registry import study_of
-from lineofaction.report.document.inputs import read_stored
+from lineofaction.report.document import read_stored
 from lineofaction.report.presentation import presentation_of
 from service.store import StoredResult
 

@@ -26,7 +26,7 @@ from lineofaction.gearbox.input_file import InputFile
 
 if TYPE_CHECKING:
     from lineofaction.cli.listen import HousingReceiver
-    from lineofaction.report.runs.run_view import RunView
+    from lineofaction.report.run.view import RunView
 
 verbs = typer.Typer()
 
@@ -255,7 +255,7 @@ class HeardOptions:
     @property
     def view(self) -> RunView:
         """The view that the options name."""
-        from lineofaction.report.runs.run_view import RunView  # noqa: PLC0415 (start-up time)
+        from lineofaction.report.run.view import RunView  # noqa: PLC0415 (start-up time)
 
         return RunView(self.quantity, self.bearing, self.mesh, direction=self.direction)
 
@@ -401,7 +401,7 @@ class ViewOptions:
     def view(self) -> RunView:
         """The view that the options name."""
         from lineofaction.gearbox.input_file import number_list  # noqa: PLC0415 (start-up time)
-        from lineofaction.report.runs.run_view import RunView  # noqa: PLC0415 (start-up time)
+        from lineofaction.report.run.view import RunView  # noqa: PLC0415 (start-up time)
 
         cuts = tuple(number_list("--orders", self.orders)) if self.orders else ()
         return RunView(self.quantity, self.bearing, self.mesh, cuts, self.window, self.scale, self.direction)

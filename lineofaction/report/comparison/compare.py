@@ -28,27 +28,30 @@ from lineofaction.report.comparison.measured import (
     read_measured,
 )
 from lineofaction.report.comparison.of_tables import compare_tables
-from lineofaction.report.document.content import of_the_store, page_json
-from lineofaction.report.document.inputs import read_result
+from lineofaction.report.document import of_the_store, page_json, read_result
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, number
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Dash,
+    Figure,
+    FloatArray,
+    Line,
+    Panel,
+    category_lines,
+    number,
+)
 from lineofaction.report.drawing.page import Headline, Page, Section
-from lineofaction.report.runs.levels import DEPTH, largest_orders, order_blocks
-from lineofaction.report.runs.run_view import (
+from lineofaction.report.run.levels import DEPTH, largest_orders, order_blocks
+from lineofaction.report.run.signals import ORDERS, amplitude_spectrum, spectrum_window
+from lineofaction.report.run.sound import Heard, heard_runs, sound_of
+from lineofaction.report.run.view import (
     SCALES,
     RunView,
-    Signal,
     along_direction,
     decibels,
     run_axis,
-    same_view,
     shown_signal,
 )
-from lineofaction.report.runs.signals import ORDERS, amplitude_spectrum, spectrum_window
-from lineofaction.report.runs.sound import Heard, sound_of
-
-# Runs against each other, and against a measured order spectrum.
-
 
 _DASHES: tuple[Dash, ...] = ("solid", "dash")
 _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error": "transmission_error_orders"}
@@ -56,32 +59,16 @@ _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error"
 
 
 @dataclass(frozen=True)
-class _Side:
-    """One of the runs: name, what is shown of it, the run along its direction, blocks over mesh orders."""
+class _Side(Heard):
+    """One of the runs, with the run along the direction shown, and blocks over mesh orders."""
 
-    name: str
-    run: RunResult
-    signal: Signal
     seen: RunResult
     blocks: Waterfall
 
 
-def compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOrders | None) -> Page:
-    """Put the comparison of runs together; the second shows what the first one does.
-
-    Parameters
-    ----------
-    runs : dict of str to RunResult
-        Two by their names, or one with what was measured.
-    view : RunView
-    measured : MeasuredOrders or None
-
-    Raises
-    ------
-    BadInput
-        A run does not hold what the view names, or the measured orders are in another unit.
-    """
-    sides = tuple(_sides(runs, view))
+def _compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOrders | None) -> Page:
+    """Put the comparison of two runs by their names together, or of one with what was measured."""
+    sides = tuple(_side(heard) for heard in heard_runs(runs, view))
     signal = sides[0].signal
     highest = int(min(side.blocks.line[-1] for side in sides))
     chosen = signal.orders or largest_orders(signal, sides[0].blocks)
@@ -98,20 +85,12 @@ def compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOr
     return Page(f"{' and '.join(runs)} compared", lead, headlines, tuple(sections))
 
 
-def _sides(runs: dict[str, RunResult], view: RunView) -> Iterator[_Side]:
-    """Yield every run with what is shown of it."""
-    for name, run in runs.items():
-        try:
-            signal = shown_signal(run, view)
-        except BadInput as error:
-            raise error.within(name) from None
-        seen = along_direction(run, signal)
-        yield _Side(name, run, signal, seen, order_blocks(seen, signal))
-        view = same_view(view, signal)
+def _side(heard: Heard) -> _Side:
+    seen = along_direction(heard.run, heard.signal)
+    return _Side(heard.name, heard.run, heard.signal, seen, order_blocks(seen, heard.signal))
 
 
 def _differences(sides: tuple[_Side, ...], orders: tuple[int, ...]) -> Iterator[Difference]:
-    """Yield the largest overall value and that of every order, each wherever in the run it is."""
     first, second = (_overall(side) for side in sides)
     yield Difference("overall", "its largest", first, second)
     for order in orders:
@@ -126,7 +105,6 @@ def _overall(side: _Side) -> Estimate:
 
 
 def _order(side: _Side, order: int) -> Estimate:
-    """Return the largest amplitude of an order with the error that the receipt states."""
     name = _ERRORS.get(side.signal.quantity.series, "")
     sources = [
         source[name][order - 1]
@@ -139,16 +117,15 @@ def _order(side: _Side, order: int) -> Estimate:
 
 
 def _levels(sides: tuple[_Side, ...], orders: tuple[int, ...]) -> Figure:
-    """Draw overall level and orders over speed."""
     overall = [side.signal.magnitude(side.blocks.rms) for side in sides]
     floor = max(float(values.max()) for values in overall) * 10.0 ** (-DEPTH / 20.0)
     lines = []
     for side, values, dash in zip(sides, overall, _DASHES, strict=False):
         axis, along = run_axis(side.run, side.blocks.time, side.signal.mesh)
         lines.append(Line(f"overall, {side.name}", along, decibels(values, floor), palette.INK, dash, 2.2))
-        for index, order in enumerate(orders):
-            level = decibels(side.signal.amplitude(side.blocks.cut(order)), floor)
-            lines.append(Line(f"{order}×, {side.name}", along, level, palette.category(index), dash, 1.4))
+        names = [f"{order}×, {side.name}" for order in orders]
+        cuts = [decibels(side.signal.amplitude(side.blocks.cut(order)), floor) for order in orders]
+        lines += category_lines(along, names, cuts, dash=dash)
     signal = sides[0].signal
     change = 20.0 * math.log10(float(overall[-1].max()) / float(overall[0].max()))
     styles = ". ".join(
@@ -160,12 +137,11 @@ def _levels(sides: tuple[_Side, ...], orders: tuple[int, ...]) -> Figure:
         caption=f"{styles}. Overall: rms. Orders: {signal.scale} values.",
         alternative=f"The largest overall level changes by {change:+.1f} dB." if len(sides) == 2 else "",
         content=(Panel(axis, Axis(f"level, dB re 1 {signal.unit}"), tuple(lines)),),
-        sound=sound_of(tuple(Heard(side.name, side.run, side.signal) for side in sides), axis),
+        sound=sound_of(sides, axis),
     )
 
 
 def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figure:
-    """Draw the spectra near the end of the runs over mesh order."""
     lines = []
     for side, color in zip(sides, COLORS, strict=False):
         window = spectrum_window(side.run.time)
@@ -211,21 +187,11 @@ _AXIS_ADVICE = "Say which by the label of the abscissa: Order, Mesh order, Posit
 Dataset = Mapping[str, Any]
 
 
-def read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
+def _read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
     """Read the one function of a file that can be compared; `teeth` are those of the driving gear.
 
-    Parameters
-    ----------
-    path : Path
-    teeth : int
-    unit : str
-        "µm", "N" or "m/s²": of what it is compared with. Values are converted by the file's units (dataset
-        164); complex ones count by their amplitude.
-
-    Raises
-    ------
-    BadInput
-        No universal file, none or several such functions, or less than one base pitch.
+    `unit` is "µm", "N" or "m/s²": of what it is compared with. Values are converted by the file's units
+    (dataset 164); complex ones count by their amplitude.
     """
     datasets = _datasets(path)
     scale = next((each for each in datasets if each["type"] == 164), {})
@@ -316,7 +282,6 @@ def _compare_results(
 def _page(
     read: dict[str, SteDatabase | RunResult], files: Sequence[Path], view: RunView, torque: float | None
 ) -> Page:
-    """Compare what was read."""
     tables = {name: one for name, one in read.items() if isinstance(one, SteDatabase)}
     runs = {name: one for name, one in read.items() if isinstance(one, RunResult)}
     if tables and runs:
@@ -333,7 +298,7 @@ def _page(
     measured = _measured(files, teeth, shown_signal(first, view).quantity.unit) if files else None
     if measured is not None and not isinstance(measured, MeasuredOrders):
         raise BadInput.of("measured", "a curve over position", "an order spectrum beside a run")
-    return compare_runs(runs, view, measured)
+    return _compare_runs(runs, view, measured)
 
 
 def _measured(files: Sequence[Path], teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders | None:
@@ -341,7 +306,7 @@ def _measured(files: Sequence[Path], teeth: int, unit: str) -> MeasuredCurve | M
     if not files:
         return None
     if files[0].suffix.lower() in ENDINGS:
-        return read_universal(files[0], teeth, unit)
+        return _read_universal(files[0], teeth, unit)
     return read_measured(files[0], teeth)
 
 
@@ -350,9 +315,6 @@ def named_files(files: Sequence[Path]) -> list[tuple[str, Path]]:
     stems = [file.stem for file in files]
     short = len(set(stems)) == len(stems)
     return [(file.stem if short else str(file), file) for file in files]
-
-
-# The comparison of two stored results as plain JSON.
 
 
 Json = dict[str, Any]

@@ -22,15 +22,7 @@ COLORS = (palette.BLUE, palette.VERMILLION)
 
 @dataclass(frozen=True)
 class Difference:
-    """One number of two results.
-
-    Attributes
-    ----------
-    name, where : str
-        What, and at which load or speed.
-    first, second : Estimate
-        In the unit in which they are written.
-    """
+    """One number of two results: what, at which load or speed, and both in the unit they are written in."""
 
     name: str
     where: str
@@ -118,7 +110,6 @@ def _text(value: Any) -> str:
 
 
 def _estimate(value: Estimate) -> str:
-    """Write a number with its error."""
     if math.isnan(value.error):
         return f"{number(value.value, 4)} {value.unit}"
     digits = _decimals(value.error or value.value)
@@ -129,9 +120,6 @@ def _decimals(error: float) -> int:
     if error == 0.0 or not math.isfinite(error):
         return 3
     return max(1 - math.floor(math.log10(abs(error))), 0)
-
-
-# Measured transmission errors and order spectra, read from CSV.
 
 
 POSITIONS = ("position", "angle_deg")
@@ -157,14 +145,8 @@ _ADVICE = (
 class MeasuredCurve:
     """A measured transmission error, averaged over its base pitches.
 
-    Attributes
-    ----------
-    ripple : (PER_PITCH,) array
-        Mean of all base pitches at equal steps of one, less the mean of all, µm.
-    spread : float
-        Standard deviation of single base pitches about it, µm: pitch errors, run-out and noise.
-    pitches : int
-        Base pitches averaged.
+    `ripple` (PER_PITCH,) is their mean at equal steps of one, less the mean of all, µm; `spread` the standard
+    deviation of single base pitches about it, µm: pitch errors, run-out and noise.
     """
 
     ripple: FloatArray
@@ -194,10 +176,7 @@ class MeasuredOrders:
 def read_measured(path: Path, teeth: int) -> MeasuredCurve | MeasuredOrders:
     """Read a CSV file with a line of names; `teeth` are those of the driving gear.
 
-    Raises
-    ------
-    BadInput
-        The columns are not known, a cell is no number, or less than one base pitch is sampled.
+    Raises `BadInput`: the columns are not known, a cell is no number, or less than one base pitch is sampled.
     """
     names, rows = _rows(path)
     if len(names) != 2 or names[0] not in (*POSITIONS, *ORDERS) or names[1] not in VALUES:
@@ -230,10 +209,7 @@ def _rows(path: Path) -> tuple[list[str], FloatArray]:
 def averaged(path: Path, position: FloatArray, values: FloatArray) -> MeasuredCurve:
     """Average the whole base pitches of a curve over positions (n,) in base pitches, values (n,) in µm.
 
-    Raises
-    ------
-    BadInput
-        Less than one base pitch is sampled, or too roughly; `path` is named.
+    Raises `BadInput`: less than one base pitch is sampled, or too roughly; `path` is named.
     """
     order = np.argsort(position, kind="stable")
     position, values = position[order], values[order]
@@ -255,18 +231,8 @@ def averaged(path: Path, position: FloatArray, values: FloatArray) -> MeasuredCu
 class Aligned:
     """A measured curve moved onto a computed one.
 
-    Attributes
-    ----------
-    measured : MeasuredCurve
-        As it was read.
-    ripple : (PER_PITCH,) array
-        Measured, from position 0, µm.
-    shift : float
-        By which it was moved towards larger positions, base pitches in [0, 1).
-    rms : float
-        Of what is left between both, µm.
-    correlation : float
-        Of both, at most 1.
+    `ripple` (PER_PITCH,) is measured, from position 0, µm; `shift` by which it was moved towards larger
+    positions, base pitches in [0, 1); `rms` of what is left between both, µm; `correlation` of both.
     """
 
     measured: MeasuredCurve

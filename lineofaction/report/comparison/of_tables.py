@@ -21,10 +21,10 @@ from lineofaction.report.comparison.measured import (
     differences_table,
 )
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number
+from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number, ripple_panel
 from lineofaction.report.drawing.page import Headline, Page, Section
-from lineofaction.report.tables.pair import pair_title
-from lineofaction.report.tables.ste import aligned
+from lineofaction.report.pair import pair_title
+from lineofaction.report.ste.curves import aligned, um_of
 
 HARMONICS = 3  # in the table of differences
 SHOWN_HARMONICS = 8
@@ -37,20 +37,10 @@ Named = dict[str, SteDatabase]
 def compare_tables(
     tables: Named, measured: MeasuredCurve | MeasuredOrders | None, torque: float | None = None
 ) -> Page:
-    """Put the comparison of tables together.
+    """Put the comparison of two tables together, or of one with what was measured.
 
-    Parameters
-    ----------
-    tables : dict of str to SteDatabase
-        Two, or one with what was measured.
-    measured : MeasuredCurve, MeasuredOrders or None
-    torque : float, optional
-        On the driving gear, N m, at which ripples are drawn; left out: the middle one that all tables hold.
-
-    Raises
-    ------
-    BadInput
-        The tables have no torque in common, or not that one, or the measured orders are in another unit.
+    Ripples are drawn at a `torque` on the driving gear, N m; left out: the middle one that all tables hold.
+    Raises `BadInput`: they have no torque in common, or not that one, or measured orders in another unit.
     """
     torques = _common(tuple(tables.values()))
     shown = torques[len(torques) // 2] if torque is None else _inside(torque, tables)
@@ -88,7 +78,6 @@ def _common(tables: Sequence[SteDatabase]) -> list[float]:
 
 
 def _limits(tables: Sequence[SteDatabase]) -> tuple[float, float]:
-    """Return the torques between which all tables hold curves."""
     low = max(float(table.torque[0]) for table in tables)
     return low, min(float(table.torque[-1]) for table in tables)
 
@@ -117,7 +106,6 @@ def _ripple(curve: Curve) -> FloatArray:
 
 
 def _differences(curves: dict[float, dict[str, Curve]]) -> Iterator[Difference]:
-    """Yield mean, peak-to-peak and harmonics at every torque, of two tables."""
     for torque, by_name in curves.items():
         if len(by_name) < 2:
             return
@@ -140,7 +128,6 @@ def _um(estimate: Estimate) -> Estimate:
 
 
 def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | None) -> Figure:
-    """Draw the curves less their means over two base pitches."""
     position = np.arange(2 * PER_PITCH + 1) / PER_PITCH
     lines = [
         Line(name, position, _twice(_ripple(curve)), color, band=0.5 * _UM * curve.peak_to_peak.error)
@@ -171,7 +158,6 @@ def _twice(ripple: FloatArray) -> FloatArray:
 
 
 def _how_aligned(moved: Aligned) -> str:
-    """Say what was done to a measured curve."""
     return (
         f"Measured: mean of {moved.measured.pitches} base pitches, less its mean, moved by {moved.shift:.3f} "
         "base pitches to where it is most like the first curve. Its band is the standard deviation of single "
@@ -180,7 +166,6 @@ def _how_aligned(moved: Aligned) -> str:
 
 
 def _how_alike(name: str, curve: Curve, moved: Aligned) -> str:
-    """Say how far a measured curve lies from a computed one."""
     own, other = _um(curve.peak_to_peak), float(np.ptp(moved.ripple))
     return (
         f"Measured {number(other, 3)} µm peak to peak, {name} {number(own.value, 3)} ± "
@@ -194,27 +179,18 @@ def _over_torque(curves: dict[float, dict[str, Curve]]) -> Figure:
     names = tuple(next(iter(curves.values())))
     lines = []
     for name, color in zip(names, COLORS, strict=False):
-        found = [_um(by_name[name].peak_to_peak) for by_name in curves.values()]
-        value, error = np.array([[one.value, one.error] for one in found]).T
+        value, error = um_of([by_name[name].peak_to_peak for by_name in curves.values()])
         lines.append(Line(name, torque, value, color, markers=True, band=error))
-    top = 1.05 * max(float(np.nanmax(line.y + np.nan_to_num(line.band))) for line in lines)
     return Figure(
         key="ripple_over_torque",
         title="Peak-to-peak STE over torque",
         caption="Bands: the errors.",
         alternative=_where_shown(curves) if len(names) == 2 else "",
-        content=(
-            Panel(
-                Axis("torque on the driving gear, N m"),
-                Axis("peak to peak, µm", limits=(0.0, top)),
-                tuple(lines),
-            ),
-        ),
+        content=(ripple_panel(Axis("torque on the driving gear, N m"), tuple(lines)),),
     )
 
 
 def _where_shown(curves: dict[float, dict[str, Curve]]) -> str:
-    """Say at which torques two tables are shown to differ."""
     shown = [one for load, by_name in curves.items() if (one := _peak_to_peak(by_name, load)).is_shown]
     where = f": {', '.join(one.where for one in shown)}" if shown else ""
     return (
@@ -224,7 +200,6 @@ def _where_shown(curves: dict[float, dict[str, Curve]]) -> str:
 
 
 def _harmonics(curves: dict[str, Curve], torque: float, measured: MeasuredOrders | None) -> Figure:
-    """Draw the mesh harmonics as points with their errors, and a measured order spectrum."""
     order = np.arange(1.0, SHOWN_HARMONICS + 1.0)
     lines, columns = [], {}
     for index, (name, curve) in enumerate(curves.items()):

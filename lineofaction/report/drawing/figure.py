@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from lineofaction.report.drawing import palette
 
 FloatArray = NDArray[np.float64]
 Dash = Literal["solid", "dash", "dot"]
+_Entry = TypeVar("_Entry")
 BLANK = 0.01
 """Part of the largest value of a map with isolines below which it has no color."""
 
@@ -35,6 +36,17 @@ class Axis:
         low, high = self.limits or (0.0, 0.0)
         if not (low < high and self.shows(low) and self.shows(high)):
             object.__setattr__(self, "limits", None)
+
+    @classmethod
+    def over(cls, label: str, values: FloatArray) -> Axis:
+        """Return the axis that ends at the first and at the last of values (n,)."""
+        return cls(label, limits=(float(values[0]), float(values[-1])))
+
+    @classmethod
+    def of_names(cls, names: Sequence[str], label: str = "", beyond: float = -0.4) -> Axis:
+        """Return the axis with names at 0, 1, 2 and so on, which ends at their number and `beyond`."""
+        at = tuple((float(k), name) for k, name in enumerate(names))
+        return cls(label, limits=(-0.6, len(at) + beyond), names=at)
 
     def shows(self, value: float) -> bool:
         """Whether a value has a place on it."""
@@ -186,19 +198,21 @@ class Table:
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
 
+    @classmethod
+    def of(
+        cls, caption: str, entries: Iterable[_Entry], columns: Mapping[str, Callable[[_Entry], str]]
+    ) -> Table:
+        """Write a row for each entry; columns by their heads say what they write of one."""
+        rows = tuple(tuple(write(entry) for write in columns.values()) for entry in entries)
+        return cls(caption, tuple(columns), rows)
+
 
 @dataclass(frozen=True)
 class Track:
     """One of the sounds of a plot, and where on the horizontal axis of its first panel it is as it plays.
 
-    Attributes
-    ----------
-    name : str
-        Tells it from others of the plot.
-    time, along : (n,) arrays
-        s, increasing; values on the axis.
-    query : dict of str to str
-        What names it to the service's path of the sound of a result.
+    `time` (n,), s, increases; `along` (n,) are values on the axis. `query` names it to the service's path of
+    the sound of a result.
     """
 
     name: str
@@ -209,15 +223,9 @@ class Track:
 
 @dataclass(frozen=True)
 class Sound:
-    """What a plot shows, to listen to.
+    """What a plot shows, to listen to: its quantity, and what it is not, in the caption.
 
-    Attributes
-    ----------
-    caption : str
-        Its quantity, and what it is not.
-    tracks : tuple of Track
-    files : tuple of bytes
-        A WAV file for each track, all of one full scale; none if they would be too large for a page.
+    `files` are WAV, one for each track, all of one full scale; none if they would be too large for a page.
     """
 
     caption: str
@@ -229,19 +237,9 @@ class Sound:
 class Figure:
     """A plot of one or more panels, from top to bottom.
 
-    Attributes
-    ----------
-    key : str
-        Name of the image file and anchor of the page.
-    title, caption : str
-        What is shown, and how to read it (signs, conventions).
-    alternative : str
-        The finding in words: the first sentences under the plot, and what stands for it where it is not seen.
-    content : tuple of Panel
-    table : Table or None
-        The main numbers behind the plot.
-    sound : Sound or None
-        The plot to listen to.
+    `key` names the image file and the anchor of the page; `caption` says how to read it (signs, conventions);
+    `alternative` is the finding in words: the first sentences under the plot, and what stands for it where it
+    is not seen. `table` holds its main numbers.
     """
 
     key: str
@@ -251,6 +249,59 @@ class Figure:
     content: tuple[Panel, ...]
     table: Table | None = None
     sound: Sound | None = None
+
+
+def category_lines(
+    x: FloatArray,
+    names: Sequence[str],
+    curves: Iterable[FloatArray],
+    width: float = 1.4,
+    dash: Dash = "solid",
+) -> tuple[Line, ...]:
+    """Draw curves (n,) over `x`, each in the color of a category."""
+    return tuple(
+        Line(name, x, values, palette.category(index), dash, width)
+        for index, (name, values) in enumerate(zip(names, curves, strict=True))
+    )
+
+
+def ordered_lines(
+    x: FloatArray,
+    names: Sequence[str],
+    curves: Iterable[FloatArray],
+    bands: Iterable[FloatArray] | None = None,
+    *,
+    labeled: bool = True,
+) -> tuple[Line, ...]:
+    """Draw curves (n,) over `x`, dark for the first, named at their ends; those with bands as points too."""
+    count, points = len(names), bands is not None
+    sizes: Iterable[FloatArray | float] = [0.0] * count if bands is None else bands
+    return tuple(
+        Line(name, x, y, palette.ordered(k, count), markers=points, band=band, label=name if labeled else "")
+        for k, (name, y, band) in enumerate(zip(names, curves, sizes, strict=True))
+    )
+
+
+def step_line(name: str, edges: FloatArray, values: FloatArray, color: str) -> Line:
+    """Draw values (n,) of bands between their edges (n + 1,)."""
+    return Line(name, np.repeat(edges, 2)[1:-1], np.repeat(values, 2), color)
+
+
+def ripple_panel(x: Axis, lines: tuple[Line, ...], title: str = "") -> Panel:
+    """Draw peak-to-peak in µm with error bands, from zero."""
+    top = 1.05 * max(float(np.nanmax(line.y + np.nan_to_num(line.band))) for line in lines)
+    return Panel(x, Axis("peak to peak, µm", limits=(0.0, top)), lines, title=title)
+
+
+def shaded_levels(x: FloatArray, y: FloatArray, level: FloatArray, label: str, depth: float) -> HeatMap:
+    """Color levels (m, n) in dB down to `depth` below the largest; lower ones are left blank."""
+    most = float(level.max())
+    return HeatMap(x, y, np.where(level < most - depth, np.nan, level), label, most, most - depth)
+
+
+def largest(sizes: FloatArray, count: int) -> list[int]:
+    """Return the indices of the largest of sizes (n,), in their order."""
+    return sorted(np.argsort(-sizes, kind="stable")[:count].tolist())
 
 
 DRAWING_WIDTH, TALLEST = 3.3, 2.0
@@ -308,6 +359,11 @@ def number(value: float, digits: int = 4) -> str:
     size = int(np.floor(np.log10(abs(value))))
     plain = -4 <= size < 7
     return f"{value:.{max(digits - 1 - size, 0)}f}" if plain else engineering(value, digits)
+
+
+def um(length: float, digits: int = 4) -> str:
+    """Write a length in m as a number in µm."""
+    return number(1e6 * float(length), digits)
 
 
 def thousands(values: Sequence[float]) -> tuple[str, ...]:

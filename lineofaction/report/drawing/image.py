@@ -42,9 +42,6 @@ from lineofaction.report.drawing.figure import (
 )
 from lineofaction.report.drawing.placing import line_labels, rewritten, vertical_limits
 
-# Heat maps and strokes as images.
-
-
 THIN, THICK = 0.7, 4.0  # points
 
 
@@ -53,7 +50,6 @@ def _color_map(colors: Sequence[str] = palette.CIVIDIS) -> LinearSegmentedColorm
 
 
 def _draw_shade(ax: Axes, shade: HeatMap | Strokes) -> None:
-    """Draw values as colors, with their scale beside the panel."""
     drawn = _cells(ax, shade) if isinstance(shade, HeatMap) else _strokes(ax, shade)
     figure: Any = ax.get_figure()
     figure.colorbar(drawn, ax=ax, label=shade.label, pad=0.015, fraction=0.06, aspect=14)
@@ -68,7 +64,6 @@ def _cells(ax: Axes, shade: HeatMap) -> Any:
 
 
 def _smooth(ax: Axes, shade: HeatMap) -> Any:
-    """Draw colors that change smoothly, and isolines with their values."""
     (left, *_, right), (low, *_, high) = _edges(shade.x), _edges(shade.y)
     span = Normalize(BLANK * shade.largest, shade.largest)
     colors = _color_map().with_extremes(under=(1.0, 1.0, 1.0, 0.0))
@@ -132,7 +127,6 @@ def svg(figure: Figure) -> bytes:
 
 
 def _image(figure: Figure, form: str, metadata: dict[str, str | None]) -> bytes:
-    """Draw `figure` and return the bytes of a file of the form "png" or "svg"."""
     sheet = _panel_sheet(rewritten(figure.content, _drawable))
     sheet.suptitle(
         _drawable(figure.title), x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK
@@ -201,7 +195,6 @@ def _legend_columns(names: list[str]) -> int:
 
 
 def _draw(ax: Axes, line: Line) -> Any:
-    """Draw one curve and return its handle."""
     stroke: dict[str, Any] = {"color": line.color, "ls": _DASH[line.dash], "lw": line.width * 0.8}
     if line.markers:
         stroke |= {"marker": "o", "ms": 6}
@@ -217,7 +210,6 @@ def _draw_bars(ax: Axes, bars: Bars) -> Any:
 
 
 def _label_lines(ax: Axes, panel: Panel) -> None:
-    """Write the labels at the right ends of lines, each led to from its line."""
     for label in line_labels(panel, _LABEL_ROW):
         ax.annotate(
             label.text,
@@ -240,13 +232,13 @@ def _label_lines(ax: Axes, panel: Panel) -> None:
 
 
 def _finish(ax: Axes, panel: Panel) -> None:
-    """Label, scale and dress one panel."""
     for axis, name in ((panel.x, "x"), (panel.y, "y")):
         _scale(ax, axis, name)
     if any(line.label for line in panel.lines):
         ax.set_ylim(vertical_limits(panel))
         _label_lines(ax, panel)
-    if panel.lines and _is_whole(np.concatenate([line.x for line in panel.lines])):
+    x = np.concatenate([line.x for line in panel.lines]) if panel.lines else np.array([0.5])
+    if np.all(x == np.round(x)) and np.ptp(x) <= _MOST_WHOLE:
         ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     for reference in panel.references:
         _refer(ax, reference, boxed=panel.shade is not None)
@@ -265,12 +257,7 @@ def _finish(ax: Axes, panel: Panel) -> None:
         ax.set_aspect("equal")
 
 
-def _is_whole(values: Any) -> bool:
-    return bool(np.all(values == np.round(values)) and np.ptp(values) <= _MOST_WHOLE)
-
-
 def _scale(ax: Axes, axis: Axis, name: str) -> None:
-    """Give one axis its label, scale and limits."""
     empty = axis.scale == "log" and not np.isfinite(getattr(ax.dataLim, f"minpos{name}"))
     limits = axis.limits or (_DECADE if empty else None)
     if limits:

@@ -30,9 +30,6 @@ from lineofaction.report.drawing.figure import (
 )
 from lineofaction.report.drawing.placing import line_labels, rewritten, vertical_limits
 
-# Heat maps and strokes as plotly.js traces.
-
-
 Json = dict[str, Any]
 
 STEPS = 12  # colors of strokes: a curve of plotly has one color
@@ -50,7 +47,6 @@ def _shade_traces(shade: HeatMap | Strokes, suffix: str, domain: list[float]) ->
 
 
 def _color_bar(label: str, domain: list[float]) -> Json:
-    """Place the scale beside its panel."""
     middle, length = 0.5 * (domain[0] + domain[1]), domain[1] - domain[0]
     return {
         "title": {"text": label, "side": "right", "font": {"size": 14}},
@@ -80,7 +76,6 @@ def _cells(shade: HeatMap, domain: list[float]) -> Json:
 
 
 def _isolines(shade: HeatMap) -> Json:
-    """Return what makes a map of isolines, evenly spaced, over smooth colors."""
     step = shade.isolines[-1] / len(shade.isolines)
     ends = {"start": shade.isolines[0], "end": shade.isolines[-1], "size": step}
     look = {"coloring": "heatmap", "showlabels": True, "labelfont": {"size": 11, "color": "#FFFFFF"}}
@@ -91,7 +86,6 @@ def _isolines(shade: HeatMap) -> Json:
 
 
 def _strokes(shade: Strokes, domain: list[float]) -> list[Json]:
-    """Draw strokes in steps of color and width, and a scale for them."""
     step = np.ceil(STEPS * np.clip(shade.value / shade.largest, 0.0, 1.0)).astype(int)
     unit = unit_of(shade.label)
     traces = [_step(shade, step == k, k, unit) for k in range(STEPS + 1) if np.any(step == k)]
@@ -193,7 +187,6 @@ def _legend_rows(names: list[str]) -> int:
 
 
 def _margin(panels: tuple[Panel, ...]) -> int:
-    """Return the pixels right of the panels, for the labels at lines."""
     rows = [row for panel in panels for line in panel.lines for row in line.label.split("\n")]
     return 24 + math.ceil(_LABEL_CHARACTER * max(map(len, rows), default=0))
 
@@ -206,7 +199,6 @@ def _upright(panel: Panel) -> Axis:
 
 
 def _line_labels(panel: Panel, suffix: str) -> list[Json]:
-    """Put labels at the right ends of lines, each led to from its line."""
     found = []
     for label in line_labels(panel, _LABEL_ROW / _PANEL_HEIGHT):
         at = {"xref": f"x{suffix} domain", "yref": f"y{suffix} domain", "x": 1, "y": label.end}
@@ -242,7 +234,6 @@ def _domain(above: int, height: int, inner: int) -> list[float]:
 
 
 def _layout(height: int) -> Json:
-    """Return what all figures share."""
     return {
         "height": height,
         "font": _FONT | {"color": palette.INK},
@@ -302,7 +293,6 @@ def _band(line: Line, suffix: str) -> list[Json]:
 
 
 def _panel_title(panel: Panel, suffix: str) -> list[Json]:
-    """Put the panel's title at its upper left, inside the plot's frame of reference."""
     if not panel.title:
         return []
     frame = {"xref": f"x{suffix} domain", "yref": f"y{suffix} domain", "x": 0, "y": 1}
@@ -325,7 +315,6 @@ def _notes(panel: Panel, suffix: str) -> list[Json]:
 
 
 def _add_reference(layout: Json, reference: Reference, panel: Panel, suffix: str) -> None:
-    """Draw a reference line and its label."""
     upright = reference.direction == "vertical"
     x, y = "x" + suffix, "y" + suffix
     along = {"xref": x, "yref": f"{y} domain"} if upright else {"xref": f"{x} domain", "yref": y}

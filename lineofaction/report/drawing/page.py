@@ -27,7 +27,7 @@ for (const group of document.querySelectorAll(".player")) {
 """
 
 
-def player(figure: Figure) -> str:
+def _player(figure: Figure) -> str:
     """Return the players of a plot's sound; in place of files that are too large a sentence."""
     if figure.sound is None:
         return ""
@@ -55,93 +55,8 @@ def sound_json(sound: Sound) -> Json:
     return {"caption": sound.caption, "tracks": tracks}
 
 
-def _player_script() -> str:
-    """Return the script that joins players and plots, as a module."""
-    return f'<script type="module">{_text(SCRIPT)}{_JOINED}</script>'
-
-
-def _player_style() -> str:
-    """Return the style sheet of players and cursor."""
-    return _text(STYLE_SHEET)
-
-
-def _text(name: str) -> str:
-    return (files(__package__) / name).read_text("utf-8")
-
-
-# Figures and tables as one HTML page that needs nothing but itself.
-
-
-# The page's style sheet: one column of text measure, tables that read, and a print form.
-
-
-STYLE = """
-:root { --ink: #1b1f24; --muted: #59636e; --rule: #dde1e6; --paper: #ffffff; --wash: #f6f7f9;
-  --link: #0b5394; }
-* { box-sizing: border-box; }
-html { font: 16px/1.55 system-ui, -apple-system, "Segoe UI", "Liberation Sans", sans-serif; color: var(--ink);
-  background: var(--paper); -webkit-text-size-adjust: 100%; }
-body { max-width: 66rem; margin: 0 auto; padding: 2rem 1.25rem 4rem; }
-h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .4rem; letter-spacing: -.01em; }
-h2 { font-size: 1.3rem; line-height: 1.3; margin: 3rem 0 .5rem; padding-top: .8rem;
-  border-top: 2px solid var(--ink); }
-h3 { font-size: 1.05rem; margin: 2rem 0 .4rem; }
-p { max-width: 44rem; margin: .4rem 0 .8rem; }
-a { color: var(--link); }
-a:focus-visible, summary:focus-visible { outline: 3px solid #e69f00; outline-offset: 2px; }
-.lead { color: var(--muted); font-size: 1.05rem; }
-.skip { position: absolute; left: -100rem; }
-.skip:focus { left: 1rem; top: .5rem; background: var(--paper); padding: .5rem; }
-nav ol { columns: 2; padding-left: 1.3rem; margin: .3rem 0; }
-.headline { display: flex; flex-wrap: wrap; gap: 1rem 2.5rem; margin: 1.6rem 0; padding: 0; }
-.headline div { margin: 0; }
-.headline dt { color: var(--muted); font-size: .85rem; }
-.headline dd { margin: 0; font-size: 1.5rem; font-weight: 600; font-variant-numeric: tabular-nums; }
-.headline small { font-size: .85rem; font-weight: 400; color: var(--muted); }
-.alarm { border-left: 5px solid #d55e00; background: #fff4ec; padding: .7rem 1rem; max-width: none; }
-figure { margin: 1.2rem 0 2.2rem; }
-figcaption { max-width: 44rem; color: var(--muted); font-size: .92rem; }
-.plot { width: 100%; }
-/* the bar of buttons stands above a legend, not on it */
-.plot:has(.legend) { margin-top: 30px; }
-.plot:has(.legend) .modebar-container { top: -30px !important; }
-.player { margin: .6rem 0; }
-.player p { color: var(--muted); font-size: .92rem; }
-.still { display: none; max-width: 100%; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; font-size: .92rem; font-variant-numeric: tabular-nums;
-  margin: .5rem 0 1.2rem; }
-caption { text-align: left; font-weight: 600; padding: .3rem 0; }
-th, td { text-align: left; vertical-align: top; padding: .28rem 1.1rem .28rem 0;
-  border-bottom: 1px solid var(--rule); }
-thead th { border-bottom: 1.5px solid var(--ink); white-space: nowrap; }
-tbody th { font-weight: 500; }
-th.n, td.n { text-align: right; white-space: nowrap; }
-thead th.n { white-space: normal; }
-details { margin: .3rem 0 1rem; }
-summary { cursor: pointer; color: var(--link); font-size: .92rem; padding: .2rem 0; }
-footer { margin-top: 4rem; color: var(--muted); font-size: .88rem; border-top: 1px solid var(--rule);
-  padding-top: .8rem; }
-@media (max-width: 40rem) { nav ol { columns: 1; } }
-@media print {
-  html { font-size: 10.5pt; }
-  body { max-width: none; padding: 0; }
-  nav, .skip, summary, .modebar { display: none !important; }
-  h2 { break-after: avoid; }
-  figure, tr { break-inside: avoid; }
-  .plot, .player label, .player fieldset { display: none; }
-  .still { display: block; }
-  a { color: inherit; text-decoration: none; }
-}
-"""
-
-
-# The JavaScript of plotly, from its wheel.
-
-
-def _plotly_script() -> str:
-    """Return plotly.js, whole and minified; of the Python package nothing else is loaded."""
-    return (files("plotly") / "package_data" / "plotly.min.js").read_text("utf-8")
+def _text(name: str, package: str = __package__) -> str:
+    return (files(package) / name).read_text("utf-8")
 
 
 class Part(IntEnum):
@@ -190,47 +105,30 @@ class Page:
     alarms: tuple[str, ...] = ()
 
 
-# Each plot stands beside its still image, which prints and which takes over where the browser cannot draw.
-_SCRIPT = """
-const drawn = [];
-for (const node of document.querySelectorAll(".plot")) {
-  const figure = JSON.parse(document.getElementById(node.dataset.figure).textContent);
-  const config = {responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"]};
-  const fall = () => { node.hidden = true; node.nextElementSibling.style.display = "block"; };
-  drawn.push(Plotly.newPlot(node, figure.data, figure.layout, config).catch(fall));
-}
-addEventListener("beforeprint", () => {
-  for (const folded of document.querySelectorAll("details")) folded.open = true;
-});
-Promise.all(drawn).then(() => { document.documentElement.dataset.drawn = "yes"; });
-"""
-
-
 def html(page: Page, images: dict[str, bytes]) -> str:
     """Write `page`; `images` are the PNG bytes of every figure by its key."""
     body = "\n".join(_section(section, index, images) for index, section in enumerate(page.sections, start=1))
     heard = any(figure.sound for section in page.sections for figure in section.figures)
-    style = STYLE + _player_style() if heard else STYLE
+    style = "\n" + _text("page.css") + (_text(STYLE_SHEET) if heard else "")
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f'<title>{escape(page.title)}</title>\n<link rel="icon" href="data:,">\n<style>{style}</style>',
             "<noscript><style>.plot { display: none; } .still { display: block; }</style></noscript>",
-            f"<script>{_plotly_script()}</script>\n</head>\n<body>",
+            f"<script>{_text('package_data/plotly.min.js', 'plotly')}</script>\n</head>\n<body>",
             '<a class="skip" href="#main">Skip to the results</a>',
             _header(page),
             f'<main id="main">\n{body}\n</main>',
             "<footer>Written by lineofaction. This page needs no network.</footer>",
-            f"<script>{_SCRIPT}</script>",
-            _player_script() if heard else "",
+            "<script>\n" + _text("page.js") + "</script>",
+            f'<script type="module">{_text(SCRIPT)}{_JOINED}</script>' if heard else "",
             "</body>\n</html>\n",
         ]
     )
 
 
 def _header(page: Page) -> str:
-    """Title, warnings, main results and contents."""
     alarms = "".join(
         f'<p class="alarm" role="alert"><strong>{escape(text)}</strong></p>' for text in page.alarms
     )
@@ -249,7 +147,6 @@ def _header(page: Page) -> str:
 
 
 def _section(section: Section, index: int, images: dict[str, bytes]) -> str:
-    """One numbered part of the page."""
     text = f"<p>{escape(section.text)}</p>" if section.text else ""
     figures = "\n".join(_figure(figure, images[figure.key]) for figure in section.figures)
     tables = "\n".join([*map(_table, section.tables), *map(_folded, section.folded)])
@@ -268,7 +165,7 @@ def _figure(figure: Figure, image: bytes) -> str:
         f'<div class="plot" role="img" aria-label="{alternative}" data-figure="{figure.key}-data"></div>'
         f'<img class="still" alt="{alternative}" src="data:image/png;base64,{still}">\n'
         f"<figcaption><strong>{escape(figure.alternative)}</strong> {escape(figure.caption)}</figcaption>\n"
-        f"{player(figure)}{numbers}"
+        f"{_player(figure)}{numbers}"
         f'<script type="application/json" id="{figure.key}-data">{_embedded(figure)}</script>\n</figure>'
     )
 

@@ -50,6 +50,5 @@ def cividis(fraction: float) -> str:
 
 
 def _blend(first: str, second: str, weight: float) -> str:
-    """Mix two hex colors."""
     parts = ((int(first[i : i + 2], 16), int(second[i : i + 2], 16)) for i in (1, 3, 5))
     return "#" + "".join(f"{round(a + (b - a) * weight):02X}" for a, b in parts)

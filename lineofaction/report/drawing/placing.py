@@ -29,9 +29,6 @@ def _extremes(values: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
     return np.array([np.argmin(values), np.argmax(values)], dtype=np.int64)
 
 
-# Short texts beside points that lie close together: none covers another, nor a point.
-
-
 # of an 8 point text in a panel of the usual size, in parts of its width and height
 _CHARACTER, _HEIGHT, _GAP, _RISE = 0.0072, 0.07, 0.008, 0.05
 _POINT_WIDTH, _POINT_HEIGHT = 0.012, 0.05
@@ -96,9 +93,6 @@ def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
     return across and along and not any(box.covers(other) for other in taken)
 
 
-# Labels at the right ends of lines, spread so that none covers another.
-
-
 _ROOM = 0.05  # of the height beyond the curves where the axis has no limits
 
 
@@ -127,14 +121,14 @@ def line_labels(panel: Panel, row: float) -> list[_LineLabel]:
     ends = np.array([_shown(line.y, panel.y)[-1] for line in lines])
     heights = row * np.array([line.label.count("\n") + 1.3 for line in lines])
     at = np.clip(panel.y.fraction(ends, vertical_limits(panel)), 0.0, 1.0) if lines else ends
-    middles = spread(at, heights)
+    middles = _spread(at, heights)
     return [
         _LineLabel(line.label, line.color, float(end), float(middle))
         for line, end, middle in zip(lines, at, middles, strict=True)
     ]
 
 
-def spread(wanted: FloatArray, heights: FloatArray) -> FloatArray:
+def _spread(wanted: FloatArray, heights: FloatArray) -> FloatArray:
     """Return the middles of texts (n,) of given heights that lie apart and nearest to where they are wanted.
 
     The sum of squared shifts is least among all in this order (pool adjacent violators); then the stack is
@@ -172,9 +166,6 @@ def vertical_limits(panel: Panel) -> tuple[float, float]:
 
 def _shown(values: FloatArray, axis: Axis) -> FloatArray:
     return values[np.isfinite(values) & ((values > 0.0) | (axis.scale == "linear"))]
-
-
-# The words of a plot, which hold the names that callers chose: written so that what draws them shows them.
 
 
 Description = TypeVar("Description")

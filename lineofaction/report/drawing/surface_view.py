@@ -23,7 +23,7 @@ SIDES = {"From the front": EYE, "From behind and below": (-EYE[0], -EYE[1], -EYE
 
 
 @dataclass(frozen=True)
-class View:
+class _View:
     """Axes of the picture in space, columns right, up, to the eye, and its pixels: corner, step, shape."""
 
     axes: FloatArray
@@ -36,7 +36,7 @@ class View:
         return np.asarray((points @ self.axes - self.low) / self.step)
 
 
-def view_of(points: FloatArray, eye: tuple[float, float, float] = EYE) -> View:
+def _view_of(points: FloatArray, eye: tuple[float, float, float] = EYE) -> _View:
     """Return the view that holds all points, (p, 3)."""
     ahead = np.array(eye) / np.linalg.norm(eye)
     right = np.cross([0.0, 1.0, 0.0], ahead)
@@ -46,10 +46,10 @@ def view_of(points: FloatArray, eye: tuple[float, float, float] = EYE) -> View:
     low, span = seen.min(axis=0), np.ptp(seen, axis=0)[:2]
     step = float(span.max()) / (ACROSS - 3)
     columns, rows = (int(np.ceil(side / step)) + 3 for side in span)
-    return View(axes, low - step, step, (rows, columns))
+    return _View(axes, low - step, step, (rows, columns))
 
 
-def rendered(view: View, corners: FloatArray, value: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _rendered(view: _View, corners: FloatArray, value: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return value and depth of the facet in front at each pixel, (rows, columns); NaN and -inf at none.
 
     Parameters
@@ -74,7 +74,7 @@ def rendered(view: View, corners: FloatArray, value: FloatArray) -> tuple[FloatA
 
 
 def _covered(
-    view: View, flat: FloatArray, facets: IntArray, side: int
+    view: _View, flat: FloatArray, facets: IntArray, side: int
 ) -> tuple[IntArray, IntArray, FloatArray]:
     """Return facets, pixels and depths of all pixels that facets of a size cover."""
     corner = flat[facets]
@@ -97,7 +97,7 @@ def _covered(
     return facets[row], number, ahead
 
 
-def folds(points: FloatArray, triangles: IntArray) -> IntArray:
+def _folds(points: FloatArray, triangles: IntArray) -> IntArray:
     """Return the sharp edges of triangles (t, 3) as pairs of nodes, (e, 2)."""
     corner = points[triangles]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
@@ -118,49 +118,32 @@ def surface_panels(
 
     Parameters
     ----------
-    points : (p, 3) array
-        m, at rest.
+    points, offset : (p, 3) arrays
+        m: at rest, and how far they are drawn off.
     triangles : (t, 3) int array
-    offset : (p, 3) array
-        How far points are drawn off, m.
     value : (t,) array
         Where some is negative, colors are even about 0.
     label, words : str
         Of the colors, with the unit after the last comma, and in the titles of the panels.
     """
-    return tuple(
-        _panel(points, triangles, offset, value, label, f"{side}: {words}", eye)
-        for side, eye in SIDES.items()
-    )
-
-
-def _panel(
-    points: FloatArray,
-    triangles: IntArray,
-    offset: FloatArray,
-    value: FloatArray,
-    label: str,
-    title: str,
-    eye: tuple[float, float, float],
-) -> Panel:
-    """Draw one side."""
     moved = points + offset
-    view = view_of(np.concatenate([points, moved]), eye)
-    image, _ = rendered(view, moved[triangles], value)
-    _, depth = rendered(view, points[triangles], value)
-    x, y = (1e3 * view.step * np.arange(count, dtype=np.float64) for count in view.shape[::-1])
     largest = float(np.max(np.abs(value), initial=0.0)) or 1.0
     least = -largest if np.any(value < 0.0) else 0.0
-    edges = _in_sight(view, points[folds(points, triangles)], depth)
-    outline = Line(
-        "edges at rest", 1e3 * view.step * edges[:, 0], 1e3 * view.step * edges[:, 1], palette.INK, width=0.6
-    )
-    across, up = (Axis("mm", limits=(0.0, float(along[-1]))) for along in (x, y))
-    shade = HeatMap(x, y, image, label, largest, least)
-    return Panel(across, up, (outline,), title=title, shade=shade, equal=True)
+    panels = []
+    for side, eye in SIDES.items():
+        view = _view_of(np.concatenate([points, moved]), eye)
+        image, _ = _rendered(view, moved[triangles], value)
+        _, depth = _rendered(view, points[triangles], value)
+        x, y = (1e3 * view.step * np.arange(count, dtype=np.float64) for count in view.shape[::-1])
+        edges = 1e3 * view.step * _in_sight(view, points[_folds(points, triangles)], depth)
+        outline = Line("edges at rest", edges[:, 0], edges[:, 1], palette.INK, width=0.6)
+        across, up = (Axis("mm", limits=(0.0, float(along[-1]))) for along in (x, y))
+        shade = HeatMap(x, y, image, label, largest, least)
+        panels.append(Panel(across, up, (outline,), title=f"{side}: {words}", shade=shade, equal=True))
+    return tuple(panels)
 
 
-def _in_sight(view: View, ends: FloatArray, depth: FloatArray) -> FloatArray:
+def _in_sight(view: _View, ends: FloatArray, depth: FloatArray) -> FloatArray:
     """Return edges (e, 2, 3) that nothing hides as points of a line with breaks, (n, 2) in pixels."""
     flat = view.pixels(ends)
     middle = flat.mean(axis=1)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from dynamics.orders import highest_valid_order
 from dynamics.results import RunResult
@@ -40,7 +42,6 @@ def side_by_side(caption: str, columns: Mapping[str, Mapping[str, Any]]) -> Tabl
 
 
 def _rows(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str]]:
-    """Walk nested mappings, naming each leaf by its path."""
     for name, value in content.items():
         label = f"{before}{_words(name)}"
         if isinstance(value, Mapping):
@@ -78,32 +79,15 @@ def _cell(value: object) -> str:
     return str(value)
 
 
-# Effects on the page: one table, whichever model decided about them.
-
-
-_HEAD = ("effect", "in", "simulated", "without it", "because")
-
-
-@dataclass(frozen=True)
-class EffectRow:
-    """An effect: its name, what it acts in, whether it is simulated, its influence in words, and why."""
-
-    name: str
-    place: str
-    on: bool
-    without: str
-    because: str
-
-    @property
-    def cells(self) -> tuple[str, ...]:
-        """Return the row of the table."""
-        on = "yes" if self.on else "no"
-        return self.name, self.place, on, self.without, self.because
+EffectRow = tuple[str, str, bool, str, str]
+"""An effect: its name, what it acts in, whether it is simulated, its influence in words, and why."""
 
 
 def effect_table(caption: str, rows: Iterable[EffectRow]) -> Table:
     """Tabulate effects."""
-    return Table(caption, _HEAD, tuple(row.cells for row in rows))
+    head = ("effect", "in", "simulated", "without it", "because")
+    cells = (((name, place, "yes" if on else "no", *words)) for name, place, on, *words in rows)
+    return Table(caption, head, tuple(cells))
 
 
 def effects_section(text: str, rows: Iterable[EffectRow], folded: tuple[Table, ...] = ()) -> Section:
@@ -124,7 +108,23 @@ def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
     return (*others, replace(effects[0], text=text, tables=(table,), folded=folded))
 
 
-# The sampling of a run: rate and filter, the part they removed, and the peaks between the samples.
+_ROUNDING = 1e-15
+"""m, of the static displacement of an effect."""
+
+
+def ledger_section(ledger: Mapping[str, Any]) -> Section:
+    """Tabulate what was simulated and what the model leaves out, by the effect ledger of a scene."""
+    rows = [
+        (entry["effect"], entry["part"], entry["on"], _displacement(float(entry["worth"])), entry["reason"])
+        for entry in ledger.get("entries", ())
+    ]
+    left_out = ledger.get("left_out", {})
+    return effects_section("", rows, (facts("Not in the model", left_out),))
+
+
+def _displacement(influence: float) -> str:
+    """Write a static displacement in m; what is left by rounding is none."""
+    return f"{number(1e6 * influence, 3)} µm at the line of action" if influence > _ROUNDING else "nothing"
 
 
 def sampling_table(run: RunResult) -> Table:
@@ -145,7 +145,6 @@ def sampling_table(run: RunResult) -> Table:
 
 
 def _filter(sampling: dict[str, Any]) -> list[tuple[str, str]]:
-    """Say how the filter works."""
     if not sampling["stop_band"]:
         return [("anti-alias filter", "none: unfiltered samples")]
     stop = (
@@ -163,23 +162,13 @@ def peak_table(run: RunResult) -> Table:
     rows = []
     for title, parts in run.receipt.get("peaks", {}).items():
         for name, part in parts.items():
-            peaks, rms = (_each(part[key]) for key in ("peak", "rms"))
+            peaks, rms = np.atleast_1d(part["peak"]), np.atleast_1d(part["rms"])
+            axes = ("",) if peaks.size == 1 else (" x", " y", " z")[: peaks.size]
             rows += [
-                (f"{title.replace('_', ' ')}, {name}{axis}", number(p, 5), number(r, 5))
-                for axis, p, r in zip(_axes(len(peaks)), peaks, rms, strict=True)
+                (f"{title.replace('_', ' ')}, {name}{axis}", number(float(p), 5), number(float(r), 5))
+                for axis, p, r in zip(axes, peaks, rms, strict=True)
             ]
     return Table("Peaks of the whole run, unfiltered", ("force", "peak, N", "rms, N"), tuple(rows))
-
-
-def _each(value: Any) -> list[float]:
-    return [float(entry) for entry in value] if isinstance(value, list) else [float(value)]
-
-
-def _axes(count: int) -> tuple[str, ...]:
-    return ("",) if count == 1 else tuple(f" {axis}" for axis in "xyz"[:count])
-
-
-# The table of what the housings of a scene cost beside what was predicted.
 
 
 Json = dict[str, Any]
@@ -199,7 +188,6 @@ def cost_tables(facts: Mapping[str, Any]) -> tuple[Table, ...]:
 
 
 def _work(facts: Mapping[str, Any]) -> Iterator[tuple[str, Json]]:
-    """Yield reductions and radiation resistances, and what they cost."""
     for housing, cost in facts.get("reduction_cost", {}).items():
         yield f"{housing}: reduction", cost
     for housing, radiation in facts.get("radiation", {}).items():

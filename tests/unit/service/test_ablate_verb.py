@@ -15,7 +15,7 @@ from dynamics.ablation import ablate
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.studies.ablate.run import facts
 from lineofaction.report.drawing.image import png
-from lineofaction.report.studies.ablate import ablation_figure, ablation_table
+from lineofaction.report.effects.ablate import _ablation_figure, _look
 
 CASE = (
     spur_case(
@@ -71,11 +71,11 @@ def test_a_scene_gives_orders_of_errors_and_bearing_forces() -> None:
     assert np.shape(lateral["order_change_um"]) == (1, 5)
     assert np.shape(lateral["bearing_order_change_n"]) == (4, 5)
     assert lateral["worth_um"] == pytest.approx(1e6 * made.effects[0].influence, rel=1e-12)
-    figure = ablation_figure(made)
+    figure = _ablation_figure(made)
     assert [panel.title for panel in figure.content] == ["Transmission error", "Bearing force"]
     assert [line.name for line in figure.content[0].lines] == ["as decided", "without lateral"]
     assert png(figure).startswith(b"\x89PNG")
-    ((name, state, *_),) = ablation_table(made).rows
+    ((name, state, *_),) = _look(made).table(made).rows
     assert (name, state) == ("lateral", "on")
 
 

@@ -23,7 +23,7 @@ from lineofaction.cli.commands import app
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.page import html
-from lineofaction.report.studies.frontier import frontier_figure, frontier_page, frontier_table
+from lineofaction.report.effects.frontier import _frontier_figure, _frontier_page, _frontier_table
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 
@@ -41,7 +41,7 @@ def found() -> Frontier:
 
 
 def test_the_picture_marks_knee_chosen_and_reference(found: Frontier) -> None:
-    figure = frontier_figure(found)
+    figure = _frontier_figure(found)
     texts = [note.text for note in figure.content[0].notes]
     assert texts == ["iso6336", "corrected (knee)", "3d fine (chosen, reference)"]
     assert png(figure).startswith(b"\x89PNG")
@@ -56,18 +56,18 @@ def test_the_picture_marks_knee_chosen_and_reference(found: Frontier) -> None:
 def test_full_contact_costs_its_known_time_on_the_pair_that_was_measured(found: Frontier) -> None:
     found = dataclasses.replace(found, known_full_contact=FULL_CONTACT)
     peer = next(
-        line for line in frontier_figure(found).content[0].lines if line.name.startswith("full contact")
+        line for line in _frontier_figure(found).content[0].lines if line.name.startswith("full contact")
     )
     assert peer.x.tolist() == [12.0 * 64, 30.0 * 64, 75.0 * 64]
     np.testing.assert_allclose(peer.y, [0.06, 0.02, 0.02])
-    assert "CalculiX 2.20" in frontier_figure(found).caption
+    assert "CalculiX 2.20" in _frontier_figure(found).caption
 
 
 def test_no_point_of_another_pair_stands_on_a_case(found: Frontier) -> None:
-    figure = frontier_figure(found)
+    figure = _frontier_figure(found)
     assert [line.name for line in figure.content[0].lines if "contact" in line.name] == []
     assert "20/20" not in figure.caption and "Peer" not in figure.caption
-    assert len(frontier_table(found).rows) == len(found.results)
+    assert len(_frontier_table(found).rows) == len(found.results)
     assert found.to_json()["full_finite_element_contact"] == []
 
 
@@ -92,7 +92,7 @@ def test_full_contact_of_the_case_stands_beside_the_known_cost(found: Frontier) 
     )
     table = dataclasses.replace(table, position=np.array([0.0, 0.5]))
     live = MeasuredFullContact((table,), (0.0,), PLANE, 50.0, mean_error=0.03, plane_strain_mean=0.002)
-    figure = frontier_figure(dataclasses.replace(found, full_contact=live))
+    figure = _frontier_figure(dataclasses.replace(found, full_contact=live))
     mean, swing = figure.content
     drawn = {line.name: line for line in mean.lines}["full contact, run on this case"]
     assert (drawn.x.tolist(), drawn.y.tolist()) == ([pytest.approx(30.0 * 64)], [pytest.approx(3.0)])
@@ -113,10 +113,10 @@ def test_full_contact_is_for_cases(tmp_path: Path) -> None:
 
 
 def test_the_page_says_what_was_not_run(found: Frontier) -> None:
-    page = frontier_page(found)
+    page = _frontier_page(found)
     text = html(page, {"frontier": b""})
     assert "no mesh" in text
-    assert len(frontier_table(found).rows) == 3
+    assert len(_frontier_table(found).rows) == 3
 
 
 def test_an_error_that_is_not_known_is_left_out(found: Frontier) -> None:
@@ -124,7 +124,7 @@ def test_an_error_that_is_not_known_is_left_out(found: Frontier) -> None:
     whole = Frontier((*found.results[:2], lonely), {}, None, None, 64).to_json()
     json.dumps(whole, allow_nan=False)
     assert "mean_error" not in whole["rungs"][2]
-    frontier_figure(Frontier((*found.results[:2], lonely), {}, None, None, 64))
+    _frontier_figure(Frontier((*found.results[:2], lonely), {}, None, None, 64))
 
 
 def test_the_verb_writes_what_it_prints(tmp_path: Path) -> None:

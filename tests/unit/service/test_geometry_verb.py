@@ -16,7 +16,7 @@ from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.report.drawing.figure import Figure, Panel
-from lineofaction.report.tables.pair import pair_drawing
+from lineofaction.report.pair import pair_drawing
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, HELICAL, INTERNAL = (

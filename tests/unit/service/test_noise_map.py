@@ -9,7 +9,7 @@ from sounding_scene import sound
 
 from dynamics.noise import RadiatedSound
 from lineofaction.report.drawing.figure import HeatMap, Panel, Table
-from lineofaction.report.studies.noise import DEPTH, sound_map
+from lineofaction.report.housing.noise import DEPTH, _sound_map
 
 
 def quiet_above() -> RadiatedSound:
@@ -20,7 +20,7 @@ def quiet_above() -> RadiatedSound:
 
 
 def shade() -> HeatMap:
-    (panel,) = sound_map(quiet_above(), Table("", (), ()), ()).content
+    (panel,) = _sound_map(quiet_above(), Table("", (), ()), ()).content
     assert isinstance(panel, Panel) and panel.shade is not None
     return panel.shade
 

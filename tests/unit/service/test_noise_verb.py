@@ -27,9 +27,9 @@ from lineofaction.cli.commands import app
 from lineofaction.gearbox.studies.noise import run
 from lineofaction.gearbox.studies.noise.run import facts
 from lineofaction.report.drawing import surface_view
-from lineofaction.report.studies import noise as page
-from lineofaction.report.studies.noise import limits
-from lineofaction.report.studies.noise_model_table import model_tables
+from lineofaction.report.housing import noise as page
+from lineofaction.report.housing.forces import model_tables
+from lineofaction.report.housing.noise import _limits
 
 BANDS = ("--speed-rpm", "300:6000:600", "--orders", 4)
 SPEEDS = (*BANDS, "--no-band")
@@ -99,7 +99,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     assert written == expected
     report = files["html"].read_text("utf-8")
     assert "Sound power in third octaves" in report and '<figure id="sound_panels">' in report
-    rows = list(limits(found))
+    rows = list(_limits(found))
     named = [what for what, _ in rows if "above" not in what]
     assert named == ["forces on bearings", "case"]
     for what, words in rows:
@@ -138,7 +138,7 @@ def test_regions_and_panels_add_up_to_the_power_of_their_point(scene: Path, tmp_
         assert sum(region["power_w"] for region in point["regions"]) == pytest.approx(whole, rel=1e-9)
         assert sum(region["share"] for region in point["regions"]) == pytest.approx(1.0, rel=1e-9)
     first = points[0]["regions"][0]
-    assert f"{100.0 * first['share']:.0f} % leaves case at {first['facing']}" in page.sentences(found)[0]
+    assert f"{100.0 * first['share']:.0f} % leaves case at {first['facing']}" in page._sentences(found)[0]
     assert len(page.region_table(found).rows) == sum(len(point["regions"]) for point in points[:3])
     loud = loudest(found, 1)[0]
     surface = meshlane.read(tmp_path / "noise.vtu")

@@ -11,7 +11,7 @@ from small_table import small_table
 from stored_jobs import state
 
 from lineofaction.client import JobState, Report
-from lineofaction.report.document.content import stored_figures
+from lineofaction.report.document import stored_figures
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ from fe_contact.geometry import InternalGearPair, RingGear
 from lineofaction.gearbox.convert.case import case_json, check_case, gear_pair
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated
-from lineofaction.report.tables.pair import iso_mesh_stiffness, pair_of
+from lineofaction.report.pair import iso_mesh_stiffness, pair_of
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "internal_gear.toml"
 TABLE = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))

@@ -13,7 +13,7 @@ from dynamics.accuracy import FidelityResult, Frontier
 from lineofaction.cli.commands import app
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.page import html
-from lineofaction.report.studies.frontier import frontier_figure, frontier_page, frontier_table
+from lineofaction.report.effects.frontier import _frontier_figure, _frontier_page, _frontier_table
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
 
@@ -31,7 +31,7 @@ def found() -> Frontier:
 
 
 def test_the_picture_marks_knee_chosen_and_reference(found: Frontier) -> None:
-    figure = frontier_figure(found)
+    figure = _frontier_figure(found)
     texts = [note.text for note in figure.content[0].notes]
     assert texts == ["quasi static", "torsion", "1 nm (knee, chosen)", "0.1 nm (reference)"]
     assert [note.text for note in figure.content[2].notes] == [t for t in texts if t != "torsion"]
@@ -39,8 +39,8 @@ def test_the_picture_marks_knee_chosen_and_reference(found: Frontier) -> None:
 
 
 def test_the_page_says_what_was_not_run_and_leaves_unknown_errors_out(found: Frontier) -> None:
-    assert "nothing more" in html(frontier_page(found), {"run_frontier": b""})
-    assert frontier_table(found).rows[1][4] == ""
+    assert "nothing more" in html(_frontier_page(found), {"run_frontier": b""})
+    assert _frontier_table(found).rows[1][4] == ""
 
 
 def test_the_verb_finds_a_scene_and_writes_what_it_prints(tmp_path: Path) -> None:

@@ -32,9 +32,9 @@ from lineofaction.gearbox.studies.sensitivity.run import (
     study_case,
     write_studies,
 )
+from lineofaction.report.design.sensitivity import _page, _sensitivity_figure, _sensitivity_table
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import Panel
-from lineofaction.report.studies.sensitivity import page, sensitivity_figure, sensitivity_table
 
 STUDY = "lineofaction.gearbox.studies.sensitivity.run"
 
@@ -183,7 +183,7 @@ def test_figures_are_in_boundary_units() -> None:
 
 
 def test_the_figure_has_a_line_per_pair_and_model_in_four_panels() -> None:
-    figure = sensitivity_figure([study(), study("pair b", 2.0)])
+    figure = _sensitivity_figure([study(), study("pair b", 2.0)])
     assert isinstance(figure.content, tuple)
     assert len(figure.content) == 4
     relative, absolute, *_ = figure.content
@@ -197,7 +197,7 @@ def test_the_figure_has_a_line_per_pair_and_model_in_four_panels() -> None:
 
 
 def test_the_table_has_every_point() -> None:
-    rows = sensitivity_table([study()]).rows
+    rows = _sensitivity_table([study()]).rows
     assert rows[1] == ("pair a", "off", "misalignment 30 µm", "5.000", "0.20", "+150.0")
     assert rows[2] == ("pair a", "off", "center distance -0.1 %", "1.000", "0.30", "-50.0")
     assert len(rows) == 8
@@ -260,7 +260,7 @@ def test_studies_come_back_from_their_file(tmp_path: Path) -> None:
     written = [study(), replace(wide, curves=curves, center_distance=0.15)]
     write_studies(written, tmp_path / "s.nc")
     back = read_studies(tmp_path / "s.nc")
-    assert sensitivity_table(back) == sensitivity_table(written)
+    assert _sensitivity_table(back) == _sensitivity_table(written)
     for one, other in zip(written, back, strict=True):
         assert (one.name, one.normal_force, one.center_distance) == (
             other.name,
@@ -301,7 +301,7 @@ def test_there_are_examples_of_both_pairs() -> None:
 
 
 def test_its_headlines_are_the_largest_ripples() -> None:
-    skew, distance = page((study(), study("pair b", 2.0))).headlines
+    skew, distance = _page((study(), study("pair b", 2.0))).headlines
     assert (skew.name, skew.value) == ("largest peak-to-peak STE over misalignment", "10.0 µm")
     assert skew.remark == "± 0.20 µm at 30 µm, pair b: +150 % of the undeviated pair's"
     assert (distance.value, distance.remark[:15]) == ("4.00 µm", "± 0.40 µm at 0 ")

@@ -17,7 +17,7 @@ from lineofaction.gearbox.registry import STUDIES, Study, study_of
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS
 from lineofaction.gearbox.studies.computation import Computation
-from lineofaction.report.document.inputs import stored_study
+from lineofaction.report.document import stored_study
 from lineofaction.report.presentation import Presentation, presentation_of
 from service.schemas.examples import INPUTS
 from service.worker.process import default_registry

@@ -23,17 +23,17 @@ from lineofaction.gearbox.studies.deflect.figures import optimization_inputs, wr
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, outline_of
 from lineofaction.gearbox.studies.deflect.run import RUN, failure
 from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
+from lineofaction.report.deflection.deflect import (
+    _bearing_table,
+    _force_table,
+    _life_table,
+    _mesh_table,
+    _meshes_worst_first,
+    _page,
+)
+from lineofaction.report.deflection.gearbox_drawing import _exaggeration
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import number
-from lineofaction.report.studies.deflect import (
-    bearing_table,
-    force_table,
-    life_table,
-    mesh_table,
-    meshes_worst_first,
-    page,
-)
-from lineofaction.report.studies.deflect_gearbox_drawing import exaggeration
 
 CASES = (
     LoadCase("climb", share=1.0, factor=1.0),
@@ -109,10 +109,10 @@ def test_forces_of_all_cases_are_kept_and_shown(result: GearboxDeflection, tmp_p
     pull = ForceUnderCase("belt", "in", np.array([0.0, 800.0, -1.5]), np.array([0.0, 0.0, 20.0]))
     cases = tuple(replace(case, forces=(pull,)) for case in result.deflection.cases)
     pulled = replace(result, deflection=replace(result.deflection, cases=cases))
-    table = force_table(pulled)
-    assert table is not None and force_table(result) is None
+    table = _force_table(pulled)
+    assert table is not None and _force_table(result) is None
     assert table.rows[3] == ("belt", "in", "back (coast)", "0", "800.0", "-1.500", "0", "0", "20.00")
-    assert [section.title for section in page(pulled).sections][-1] == "Forces"
+    assert [section.title for section in _page(pulled).sections][-1] == "Forces"
     RUN.file.write(pulled, tmp_path / "d.nc")
     back = RUN.file.read(tmp_path / "d.nc").deflection.cases[1].forces[0]
     assert np.array_equal(back.force, pull.force) and np.array_equal(back.moment, pull.moment)
@@ -123,14 +123,14 @@ def test_the_worst_mesh_comes_first(result: GearboxDeflection) -> None:
         name: max(abs(m.misalignment) for c in result.deflection.cases for m in c.meshes if m.name == name)
         for name in ("first", "second")
     }
-    first, second = meshes_worst_first(result)
+    first, second = _meshes_worst_first(result)
     assert largest[first] > largest[second]
-    assert [row[0] for row in mesh_table(result).rows] == [first] * 4 + [second] * 4
-    assert page(result).headlines[0].remark.startswith(f"mesh {first}")
+    assert [row[0] for row in _mesh_table(result).rows] == [first] * 4 + [second] * 4
+    assert _page(result).headlines[0].remark.startswith(f"mesh {first}")
 
 
 def test_parts_of_the_table_sum_to_the_misalignment(result: GearboxDeflection) -> None:
-    table = mesh_table(result)
+    table = _mesh_table(result)
     assert table.head[4:7] == ("of shafts", "bearings", "K_Hbeta")  # what acts
     for row in table.rows:
         total, parts = float(row[3]), [float(part) for part in row[4:6]]
@@ -190,12 +190,12 @@ def test_what_was_not_found_is_said(result: GearboxDeflection) -> None:
     assert "after 3 passes" in failure(replace(result, agreed=False, change=0.1))
     lost = replace(result.deflection.cases[0], status="unbalanced")
     broken = replace(result, deflection=replace(result.deflection, cases=(lost,)))
-    assert '"climb" (unbalanced)' in failure(broken) and "climb" in page(broken).alarms[0]
+    assert '"climb" (unbalanced)' in failure(broken) and "climb" in _page(broken).alarms[0]
 
 
 def test_deflections_are_drawn_a_round_number_of_times_enlarged(result: GearboxDeflection) -> None:
     case = result.deflection.cases[0]
-    factor = exaggeration(result.outline, case)
+    factor = _exaggeration(result.outline, case)
     largest = float(np.max(np.abs(case.shafts.motion[:, :2])))
     extent = float(np.ptp(result.outline.origin[:, 0]))
     assert extent > 0.2  # the length of the shafts
@@ -224,13 +224,13 @@ def test_lives_are_in_hours_and_damage_adds_over_the_cases(result: GearboxDeflec
             )
             damage[k] += case["share"] / 10.0 / hours
     assert [part["rating_life_hours"] for part in figures["bearings"]] == pytest.approx(1.0 / damage)
-    assert life_table(known).rows[0][2] == number(float(f"{1.0 / damage[0]:.3g}"), 3)
+    assert _life_table(known).rows[0][2] == number(float(f"{1.0 / damage[0]:.3g}"), 3)
 
 
 def test_no_life_is_said_with_its_reason(result: GearboxDeflection) -> None:
-    assert {row[2] for row in life_table(result).rows} == {"none: no capacity"}
+    assert {row[2] for row in _life_table(result).rows} == {"none: no capacity"}
     idle = with_bearings(result, lambda load: replace(load, rating_life=float("inf")))
-    assert {row[-1] for row in bearing_table(idle).rows} == {"unlimited"}
+    assert {row[-1] for row in _bearing_table(idle).rows} == {"unlimited"}
     part = RUN.facts(idle)["bearings"][0]
     assert (part["rating_life_hours"], part["rating_life"]) == (None, "unlimited")
 
@@ -243,9 +243,9 @@ def test_forces_within_rounding_are_zero(result: GearboxDeflection) -> None:
         return changed
 
     noisy, small = (with_bearings(result, axial(force)) for force in (6e-19, -1e-3))
-    assert {row[4] for row in bearing_table(noisy).rows} == {"0"}
-    assert {row[5] for row in life_table(noisy).rows} == {"0"}
-    assert {float(row[4]) for row in bearing_table(small).rows} == {-1e-3}
+    assert {row[4] for row in _bearing_table(noisy).rows} == {"0"}
+    assert {row[5] for row in _life_table(noisy).rows} == {"0"}
+    assert {float(row[4]) for row in _bearing_table(small).rows} == {-1e-3}
 
 
 def test_displacements_within_rounding_are_zero(result: GearboxDeflection) -> None:
@@ -253,12 +253,12 @@ def test_displacements_within_rounding_are_zero(result: GearboxDeflection) -> No
         return lambda load: replace(load, clearance=np.full(5, play))
 
     noisy, small = (with_bearings(result, clear(play)) for play in (1e-19, 1e-12))
-    assert {row[6] for row in bearing_table(noisy).rows} == {"0"}
-    assert {float(row[6]) for row in bearing_table(small).rows} == {1.41e-6}
+    assert {row[6] for row in _bearing_table(noisy).rows} == {"0"}
+    assert {float(row[6]) for row in _bearing_table(small).rows} == {1.41e-6}
 
 
 def test_a_long_life_has_three_digits(result: GearboxDeflection) -> None:
     long = with_bearings(result, lambda load: replace(load, rating_life=1.23456e10))
     hours = RUN.facts(long)["bearings"][0]["rating_life_hours"]
     assert hours > 1e5
-    assert len(life_table(long).rows[0][2].rstrip("0")) == 3
+    assert len(_life_table(long).rows[0][2].rstrip("0")) == 3

@@ -13,9 +13,9 @@ from two_stage_scenes import two_stages
 from dynamics.deflection import deflect
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, Outline, outline_of
 from lineofaction.gearbox.studies.deflect.run import _pattern
+from lineofaction.report.deflection.gearbox_drawing import _gear_names, _view_direction, gearbox_drawing
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, panel_height
 from lineofaction.report.drawing.interactive import plotly_figure
-from lineofaction.report.studies.deflect_gearbox_drawing import gear_names, gearbox_drawing, view_direction
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +26,7 @@ def outline() -> Outline:
 
 
 def test_no_name_of_a_gear_touches_a_circle_or_another_name(outline: Outline) -> None:
-    names = gear_names(outline)
+    names = _gear_names(outline)
     center, radius = outline.origin[outline.gear_shaft, :2], 0.5 * outline.gear[:, 2]
     size = float(np.ptp(center[:, 0]))
     for k, name in enumerate(names):
@@ -45,7 +45,7 @@ def test_the_end_view_holds_circles_and_names(outline: Outline) -> None:
     for axis, pick in ((view.x, 0), (view.y, 1)):
         assert axis.limits is not None
         low, high = axis.limits
-        texts = [1e3 * name.points[:, pick] for name in gear_names(outline)]
+        texts = [1e3 * name.points[:, pick] for name in _gear_names(outline)]
         values = np.concatenate([*texts, *((line.x, line.y)[pick] for line in view.lines)])
         assert low < values.min() and values.max() < high
 
@@ -77,7 +77,7 @@ def test_a_bent_train_is_seen_from_where_its_axes_lie_apart(outline: Outline) ->
     origin = np.array([[0.0, 0.0, 0.0], [0.1, 0.04, 0.0], [0.14, -0.09, 0.0]])
     across = np.array([0.17, -0.06, 0.0])  # as far from the first to the second as to the third
     case = deflect(two_stages(), positions=1).cases[0]
-    seen = view_direction(replace(outline, origin=origin), case)
+    seen = _view_direction(replace(outline, origin=origin), case)
     assert seen == pytest.approx(across / np.linalg.norm(across), abs=np.radians(1.0))
 
 

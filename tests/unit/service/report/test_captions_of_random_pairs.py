@@ -15,9 +15,9 @@ from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.ste import Curve, SteDatabase
 from lineofaction.report.drawing.figure import Figure
-from lineofaction.report.tables.pair import pair_of
-from lineofaction.report.tables.static_part import static_results
-from lineofaction.report.tables.ste import MOST_LINES, few_loads, load_labels, shown_loads
+from lineofaction.report.pair import pair_of
+from lineofaction.report.ste.curves import MOST_LINES, few_loads, load_labels, shown_loads
+from lineofaction.report.ste.page import static_results
 
 EVERY_CHANGE = 8
 """Of 30 seeds; together they have every figure."""

@@ -11,9 +11,9 @@ import pytest
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.ste import SteDatabase
 from lineofaction.report.drawing.figure import Panel
-from lineofaction.report.tables.flanks import line_load_figure
-from lineofaction.report.tables.over_torque import load_sharing
-from lineofaction.report.tables.ste import ste_curves
+from lineofaction.report.flank.flank import line_load_figure
+from lineofaction.report.ste.curves import ste_curves
+from lineofaction.report.ste.stiffness import load_sharing
 
 
 def of_high_contact_ratio(database: SteDatabase, more: int = 1, helix: float = 0.0) -> SteDatabase:

@@ -15,9 +15,9 @@ from dynamics.loads import TimeLaw
 from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.report.comparison.compare import compare, read_universal
+from lineofaction.report.comparison.compare import _read_universal, compare
 from lineofaction.report.comparison.measured import PER_PITCH, MeasuredCurve, MeasuredOrders, averaged
-from lineofaction.report.runs.run_view import RunView
+from lineofaction.report.run.view import RunView
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
@@ -64,7 +64,7 @@ def test_a_transmission_error_is_what_csv_would_say(
     label: str, scale: float, length: float, tmp_path: Path
 ) -> None:
     file = written(tmp_path / "m.uff", function(label, X * scale, 1e-6 * length * RIPPLE), length=length)
-    found, known = read_universal(file, TEETH, "µm"), averaged(file, X, RIPPLE)
+    found, known = _read_universal(file, TEETH, "µm"), averaged(file, X, RIPPLE)
     assert isinstance(found, MeasuredCurve)
     assert found.pitches == known.pitches
     np.testing.assert_allclose(found.ripple, known.ripple, atol=2e-4)
@@ -74,7 +74,7 @@ def test_orders_of_the_shaft_become_mesh_orders(tmp_path: Path) -> None:
     x = np.arange(0.0, 50.0)
     own: dict[str, Any] = {"abscissa_spec_data_type": 20, "ordinate_spec_data_type": 12}
     file = written(tmp_path / "o.unv", function("Order", x, 1e3 * x, **own), length=1e3)
-    found = read_universal(file, TEETH, "m/s²")
+    found = _read_universal(file, TEETH, "m/s²")
     assert isinstance(found, MeasuredOrders) and found.unit == "m/s²"
     np.testing.assert_allclose(found.order * TEETH, x, atol=1e-6)
     np.testing.assert_allclose(found.amplitude, x, rtol=1e-6)
@@ -84,7 +84,7 @@ def test_what_this_program_writes_is_read_back(tmp_path: Path) -> None:
     run = simulate(gear_pair_scene(speed=TimeLaw.ramp(0.0, 955.0 * RPM, 0.2), duration=0.2))
     file = tmp_path / "run.unv"
     write_universal_file(run, file, "orders")
-    found = read_universal(file, TEETH, "µm")
+    found = _read_universal(file, TEETH, "µm")
     assert isinstance(found, MeasuredOrders)
     assert found.near(1.0) > 0.0
     (kept,) = (each for each in pyuff.UFF(str(file)).read_sets() if each.get("ordinate_spec_data_type") == 8)
@@ -95,12 +95,12 @@ def test_what_this_program_writes_is_read_back(tmp_path: Path) -> None:
 def test_one_of_several_is_not_guessed(tmp_path: Path) -> None:
     one, other = function("Position", X, RIPPLE), function("Position", X, RIPPLE, id1="second")
     with pytest.raises(BadInput, match=r"2 in m\.uff: Position, second"):
-        read_universal(written(tmp_path / "m.uff", one, other), TEETH, "µm")
+        _read_universal(written(tmp_path / "m.uff", one, other), TEETH, "µm")
     with pytest.raises(BadInput, match="0 in time"):
-        read_universal(written(tmp_path / "time.uff", function("Time", X, RIPPLE)), TEETH, "µm")
+        _read_universal(written(tmp_path / "time.uff", function("Time", X, RIPPLE)), TEETH, "µm")
     (tmp_path / "bad.uff").write_text("no universal file")
     with pytest.raises(BadInput, match="measured"):
-        read_universal(tmp_path / "bad.uff", TEETH, "µm")
+        _read_universal(tmp_path / "bad.uff", TEETH, "µm")
 
 
 def test_a_table_is_compared_with_one(database: SteDatabase, tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.modes import OTHERS, largest_parts, mode_bars
+from lineofaction.report.response.modes import OTHERS, _largest_parts, mode_bars
 
 SHARES = [{"input lateral": 0.7, "output torsional": 0.3}, {"output torsional": 0.6}]
 
@@ -24,6 +24,6 @@ def test_the_parts_of_every_mode_add_up_to_the_whole() -> None:
 
 def test_the_largest_parts_have_the_colors() -> None:
     many = [{f"part {k}": 0.5 / (k + 2) for k in range(9)}]
-    parts = largest_parts(many)
+    parts = _largest_parts(many)
     assert parts == [f"part {k}" for k in range(len(palette.CATEGORIES))]
     assert [bars.name for bars in mode_bars(["1 Hz"], many, "strain energy").bars][-1] == OTHERS

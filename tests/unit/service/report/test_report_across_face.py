@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fe_contact.ste import SteDatabase
-from lineofaction.report.tables.over_torque import deviation_curves, has_deviations
-from lineofaction.report.tables.static_part import face_load, has_face_load, static_results
+from lineofaction.report.ste.over_torque import deviation_curves, face_load, has_deviations, has_face_load
+from lineofaction.report.ste.page import static_results
 
 SKEW = np.array([-20e-6, 0.0, 40e-6])
 CHANGE = np.array([0.0, 0.1e-3])

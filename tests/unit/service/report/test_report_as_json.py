@@ -10,9 +10,8 @@ import numpy as np
 from fe_contact.analysis.studies.frontier import FidelityResult, Frontier
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.frontier.run import RUN
-from lineofaction.report.document.content import page_json, page_of, stored_figures
-from lineofaction.report.document.inputs import read_inputs
-from lineofaction.report.studies.frontier import frontier_page
+from lineofaction.report.document import page_json, page_of, read_inputs, stored_figures
+from lineofaction.report.effects.frontier import _frontier_page
 
 
 def rung(name: str, error: float, seconds: float) -> FidelityResult:
@@ -47,6 +46,6 @@ def test_a_stored_table_has_the_figures_of_its_report(database: SteDatabase, tmp
 def test_a_stored_ladder_is_drawn_as_a_fresh_one(tmp_path: Path) -> None:
     file = tmp_path / "frontier.nc"
     RUN.file.write(LADDER, file)
-    fresh = page_json(frontier_page(LADDER))
+    fresh = page_json(_frontier_page(LADDER))
     assert stored_figures({"kind": "frontier", "file": str(file)}) == fresh
     assert RUN.file.read(file).to_json() == LADDER.to_json()

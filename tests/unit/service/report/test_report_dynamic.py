@@ -8,25 +8,25 @@ import pytest
 from dynamics.results import RunResult
 from dynamics.types import RunStatus
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.report.runs.dynamic_part import (
+from lineofaction.report.run.page import (
     dynamic_alarms,
     dynamic_headlines,
     dynamic_making,
     dynamic_results,
 )
-from lineofaction.report.runs.run_view import RunView, run_series, shown_signal
-from lineofaction.report.runs.signals import (
+from lineofaction.report.run.signals import (
+    _order_amplitudes,
     amplitude_spectrum,
     dynamic_error,
-    order_amplitudes,
     signal_over_time,
     signal_spectrum,
     spectrum_window,
 )
+from lineofaction.report.run.view import RunView, shown_signal, travel
 
 
 def test_position_is_unwrapped_and_speed_is_the_driver_s(run: RunResult) -> None:
-    series = run_series(run)
+    series = travel(run)
     assert np.all(np.diff(series.position) >= 0)
     np.testing.assert_allclose(series.position % 1.0, run.position[0], atol=1e-9)
     assert series.speed_rpm[-1] == pytest.approx(900.0)
@@ -35,11 +35,11 @@ def test_position_is_unwrapped_and_speed_is_the_driver_s(run: RunResult) -> None
 
 def test_a_run_backwards_travels_as_far(run: RunResult) -> None:
     backwards = replace(run, position=(-run.position) % 1.0, speed=-run.speed)
-    np.testing.assert_allclose(run_series(backwards).position, run_series(run).position, atol=1e-9)
+    np.testing.assert_allclose(travel(backwards).position, travel(run).position, atol=1e-9)
 
 
 def test_dynamic_and_static_error_are_drawn_at_three_speeds(run: RunResult) -> None:
-    panels = dynamic_error(run_series(run)).content
+    panels = dynamic_error(run).content
     assert isinstance(panels, tuple)
     assert [panel.title.split(" rpm")[0] for panel in panels] == ["90.0", "400", "800"]
     for panel in panels:
@@ -52,7 +52,7 @@ def test_dynamic_and_static_error_are_drawn_at_three_speeds(run: RunResult) -> N
 def test_the_bearing_that_varies_most_is_shown(run: RunResult) -> None:
     signal = shown_signal(run, RunView())
     assert (signal.name, signal.unit) == ("force on bearing right", "N rms")
-    whole, detail = signal_over_time(run, run_series(run), signal).content  # type: ignore[misc]
+    whole, detail = signal_over_time(run, signal).content  # type: ignore[misc]
     assert [line.name for line in whole.lines] == ["y"]
     assert whole.lines[0].y.min() < -1020
     assert detail.x.limits[0] > whole.x.limits[0]
@@ -60,8 +60,8 @@ def test_the_bearing_that_varies_most_is_shown(run: RunResult) -> None:
 
 def test_over_a_few_pitches_the_ripple_is_drawn_about_its_mean(run: RunResult) -> None:
     shifted = replace(run, bearing_force=run.bearing_force + 1e5)
-    signal, series = shown_signal(shifted, RunView()), run_series(shifted)
-    _, detail = signal_over_time(shifted, series, signal).content  # type: ignore[misc]
+    signal = shown_signal(shifted, RunView())
+    _, detail = signal_over_time(shifted, signal).content  # type: ignore[misc]
     assert detail.y.label.endswith("less its mean, N")
     (ripple,) = (line.y for line in detail.lines if line.name == "y")  # alone has any
     assert ripple.min() < 0.0 < ripple.max()
@@ -118,7 +118,7 @@ def test_mesh_orders_are_found_where_they_are(run: RunResult) -> None:
     window = spectrum_window(run.time)
     mesh = run.mesh_frequency[0, window]
     frequency, amplitude = amplitude_spectrum(run, shown_signal(run, RunView()), window)
-    (first, weak), (second, strong), *others = order_amplitudes(frequency, amplitude, mesh)
+    (first, weak), (second, strong), *others = _order_amplitudes(frequency, amplitude, mesh)
     assert mesh.min() - 10 <= first <= mesh.max() + 10
     assert second == pytest.approx(2 * first, abs=10)
     assert strong > weak > 20 * max(amplitude for _, amplitude in others)

@@ -8,7 +8,7 @@ from geared_scenes import gear_pair_scene
 
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate
-from lineofaction.report.runs.dynamic_part import _accuracy
+from lineofaction.report.run.page import _accuracy
 
 
 def test_every_source_has_its_row_and_unknown_ones_have_none() -> None:

@@ -11,9 +11,7 @@ from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.report.comparison.compare import stored_comparison
-from lineofaction.report.document import write_report
-from lineofaction.report.document.content import stored_figures
-from lineofaction.report.document.inputs import read_inputs
+from lineofaction.report.document import read_inputs, stored_figures, write_report
 
 Work = Callable[[dict[str, Any]], Any]
 

@@ -14,11 +14,12 @@ from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.interactive import plotly_figure
-from lineofaction.report.studies.flank import operating_point, page
-from lineofaction.report.tables.flanks import (
+from lineofaction.report.flank.flank import (
+    _isolines,
+    _operating_point,
+    _page,
     contact_lines,
     contact_pattern_figure,
-    isolines,
     line_load_figure,
     load_centroid_figure,
 )
@@ -77,7 +78,7 @@ def test_a_tip_edge_that_passes_lightly_takes_nothing_from_the_pattern(flanks: L
 
 @pytest.mark.parametrize("largest", [0.3, 1.0, 999.0, 1001.0, 1597.0, 6000.0])
 def test_isolines_are_few_and_round(largest: float) -> None:
-    levels = isolines(largest)
+    levels = _isolines(largest)
     assert 1 <= len(levels) <= 6
     assert levels[-1] < largest
     assert f"{levels[0]:.0e}"[0] in "125"
@@ -146,13 +147,13 @@ def test_findings_are_true_of_random_loads(flanks: LoadDistribution, seed: int) 
 
 
 def test_one_slice_has_a_curve_and_nothing_over_the_face(one_slice: LoadDistribution) -> None:
-    section = page(one_slice).sections[0]
+    section = _page(one_slice).sections[0]
     (figure,) = section.figures
     for panel in panels(figure):
         assert panel.shade is None
         assert np.nanmax(panel.lines[0].y) == pytest.approx(1e-6 * one_slice.pressure.max())
     assert "plane" in section.text
-    assert [headline.name for headline in page(one_slice).headlines] == ["largest flank pressure"]
+    assert [headline.name for headline in _page(one_slice).headlines] == ["largest flank pressure"]
 
 
 @pytest.fixture
@@ -165,7 +166,7 @@ def one_slice(flanks: LoadDistribution) -> LoadDistribution:
 
 
 def test_every_figure_is_drawn_both_ways(flanks: LoadDistribution) -> None:
-    section = page(flanks).sections[0]
+    section = _page(flanks).sections[0]
     assert [f.key for f in section.figures] == [
         "contact_pattern",
         "contact_lines",
@@ -179,8 +180,8 @@ def test_every_figure_is_drawn_both_ways(flanks: LoadDistribution) -> None:
 
 def test_load_and_alignment_are_said(flanks: LoadDistribution) -> None:
     torque = flanks.scene.torque
-    assert operating_point(flanks) == f"{torque:.2f} N m, misalignment 30.0 µm"
-    assert [h.value for h in page(flanks).headlines] == [
+    assert _operating_point(flanks) == f"{torque:.2f} N m, misalignment 30.0 µm"
+    assert [h.value for h in _page(flanks).headlines] == [
         f"{1e-6 * flanks.pressure.max():.1f} MPa",
         f"{flanks.mean_face_load_factor:.2f}",
     ]
@@ -189,9 +190,9 @@ def test_load_and_alignment_are_said(flanks: LoadDistribution) -> None:
 def test_another_pair_than_the_databases_is_said_loudly(
     flanks: LoadDistribution, database: SteDatabase, tmp_path: Path
 ) -> None:
-    assert len(page(flanks, database).alarms) == 1
+    assert len(_page(flanks, database).alarms) == 1
     own = replace(flanks, scene=replace(flanks.scene, facts=database.facts))
-    assert page(own, database).alarms == page(flanks).alarms == ()
+    assert _page(own, database).alarms == _page(flanks).alarms == ()
     flanks.to_netcdf(tmp_path / "flanks.nc")
     database.to_netcdf(tmp_path / "ste.nc")
     both = [tmp_path / "ste.nc", tmp_path / "flanks.nc"]

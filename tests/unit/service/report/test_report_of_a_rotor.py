@@ -13,13 +13,13 @@ from dynamics.orders import highest_valid_order, order_frequency
 from dynamics.results import RunResult
 from lineofaction.cli.commands import app
 from lineofaction.report.document import write_report
-from lineofaction.report.runs.run_view import RunView, run_series, shown_signal
-from lineofaction.report.runs.signals import (
-    order_amplitudes,
+from lineofaction.report.run.signals import (
+    _order_amplitudes,
     signal_over_time,
     signal_spectrum,
     spectrum_window,
 )
+from lineofaction.report.run.view import RunView, shown_signal
 
 ROTOR = Path(__file__).parents[4] / "examples" / "jeffcott_scene.toml"
 SPEED = 3843.5 / 60.0  # turns per second
@@ -40,10 +40,10 @@ def test_the_spectrum_of_a_run_has_order_1(run: Path, tmp_path: Path) -> None:
     figure = signal_spectrum(result, shown_signal(result, RunView(scale="peak")))
     assert "shaft frequency" in figure.caption
     (line,) = figure.content[0].lines
-    history = signal_over_time(result, run_series(result), shown_signal(result, RunView()))
+    history = signal_over_time(result, shown_signal(result, RunView()))
     assert history.content[1].title == "three turns at 3844 rpm"
     window = order_frequency(result)[spectrum_window(result.time)]
-    first, second = order_amplitudes(line.x, line.y, window)[:2]
+    first, second = _order_amplitudes(line.x, line.y, window)[:2]
     assert first[1] > 1e3 * second[1]
     written = write_report(run, tmp_path / "run.html", tmp_path / "images")
     assert {file.stem for file in written} == {"run", "signal", "spectrum"}

@@ -9,10 +9,9 @@ from dynamics.results import RunResult
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import SteDatabase
-from lineofaction.report.document.content import page_of
-from lineofaction.report.document.inputs import Inputs, read_inputs
+from lineofaction.report.document import Inputs, page_of, read_inputs
 from lineofaction.report.drawing.page import Part
-from lineofaction.report.tables.pair import data_sheet_section, pair_of, pair_remarks
+from lineofaction.report.pair import data_sheet_section, pair_of, pair_remarks
 
 
 def test_results_stand_before_effects_accuracy_input_and_receipts(

@@ -12,17 +12,17 @@ from dynamics.loads import TimeLaw
 from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from lineofaction.report.drawing.figure import HeatMap, Panel
-from lineofaction.report.runs.dynamic_part import (
-    dynamic_factor_figure,
+from lineofaction.report.run.levels import MAP_DEPTH as DEPTH
+from lineofaction.report.run.levels import campbell, frequency_blocks, levels_over_speed, order_blocks
+from lineofaction.report.run.page import (
+    _dynamic_factor_figure,
+    _order_map,
+    _planet_sharing,
+    _sideband_tables,
     dynamic_results,
-    order_map,
-    planet_sharing,
-    sideband_tables,
 )
-from lineofaction.report.runs.levels import MAP_DEPTH as DEPTH
-from lineofaction.report.runs.levels import campbell, frequency_blocks, levels_over_speed, order_blocks
-from lineofaction.report.runs.run_view import RunView, shown_signal
-from lineofaction.report.runs.signals import octave_bands
+from lineofaction.report.run.signals import octave_bands
+from lineofaction.report.run.view import RunView, shown_signal
 
 MODES = {
     "frequency": [0.0, 300.0, 301.0, 900.0],
@@ -125,7 +125,7 @@ def test_the_largest_orders_are_cut_unless_named(run: RunResult) -> None:
 
 def test_an_order_map_has_its_lines_at_the_orders_of_the_run(run: RunResult) -> None:
     signal = shown_signal(run, RunView())
-    shade = panel(order_map(run, signal, order_blocks(run, signal))).shade
+    shade = panel(_order_map(run, signal, order_blocks(run, signal))).shade
     assert isinstance(shade, HeatMap)
     np.testing.assert_allclose(shade.y[np.argmax(shade.z, axis=0)], 2.0, atol=1.0 / 16)
 
@@ -144,14 +144,14 @@ def test_at_constant_speed_the_axis_is_time(run: RunResult) -> None:
 
 
 def test_the_dynamic_factor_of_a_constant_force_is_its_ratio(run: RunResult) -> None:
-    largest, mean, least = panel(dynamic_factor_figure(run)).lines
+    largest, mean, least = panel(_dynamic_factor_figure(run)).lines
     for line in (largest, mean, least):
         np.testing.assert_allclose(line.y, 2660.0 / 2660.44, rtol=1e-12)
 
 
 def test_load_sharing_is_drawn_for_sun_and_ring_and_only_for_planets() -> None:
     run = simulate(planetary_scene(published_set(3), duration=0.02))
-    figure = planet_sharing(run)
+    figure = _planet_sharing(run)
     assert figure is not None
     assert [part.title for part in figure.content] == ["sun", "ring"]
     assert len(figure.table.rows) == 6
@@ -159,7 +159,7 @@ def test_load_sharing_is_drawn_for_sun_and_ring_and_only_for_planets() -> None:
 
 
 def sidebands_of(run: RunResult):
-    return sideband_tables(run, shown_signal(run, RunView()))
+    return _sideband_tables(run, shown_signal(run, RunView()))
 
 
 def test_sidebands_are_tabulated_with_what_modulates(run: RunResult) -> None:

@@ -9,9 +9,10 @@ import pytest
 
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.answers import curve_json, metadata_json
-from lineofaction.report.tables.over_torque import load_sharing, pair_shares
-from lineofaction.report.tables.static_part import face_load, static_results
-from lineofaction.report.tables.ste import pitches_shown, position_axis, shown_rows, ste_curves, ste_shown
+from lineofaction.report.ste.curves import pitches_shown, position_axis, shown_rows, ste_curves, ste_shown
+from lineofaction.report.ste.over_torque import face_load
+from lineofaction.report.ste.page import static_results
+from lineofaction.report.ste.stiffness import _pair_shares, load_sharing
 
 Tables = Callable[..., SteDatabase]
 
@@ -43,7 +44,7 @@ def test_every_pair_is_followed_and_the_shares_sum_to_one(
     with_pitch_errors: Tables, database: SteDatabase, period: int
 ) -> None:
     table = database if period == 1 else with_pitch_errors(period)
-    position, followed = pair_shares(table, 2)
+    position, followed = _pair_shares(table, 2)
     assert np.sum(list(followed.values()), axis=0) == pytest.approx(np.ones(position.size))
     assert len(followed) == pitches_shown(table) + 1
     for share in followed.values():  # one stretch of mesh each

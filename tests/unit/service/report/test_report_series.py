@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lineofaction.report.drawing.placing import envelope
-from lineofaction.report.runs.run_view import speed_window, window_speeds
+from lineofaction.report.run.view import speed_window, window_speeds
 
 
 def test_the_envelope_keeps_every_peak() -> None:

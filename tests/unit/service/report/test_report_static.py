@@ -10,16 +10,11 @@ from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
 from lineofaction.report.drawing.figure import Panel, number
-from lineofaction.report.tables.over_torque import (
-    load_sharing,
-    mesh_stiffness,
-    pair_shares,
-    ripple_over_torque,
-    secant_stiffness,
-)
-from lineofaction.report.tables.pair import iso_mesh_stiffness
-from lineofaction.report.tables.static_part import static_results
-from lineofaction.report.tables.ste import shown_loads, ste_curves, ste_shown
+from lineofaction.report.pair import iso_mesh_stiffness
+from lineofaction.report.ste.curves import shown_loads, ste_curves, ste_shown
+from lineofaction.report.ste.over_torque import ripple_over_torque
+from lineofaction.report.ste.page import static_results
+from lineofaction.report.ste.stiffness import _pair_shares, _secant_stiffness, load_sharing, mesh_stiffness
 
 
 def test_two_pitches_repeat_the_period(database: SteDatabase) -> None:
@@ -82,14 +77,14 @@ def test_the_load_that_serves_lift_off_is_not_drawn(database: SteDatabase) -> No
 
 
 def test_shares_sum_to_one_wherever_a_pair_is(database: SteDatabase) -> None:
-    position, followed = pair_shares(database, 2)
+    position, followed = _pair_shares(database, 2)
     total = np.sum(list(followed.values()), axis=0)
     assert position[-1] == 2.0
     np.testing.assert_allclose(total, 1.0, atol=1e-12)
 
 
 def test_each_pair_passes_as_the_one_before_did_a_pitch_earlier(database: SteDatabase) -> None:
-    position, followed = pair_shares(database, 2)
+    position, followed = _pair_shares(database, 2)
     pitch = len(database.position)
     np.testing.assert_array_equal(followed[-1][pitch:], followed[0][: pitch + 1])
     carried = position[followed[-1] > 0]
@@ -104,7 +99,7 @@ def test_load_sharing_shows_three_loads(database: SteDatabase) -> None:
 
 
 def test_secant_stiffness_is_force_over_ste_and_width(database: SteDatabase) -> None:
-    _, values = secant_stiffness(database)
+    _, values = _secant_stiffness(database)
     ste = database.static_transmission_error[0, 2, 0, 0]
     assert values[0, 2] == pytest.approx(100.0 / 0.0375877 / ste / 0.025)
 

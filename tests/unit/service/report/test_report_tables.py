@@ -8,7 +8,7 @@ import pytest
 from fe_contact.ste import SteDatabase
 from lineofaction.report.drawing.page import _is_number
 from lineofaction.report.drawing.tables import facts, side_by_side
-from lineofaction.report.tables.static_part import (
+from lineofaction.report.ste.page import (
     case_tables,
     contact_effects,
     static_alarms,

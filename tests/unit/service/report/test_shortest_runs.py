@@ -22,11 +22,10 @@ from lineofaction.cli.output import console
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.report.comparison.compare import stored_comparison
-from lineofaction.report.document.content import stored_figures
-from lineofaction.report.document.inputs import study_page
-from lineofaction.report.runs.signals import TOO_SHORT
+from lineofaction.report.document import read_stored, stored_figures
+from lineofaction.report.run.signals import TOO_SHORT
 
-STORED = "lineofaction.report.document.inputs"
+STORED = "lineofaction.report.document"
 
 SHAPES = {name: series.dimensions for name, series in SERIES.items()}
 
@@ -89,7 +88,7 @@ def test_a_defect_of_drawing_is_no_damage_of_the_file(
     monkeypatch.setattr(f"{STORED}.read_stored", lambda _study, _file: object())
     monkeypatch.setattr(f"{STORED}.page_beside", _defect)
     with pytest.raises(ValueError, match="argmax of an empty sequence"):
-        study_page(study, tmp_path / "response.nc")
+        read_stored(study, tmp_path / "response.nc")
 
 
 def _defect(*_arguments: object) -> None:

@@ -32,12 +32,11 @@ from fe_contact.types import FloatArray
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.gearbox.schemas.plan import InputWarning
-from lineofaction.report.document.content import page_json, page_of, stored_figures
-from lineofaction.report.document.inputs import read_inputs
+from lineofaction.report.design.optimize import _ripple_table
+from lineofaction.report.document import page_json, page_of, read_inputs, stored_figures
+from lineofaction.report.effects.ablate import _ablation_page
 from lineofaction.report.presentation import presentation_of
-from lineofaction.report.studies.ablate import ablation_page
-from lineofaction.report.studies.optimize import ripple_table
-from lineofaction.report.tables.ste import MOST_CURVES
+from lineofaction.report.ste.curves import MOST_CURVES
 from model_studies.record_file import write_record
 
 RELIEF = FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3)
@@ -129,7 +128,7 @@ def test_an_optimization_of_one_misalignment_for_all_torques_still_opens(
     assert opened.misalignment.tolist() == [5e-6, 5e-6]
     assert opened.optimum.objective == result.optimum.objective
     assert study.run.facts(opened)["misalignment_um"] == pytest.approx([5.0, 5.0], rel=1e-12)
-    assert {row[1] for row in ripple_table(opened).rows} == {"5.00"}
+    assert {row[1] for row in _ripple_table(opened).rows} == {"5.00"}
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -238,6 +237,6 @@ def test_an_ablation_of_nothing_has_its_reasons_and_no_plot(compliance: Path) ->
         run=Run(cache=compliance),
         only=["misalignment"],
     )
-    (section,) = ablation_page(none).sections
+    (section,) = _ablation_page(none).sections
     assert not section.figures
     assert section.tables[-1].rows == (("misalignment", "the gears are aligned"),)

@@ -9,7 +9,7 @@ from lattice_meshes import box
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Figure
 from lineofaction.report.drawing.interactive import plotly_figure
-from lineofaction.report.drawing.surface_view import folds, rendered, surface_panels, view_of
+from lineofaction.report.drawing.surface_view import _folds, _rendered, _view_of, surface_panels
 
 SIDES = (0.3, 0.2, 0.1)
 
@@ -28,8 +28,8 @@ def test_a_block_shows_the_three_sides_that_face_the_eye_in_their_projected_area
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     side = np.argmax(np.abs(normal), axis=1) + np.where(normal.sum(axis=1) > 0.0, 0, 3)
     eye = (1.0, 0.55, 0.65)
-    view = view_of(points, eye)
-    image, depth = rendered(view, corner, side.astype(float))
+    view = _view_of(points, eye)
+    image, depth = _rendered(view, corner, side.astype(float))
     ahead = np.array(eye) / np.linalg.norm(eye)
     x, y, z = SIDES
     for axis, area in enumerate((y * z, x * z, x * y)):
@@ -51,7 +51,7 @@ def test_all_six_sides_of_a_block_are_seen_in_two_pictures() -> None:
 
 def test_folds_are_the_edges_of_the_block() -> None:
     points, triangles = block()
-    ends = points[folds(points, triangles)]
+    ends = points[_folds(points, triangles)]
     assert np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum() == pytest.approx(4.0 * sum(SIDES))
 
 
@@ -79,8 +79,8 @@ def test_a_panel_shows_the_moved_surface_and_the_nine_edges_in_sight_at_rest() -
     assert np.nanmax(still.shade.z) <= 2.0
     assert np.isnan(still.shade.z).any()
     (line,) = still.lines
-    view = view_of(points)
-    ends = points[folds(points, triangles)] @ view.axes[:, :2]
+    view = _view_of(points)
+    ends = points[_folds(points, triangles)] @ view.axes[:, :2]
     whole = 1e3 * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum()
     drawn = np.nansum(np.hypot(np.diff(line.x), np.diff(line.y)))
     assert drawn == pytest.approx(0.75 * whole, rel=0.02)  # three of twelve, one of each length, are behind

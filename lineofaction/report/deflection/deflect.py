@@ -1,0 +1,317 @@
+"""A deflection as people see it: the gearbox drawn, its meshes, flanks and bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from bounds import leftover
+from bounds.types import BoolArray, Json
+from dynamics.deflection import CAUSES, CaseDeflection, MeshAlignment
+from lineofaction.gearbox.studies.deflect.figures import facts, mesh_names
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
+from lineofaction.gearbox.units import MM, UM
+from lineofaction.report.deflection.gearbox_drawing import gearbox_drawing, largest_motion
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Bars, Dash, Figure, HeatMap, Line, Panel, Table, number
+from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.presentation import Presentation
+
+CAUSE_WORDS = ("of shafts", "bearings", "clearance", "housing", "couplings", "set")
+
+
+def _meshes_worst_first(result: GearboxDeflection) -> list[str]:
+    """Return the meshes by their largest misalignment under any load case, the worst first."""
+    largest = {
+        name: max(abs(_mesh_of(case, name).misalignment) for case in result.deflection.cases)
+        for name in mesh_names(result)
+    }
+    return sorted(largest, key=lambda name: -largest[name])
+
+
+def _worst_case(result: GearboxDeflection, mesh: str) -> CaseDeflection:
+    """Return the load case of the largest misalignment of a mesh."""
+    return max(result.deflection.cases, key=lambda case: abs(_mesh_of(case, mesh).misalignment))
+
+
+def _drawn_case(result: GearboxDeflection) -> CaseDeflection:
+    """Return the load case that misaligns a mesh most; without meshes, that moves the axes most."""
+    names = _meshes_worst_first(result)
+    return _worst_case(result, names[0]) if names else max(result.deflection.cases, key=largest_motion)
+
+
+def _mesh_of(case: CaseDeflection, name: str) -> MeshAlignment:
+    return next(mesh for mesh in case.meshes if mesh.name == name)
+
+
+def _mesh_table(result: GearboxDeflection) -> Table:
+    """List every mesh under every load case, the worst mesh first; of the causes those that act."""
+    acting = np.any([mesh.causes for case in result.deflection.cases for mesh in case.meshes], axis=0)
+    flanks = {(own.mesh, own.case): own for own in result.flanks}
+    head = (
+        *("mesh", "load case", "torque, N m", "misalignment, µm"),
+        *(words for words, acts in zip(CAUSE_WORDS, acting, strict=True) if acts),
+        *("K_Hbeta", "STE peak-to-peak, µm", "largest pressure, MPa"),
+    )
+    rows = tuple(
+        _row(name, case, flanks.get((name, case.name)), acting)
+        for name in _meshes_worst_first(result)
+        for case in result.deflection.cases
+    )
+    return Table("Meshes under the load cases: misalignment over the face by cause", head, rows)
+
+
+def _force_table(result: GearboxDeflection) -> Table | None:
+    """List the forces of the scene under the load cases; None without forces."""
+    axes = (*(f"{axis}, N" for axis in "xyz"), *(f"about {axis}, N m" for axis in "xyz"))
+    rows = tuple(
+        (
+            force.name,
+            force.shaft,
+            _titled(case),
+            *("0" if value == 0.0 else number(float(value), 4) for value in (*force.force, *force.moment)),
+        )
+        for case in result.deflection.cases
+        for force in case.forces
+    )
+    caption = "Forces under the load cases, before the factor of their course"
+    return Table(caption, ("force", "shaft", "load case", *axes), rows) if rows else None
+
+
+def _row(name: str, case: CaseDeflection, flanks: MeshFlanks | None, acting: BoolArray) -> tuple[str, ...]:
+    mesh = _mesh_of(case, name)
+    own = (name, _titled(case), number(case.torque), number(mesh.misalignment / UM, 3))
+    parts = tuple("0" if part == 0.0 else number(float(part) / UM, 3) for part in mesh.causes[acting])
+    if flanks is None:
+        return (*own, *parts, "none", "none", "none")
+    ripple = number(flanks.peak_to_peak / UM, 3)
+    if np.isfinite(flanks.peak_to_peak_error):
+        ripple += f" ± {number(flanks.peak_to_peak_error / UM, 1)}"
+    pressure = number(1e-6 * flanks.largest_pressure, 4)
+    return (*own, *parts, number(flanks.face_load_factor, 3), ripple, pressure)
+
+
+def _titled(case: CaseDeflection) -> str:
+    """Name a load case; say if the other flanks carry or it was not found."""
+    side = "" if case.direction == "drive" else f" ({case.direction})"
+    return f"{case.name}{side}" + ("" if case.status == "converged" else f", {case.status.replace('_', ' ')}")
+
+
+def _bearing_table(result: GearboxDeflection) -> Table:
+    cases = result.deflection.cases
+    loads = [case["bearings"] for case in facts(result)["load_cases"]]
+    listed = [
+        {"case": _titled(case), **loads[k][index]}
+        for index in range(len(result.outline.bearings))
+        for k, case in enumerate(cases)
+    ]
+    columns = {
+        "bearing": lambda bearing: bearing["name"],
+        "load case": lambda bearing: bearing["case"],
+        "speed, rpm": lambda bearing: number(bearing["speed_rpm"]),
+        "radial, N": lambda bearing: number(bearing["radial_force_n"]),
+        "axial, N": lambda bearing: number(bearing["axial_force_n"]),
+        "radial: elastic, µm": lambda bearing: _moved(bearing["elastic_um"]),
+        "clearance, µm": lambda bearing: _moved(bearing["clearance_um"]),
+        "seat, µm": lambda bearing: _moved(bearing["seat_um"]),
+        "life, h": _life_text,
+    }
+    return Table.of("Bearings under the load cases, means over the mesh cycle", listed, columns)
+
+
+def _moved(vector: list[float]) -> str:
+    return number(float(np.hypot(vector[0], vector[1])), 3)
+
+
+def _life_text(bearing: Json) -> str:
+    hours = bearing["rating_life_hours"]
+    return str(bearing["rating_life"]) if hours is None else number(float(f"{hours:.3g}"), 3)
+
+
+def _life_table(result: GearboxDeflection) -> Table:
+    """List the rating lives over all load cases and the constant loads of the same life."""
+
+    def equivalent(way: str, kind: str) -> Callable[[Json], str]:
+        return lambda part: number(part[f"equivalent_{way}_force_n"][kind])
+
+    columns = {
+        "bearing": lambda part: part["name"],
+        "mean speed, rpm": lambda part: number(part["mean_speed_rpm"]),
+        "life, h": _life_text,
+    } | {
+        f"{way}, {kind}, N": equivalent(way, kind)
+        for way in ("radial", "axial")
+        for kind in ("ball", "roller")
+    }
+    caption = (
+        "Basic reference rating life over all load cases (ISO/TS 16281), and loads of equal life (ISO 281)"
+    )
+    return Table.of(caption, facts(result)["bearings"], columns)
+
+
+COLORS = (palette.BLUE, palette.VERMILLION, palette.GREEN, palette.PURPLE, palette.MUTED, palette.INK)
+_DASHES: tuple[Dash, ...] = ("solid", "dash")
+LOADED = 1e-3  # of the largest pressure: less is blank
+
+
+def _causes_figure(result: GearboxDeflection) -> Figure:
+    names, cases = _meshes_worst_first(result), result.deflection.cases
+    worst = _worst_case(result, names[0])
+    largest = number(_mesh_of(worst, names[0]).misalignment / UM, 3)
+    return Figure(
+        key="misalignment_by_cause",
+        title="Misalignment of each mesh by cause",
+        caption="Growth of the gap over the common face in the plane of action, positive along z of the "
+        "pinion. Parts of either sign are stacked from zero, points are their sum.",
+        alternative=f'Mesh {names[0]} runs at up to {largest} µm, under the load case "{worst.name}".',
+        content=tuple(_causes_panel(name, cases) for name in names),
+    )
+
+
+def _causes_panel(name: str, cases: tuple[CaseDeflection, ...]) -> Panel:
+    x = np.arange(len(cases), dtype=float)
+    parts = np.array([_mesh_of(case, name).causes for case in cases]) / UM
+    above, below, bars = np.zeros(len(cases)), np.zeros(len(cases)), []
+    for cause, color, part in zip(CAUSES, COLORS, parts.T, strict=True):
+        if not np.any(part):
+            continue
+        base = np.where(part > 0.0, above, below)
+        bars.append(Bars(cause, x, base + part, base, 0.5, color))
+        above, below = above + np.maximum(part, 0.0), below + np.minimum(part, 0.0)
+    total = Line("sum", x, parts.sum(axis=1), palette.INK, width=0.0, markers=True)
+    names = Axis.of_names([case.name for case in cases])
+    return Panel(names, Axis("misalignment, µm"), (total,), title=name, bars=tuple(bars))
+
+
+def _face_load_figure(result: GearboxDeflection) -> Figure | None:
+    """Draw the load along the face of every mesh; None where no model has it."""
+    names = [
+        name
+        for name in _meshes_worst_first(result)
+        if any(own.mesh == name and np.isfinite(own.face_load_factor) for own in result.flanks)
+    ]
+    if not names:
+        return None
+    panels = []
+    for name in names:
+        own = [part for part in result.flanks if part.mesh == name]
+        lines = tuple(
+            Line(part.case, part.face_position / MM, part.face_load * MM, COLORS[k % 4], _DASHES[k // 4 % 2])
+            for k, part in enumerate(own)
+        )
+        panels.append(Panel(Axis("face position, mm"), Axis("load, N/mm"), lines, title=name))
+    largest = max(result.flanks, key=lambda part: np.nan_to_num(part.face_load_factor))
+    return Figure(
+        key="face_load",
+        title="Load along the face",
+        caption="Force of all pairs per width of face, mean over the mesh cycle; 0: mid-face of the pinion.",
+        alternative=f"The most uneven is mesh {largest.mesh} under {largest.case}: K_Hbeta "
+        f"{number(largest.face_load_factor, 3)}.",
+        content=tuple(panels),
+    )
+
+
+def _pattern_figure(result: GearboxDeflection) -> Figure | None:
+    """Draw the contact pattern of every mesh under its worst load case; None without flanks."""
+    panels, texts = [], []
+    for name in _meshes_worst_first(result):
+        case = _worst_case(result, name)
+        own = next((p for p in result.flanks if (p.mesh, p.case) == (name, case.name)), None)
+        if own is None or not np.isfinite(own.face_load_factor):
+            continue
+        pattern = np.where(own.pattern > LOADED * own.pattern.max(), own.pattern, np.nan) / 1e6
+        top, label = float(np.nanmax(pattern)), "largest pressure, MPa"
+        shade = HeatMap(own.face_position / MM, own.roll_length / MM, pattern, label, top)
+        axes = Axis("face position, mm"), Axis("roll length of the pinion, mm")
+        panels.append(Panel(*axes, title=f"{name}, {case.name}", shade=shade))
+        texts.append(f"{name}: {number(1e-6 * own.largest_pressure, 4)} MPa.")
+    if not panels:
+        return None
+    return Figure(
+        key="contact_patterns",
+        title="Contact patterns under the worst load case of each mesh",
+        caption="Largest pressure that each point of the pinion's flank meets over the mesh cycle.",
+        alternative=" ".join(texts),
+        content=tuple(panels),
+    )
+
+
+def _headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
+    """Return the worst mesh and the most uneven load; without meshes how far the axes move."""
+    case = _drawn_case(result)
+    if not case.meshes:
+        size = f"{number(largest_motion(case) / UM, 3)} µm"
+        return (Headline("largest displacement of an axis", size, case.name),)
+    name = _meshes_worst_first(result)[0]
+    mesh = _mesh_of(case, name)
+    most = f"; most by the {CAUSES[int(np.argmax(np.abs(mesh.causes)))]}" if np.any(mesh.causes) else ""
+    size = f"{number(mesh.misalignment / UM, 3)} µm"
+    lines = [Headline("largest misalignment", size, f"mesh {name}, {case.name}{most}")]
+    factors = [part for part in result.flanks if np.isfinite(part.face_load_factor)]
+    if factors:
+        worst = max(factors, key=lambda part: part.face_load_factor)
+        lines.append(
+            Headline("largest K_Hbeta", number(worst.face_load_factor, 3), f"mesh {worst.mesh}, {worst.case}")
+        )
+    return tuple(lines)
+
+
+def _page(result: GearboxDeflection) -> Page:
+    """Return the report: the gearbox under the worst load case, then its meshes and bearings."""
+    contact = tuple(figure for figure in (_face_load_figure(result), _pattern_figure(result)) if figure)
+    sections = [
+        Section("Gearbox", figures=(_figure(result),)),
+        *(
+            [Section("Meshes", figures=(_causes_figure(result),), tables=(_mesh_table(result),))]
+            if mesh_names(result)
+            else []
+        ),
+        *([Section("Flanks", figures=contact)] if contact else []),
+        Section("Bearings", tables=(_bearing_table(result), _life_table(result))),
+        *([Section("Forces", tables=(forces,))] if (forces := _force_table(result)) else []),
+    ]
+    count = len(result.deflection.cases)
+    lead = f"{count} load case{'s' * (count > 1)} on {result.deflection.leading_shaft}. {agreement(result)}"
+    return Page("Deflection of the gearbox", lead, _headlines(result), tuple(sections), _alarms(result))
+
+
+def agreement(result: GearboxDeflection) -> str:
+    """Say how well mesh loads and deflections agree."""
+    if not mesh_names(result):
+        return "Nothing meshes."
+    if not any(np.isfinite(part.face_load_factor) for part in result.flanks):
+        return "The meshes press evenly over their faces: no table in three dimensions."
+    change = leftover(result.change)
+    return f"Mesh loads and deflections agree to {change} of the misalignments after {result.passes} passes."
+
+
+def _alarms(result: GearboxDeflection) -> tuple[str, ...]:
+    lost = [case for case in result.deflection.cases if case.status != "converged"]
+    alarms = [f'No equilibrium was found under the load case "{case.name}".' for case in lost]
+    if not lost and not result.agreed:
+        alarms.append("Mesh loads and deflections do not agree yet: the misalignments still change.")
+    outside = sorted({m.name for case in result.deflection.cases for m in case.meshes if not m.in_table})
+    alarms += [
+        f'Mesh "{name}" runs beyond the misalignments of its table, whose ends are held.' for name in outside
+    ]
+    return tuple(alarms)
+
+
+def _text(result: GearboxDeflection) -> Iterator[Table | str]:
+    """Tables for the terminal, the worst mesh first."""
+    yield from _alarms(result)
+    yield agreement(result)
+    if mesh_names(result):
+        yield _mesh_table(result)
+        yield ""
+    yield _bearing_table(result)
+    yield ""
+    yield _life_table(result)
+
+
+def _figure(result: GearboxDeflection) -> Figure:
+    return gearbox_drawing(result, _drawn_case(result))
+
+
+PAGE = Presentation(_figure, _page, _text)

@@ -1,0 +1,202 @@
+"""Harris maps before and after, ripple over torque with its scatter, and the gain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from bounds import engineering
+from fe_contact.microgeometry.confirmation import ConfirmedDesign
+from fe_contact.microgeometry.optimization import Optimization
+from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.units import UM, factor
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Figure,
+    FloatArray,
+    Line,
+    Panel,
+    Reference,
+    Table,
+    number,
+    thousands,
+)
+from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.presentation import Presentation
+from lineofaction.report.ste.curves import MOST_CURVES, HarrisScale, harris_panel
+
+_POSITION = "position, base pitches"
+
+
+def _harris(result: Optimization) -> Figure:
+    designs = {"before": result.start, "after": result.optimum}
+    curves = {name: _shown(result, design) for name, design in designs.items()}
+    scale = HarrisScale.of(*curves.values())
+    maps = [_map(result, name, design, curves[name], scale) for name, design in designs.items()]
+    return Figure(
+        key="harris_map",
+        title="Transmission error before and after optimization",
+        caption="Harris maps without scatter, a curve for each torque, less its mean; and peak-to-peak over "
+        f"torque. {_scattered(result)} Dotted vertical lines: design torques.",
+        alternative=f"{result.reason}.",
+        content=(*maps, _ripple(result)),
+        table=_ripple_table(result),
+    )
+
+
+def _chosen(result: Optimization) -> list[int]:
+    """Torques whose curves are drawn: those that count, those that get worse, and some between them."""
+    torque = result.start.harris_map.torque
+    drawn = {*np.flatnonzero(np.isin(torque, result.torque)).tolist(), *result.rising.tolist()}
+    even = np.linspace(torque[0], torque[-1], max(2, MOST_CURVES - len(drawn)))
+    return sorted(drawn | {int(np.abs(torque - value).argmin()) for value in even})
+
+
+def _shown(result: Optimization, design: ConfirmedDesign) -> FloatArray:
+    """Curves (P, K) of the chosen torques less their means, um."""
+    values = design.harris_map.ste[:, _chosen(result)] / UM
+    return np.asarray(values - values.mean(axis=0))
+
+
+def _map(
+    result: Optimization, name: str, design: ConfirmedDesign, values: FloatArray, scale: HarrisScale
+) -> Panel:
+    harris = design.harris_map
+    names = [f"{text} N m" for text in thousands([float(harris.torque[k]) for k in _chosen(result)])]
+    end = float(np.ceil(harris.position[-1] + 1e-12))
+    position, closed = np.append(harris.position, end), np.vstack([values, values[:1]])
+    return harris_panel(
+        f"Harris map {name}", Axis(_POSITION, limits=(0.0, end)), position, closed, names, scale
+    )
+
+
+def _scattered(result: Optimization) -> str:
+    if result.nodes.weight.size == 1:
+        return "Nothing scatters."
+    count = result.nodes.weight.size
+    return (
+        f"Thick lines: expectation over the {count} nodes of the scatter, dotted ones: its least and largest."
+    )
+
+
+def _ripple(result: Optimization) -> Panel:
+    lines: list[Line] = []
+    designs = ("before", result.start, palette.VERMILLION), ("after", result.optimum, palette.BLUE)
+    for name, design, color in designs:
+        harris = design.harris_map
+        if result.nodes.weight.size > 1:
+            ends = harris.peak_to_peak.min(0), harris.peak_to_peak.max(0)
+            for extreme, values in zip(("least", "largest"), ends, strict=True):
+                lines.append(Line(f"{name}, {extreme}", harris.torque, values / UM, color, "dot", 1.0))
+            lines.append(Line(f"{name}, no scatter", harris.torque, harris.nominal / UM, color, "dash", 1.0))
+        lines.append(Line(name, harris.torque, harris.expected / UM, color, "solid", 2.4, markers=True))
+    counted = tuple(Reference("", float(torque)) for torque in result.torque)
+    across = Axis("torque on the driving gear, N m")
+    return Panel(across, Axis("peak to peak, µm"), tuple(lines), counted, title="Ripple over torque")
+
+
+def _ripple_table(result: Optimization) -> Table:
+    before, after = result.start.harris_map, result.optimum.harris_map
+    texts, skews = thousands(before.torque.tolist()), result.map_misalignment / UM
+    rows = tuple(
+        (
+            text,
+            number(float(skews[k]), 3),
+            "yes" if torque in result.torque else "",
+            *_value(before.expected[k], before.expected_error[k]),
+            *_value(after.expected[k], after.expected_error[k]),
+            number(float(before.expected[k] / after.expected[k]), 3),
+            number(after.peak_to_peak[:, k].max() / UM, 3),
+        )
+        for k, (text, torque) in enumerate(zip(texts, before.torque, strict=True))
+    )
+    head = (
+        "torque, N m", "misalignment, µm", "counts", "before, µm", "± µm", "after, µm", "± µm", "factor",
+        "worst node after, µm",
+    )  # fmt: skip
+    return Table("Expected peak to peak of the transmission error", head, rows)
+
+
+def _value(value: float, error: float) -> tuple[str, str]:
+    return number(value / UM, 3), number(error / UM, 2)
+
+
+def _optimum_table(result: Optimization) -> Table:
+    rows = []
+    for var, step in zip(result.variables, result.sensitivity, strict=True):
+        name = boundary_name(var.name)
+        unit = factor(name)
+        values = result.start.values[var.name], result.optimum.values[var.name], var.low, var.high
+        aside = (
+            f"{engineering(change / UM, 2, '+')} at {number(end / unit, 3)}"
+            for change, end in ((step.change_low, step.low), (step.change_high, step.high))
+        )
+        rows.append((name, *(number(value / unit, 4) for value in values), *aside))
+    head = ("variable", "start", "optimum", "least", "most", "lower, µm", "higher, µm")
+    return Table("Design, and the change of the objective by a perturbation", head, tuple(rows))
+
+
+def _node_table(result: Optimization) -> Table:
+    head = [*(f"{boundary_name(name)} by" for name in result.nodes.names), "weight"]
+    for word in ("before", "after"):
+        head += [f"{word}, {torque} N m, µm" for torque in thousands(result.torque.tolist())]
+    counted = np.flatnonzero(np.isin(result.start.harris_map.torque, result.torque))
+    rows = []
+    for node, weight in enumerate(result.nodes.weight):
+        units = [factor(boundary_name(name)) for name in result.nodes.names]
+        amounts = zip(result.nodes.deviation[node], units, strict=True)
+        deviation = (engineering(amount / unit, 3, "+") for amount, unit in amounts)
+        ripples = (d.harris_map.peak_to_peak[node, counted] / UM for d in (result.start, result.optimum))
+        cells = (number(float(x), 3) for ripple in ripples for x in ripple)
+        rows.append((*deviation, number(float(weight), 3), *cells))
+    return Table("Robustness: peak to peak at every node of the scatter", tuple(head), tuple(rows))
+
+
+def _run_table(result: Optimization) -> Table:
+    rows = tuple(
+        (
+            str(k),
+            number(run.assessed.objective / UM, 4),
+            f"{run.evaluations}" + (f", {run.explored} of them at few positions" if run.explored else ""),
+            run.ended.value,
+            number(run.cpu_seconds, 2),
+        )
+        for k, run in enumerate(result.runs)
+    )
+    return Table("Searches", ("start", "objective, µm", "designs", "ended", "CPU s"), rows)
+
+
+def _cost_table(result: Optimization) -> Table:
+    stages = result.cost["stages"].items()
+    rows = tuple((name, number(float(cost["cpu_seconds"]), 3)) for name, cost in stages)
+    return Table("Cost", ("stage", "CPU s"), rows)
+
+
+def _optimization_page(result: Optimization) -> Page:
+    before, after = result.start.objective, result.optimum.objective
+    heads = (
+        Headline("before", f"{number(before.value / UM, 3)} µm", f"± {number(before.error / UM, 2)} µm"),
+        Headline("after", f"{number(after.value / UM, 3)} µm", f"± {number(after.error / UM, 2)} µm"),
+        Headline("gain", f"{number(result.gain.value / UM, 3)} µm", result.outcome.replace("_", " ")),
+    )
+    lead = f"{result.reason}; {result.evaluations} designs of {len(result.variables)} variables"
+    figure = Section("Harris map", "", (replace(_harris(result), table=None),), (_ripple_table(result),))
+    design = Section("Design", "", tables=(_optimum_table(result),))
+    tried = f"Not tried: {'; '.join(result.not_tried)}."
+    search = Section("Search", tried, tables=(_run_table(result), _cost_table(result)))
+    robust = Section("Scatter", "", tables=(_node_table(result),))
+    return Page("Microgeometry of least transmission error", lead, heads, (figure, design, robust, search))
+
+
+def _text(result: Optimization) -> Iterator[Table | str]:
+    yield _optimum_table(result)
+    yield _ripple_table(result)
+    for line in result.not_tried:
+        yield f"not tried: {line}"
+    yield f"{result.outcome.replace('_', ' ')}: {result.reason}; {result.evaluations} designs"
+
+
+PAGE = Presentation(_harris, _optimization_page, _text)

@@ -1,0 +1,128 @@
+"""Peak-to-peak transmission error over misalignment and center distance, in per cent and in micrometers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import chain
+
+from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
+from lineofaction.gearbox.studies.sensitivity.run import PairStudy
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Table, number
+from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.presentation import Presentation
+
+_MISALIGNMENT = Axis("misalignment over the common face width, µm")
+_DISTANCE = Axis("change of the center distance, %")
+_PER_CENT, _MICROMETRES = Axis("change of peak to peak, %"), Axis("peak to peak, µm")
+_HEAD = ("pair", "corner contact", "deviation", "peak to peak, µm", "error, µm", "change, %")
+
+Curve = tuple[FloatArray, RippleCurve]
+
+
+def _sensitivity_figure(studies: Sequence[PairStudy]) -> Figure:
+    """Draw one line per pair, solid with corner contact, dashed without, as Palermo et al. (2010), Fig. 7.
+
+    Parameters
+    ----------
+    studies : sequence of PairStudy
+        At least one.
+    """
+    return Figure(
+        key="sensitivity",
+        title="Sensitivity of the transmission error to misalignment and center distance",
+        caption="Peak-to-peak static transmission error against the aligned pair's, and in micrometers: per "
+        "cents of a small ripple grow large. Dashed: contact ends where plain involutes leave each other.",
+        alternative=_words(studies),
+        content=(
+            *_panels(studies, "Misalignment", _MISALIGNMENT, _over_misalignment),
+            *_panels(studies, "Center distance", _DISTANCE, _over_distance),
+        ),
+        table=_sensitivity_table(studies),
+    )
+
+
+def _sensitivity_table(studies: Sequence[PairStudy]) -> Table:
+    rows = [
+        (study.name, "on" if curves.corner_contact else "off", *row)
+        for study in studies
+        for curves in study.curves
+        for row in chain(
+            _rows(_over_misalignment(study, curves), "misalignment {} µm"),
+            _rows(_over_distance(study, curves), "center distance {} %"),
+        )
+    ]
+    return Table("Peak-to-peak transmission error", _HEAD, tuple(rows))
+
+
+def _over_misalignment(_study: PairStudy, curves: Sensitivity) -> Curve:
+    return 1e6 * curves.misalignment.deviation, curves.misalignment
+
+
+def _over_distance(study: PairStudy, curves: Sensitivity) -> Curve:
+    change = curves.center_distance_change
+    return 100.0 * change.deviation / study.center_distance, change
+
+
+def _panels(
+    studies: Sequence[PairStudy], title: str, x: Axis, curve_of: Callable[[PairStudy, Sensitivity], Curve]
+) -> tuple[Panel, Panel]:
+    """One panel in per cent and one in micrometers over the same deviation."""
+    relative, absolute = [], []
+    for index, study in enumerate(studies):
+        for curves in study.curves:
+            at, curve = curve_of(study, curves)
+            name = f"{study.name}, {'with' if curves.corner_contact else 'without'} corner contact"
+            dash: Dash = "solid" if curves.corner_contact else "dash"
+            color = palette.category(index)
+            relative.append(Line(name, at, 100.0 * curve.relative_change, color, dash))
+            absolute.append(Line(name, at, 1e6 * curve.peak_to_peak, color, dash))
+    return Panel(x, _PER_CENT, tuple(relative), title=title), Panel(x, _MICROMETRES, tuple(absolute))
+
+
+def _rows(curve: Curve, label: str) -> list[tuple[str, ...]]:
+    at, ripple = curve
+    columns = (1e6 * ripple.peak_to_peak, 1e6 * ripple.error, 100.0 * ripple.relative_change)
+    return [
+        (label.format(f"{round(float(x), 9):g}"), number(size), number(error, 2), f"{change:+.1f}")
+        for x, size, error, change in zip(at, *columns, strict=True)
+    ]
+
+
+def _words(studies: Sequence[PairStudy]) -> str:
+    parts = []
+    for study in studies:
+        for curves in study.curves:
+            skew, distance = (
+                100.0 * float(curve.relative_change[abs(curve.relative_change).argmax()])
+                for curve in (curves.misalignment, curves.center_distance_change)
+            )
+            how = "with" if curves.corner_contact else "without"
+            parts.append(f"{study.name} {how} corner contact {skew:+.0f} % and {distance:+.0f} %")
+    return f"Largest change with misalignment and with center distance: {'; '.join(parts)}."
+
+
+def _page(studies: Sequence[PairStudy]) -> Page:
+    section = Section("Sensitivity", figures=(_sensitivity_figure(studies),))
+    headlines = (
+        _largest("misalignment", "µm", studies, _over_misalignment),
+        _largest("center distance", "%", studies, _over_distance),
+    )
+    return Page("Sensitivity of gear pairs", "", headlines, (section,))
+
+
+def _largest(
+    over: str, unit: str, studies: Sequence[PairStudy], curve_of: Callable[[PairStudy, Sensitivity], Curve]
+) -> Headline:
+    named = [(study.name, *curve_of(study, curves)) for study in studies for curves in study.curves]
+    name, at, curve = max(named, key=lambda each: float(each[2].peak_to_peak.max()))
+    k = int(curve.peak_to_peak.argmax())
+    error, change = number(1e6 * float(curve.error[k]), 2), 100.0 * float(curve.relative_change[k])
+    where = f"{round(float(at[k]), 9):g} {unit}, {name}: {change:+.0f} % of the undeviated pair's"
+    value = f"{number(1e6 * float(curve.peak_to_peak[k]), 3)} µm"
+    return Headline(f"largest peak-to-peak STE over {over}", value, f"± {error} µm at {where}")
+
+
+PAGE = Presentation(
+    _sensitivity_figure, _page, lambda studies: (_sensitivity_table(studies),), series=_sensitivity_table
+)

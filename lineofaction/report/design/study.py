@@ -1,0 +1,320 @@
+"""A study of scenes: maps and curves over the grid, distributions, what matters, worst and failed runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from bounds import engineering
+from dynamics.study import Study
+from lineofaction.gearbox.studies.study.run import in_boundary_units
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, HeatMap, Line, Panel, Table, number
+from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.presentation import Presentation
+
+SHOWN_RESPONSES, SHOWN_CURVES, SHOWN_FACTORS = 4, 6, 12
+BAR = 9.0
+
+
+def _label(study: Study, response: int) -> str:
+    """Return the title of a response with its unit last."""
+    return f"{study.response[response]}, {_unit(study, response)}"
+
+
+def _unit(study: Study, response: int) -> str:
+    """Return the unit of a response as plots have it."""
+    symbol = in_boundary_units(study, response)[0]
+    return {"um": "µm", "": "ratio"}.get(symbol, symbol)
+
+
+def _grid_figures(study: Study) -> tuple[Figure, ...]:
+    """Draw means over the grid: over one factor curves, over two a map; nothing without a grid."""
+    axes = [k for k in _varied(study) if study.kind[k] == "grid"]
+    shown = range(min(len(study.response), SHOWN_RESPONSES))
+    if not axes:
+        return ()
+    if len(axes) == 1:
+        return (_curves(study, axes[0], shown),)
+    panels = tuple(_map(study, axes[0], axes[1], response) for response in shown)
+    caption = "Means over all other factors and samples; colors span least to largest. White: no figures."
+    return (
+        Figure("study_map", _over(study, axes[:2]), caption, _extreme(study), panels),
+        _curves(study, axes[0], shown),
+    )
+
+
+def _over(study: Study, axes: list[int]) -> str:
+    return f"Responses over {' and '.join(study.factor[k] for k in axes)}"
+
+
+def _map(study: Study, across: int, up: int, response: int) -> Panel:
+    x, y = (np.unique(study.value[:, axis]) for axis in (across, up))
+    one = in_boundary_units(study, response)[1]
+    z = np.full((y.size, x.size), np.nan)
+    for row, column in np.ndindex(z.shape):
+        here = (study.value[:, across] == x[column]) & (study.value[:, up] == y[row])
+        values = study.figure[here, response]
+        if np.isfinite(values).any():
+            z[row, column] = np.nanmean(values) / one
+    least, largest = _range(z)
+    shade = HeatMap(x, y, z, _unit(study, response), largest, least)
+    axes = Axis(study.factor[across]), Axis(study.factor[up])
+    return Panel(*axes, title=study.response[response], shade=shade)
+
+
+def _range(z: FloatArray) -> tuple[float, float]:
+    """Return least and largest value, apart where all are alike."""
+    known = z[np.isfinite(z)]
+    least, largest = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    return least, largest if largest > least else least + 1.0
+
+
+def _curves(study: Study, axis: int, shown: range) -> Figure:
+    """Means, and of samples quantiles, over one factor."""
+    panels = tuple(
+        Panel(
+            Axis(study.factor[axis]),
+            Axis(_unit(study, response)),
+            _lines(study, axis, response),
+            title=study.response[response],
+        )
+        for response in shown
+    )
+    caption = "Mean over all other factors"
+    if study.samples > 1:
+        caption += " and samples; dotted: 5 % and 95 % of the runs at a level lie below"
+    return Figure("study_curves", _over(study, [axis]), f"{caption}.", _extreme(study), panels)
+
+
+def _lines(study: Study, axis: int, response: int) -> tuple[Line, ...]:
+    one = in_boundary_units(study, response)[1]
+    levels, mean = study.level_means(axis, response)
+    lines = [Line("mean", levels, mean / one, palette.BLUE, markers=True)]
+    if study.samples > 1:
+        for fraction in (0.05, 0.95):
+            rows = [study.figure[study.value[:, axis] == level, response] for level in levels]
+            ends = np.array([_quantile(row, fraction) for row in rows])
+            name = f"{100 * fraction:g} %"
+            lines.append(Line(name, levels, ends / one, palette.VERMILLION, "dot", 1.2))
+    return tuple(lines)
+
+
+def _quantile(row: FloatArray, fraction: float) -> float:
+    usable = row[np.isfinite(row)]
+    return float(np.quantile(usable, fraction)) if usable.size else float("nan")
+
+
+def _distribution_figure(study: Study) -> Figure:
+    panels = tuple(
+        Panel(
+            Axis(_label(study, response)),
+            Axis("runs below, %", limits=(0.0, 100.0)),
+            tuple(_cumulative(study, response)),
+        )
+        for response in range(min(len(study.response), SHOWN_RESPONSES))
+    )
+    of = "the samples of a combination" if study.samples > 1 else "all points"
+    return Figure(
+        "study_distribution",
+        "Distribution of the responses",
+        f"Share of {of} that lies below a value.",
+        _extreme(study),
+        panels,
+    )
+
+
+def _cumulative(study: Study, response: int) -> list[Line]:
+    """One step curve for each of some combinations; without samples one over all points."""
+    one = in_boundary_units(study, response)[1]
+    rows = study.column(response) if study.samples > 1 else study.figure[:, response][None]
+    chosen = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), SHOWN_CURVES)).round().astype(int))
+    curves = {}
+    for row in chosen:
+        values = np.sort(rows[row][np.isfinite(rows[row])]) / one
+        share = 100.0 * np.arange(values.size + 1) / max(values.size, 1)
+        curves[int(row)] = np.repeat(values, 2), np.repeat(share, 2)[1:-1]
+    return [
+        Line(_combination(study, row), *curve, palette.ordered(count, len(chosen)))
+        for count, (row, curve) in enumerate(curves.items())
+        if curve[0].size
+    ]
+
+
+def _combination(study: Study, row: int) -> str:
+    if study.samples == 1:
+        return "all points"
+    value = study.value[row * study.samples]
+    levels = [k for k in _varied(study) if study.kind[k] in ("grid", "list")]
+    return ", ".join(f"{_short(study, k)} {value[k]:.6g}" for k in levels) or "all samples"
+
+
+def _varied(study: Study) -> list[int]:
+    return [k for k in range(len(study.factor)) if np.unique(study.value[:, k]).size > 1]
+
+
+def _short(study: Study, factor: int) -> str:
+    """Return the last name of a factor's path, all of it where another one ends alike."""
+    ends = [path.rpartition(".")[2] for path in study.factor]
+    return ends[factor] if ends.count(ends[factor]) == 1 else study.factor[factor]
+
+
+def _tornado_figure(study: Study) -> Figure:
+    """Draw what each factor does to the first response: by means of its levels, or by rank correlation."""
+    return Figure(
+        "study_tornado",
+        "What matters",
+        "Factors by what they do to the first response: those of grid and list by the means of their levels, "
+        "sampled ones by Spearman's rank correlation within each combination, of their value or of its "
+        "distance from the median.",
+        _extreme(study),
+        (*_by_levels(study), *_by_samples(study)),
+    )
+
+
+def _by_levels(study: Study) -> list[Panel]:
+    """Draw a bar between the means of the levels of each factor; none where none is known."""
+    one = in_boundary_units(study, 0)[1]
+    bars = []
+    for factor in _varied(study):
+        if study.kind[factor] in ("grid", "list") and np.isfinite(study.swing(factor, 0)):
+            means = study.level_means(factor, 0)[1] / one
+            bars.append((float(np.nanmin(means)), float(np.nanmax(means)), study.factor[factor]))
+    return [_bars(bars, f"means of the levels: {_label(study, 0)}")] if bars else []
+
+
+def _by_samples(study: Study) -> list[Panel]:
+    """Draw the rank correlation of each sampled factor as a bar from 0; none where none is known."""
+    known = [
+        (name, float(c)) for name, c in zip(study.factor, study.correlation(0), strict=True) if np.isfinite(c)
+    ]
+    bars = [(min(0.0, c), max(0.0, c), name) for name, c in known]
+    return [_bars(bars, f"rank correlation with {study.response[0]}", (-1.0, 1.0))] if bars else []
+
+
+def _bars(
+    bars: list[tuple[float, float, str]], text: str, limits: tuple[float, float] | None = None
+) -> Panel:
+    ordered = sorted(bars, key=lambda bar: bar[0] - bar[1])[:SHOWN_FACTORS]
+    heights = [float(len(ordered) - k) for k in range(len(ordered))]
+    lines = tuple(
+        Line(name, np.array([low, high]), np.full(2, height), palette.category(0), width=BAR)
+        for (low, high, name), height in zip(ordered, heights, strict=True)
+    )
+    names = tuple((height, name) for (_, _, name), height in zip(ordered, heights, strict=True))
+    return Panel(Axis(text, limits=limits), Axis("", limits=(0.4, len(ordered) + 0.6), names=names), lines)
+
+
+def _extreme(study: Study) -> str:
+    """Say where the first response is largest."""
+    first = study.figure[:, 0]
+    if not np.isfinite(first).any():
+        return "No run has figures."
+    point = int(np.nanargmax(first))
+    one = in_boundary_units(study, 0)[1]
+    at = ", ".join(
+        f"{name} = {value:.6g}" for name, value in zip(study.factor, study.value[point], strict=True)
+    )
+    return f"Largest {study.response[0]}: {number(float(first[point]) / one, 4)} {_unit(study, 0)} at {at}."
+
+
+SHOWN = 12
+"""Lines of the tables of worst and failed runs."""
+
+
+def _study_figures(study: Study) -> tuple[Figure, ...]:
+    if not study.usable:
+        return (_distribution_figure(study),)
+    figures = (*_grid_figures(study), _distribution_figure(study), _tornado_figure(study))
+    return tuple(figure for figure in figures if figure.content)
+
+
+def _summary_table(study: Study) -> Table:
+    rows = []
+    for k in range(len(study.response)):
+        one = in_boundary_units(study, k)[1]
+        values = study.figure[:, k][np.isfinite(study.figure[:, k])] / one
+        errors = study.error[:, k][np.isfinite(study.error[:, k])] / one
+        texts = [
+            number(float(take(values)), 4) if values.size else "none" for take in (np.min, np.mean, np.max)
+        ]
+        rows.append(
+            (_label(study, k), *texts, number(float(errors.mean()), 2) if errors.size else "not stated")
+        )
+    head = ("response", "least", "mean", "largest", "stated error, mean")
+    return Table("Responses of all runs", head, tuple(rows))
+
+
+def _extreme_table(study: Study) -> Table:
+    """Return the points of the largest first response."""
+    first = study.figure[:, 0]
+    usable = np.flatnonzero(np.isfinite(first))
+    points = usable[np.argsort(-first[usable], kind="stable")][:SHOWN]
+    varied, responses = _varied(study), range(len(study.response))
+    head = (*(_short(study, k) for k in varied), *(_label(study, k) for k in responses))
+    rows = tuple(
+        (
+            str(point),
+            *(f"{study.value[point, k]:.6g}" for k in varied),
+            *(number(float(study.figure[point, k]) / in_boundary_units(study, k)[1], 4) for k in responses),
+            "yes" if point in study.worst else "",
+        )
+        for point in points
+    )
+    caption = f"Worst cases: runs of the largest {study.response[0]}"
+    return Table(caption, ("point", *head, "kept in full"), rows)
+
+
+def _failed_table(study: Study) -> Table:
+    """Return the runs without figures, and why."""
+    failed = [k for k, reason in enumerate(study.reason) if reason]
+    rows = tuple(
+        (str(k), *(f"{study.value[k, f]:.6g}" for f in _varied(study)), study.reason[k])
+        for k in failed[:SHOWN]
+    )
+    caption = f"Runs without figures: {len(failed)} of {len(study.reason)}"
+    return Table(caption, ("point", *(_short(study, f) for f in _varied(study)), "reason"), rows)
+
+
+def _page(study: Study) -> Page:
+    failed = len(study.reason) - study.usable
+    usable = f"{failed} without figures" if failed else "all with figures"
+    heads = (
+        Headline("runs", str(len(study.reason)), usable),
+        Headline("largest", _largest(study), study.response[0]),
+        Headline("cost of a run", f"{1e3 * float(study.seconds[:, 0].mean()):.0f} ms", "CPU time, mean"),
+    )
+    tables = (_extreme_table(study), *((_failed_table(study),) if failed else ()))
+    sections = (
+        Section("Responses", "", tuple(replace(f, table=None) for f in _study_figures(study))),
+        Section("Figures", "", (), (_summary_table(study), *tables)),
+    )
+    return Page("Many scenes", _lead(study), heads, sections)
+
+
+def _lead(study: Study) -> str:
+    without = ", ".join(study.facts["neglected"])
+    each = f" {study.samples} samples of each combination." if study.samples > 1 else ""
+    over = ", ".join(study.factor[k] for k in _varied(study))
+    return f"{len(study.reason)} runs over {over}.{each} Neglected in the runs: {without}."
+
+
+def _largest(study: Study) -> str:
+    """Write the largest value of the first response."""
+    unit, one = in_boundary_units(study, 0)
+    first = study.figure[:, 0][np.isfinite(study.figure[:, 0])] / one
+    return f"{number(float(first.max()), 4)} {unit}".strip() if first.size else "none"
+
+
+def _text(study: Study) -> Iterator[Table | str]:
+    yield _summary_table(study)
+    yield _extreme_table(study)
+    if study.usable < len(study.reason):
+        yield _failed_table(study)
+    yield f"neglected in the runs: {', '.join(study.facts['neglected'])}"
+    yield f"cost {engineering(1e3 * float(study.seconds[:, 0].mean()), 3)} ms CPU a run"
+
+
+PAGE = Presentation(lambda study: _study_figures(study)[0], _page, _text)

@@ -1,0 +1,413 @@
+"""From result files to the report: what is read, the page, its JSON, and the files written."""
+
+from __future__ import annotations
+
+import math
+import os
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, get_origin
+
+from dynamics.errors import DynamicsError
+from dynamics.results import RunResult
+from fe_contact.errors import FeContactError
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.convert.result_files import stamped
+from lineofaction.gearbox.problems import BadInput, DamagedFile
+from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.report.drawing.figure import Figure, Table
+from lineofaction.report.drawing.image import png
+from lineofaction.report.drawing.interactive import plotly_figure
+from lineofaction.report.drawing.page import Headline, Page, Section, html, sound_json
+from lineofaction.report.drawing.tables import one_effects_section
+from lineofaction.report.pair import pair_lead, pair_title
+from lineofaction.report.presentation import presentation_of
+from lineofaction.report.run.page import (
+    dynamic_alarms,
+    dynamic_headlines,
+    dynamic_making,
+    dynamic_results,
+)
+from lineofaction.report.run.view import RunView
+from lineofaction.report.ste.page import (
+    static_alarms,
+    static_headlines,
+    static_making,
+    static_results,
+)
+from model_studies.netcdf import UnreadableFile, opened_netcdf
+
+
+def stored_study(attributes: Mapping[str, object]) -> Study | None:
+    """Return the study that made a file with these attributes; None: another kind of file."""
+    return next((study for study in STUDIES.values() if study.run.file.holds(attributes)), None)
+
+
+def read_stored(study: Study, file: Path) -> Any:
+    """Return the result in a study's file; raises `BadInput`: it is damaged."""
+    with _undamaged(study, file):
+        return study.run.file.read(file)
+
+
+@contextmanager
+def _undamaged(study: Study, file: Path) -> Iterator[None]:
+    """Name the file in the libraries' errors of damaged files."""
+    try:
+        yield
+    except (FeContactError, DynamicsError) as error:
+        raise BadInput.of("file", str(file), f"an undamaged {study.kind}", f"{error}.") from None
+    except ValueError:
+        advice = "Something is missing or not as written."
+        raise BadInput.of("file", str(file), f"an undamaged {study.kind}", advice) from None
+
+
+def page_beside(study: Study, found: object, database: SteDatabase | None) -> Page:
+    """Return the page of a study's result; beside a database, if there is one."""
+    presentation = presentation_of(study)
+    if database is None or presentation.beside is None:
+        return presentation.page(found)
+    return presentation.beside(found, database)
+
+
+_BOUND = f"an STE database, a run, or the result of a study ({', '.join(STUDIES)})"
+_READERS: dict[str, tuple[tuple[str, str], Callable[[Path], Any]]] = {
+    "database": (("format", "lineofaction STE database"), SteDatabase.from_netcdf),
+    "run": (("schema", "lineofaction dynamics run"), RunResult.from_netcdf),
+}
+"""Attribute of the file, and what reads it."""
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """The results that were read; at least one of them.
+
+    `pages` are those of studies, by the kind of their results; `warnings` are those of all files, in words;
+    `view` is what of the run is shown.
+    """
+
+    database: SteDatabase | None = None
+    run: RunResult | None = None
+    pages: Mapping[str, Page] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+    view: RunView = field(default_factory=RunView)
+
+    @property
+    def only_page(self) -> Page | None:
+        """The page of a study, if nothing else was read."""
+        alone = len(self.pages) == 1 and self.database is None and self.run is None
+        return next(iter(self.pages.values())) if alone else None
+
+
+def read_inputs(files: Sequence[Path]) -> Inputs:
+    """Read every file as what it says it is.
+
+    Raises `BadInput`: a file is neither, is damaged, there are two of a kind, or there is none at all.
+    """
+    if not files:
+        raise BadInput.of("file", None, _BOUND, "Name at least one file.")
+    by_kind: dict[str, tuple[Study | None, Path]] = {}
+    for file in files:
+        study, kind = _kind(file)
+        if kind in by_kind:
+            advice = "One page shows one file of each kind."
+            raise BadInput.of("file", str(file), f"the only {kind}", advice)
+        by_kind[kind] = study, file
+    warnings = tuple(dict.fromkeys(one["message"] for file in files for one in stamped(file)))
+    read = {kind: _read(file, kind) for kind, (study, file) in by_kind.items() if study is None}
+    database = read.get("database")
+    studies = sorted(
+        ((study, file) for study, file in by_kind.values() if study is not None),
+        key=lambda pair: list(STUDIES).index(pair[0].name),
+    )
+    pages = {study.kind: page_beside(study, read_stored(study, file), database) for study, file in studies}
+    return Inputs(**read, pages=pages, warnings=warnings)
+
+
+def read_result(file: Path) -> SteDatabase | RunResult:
+    """Read a table or a run; raises `BadInput`: the file is neither, or is damaged."""
+    study, kind = _kind(file)
+    if study is not None:
+        raise BadInput.of("result", f"{file.name}, which holds {kind}", "an STE database or a run")
+    result: SteDatabase | RunResult = _read(file, kind)
+    return result
+
+
+def read_run(file: Path, field: str) -> RunResult:
+    """Read a run, which `field` names; raises `BadInput`: the file is none, or is damaged."""
+    result = read_result(file)
+    if not isinstance(result, RunResult):
+        raise BadInput.of(field, str(file), "a run", "It holds an STE database: loa simulate makes runs.")
+    return result
+
+
+def _kind(file: Path) -> tuple[Study | None, str]:
+    """Return the study that made a file, if one did, and the kind of the file."""
+    attributes = file_attributes(file)
+    for kind, ((name, value), _) in _READERS.items():
+        if attributes.get(name) == value:
+            return None, kind
+    if (study := stored_study(attributes)) is not None:  # loads what computes studies
+        return study, study.kind
+    raise BadInput.of("file", str(file), _BOUND, "It is a netCDF file of another kind.")
+
+
+def file_attributes(file: Path) -> dict[str, str]:
+    """Return the attributes of a netCDF file as texts.
+
+    Raises `BadInput`: the file is missing or no netCDF-4 file.
+    """
+    if not file.is_file():
+        raise BadInput.of("file", str(file), _BOUND, "There is no such file. Check the path.")
+    if file.suffix == ".json":
+        advice = "JSON is for programs. Name the netCDF file: the verb writes it with -o FILE.nc."
+        raise BadInput.of("file", str(file), _BOUND, advice)
+    try:
+        with opened_netcdf(file) as content:
+            return {name: str(value) for name, value in content.attrs.items()}
+    except UnreadableFile as error:
+        raise BadInput.of("file", str(file), _BOUND, f"{error}.") from None
+
+
+def _read(file: Path, kind: str) -> Any:
+    try:
+        return _READERS[kind][1](file)
+    except (FeContactError, DynamicsError) as error:
+        raise BadInput.of("file", str(file), f"an undamaged {kind}", f"{error}.") from None
+
+
+def page_of(read: Inputs) -> Page:
+    """Put the page together: what is implausible, then all sections in the order of their parts.
+
+    A study alone has its own page.
+    """
+    page = _page_of(read)
+    alarms = (*(f"Warning: {text}" for text in read.warnings), *page.alarms)
+    sections = sorted(one_effects_section(page.sections), key=lambda section: section.part)
+    return replace(page, alarms=alarms, sections=tuple(sections))
+
+
+def _page_of(read: Inputs) -> Page:
+    """Put the page together, without what the files warn of."""
+    if read.only_page is not None:
+        return read.only_page
+    database, run = read.database, read.run
+    sections: list[Section] = []
+    alarms: list[str] = []
+    if database is not None:
+        sections += (*static_results(database, nominal_force(read)), *static_making(database))
+        alarms += static_alarms(database)
+    for study in read.pages.values():
+        sections += study.sections
+        alarms += study.alarms
+    if run is not None:
+        sections += (*dynamic_results(run, read.view), *dynamic_making(run))
+        alarms += dynamic_alarms(run)
+    return Page(_title(read), _lead(read), headlines_of(read), tuple(sections), tuple(alarms))
+
+
+def headlines_of(read: Inputs) -> tuple[Headline, ...]:
+    """Return the main figures of the table, of the studies, and of the run."""
+    headlines: list[Headline] = []
+    if read.database is not None:
+        headlines += static_headlines(read.database, nominal_force(read))
+    for study in read.pages.values():
+        headlines += study.headlines
+    if read.run is not None:
+        headlines += dynamic_headlines(read.run)
+    return tuple(headlines)
+
+
+def nominal_force(read: Inputs) -> float | None:
+    """Return the normal force in N that the run's load asks of the database's pair; None where it idles."""
+    if read.run is None or read.database is None or read.run.nominal_force[0] <= 0.0:
+        return None
+    return float(read.run.nominal_force[0]) / math.cos(read.database.facts.base_helix_angle)
+
+
+def _title(read: Inputs) -> str:
+    if read.database is not None:
+        return pair_title(read.database.facts)
+    titles = [page.title for page in read.pages.values()] or ["Dynamics of geared shafts"]
+    return titles[0] if len(titles) == 1 else "Studies of gear pairs"
+
+
+def _lead(read: Inputs) -> str:
+    parts = []
+    if read.database is not None:
+        parts.append(pair_lead(read.database.facts))
+    elif len(read.pages) == 1:
+        parts += [page.lead for page in read.pages.values() if page.lead]
+    if read.run is not None:
+        parts.append(f"{read.run.time[-1]:.6g} s of motion at {read.run.sample_rate:.6g} samples per second")
+    return "; ".join(parts)
+
+
+Json = dict[str, Any]
+
+
+def stored_figures(inputs: Json) -> Json:
+    """Return the report on a stored result: ``{"file": ...}``; work of the live worker."""
+    with of_the_store():
+        return page_json(page_of(read_inputs([Path(inputs["file"])])))
+
+
+@contextmanager
+def of_the_store() -> Iterator[None]:
+    """Turn the refusal of a file into `DamagedFile`: no caller gave it, and none learns where it is."""
+    try:
+        yield
+    except BadInput as error:
+        if not any(fault.field == "file" for fault in error.faults):
+            raise
+        words = "; ".join(f"{fault.bound}. {fault.suggestion}" for fault in error.faults)
+        raise DamagedFile(f"The stored file is not {words}") from None
+
+
+def page_json(page: Page) -> Json:
+    """Return a report as plain JSON."""
+    return {
+        "title": page.title,
+        "lead": page.lead,
+        "alarms": list(page.alarms),
+        "headlines": [{"name": h.name, "value": h.value, "remark": h.remark} for h in page.headlines],
+        "sections": [_section(section) for section in page.sections],
+    }
+
+
+def _section(section: Section) -> Json:
+    return {
+        "title": section.title,
+        "part": section.part.name.lower(),
+        "text": section.text,
+        "figures": [_figure(figure) for figure in section.figures],
+        "tables": _tables(section.tables),
+        "folded": _tables(section.folded),
+    }
+
+
+def _figure(figure: Figure) -> Json:
+    """One plot, with what stands in for it where it cannot be seen."""
+    return {
+        "key": figure.key,
+        "title": figure.title,
+        "caption": figure.caption,
+        "alternative": figure.alternative,
+        "plot": plotly_figure(figure),
+        "table": None if figure.table is None else _table(figure.table),
+        "sound": None if figure.sound is None else sound_json(figure.sound),
+    }
+
+
+def _tables(tables: Iterable[Table]) -> list[Json]:
+    return [_table(table) for table in tables]
+
+
+def _table(table: Table) -> Json:
+    return {"caption": table.caption, "head": list(table.head), "rows": [list(row) for row in table.rows]}
+
+
+def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | None = None) -> list[Path]:
+    """Write one HTML page that needs no network, and its plots as PNG; return the files, the page first.
+
+    Parameters
+    ----------
+    inputs : Path or sequence of Path
+        STE databases, flank results and runs, at most one of each; the file says which it is.
+    output : Path
+        The page.
+    images : Path, optional
+        Folder for the PNG files, made if missing; left out: none are written.
+
+    Raises
+    ------
+    BadInput
+        A file is none of them, is damaged, or there are two of a kind.
+    """
+    return write_page(read_inputs([inputs] if isinstance(inputs, Path) else list(inputs)), output, images)
+
+
+def write_page(read: Inputs, output: Path, images: Path | None = None) -> list[Path]:
+    """Write the page of what was read; parameters and result are those of `write_report`."""
+    return write_whole(page_of(read), output, images)
+
+
+def write_whole(
+    page: Page, output: Path, images: Path | None = None, warnings: Sequence[str] = ()
+) -> list[Path]:
+    """Write a page from its caller, under what is implausible; parameters as for `write_report`."""
+    page = replace(page, alarms=(*(f"Warning: {text}" for text in warnings), *page.alarms))
+    drawn = {figure.key: png(figure) for section in page.sections for figure in section.figures}
+    _write(output, html(page, drawn).encode("utf-8"))
+    written = [output]
+    if images is not None:
+        images.mkdir(parents=True, exist_ok=True)
+        for key, image in drawn.items():
+            _write(images / f"{key}.png", image)
+            written.append(images / f"{key}.png")
+    return written
+
+
+def _write(path: Path, data: bytes) -> None:
+    handle, draft = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        mask = os.umask(0)
+        os.umask(mask)
+        Path(draft).chmod(0o666 & ~mask)
+        Path(draft).replace(path)
+    except BaseException:
+        Path(draft).unlink(missing_ok=True)
+        raise
+
+
+def facts(result: Any) -> dict[str, Any]:
+    """Return the figures of a study's result in the units of their names, as its verb prints them as JSON."""
+    found: dict[str, Any] = _study_of(result).run.facts(result)
+    return found
+
+
+def write(result: Any, file: Path | str) -> Path:
+    """Write a result: netCDF (.nc), figures (.json), the plot (.png) or the report (.html).
+
+    Parameters
+    ----------
+    result : object
+        Of `analyze`, `simulate` or a study.
+    file : path
+        Its ending says as what.
+
+    Raises
+    ------
+    BadInput
+        The result has no file of this ending.
+    """
+    path = Path(file)
+    if hasattr(result, "to_netcdf") and path.suffix == ".nc":
+        result.to_netcdf(path)
+        return path
+    study = _study_of(result)
+    if path.suffix == ".nc":
+        study.run.file.write(result, path)
+    elif path.suffix == ".json":
+        study.run.save_facts(result, path)
+    elif path.suffix == ".png":
+        path.write_bytes(png(presentation_of(study).figure(result)))
+    elif path.suffix == ".html":
+        write_whole(presentation_of(study).page(result), path)
+    else:
+        raise BadInput.of("file", str(path), "a file ending in one of .nc, .json, .png, .html")
+    return path
+
+
+def _study_of(result: Any) -> Study:
+    for study in STUDIES.values():
+        kind = study.run.file.result
+        if isinstance(result, tuple if get_origin(kind) is tuple else kind):
+            return study
+    kind = type(result).__name__
+    advice = "Tables and runs: write them to netCDF, then loa report."
+    raise BadInput.of("result", kind, "the result of a study", advice)

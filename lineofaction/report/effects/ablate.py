@@ -1,0 +1,293 @@
+"""An ablation: the largest change, the plot, every effect, and what was not toggled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from bounds import engineering
+from dynamics.ablation import Ablation as SceneAblation
+from dynamics.ablation import EffectAblation as SceneEffect
+from fe_contact.analysis.studies.ablation import Ablation, EffectAblation
+from fe_contact.effects.influence.estimate import TRIFLE, Influence, signed
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Dash,
+    Figure,
+    FloatArray,
+    Line,
+    Note,
+    Panel,
+    Table,
+    number,
+)
+from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.drawing.placing import placed
+from lineofaction.report.presentation import Presentation
+
+
+@dataclass(frozen=True)
+class _Look:
+    """The look of an ablation.
+
+    ``change(ablation, entry)`` is the change of peak-to-peak by leaving an effect out, m; `signed` writes one
+    in um. `caption` says how to read the plot, `table` lists all effects in figures.
+    """
+
+    what: str
+    title: str
+    change: Callable[[Any, Any], float]
+    signed: Callable[[float], str]
+    caption: Callable[[Any], str]
+    panels: Callable[[Any], tuple[Panel, ...]]
+    table: Callable[[Any], Table]
+
+    def words(self, ablation: Any, entry: Any) -> str:
+        """Write the change of peak-to-peak by leaving an effect out."""
+        return f"{self.signed(1e6 * self.change(ablation, entry))} µm"
+
+    def ordered(self, ablation: Any) -> list[Any]:
+        """Return the effects, the largest change of peak-to-peak first."""
+        return sorted(ablation.effects, key=lambda entry: -abs(self.change(ablation, entry)))
+
+
+def _over_orders(
+    ablation: Any, amplitude: Callable[[Any], FloatArray], title: str, label: str, unit: float
+) -> Panel:
+    """Draw amplitudes over the mesh orders: as decided, and with each effect toggled."""
+    states = [("as decided", ablation.nominal)]
+    states += [(f"{'without' if row.on else 'with'} {row.name}", row.toggled) for row in ablation.effects]
+    lines = []
+    for index, (name, figures) in enumerate(states):
+        drawn = unit * amplitude(figures)
+        order = np.arange(1, drawn.size + 1, dtype=float)
+        color, width = (palette.category(index - 1), 1.2) if index else (palette.INK, 2.6)
+        values = np.where(drawn > 0.0, drawn, np.nan)  # nothing is drawn where there is no vibration
+        lines.append(Line(name.replace("_", " "), order, values, color, "solid", width, markers=True))
+    lines = [line for line in lines if not np.isnan(line.y).all()]
+    return Panel(Axis("mesh order"), Axis(label, "log"), tuple(lines), title=title)
+
+
+_CASE_HEAD = (
+    "effect", "case has it", "mean, µm", "estimated", "mean, %", "estimated", "peak to peak, µm", "estimated",
+    "peak to peak, %", "estimated", "first harmonic, µm", "cost, x",
+)  # fmt: skip
+_SMALLEST = 1e-3  # um; smaller changes are nothing
+
+
+def _case_table(ablation: Ablation) -> Table:
+    """List the changes at the nominal load, trifles in one row."""
+    ordered = _CASE.ordered(ablation)
+    shown = [entry for entry in ordered if not _trifle(ablation, entry)]
+    rows = [_case_row(ablation, entry) for entry in shown]
+    if len(shown) < len(ordered):
+        names = ", ".join(entry.name for entry in ordered if entry not in shown)
+        folded = f"{len(ordered) - len(shown)} below {100 * TRIFLE:g} %: {names}"
+        rows.append((folded, *[""] * (len(_CASE_HEAD) - 1)))
+    caption = f"Change without each effect, computed and estimated, {_where(ablation)}"
+    return Table(caption, _CASE_HEAD, tuple(rows))
+
+
+def _where(ablation: Ablation) -> str:
+    misalignment = number(1e6 * ablation.misalignment)
+    return f"at {number(float(ablation.torque[-1]))} N m, misalignment {misalignment} µm"
+
+
+def _trifle(ablation: Ablation, entry: EffectAblation) -> bool:
+    return ablation.measured(entry).trifle and (entry.estimate is None or entry.estimate.trifle)
+
+
+def _cells(influence: Influence | None) -> tuple[str, ...]:
+    """Write the changes of mean and peak-to-peak in µm and %; no % of a vanishing ripple."""
+    if influence is None:
+        return ("",) * 4
+    ripple = influence.relative_peak_to_peak
+    return (
+        signed(1e6 * influence.mean),
+        signed(100.0 * influence.relative_mean),
+        signed(1e6 * influence.peak_to_peak),
+        "" if ripple is None else signed(100.0 * ripple),
+    )
+
+
+def _case_row(ablation: Ablation, entry: EffectAblation) -> tuple[str, ...]:
+    pairs = zip(_cells(ablation.measured(entry)), _cells(entry.estimate), strict=True)
+    return (
+        entry.name,
+        "on" if entry.on else "off",
+        *(cell for pair in pairs for cell in pair),
+        signed(1e6 * float(entry.harmonic_change[-1, 0])),
+        number(entry.cost_ratio, 3),
+    )
+
+
+def _scatter(ablation: Ablation, title: str, which: str) -> Panel:
+    """Estimated over computed change of one quantity, log-log."""
+    points = []
+    for entry in ablation.effects:
+        if entry.estimate is not None:
+            influences = (ablation.measured(entry), entry.estimate)
+            sizes = [abs(1e6 * getattr(influence, which)) for influence in influences]
+            points += [(*sizes, entry.name)] if min(sizes) > _SMALLEST else []
+    reached = [value for point in points for value in point[:2]] or [0.1, 10.0]
+    ends = np.array([0.5 * min(reached), 2.0 * max(reached)])
+    marks: tuple[tuple[str, float, Dash], ...] = (
+        ("equal", 1.0, "dash"),
+        ("factor 2", 2.0, "dot"),
+        ("factor 1/2", 0.5, "dot"),
+    )
+    lines = [Line(name, ends, factor * ends, palette.MUTED, dash, 1.0) for name, factor, dash in marks]
+    if points:
+        measured, estimated = (np.array([point[k] for point in points]) for k in (0, 1))
+        lines.append(Line("effects", measured, estimated, palette.INK, width=0, markers=True))
+    notes = [Note(x, y, name.replace("_", " ")) for x, y, name in points]
+    reach = float(ends[0]), float(ends[1])
+    axes = Axis("computed change, µm", "log", reach), Axis("estimated change, µm", "log")
+    beside = placed(notes, *axes, (0.5 * reach[0], 2.0 * reach[1]))
+    return Panel(*axes, tuple(lines), title=title, notes=beside)
+
+
+def _case_panels(ablation: Ablation) -> tuple[Panel, ...]:
+    """Draw estimated over measured changes, and the harmonics without each effect."""
+    return (
+        _scatter(ablation, "Mean", "mean"),
+        _scatter(ablation, "Peak to peak", "peak_to_peak"),
+        _over_orders(ablation, lambda figures: figures.harmonics[-1], "Mesh harmonics", "amplitude, µm", 1e6),
+    )
+
+
+_CASE = _Look(
+    what="case",
+    title="Influence of every effect on this case",
+    change=lambda ablation, entry: ablation.measured(entry).peak_to_peak,
+    signed=signed,
+    caption=lambda ablation: (
+        "Each effect toggled by itself, all others as decided: change by leaving it out, in "
+        f"size, {_where(ablation)}. Between the dotted lines estimates are within a factor 2; changes below "
+        f"{_SMALLEST:g} µm are left out."
+    ),
+    panels=_case_panels,
+    table=_case_table,
+)
+
+
+def _scene_table(ablation: SceneAblation) -> Table:
+    """List the largest changes over meshes and bearings."""
+
+    def estimated(entry: SceneEffect, name: str) -> str:
+        return "" if entry.estimate is None else _signed(1e6 * _most(getattr(entry.estimate, name)))
+
+    head = (
+        "effect", "scene has it", "influence, µm", "mean DTE, µm", "estimated", "peak to peak, µm",
+        "estimated", "order 1, µm", "bearing force, N", "estimated", "of order", "cost, x",
+    )  # fmt: skip
+    rows = tuple(
+        (
+            entry.name,
+            "on" if entry.on else "off",
+            number(1e6 * entry.influence, 3),
+            _signed(1e6 * _most(entry.mean_change)),
+            estimated(entry, "mean"),
+            _signed(1e6 * _most(entry.peak_to_peak_change)),
+            estimated(entry, "peak_to_peak"),
+            _signed(1e6 * _most(entry.order_change[:, 0])),
+            *_bearing_force(entry),
+            number(entry.cost_ratio, 3),
+        )
+        for entry in _SCENE.ordered(ablation)
+    )
+    caption = (
+        "What leaving an effect out changes, second half of the run, the mesh or bearing with the largest"
+    )
+    return Table(caption, head, rows)
+
+
+def _bearing_force(entry: SceneEffect) -> tuple[str, str, str]:
+    """Return the largest change of an order of a bearing force, N, its estimate and the order."""
+    forces, estimate = entry.bearing_order_change, entry.estimate
+    if not forces.size:
+        return "", "", ""
+    bearing, order = np.unravel_index(int(np.argmax(np.abs(forces))), forces.shape)
+    known = estimate is not None and estimate.bearing_orders.size > 0
+    stated = _signed(float(estimate.bearing_orders[bearing, order])) if estimate and known else ""
+    return _signed(float(forces[bearing, order])), stated, str(order + 1)
+
+
+def _scene_panels(ablation: SceneAblation) -> tuple[Panel, ...]:
+    error = _over_orders(
+        ablation, lambda figures: np.max(figures.orders, axis=0), "Transmission error", "amplitude, µm", 1e6
+    )
+    if not ablation.bearing:
+        return (error,)
+    force = _over_orders(
+        ablation, lambda figures: np.max(figures.bearing_orders, axis=0), "Bearing force", "amplitude, N", 1.0
+    )
+    return error, force
+
+
+def _most(values: FloatArray) -> float:
+    return float(values[np.argmax(np.abs(values))])
+
+
+def _signed(value: float) -> str:
+    """Write three digits with a sign; nothing is 0."""
+    return "0" if abs(value) < 5e-7 else engineering(value, 3, "+")
+
+
+_SCENE = _Look(
+    what="scene",
+    title="Influence of every effect in this scene",
+    change=lambda _ablation, entry: _most(entry.peak_to_peak_change),
+    signed=_signed,
+    caption=lambda _ablation: (
+        "Each effect toggled by itself in all its parts: largest amplitude of every mesh order "
+        "over meshes, bearings and the second half of the run. States without any are not drawn."
+    ),
+    panels=_scene_panels,
+    table=_scene_table,
+)
+
+
+def _ablation_figure(ablation: Ablation | SceneAblation) -> Figure:
+    look = _look(ablation)
+    changes = [
+        f"{entry.name} {look.words(ablation, entry)} of peak to peak" for entry in look.ordered(ablation)
+    ]
+    return Figure(
+        key="ablation",
+        title=look.title,
+        caption=look.caption(ablation),
+        alternative="; ".join(changes),
+        content=look.panels(ablation),
+        table=look.table(ablation),
+    )
+
+
+def _ablation_page(ablation: Ablation | SceneAblation) -> Page:
+    look, heads = _look(ablation), []
+    if ablation.effects:
+        entry = look.ordered(ablation)[0]
+        name, change = entry.name.replace("_", " "), look.words(ablation, entry)
+        heads.append(Headline(f"without {name}", change, "of peak to peak, the largest influence"))
+    left = Table("Effects that were not toggled", ("effect", "because"), tuple(ablation.left_out.items()))
+    tables = (look.table(ablation), *([left] if ablation.left_out else []))
+    figures = (replace(_ablation_figure(ablation), table=None),) if ablation.effects else ()
+    lead = f"{len(ablation.effects)} effects of the {look.what}, each toggled by itself"
+    return Page("Influence of every effect", lead, tuple(heads), (Section("Effects", "", figures, tables),))
+
+
+def _look(ablation: Ablation | SceneAblation) -> _Look:
+    return _CASE if isinstance(ablation, Ablation) else _SCENE
+
+
+def _text(ablation: Ablation | SceneAblation) -> Iterator[Table | str]:
+    yield _look(ablation).table(ablation)
+    for name, reason in ablation.left_out.items():
+        yield f"not toggled: {name}: {reason}"
+
+
+PAGE = Presentation(_ablation_figure, _ablation_page, _text)

@@ -1,0 +1,323 @@
+"""An accuracy study: what was chosen, the knee, the plot, every fidelity, and what was not run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from dynamics.accuracy import Frontier as SceneFrontier
+from fe_contact.analysis.studies.frontier import Frontier
+from fe_contact.analysis.studies.measured_full_contact import ORIGIN, PLANE, PROGRAM, MeasuredFullContact
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Note, Panel, Table, number
+from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.drawing.placing import placed
+from lineofaction.report.presentation import Presentation
+
+
+@dataclass(frozen=True)
+class _Peer:
+    """n points of a program that is no fidelity of the study: CPU seconds, relative errors by their names.
+
+    `name` stands in the legend, `titles` and `mark` in the table, `note` beside each point. A line joins the
+    points unless its `width` is 0.
+    """
+
+    name: str
+    titles: tuple[str, ...]
+    time: FloatArray
+    errors: Mapping[str, FloatArray]
+    mark: str
+    color: str
+    width: float
+    note: str = ""
+
+
+LIVE = "full contact, run on this case"
+
+
+def _peers(study: Frontier) -> list[_Peer]:
+    known, measured = _known_cost(study), study.full_contact
+    return known if measured is None else [*known, _of_case(measured, study.solves)]
+
+
+def _known_cost(study: Frontier) -> list[_Peer]:
+    """Return what is known of this very pair, if anything is."""
+    levels = study.known_full_contact
+    if not levels:
+        return []
+    titles = tuple(f"full contact, {level.unknowns // 1000} k unknowns" for level in levels)
+    time = np.array([level.seconds(study.solves) for level in levels])
+    errors = {"mean_error": np.array([level.relative_error for level in levels])}
+    return [_Peer("full contact, 2-D", titles, time, errors, "known cost", palette.VERMILLION, 1.8)]
+
+
+def _of_case(measured: MeasuredFullContact, solves: int) -> _Peer:
+    title = f"full contact of this case, {measured.unknowns // 1000} k unknowns"
+    mark = f"{len(measured.solved)} of {len(measured.points)} positions x loads solved"
+    names = ("mean_error", "peak_to_peak_error")
+    errors = {name: np.array([getattr(measured, name)]) for name in names}
+    time = np.array([measured.seconds(solves)])
+    return _Peer(LIVE, (title,), time, errors, mark, palette.PURPLE, 0.0, "full contact")
+
+
+def _own(measured: MeasuredFullContact) -> str:
+    if not np.isfinite(measured.own_error):
+        return ""
+    return f" Its own meshes differ by at most {number(100.0 * measured.own_error, 2)} %."
+
+
+def _peer_caption(study: Frontier) -> str:
+    """Say where the points come from, and what was measured of them."""
+    times = f"Peer: {ORIGIN}; times for the same {study.solves} positions x loads."
+    known = f"{times} " if study.known_full_contact else ""
+    measured = study.full_contact
+    if measured is None:
+        return known.strip()
+    own = measured.plane_strain_mean
+    plane = ", and hold what plane strain leaves out" if measured.solved_in == PLANE else ""
+    beside = (
+        f" Our plane strain differs from it by {number(100.0 * own, 2)} % of the mean."
+        if np.isfinite(own)
+        else ""
+    )
+    return (
+        f"{known}On this case {PROGRAM} solved {measured.positions} positions under all loads in "
+        f"{measured.solved_in} ({measured.unknowns // 1000} k unknowns, {number(measured.cpu_seconds, 3)} "
+        f"CPU s): its errors are those at these positions, the worst of all loads"
+        f"{plane}; its time is extrapolated, the mean of a position and load times "
+        f"{study.solves}."
+        f"{_own(measured)}{beside}"
+    )
+
+
+Study = Frontier | SceneFrontier
+
+
+@dataclass(frozen=True)
+class _Look:
+    """The look of an accuracy study.
+
+    `key`, `title`, the label of `time`, `panels` (error, title, label, head of its column) and `families`
+    (name, members, color) make the plot; `member` is the attribute of a result that tells its family. The
+    table has a caption and `further` columns behind the errors. `chosen` says what that mark means, `lead`
+    what was compared, `caption` how to read the plot, `peers` what stands beside.
+    """
+
+    key: str
+    title: str
+    time: str
+    panels: tuple[tuple[str, str, str, str], ...]
+    member: str
+    families: tuple[tuple[str, tuple[str, ...], str], ...]
+    further: tuple[tuple[str, Callable[[Any], str]], ...]
+    table: str
+    chosen: str
+    lead: Callable[[Any], str]
+    caption: Callable[[Any], str]
+    peers: Callable[[Any], Sequence[_Peer]] = lambda _study: ()
+
+
+def _case_caption(study: Frontier) -> str:
+    return (
+        f"Largest relative difference to the finest fidelity ({study.reference.title}) over all curves of "
+        f"the table of {study.solves} positions x loads; the point of that fidelity is what its mesh leaves "
+        f"by its convergence, and nothing below it can be told apart. {_peer_caption(study)}".strip()
+    )
+
+
+def _scene_caption(study: SceneFrontier) -> str:
+    return (
+        f"Root of the sum of squared differences to the finest fidelity ({study.reference.title}), "
+        f"relative, over {study.blocks} blocks of the run and {study.orders} mesh orders; the point of that "
+        "fidelity is what its steps leave, by the rate at which errors fall towards it. All fidelities share "
+        "the tables: a third of what every second position node changes is their own error."
+    )
+
+
+_CASE = _Look(
+    key="frontier",
+    title="Error of each fidelity over its CPU time, this case",
+    time="CPU time of the table, s",
+    panels=(
+        ("mean_error", "Mean", "error of the mean, %", "mean error, %"),
+        ("peak_to_peak_error", "Peak to peak", "error of peak to peak, %", "peak-to-peak error, %"),
+    ),
+    member="name",
+    families=(
+        ("closed forms", ("iso6336", "thin_slices"), palette.ORANGE),
+        (
+            "2-D finite elements",
+            ("plane_strain", "corrected_draft", "corrected", "corrected_fine"),
+            palette.BLUE,
+        ),
+        ("3-D finite elements", ("3d_draft", "3d_standard", "3d_fine"), palette.GREEN),
+    ),
+    further=(("memory, MiB", lambda result: number(result.peak_memory_bytes / 2**20, 3)),),
+    table="Accuracy study",
+    chosen="chosen for the requested accuracy",
+    lead=lambda study: f"{len(study.results)} fidelities, tables of {study.solves} positions x loads",
+    caption=_case_caption,
+    peers=_peers,
+)
+_SCENE = _Look(
+    key="run_frontier",
+    title="Error of each fidelity over its CPU time, this scene",
+    time="CPU time of the run, s",
+    panels=(
+        ("rms_error", "Transmission error, rms", "error of the rms, %", "DTE rms error, %"),
+        (
+            "transmission_error_orders",
+            "Transmission error, orders",
+            "error of the orders, %",
+            "DTE orders error, %",
+        ),
+        (
+            "bearing_force_orders",
+            "Bearing forces, orders",
+            "error of the orders, %",
+            "bearing-force orders error, %",
+        ),
+    ),
+    member="family",
+    families=(
+        ("fewer effects", ("model",), palette.ORANGE),
+        ("fewer position nodes", ("table",), palette.GREEN),
+        ("step tolerance", ("steps",), palette.BLUE),
+    ),
+    further=(),
+    table="Accuracy study of the scene",
+    chosen="the scene's own setting",
+    lead=lambda study: (
+        f"{len(study.results)} fidelities of the vibration: {study.blocks} blocks, {study.orders} orders"
+    ),
+    caption=_scene_caption,
+)
+
+
+def _look_of(study: Study) -> _Look:
+    return _CASE if isinstance(study, Frontier) else _SCENE
+
+
+def _frontier_figure(study: Study) -> Figure:
+    look = _look_of(study)
+    peers = look.peers(study)
+    times = [
+        *(result.cpu_seconds for result in study.results),
+        *(time for peer in peers for time in peer.time),
+    ]
+    across = Axis(look.time, "log", (0.5 * min(times), 3.0 * max(times)))
+    return Figure(
+        key=look.key,
+        title=look.title,
+        caption=look.caption(study),
+        alternative=_quickest(study),
+        content=tuple(_panel(study, look, peers, across, *panel[:3]) for panel in look.panels),
+        table=_frontier_table(study),
+    )
+
+
+def _frontier_table(study: Study) -> Table:
+    look = _look_of(study)
+    figures = [figure for figure, *_ in look.panels]
+    rows = [
+        (
+            result.title,
+            number(result.cpu_seconds, 3),
+            *(_per_cent(getattr(result, figure)) for figure in figures),
+            *(cell(result) for _, cell in look.further),
+            _mark(study, result.name),
+        )
+        for result in study.results
+    ]
+    rows += [
+        (
+            title,
+            number(peer.time[k], 3),
+            *(_per_cent(peer.errors[figure][k]) if figure in peer.errors else "" for figure in figures),
+            *("" for _ in look.further),
+            peer.mark,
+        )
+        for peer in look.peers(study)
+        for k, title in enumerate(peer.titles)
+    ]
+    heads = [*(head for *_, head in look.panels), *(head for head, _ in look.further)]
+    return Table(look.table, ("fidelity", "CPU time, s", *heads, "mark"), tuple(rows))
+
+
+def _frontier_page(study: Study) -> Page:
+    look, table, figure = _look_of(study), _frontier_table(study), _frontier_figure(study)
+    by_name = {result.name: result for result in study.results}
+    heads = [
+        Headline(text, by_name[name].title, f"{number(by_name[name].cpu_seconds, 2)} CPU s")
+        for text, name in ((look.chosen, study.chosen), ("knee", study.knee))
+        if name in by_name and name is not None
+    ]
+    left = Table("Fidelities that were not run", ("fidelity", "because"), tuple(study.left_out.items()))
+    tables = (table, *([left] if study.left_out else []))
+    section = Section(table.caption, "", (replace(figure, table=None),), tables)
+    return Page("Error over CPU time", look.lead(study), tuple(heads), (section,))
+
+
+def _panel(
+    study: Study, look: _Look, peers: Sequence[_Peer], across: Axis, figure: str, title: str, label: str
+) -> Panel:
+    """One panel: points by family, what stands beside them, and the marks."""
+    drawn = [(result, 100.0 * getattr(result, figure)) for result in study.results]
+    drawn = [(result, error) for result, error in drawn if error > 0.0]
+    lines = []
+    for name, members, color in look.families:
+        points = [(r.cpu_seconds, error) for r, error in drawn if getattr(r, look.member) in members]
+        if points:
+            time, errors = np.array(points).T
+            lines.append(Line(name, time, errors, color, width=0, markers=True))
+    notes = [Note(r.cpu_seconds, error, _marked_name(study, r.name)) for r, error in drawn]
+    for peer in peers:
+        errors = 100.0 * peer.errors.get(figure, np.zeros(0))
+        if np.any(errors > 0.0):
+            lines.append(Line(peer.name, peer.time, errors, peer.color, width=peer.width, markers=True))
+            notes += [Note(*point, peer.note) for point in zip(peer.time, errors, strict=True) if peer.note]
+    if not lines:
+        return Panel(across, Axis(label, "log"), title=title)
+    values = np.concatenate([line.y for line in lines])
+    limits = 0.6 * float(values.min()), 1.7 * float(values.max())  # room for the outermost points' texts
+    along = Axis(label, "log", limits)
+    return Panel(across, along, tuple(lines), title=title, notes=placed(notes, across, along, limits))
+
+
+def _mark(study: Study, name: str) -> str:
+    """Return what a fidelity is: knee, chosen, reference."""
+    marks = (("knee", study.knee), ("chosen", study.chosen), ("reference", study.reference.name))
+    return ", ".join(mark for mark, marked in marks if marked == name)
+
+
+def _marked_name(study: Study, name: str) -> str:
+    marks, words = _mark(study, name), name.replace("_", " ")
+    return f"{words} ({marks})" if marks else words
+
+
+def _per_cent(value: float) -> str:
+    """Write a relative error in per cent; nothing if it is not known."""
+    return number(100.0 * value, 2) if np.isfinite(value) else ""
+
+
+def _quickest(study: Study) -> str:
+    parts = []
+    for limit, text in ((0.01, "1 %"), (0.001, "0.1 %")):
+        good = [result for result in study.results[:-1] if result.error <= limit]
+        if good:
+            best = min(good, key=lambda result: result.cpu_seconds)
+            parts.append(f"within {text}: {best.title}, {number(best.cpu_seconds, 2)} CPU s")
+    return f"Fastest fidelity {'; '.join(parts)}." if parts else "No fidelity comes within 1 % of the finest."
+
+
+def _text(study: Study) -> Iterator[Table | str]:
+    yield _frontier_table(study)
+    for name, reason in study.left_out.items():
+        yield f"not run: {name}: {reason}"
+
+
+PAGE = Presentation(_frontier_figure, _frontier_page, _text)

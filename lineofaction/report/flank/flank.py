@@ -1,0 +1,449 @@
+"""Flank results: contact pattern, contact lines, load over the face."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Literal
+
+import numpy as np
+
+from bounds import engineering
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
+from fe_contact.ste import SteDatabase
+from fe_contact.types import IntArray
+from lineofaction.gearbox.convert.effects import assumption_lines
+from lineofaction.gearbox.units import UM
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Figure,
+    FloatArray,
+    HeatMap,
+    Line,
+    Panel,
+    Reference,
+    Strokes,
+    Table,
+    number,
+)
+from lineofaction.report.drawing.page import Headline, Page, Part, Section
+from lineofaction.report.drawing.tables import facts
+from lineofaction.report.pair import pair_lead, pair_title
+from lineofaction.report.presentation import Presentation
+from lineofaction.report.ste.curves import POSITION_LABEL
+from lineofaction.report.ste.page import case_tables, contact_effects, edge_words
+
+
+def _face_axis(flanks: LoadDistribution) -> Axis:
+    low, high = (1e3 * end for end in flanks.scene.common_face)
+    return Axis("face position, mm (0 = mid-face of the pinion; right: +z end)", limits=(low, high))
+
+
+LINES_SHOWN = 8  # positions
+
+
+def contact_lines(flanks: LoadDistribution) -> Figure:
+    """Draw contact lines at positions spread over the cycle, and those of the largest pressure alone."""
+    worst = int(flanks.pressure.max(axis=(1, 2)).argmax())
+    step = max(flanks.position.size // LINES_SHOWN, 1)
+    chosen = np.arange(0, flanks.position.size, step)
+    load = _strokes(flanks, chosen, 1e-3 * flanks.line_load, "line load, N/mm")
+    pressure = _strokes(flanks, np.array([worst]), 1e-6 * flanks.pressure, "Hertz pressure, MPa")
+    at = f"{flanks.position[worst]:.3g}"
+    x, y = _axes(flanks)
+    return Figure(
+        key="contact_lines",
+        title="Contact lines in the plane of action",
+        caption="Where the tooth pairs touch: face across, path of contact upwards from the pinion's root "
+        "(A) to its tip (E). Color and thickness: line load; thin gray: flanks that could touch "
+        "but carry no load. "
+        f"One stroke is {number(1e3 * flanks.slice_width, 2)} mm of the face, its color the mean there.",
+        alternative=f"At most {number(float(1e-3 * flanks.line_load.max()), 4)} N/mm; at position {at}, the "
+        f"one of the largest pressure, {_carrying(flanks, worst)} tooth pairs carry load.",
+        content=(
+            Panel(x, y, (), _marks(flanks), f"line load at {chosen.size} positions of the cycle", load),
+            Panel(x, y, (), _marks(flanks), f"pressure at position {at}, where it is largest", pressure),
+        ),
+        table=_table(flanks, chosen),
+    )
+
+
+def _axes(flanks: LoadDistribution) -> tuple[Axis, Axis]:
+    """Face and path of contact, mm."""
+    start, *_, end = (1e3 * point for point in flanks.scene.path_of_contact)
+    room = 0.06 * (end - start)
+    return (
+        _face_axis(flanks),
+        Axis("roll length of the pinion, mm", limits=(start - room, end + 1.5 * room)),
+    )
+
+
+def _marks(flanks: LoadDistribution) -> tuple[Reference, ...]:
+    """Mark A, C, E, and B and D where one pair alone can carry."""
+    points = dict(zip("ABCDE", flanks.scene.path_of_contact, strict=True))
+    single = points["A"] < points["B"] < points["D"] < points["E"]
+    names = "ABCDE" if single else "ACE"
+    return tuple(
+        Reference(name, 1e3 * points[name], "horizontal", 0.99 if name in "ACE" else 0.95) for name in names
+    )
+
+
+def _strokes(flanks: LoadDistribution, chosen: IntArray, values: FloatArray, label: str) -> Strokes:
+    """One stroke per slice that can touch, as long as the slice is wide and as oblique as the helix."""
+    present = (flanks.on_path | (flanks.force > 0.0))[chosen]
+    roll, face = 1e3 * flanks.roll_length_1[chosen], 1e3 * flanks.face_position
+    rise = -0.5e3 * flanks.slice_width * math.tan(flanks.base_helix_angle) * flanks.on_path[chosen]
+    half = 0.5e3 * flanks.slice_width
+    x = np.stack(np.broadcast_arrays(face - half, face + half), axis=-1)
+    ends = np.stack([roll - rise, roll + rise], axis=-1)[present]
+    across = np.broadcast_to(x, (*present.shape, 2))[present]
+    return Strokes(across, ends, values[chosen][present], label, float(values.max()))
+
+
+def _carrying(flanks: LoadDistribution, position: int) -> int:
+    return int(np.count_nonzero(flanks.force[position].sum(axis=-1)))
+
+
+def _table(flanks: LoadDistribution, chosen: IntArray) -> Table:
+    """Pairs in contact, line load and pressure at the positions shown."""
+    columns = {
+        "position, base pitches": lambda k: f"{flanks.position[k]:.4g}",
+        "pairs that carry": lambda k: str(_carrying(flanks, int(k))),
+        "largest line load, N/mm": lambda k: number(1e-3 * float(flanks.line_load[k].max())),
+        "over its mean": lambda k: number(float(flanks.line_load_factor[k]), 3),
+        "largest pressure, MPa": lambda k: number(1e-6 * float(flanks.pressure[k].max())),
+    }
+    return Table.of("Contact lines by position", chosen, columns)
+
+
+Gear = Literal["pinion", "wheel"]
+GEARS: tuple[Gear, ...] = ("pinion", "wheel")
+PRESSURE = "Hertz pressure, MPa"
+_MOST_ISOLINES = 6
+_HIGHEST_ISOLINE = 0.92  # of the largest; a curve about a ridge narrower than the positions breaks up
+_Map = tuple[FloatArray, FloatArray]
+"""Roll lengths (R,) in mm and pressures (R, K) in MPa."""
+
+
+def contact_pattern_figure(flanks: LoadDistribution) -> Figure:
+    """Draw one panel per gear: colors over face and roll length, or a curve where there is one slice."""
+    drawn = _shaded if flanks.face_position.size > 1 else _curve
+    maps = [_map(flanks, roll) for roll in (flanks.roll_length_1, flanks.roll_length_2)]
+    return Figure(
+        key="contact_pattern",
+        title="Contact pattern",
+        caption="The Hertz pressure that passes over each point of the unrolled flanks, interpolated between "
+        f"{flanks.position.size} positions{_stretches(flanks)}. At a tip edge the true pressure is "
+        "singular, and this a measure only. Roll length: distance to the base circle along the "
+        "involute's normal. Seen from the +z end, the driving gear turns clockwise.",
+        alternative=_words(flanks),
+        content=tuple(drawn(flanks, gear, one) for gear, one in zip(GEARS, maps, strict=True)),
+        table=_pattern_table(flanks, maps),
+    )
+
+
+def _map(flanks: LoadDistribution, roll: FloatArray) -> _Map:
+    """Return the pressure over one flank in mm and MPa."""
+    rows, pressure = pressure_map(flanks, roll)
+    return 1e3 * rows, 1e-6 * pressure
+
+
+def _stretches(flanks: LoadDistribution) -> str:
+    count = flanks.face_position.size
+    return f" and {count} stretches of the face; blank: nothing touches" if count > 1 else ""
+
+
+def _roll_marks(
+    flanks: LoadDistribution, gear: Gear, direction: Literal["horizontal", "vertical"]
+) -> tuple[Reference, ...]:
+    scene, index = flanks.scene, GEARS.index(gear)
+    marks = {
+        "start of active profile": scene.start_of_active_profile[index],
+        "pitch point": scene.pitch_point[index],
+        "tip": scene.tip[index],
+    }
+    base = scene.facts.base_radius[index]
+    return tuple(
+        Reference(f"{name}, d {2e3 * np.hypot(base, roll):.4g} mm", 1e3 * roll, direction, 0.99)
+        for name, roll in marks.items()
+    )
+
+
+def _shaded(flanks: LoadDistribution, gear: Gear, one: _Map) -> Panel:
+    roll, pressure = one
+    largest = 1e-6 * float(flanks.pressure.max())
+    face = 1e3 * flanks.face_position
+    return Panel(
+        _face_axis(flanks),
+        Axis("roll length, mm", limits=_extent(flanks, gear, roll)),
+        references=_roll_marks(flanks, gear, "horizontal"),
+        title=_title(flanks, gear),
+        shade=HeatMap(face, roll, pressure, PRESSURE, largest, isolines=_isolines(largest)),
+    )
+
+
+def _isolines(largest: float) -> tuple[float, ...]:
+    step = 10.0 ** np.floor(np.log10(largest)) if largest > 0.0 else 1.0
+    wide = next(w for w in (0.2, 0.5, 1.0, 2.0, 5.0) if largest / (w * step) <= _MOST_ISOLINES + 1)
+    count = int(_HIGHEST_ISOLINE * largest / (wide * step))
+    return tuple(float(wide * step * k) for k in range(1, count + 1))
+
+
+def _title(flanks: LoadDistribution, gear: Gear) -> str:
+    """Name a flank and where its tip is."""
+    if gear == "pinion":
+        return "pinion (drives): root below, tip above"
+    ring = flanks.scene.facts.internal
+    return "ring gear: tip below, root above" if ring else "wheel: root below, tip above"
+
+
+def _curve(flanks: LoadDistribution, gear: Gear, one: _Map) -> Panel:
+    """Draw the pressure along the profile: in the plane it is the same over the face."""
+    roll, pressure = one
+    line = Line("pressure", roll, pressure[:, 0], palette.BLUE)
+    title = _title(flanks, gear).replace("below", "left").replace("above", "right")
+    return Panel(
+        Axis("roll length, mm", limits=_extent(flanks, gear, roll)),
+        Axis(PRESSURE, limits=(0.0, 1.15e-6 * float(flanks.pressure.max()))),
+        (line,),
+        _roll_marks(flanks, gear, "vertical"),
+        title,
+    )
+
+
+def _extent(flanks: LoadDistribution, gear: Gear, roll: FloatArray) -> tuple[float, float]:
+    """Return the range in mm from what is touched, or the start of the active profile, to the tip."""
+    scene, index = flanks.scene, GEARS.index(gear)
+    ends = scene.start_of_active_profile[index], scene.tip[index]
+    marks = [*(1e3 * end for end in ends), float(roll[0]), float(roll[-1])]
+    low, high = min(marks), max(marks)  # the tip of a ring is the lower one
+    room = 0.06 * (high - low)
+    return low - room, high + room * (1.5 if flanks.face_position.size > 1 else 3.0)
+
+
+def _words(flanks: LoadDistribution) -> str:
+    """Say where the pressure is largest, edges aside."""
+    at = np.unravel_index(int(flanks.clear_pressure.argmax()), flanks.pressure.shape)
+    roll, face = (1e3 * float(v) for v in (flanks.roll_length_1[at], flanks.face_position[at[2]]))
+    largest = number(1e-6 * float(flanks.pressure[at]), 4)
+    where = f"at roll length {number(roll, 3)} mm of the pinion"
+    if flanks.face_position.size == 1:
+        return f"The largest pressure is {largest} MPa, {where}."
+    return f"The largest pressure is {largest} MPa, {where}, {number(face, 3)} mm from its mid-face."
+
+
+def _pattern_table(flanks: LoadDistribution, maps: list[_Map]) -> Table:
+    """Largest pressure of each stretch of the face, or of each part of the pinion's profile."""
+    if flanks.face_position.size > 1:
+        caption, over = "Largest pressure over the face", "face position, mm"
+        at, largest = 1e3 * flanks.face_position, 1e-6 * flanks.pressure.max(axis=(0, 1))
+    else:
+        caption, over = "Pressure along the profile", "roll length of the pinion, mm"
+        at, largest = maps[0][0], maps[0][1][:, 0]
+    rows = tuple(tuple(map(number, row)) for row in zip(at, largest, strict=True))
+    return Table(caption, (over, "pressure, MPa"), rows)
+
+
+CURVES_SHOWN = 4  # positions
+
+_VISIBLE_GAP = 0.01
+"""um; a plot of less shows nothing."""
+_ROUNDING = 1e-9
+"""Part of the face width; a centroid nearer to mid-face is the rounding of a symmetric load."""
+
+
+def line_load_figure(flanks: LoadDistribution) -> Figure:
+    """Draw the load of all pairs per unit of face width, and the gap that the most loaded pair leaves."""
+    chosen = np.unique(np.linspace(0, flanks.position.size, CURVES_SHOWN, endpoint=False).astype(int))
+    face = _face_axis(flanks)
+    mean = 1e-3 * flanks.face_load.mean(axis=0)
+    names = [f"position {flanks.position[k]:.3g}" for k in chosen]
+    x = 1e3 * flanks.face_position
+    colors = [palette.BLUE, palette.SKY, palette.GREEN, palette.PURPLE][: len(chosen)]
+    loads = [
+        Line(name, x, 1e-3 * flanks.face_load[k], color, label=name)
+        for name, k, color in zip(names, chosen, colors, strict=True)
+    ]
+    cycle = Line("mean over the positions", x, mean, palette.VERMILLION, width=3.0, label="mean")
+    factor = flanks.mean_face_load_factor
+    gaps = _gap_panel(flanks, face, dict(zip(names, chosen, strict=True)), colors)
+    return Figure(
+        key="line_load",
+        title="Load and gap over the face" if gaps else "Load over the face",
+        caption=_line_load_caption(flanks, with_gap=bool(gaps)),
+        alternative=f"Averaged over the positions the face carries {number(float(mean.min()), 4)} to "
+        f"{number(float(mean.max()), 4)} N/mm: K_Hbeta {number(factor, 3)}.",
+        content=(
+            Panel(face, Axis("load per face width, N/mm"), (*loads, cycle)),
+            *gaps,
+        ),
+        table=_face_table(flanks, mean),
+    )
+
+
+def _gap_panel(
+    flanks: LoadDistribution, face: Axis, chosen: dict[str, int], colors: list[str]
+) -> tuple[Panel, ...]:
+    """Draw the gap left on the pair that carries most; nothing where its flanks touch all along the face."""
+    gaps = {name: _gap(flanks, int(k)) for name, k in chosen.items()}
+    if not any(np.nanmax(gap, initial=0.0) > _VISIBLE_GAP for gap in gaps.values()):
+        return ()
+    x = 1e3 * flanks.face_position
+    lines = tuple(
+        Line(name, x, gap, color, label=name) for (name, gap), color in zip(gaps.items(), colors, strict=True)
+    )
+    return (Panel(face, Axis("gap, µm"), lines),)
+
+
+def _line_load_caption(flanks: LoadDistribution, *, with_gap: bool) -> str:
+    caption = "Force of all pairs per unit of face width."
+    if with_gap:
+        caption = (
+            f"Above: {caption[0].lower()}{caption[1:]} Below: remaining gap between the loaded flanks of the "
+            "pair with the largest load; 0 in contact."
+        )
+    else:
+        caption += " The flanks of the pair with the largest load touch wherever they can: no gap."
+    if flanks.base_helix_angle == 0.0:
+        return caption
+    return f"{caption} A single position is uneven: the number of pairs that touch changes along the face."
+
+
+def load_centroid_figure(flanks: LoadDistribution) -> Figure:
+    """Draw where along the face the load acts, and how unevenly it lies, over position."""
+    factor, k = flanks.mean_face_load_factor, number(flanks.mean_face_load_factor, 3)
+    rounding = _ROUNDING * float(np.ptp(flanks.face_position))
+    centroid = 1e3 * np.where(np.abs(flanks.load_centroid) > rounding, flanks.load_centroid, 0.0)
+    return Figure(
+        key="load_centroid",
+        title="Load centroid and face load factor",
+        caption="Above: distance of the load's centroid from the pinion's mid-face. Below: largest over mean "
+        "load per unit of face width at each position; the line is that of the load averaged over all of "
+        "them, K_Hbeta of ISO 6336-1 for this alignment and without manufacturing errors.",
+        alternative=f"The centroid lies {number(float(centroid.min()), 3)} to "
+        f"{number(float(centroid.max()), 3)} mm from mid-face; K_Hbeta is {k}.",
+        content=(
+            _over_position(flanks, "load centroid, mm", centroid, "mid-face", 0.0),
+            _over_position(flanks, "largest over mean load", flanks.face_load_factor, f"K_Hbeta {k}", factor),
+        ),
+    )
+
+
+def _over_position(flanks: LoadDistribution, y: str, values: FloatArray, mark: str, at: float) -> Panel:
+    """Draw a curve over one cycle, closed where the positions make one, and a marked value."""
+    step = np.diff(flanks.position)
+    whole = step.size > 0 and np.allclose(step, 1.0 / flanks.position.size)
+    position = np.append(flanks.position, 1.0 + flanks.position[0]) if whole else flanks.position
+    line = Line("", position, np.append(values, values[0]) if whole else values, palette.BLUE)
+    x, marks = Axis.over(POSITION_LABEL, position), (Reference(mark, at, "horizontal"),)
+    return Panel(x, Axis(y), (line,), marks)
+
+
+def _gap(flanks: LoadDistribution, position: int) -> FloatArray:
+    """Gap in um of the pair that carries most; NaN where the flanks cannot meet."""
+    pair = int(flanks.force[position].sum(axis=-1).argmax())
+    gap = 1e6 * flanks.gap[position, pair]
+    return np.where(np.isfinite(gap) & flanks.on_path[position, pair], gap, np.nan)
+
+
+def _face_table(flanks: LoadDistribution, mean: FloatArray) -> Table:
+    largest = 1e-3 * flanks.line_load.max(axis=(0, 1))
+    columns = {
+        "face position, mm": lambda k: number(1e3 * float(flanks.face_position[k]), 4),
+        "mean load per face width, N/mm": lambda k: number(float(mean[k])),
+        "largest line load, N/mm": lambda k: number(float(largest[k])),
+    }
+    return Table.of("Load over the face", range(mean.size), columns)
+
+
+def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page:
+    """Return the page of flank results; beside their database, which has its own effects and case."""
+    pair = flanks.scene.facts
+    sections = (*_results(flanks), *_making(flanks, alone=database is None))
+    return Page(pair_title(pair), pair_lead(pair), _headlines(flanks), sections, _alarms(flanks, database))
+
+
+def _headlines(flanks: LoadDistribution) -> tuple[Headline, ...]:
+    at = _operating_point(flanks)
+    largest = f"{number(1e-6 * float(flanks.clear_pressure.max()))} MPa"
+    headlines = [Headline("largest flank pressure", largest, f"{at}{edge_words(flanks.edge_pressure)}")]
+    if flanks.face_position.size > 1:
+        factor = flanks.mean_face_load_factor
+        headlines.append(Headline("K_Hbeta over the cycle", number(factor, 3), at))
+    return tuple(headlines)
+
+
+def _results(flanks: LoadDistribution) -> tuple[Section, ...]:
+    """Show the flanks; one slice has nothing to show over the face."""
+    figures: tuple[Figure, ...] = (contact_pattern_figure(flanks),)
+    text = f"At {_operating_point(flanks)}, {flanks.position.size} positions of the mesh cycle."
+    if flanks.face_position.size > 1:
+        figures += (contact_lines(flanks), line_load_figure(flanks), load_centroid_figure(flanks))
+    else:
+        text += " The model is plane: what is shown is the same over the whole face."
+    return (Section("Flanks", text, figures=figures),)
+
+
+def _making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
+    """Show what the flank results cost; `alone`, without their database, also effects and case."""
+    metadata = flanks.metadata
+    if not metadata.receipt:
+        return ()
+    cost = {name: value for name, value in metadata.receipt.items() if name != "plan"}
+    made = {**metadata.software_versions, "content_hash": metadata.content_hash}
+    section = Section(
+        "Receipt of the flank results",
+        tables=(facts("Cost", cost),),
+        folded=(facts("Made with", made),),
+        part=Part.RECEIPT,
+    )
+    if not alone:
+        return (section,)
+    case = Section("Case", folded=case_tables(metadata.case), part=Part.INPUT)
+    return contact_effects(metadata.effect_ledger), case, section
+
+
+def _alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str, ...]:
+    """Say loudly if database and flank results are of different pairs."""
+    if database is None:
+        return ()
+    mine, theirs = flanks.scene.facts, database.facts
+    same = mine.teeth == theirs.teeth and all(
+        abs(getattr(mine, name) - getattr(theirs, name)) <= 1e-9 * getattr(theirs, name)
+        for name in ("base_pitch", "face_width")
+    )
+    return () if same else ("The flank results and the STE database are of different gear pairs.",)
+
+
+def _operating_point(flanks: LoadDistribution) -> str:
+    scene = flanks.scene
+    parts = [f"{number(scene.torque, 4)} N m"]
+    if scene.misalignment:
+        parts.append(f"misalignment {number(1e6 * scene.misalignment, 3)} µm")
+    if scene.center_distance_change:
+        parts.append(f"center distance {engineering(1e3 * scene.center_distance_change, 3, '+')} mm")
+    return ", ".join(parts)
+
+
+def _text(flanks: LoadDistribution) -> Iterator[str]:
+    scene, receipt = flanks.scene, flanks.metadata.receipt
+    yield (
+        f"torque {scene.torque:.6g} N m, normal force {scene.normal_force:.6g} N, "
+        f"misalignment {scene.misalignment / UM:.4g} um"
+    )
+    yield (
+        f"largest pressure {1e-6 * flanks.clear_pressure.max():.4g} MPa{edge_words(flanks.edge_pressure)}, "
+        f"largest line load {1e-3 * flanks.line_load.max():.4g} N/mm"
+    )
+    if flanks.face_position.size > 1:
+        low, high = (1e3 * end for end in (flanks.load_centroid.min(), flanks.load_centroid.max()))
+        yield (
+            f"K_Hbeta {engineering(flanks.mean_face_load_factor, 3)} over the cycle, at most "
+            f"{engineering(flanks.face_load_factor.max(), 3)} at one position; "
+            f"load centroid {engineering(low, 3)} to {engineering(high, 3)} mm from mid-face"
+        )
+    yield from assumption_lines(receipt)
+
+
+PAGE = Presentation(contact_pattern_figure, _page, _text, beside=_page)

@@ -1,0 +1,125 @@
+"""Tooth-root stress as people see it: what the roots of one tooth of each gear meet in the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from bounds import engineering
+from lineofaction.gearbox.convert.effects import assumption_lines
+from lineofaction.gearbox.studies.root_stress.run import GEARS, Roots, root_stress_json
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number
+from lineofaction.report.drawing.page import Headline, Page, Part, Section
+from lineofaction.report.drawing.tables import facts
+from lineofaction.report.presentation import Presentation
+
+Json = dict[str, Any]
+_WAY = Axis("position of the tooth's own pair, base pitches (0 = pitch point)")
+_STRESS = Axis("root stress, MPa")
+_SERIES = ("tension_mpa", "compression_mpa", "at_tension_peak_mpa", "at_compression_peak_mpa")
+
+
+def _root_stress_figure(stresses: Json) -> Figure:
+    """Draw the passages of both gears: extremes of both roots, and the stress where the peaks are."""
+    return Figure(
+        key="root_stress",
+        title="Tooth-root stress",
+        caption="Solid: the largest principal stress anywhere in the root beside the loaded flank, and the "
+        "smallest one in the other root. Dashed: the stress along the profile at the two places where the "
+        "peaks occur; its range is what fatigue counts. The vertical line is the tension peak; "
+        "a horizontal one, of spur pairs, the nominal stress of ISO 6336-3 (method B, without load factors).",
+        alternative=f"At {number(stresses['torque_n_m'], 4)} N m the largest stress is "
+        f"{_said(stresses['pinion']['tension'])} on the pinion and "
+        f"{_said(stresses['wheel']['tension'])} on the wheel.",
+        content=tuple(_passage(gear, stresses[gear]) for gear in GEARS),
+    )
+
+
+def _passage(gear: str, history: Json) -> Panel:
+    way = {name: np.array(values) for name, values in history["passage"].items()}
+    peak = history["tension"]
+    lines = (
+        Line("tension", way["position"], way["tension_mpa"], palette.VERMILLION),
+        Line("at its peak", way["position"], way["at_tension_peak_mpa"], palette.ORANGE, "dash"),
+        Line("compression", way["position"], way["compression_mpa"], palette.BLUE),
+        Line("at its peak", way["position"], way["at_compression_peak_mpa"], palette.SKY, "dash"),
+    )
+    references = [Reference(_said(peak), peak["position"])]
+    if (nominal := history["iso_6336_3_mpa"]) is not None:
+        references.append(Reference(f"ISO 6336-3: {number(nominal)} MPa", nominal, "horizontal", at=0.2))
+    return Panel(_WAY, _STRESS, lines, tuple(references), title=gear)
+
+
+def _said(peak: Json) -> str:
+    return f"{number(peak['stress_mpa'])} MPa at the {number(peak['tangent_angle_deg'], 2)} degree tangent"
+
+
+def _peak_table(stresses: Json) -> Table:
+    """Return the stress of every root with its error, and where it is."""
+    peaks = [
+        {"gear": gear, "root": root, **stresses[gear][root]}
+        for gear in GEARS
+        for root in ("tension", "compression")
+    ]
+    columns = {
+        "gear": lambda peak: peak["gear"],
+        "root": lambda peak: peak["root"],
+        "stress MPa": lambda peak: f"{peak['stress_mpa']:.4g} ±{engineering(peak['error_mpa'], 1)}",
+        "position": lambda peak: f"{peak['position']:.3f}",
+        "tangent deg": lambda peak: f"{peak['tangent_angle_deg']:.1f}",
+        "face mm": lambda peak: f"{peak['face_position_mm']:.2f}",
+    }
+    return Table.of("Tooth-root stress", peaks, columns)
+
+
+def _passage_table(stresses: Json) -> Table:
+    rows = []
+    for gear in GEARS:
+        passage = stresses[gear]["passage"]
+        columns = (passage[name] for name in _SERIES)
+        for position, *values in zip(passage["position"], *columns, strict=True):
+            rows.append((gear, repr(position), *(f"{value:.6g}" for value in values)))
+    return Table("Passage of one tooth", ("gear", "position", *_SERIES), tuple(rows))
+
+
+def _page(stresses: Json) -> Page:
+    heads = tuple(_headline(gear, stresses[gear]["tension"]) for gear in GEARS)
+    cost = {name: value for name, value in stresses["receipt"].items() if name != "plan"}
+    sections = (
+        Section("Tooth roots", "", (_root_stress_figure(stresses),), (_peak_table(stresses),)),
+        Section("Receipt of the root stress", tables=(facts("Cost", cost),), part=Part.RECEIPT),
+    )
+    return Page("Tooth-root stress", _point(stresses), heads, sections)
+
+
+def _headline(gear: str, peak: Json) -> Headline:
+    value, error = f"{number(peak['stress_mpa'])} MPa", f"± {engineering(peak['error_mpa'], 1)} MPa"
+    return Headline(f"largest root stress, {gear}", value, error)
+
+
+def _point(stresses: Json) -> str:
+    return (
+        f"torque {stresses['torque_n_m']:.6g} N m, normal force {stresses['normal_force_n']:.6g} N, "
+        f"misalignment {stresses['misalignment_um']:.4g} um"
+    )
+
+
+def _text(stresses: Json) -> Iterator[Table | str]:
+    yield _peak_table(stresses)
+    yield f"\n{_point(stresses)}"
+    yield from assumption_lines(stresses["receipt"])
+
+
+def _of_figures(shown: Callable[[Json], Any]) -> Callable[[Roots], Any]:
+    return lambda roots: shown(root_stress_json(roots))
+
+
+PAGE = Presentation(
+    _of_figures(_root_stress_figure),
+    _of_figures(_page),
+    _of_figures(_text),
+    series=_of_figures(_passage_table),
+)

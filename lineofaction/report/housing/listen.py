@@ -1,0 +1,122 @@
+"""A run heard through a housing as people see it: its level over the way, with a player."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from bounds import engineering
+from dynamics.acoustics import sound_pressure_level, wav_file
+from dynamics.types import FloatArray
+from dynamics.vibration import vibration_level
+from lineofaction.gearbox.studies.listen.heard_run import HeardRun, rms
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Sound, Table, Track, number
+from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.presentation import Presentation
+from lineofaction.report.run.sound import PAGE_BYTES, SAMPLE_BYTES
+from lineofaction.report.run.view import speed_axis
+
+BLOCK = 0.1
+"""s over which a level is taken."""
+LEAST_SPAN, DEPTH, MARGIN = 20.0, 60.0, 2.0
+"""dB shown below the loudest, at least and at most; beyond both ends."""
+
+
+def _level_figure(heard: HeardRun) -> Figure:
+    time, level = _block_levels(heard)
+    axis, track = speed_axis(heard.time, heard.speed)
+    along = np.interp(time, heard.time, track)
+    x = replace(axis, limits=(float(track.min()), float(track.max())))
+    unit = "dB re 1 nm/s" if heard.figures is None else "dB(A) re 20 µPa"
+    name, loudest = _noun(heard), int(np.argmax(level))
+    top = float(level[loudest])
+    lowest = min(top - LEAST_SPAN, max(float(level.min()), top - DEPTH))
+    y = Axis(f"level, {unit}", limits=(lowest - MARGIN, top + MARGIN))
+    return Figure(
+        key="heard_level",
+        title=f"Level of the {name}",
+        caption=f"{heard.recording.quantity[0].upper()}{heard.recording.quantity[1:]}. Over blocks of "
+        f"{number(time[0] * 2.0, 2)} s.",
+        alternative=f"Loudest at {number(float(along[loudest]), 4)} {x.label.rpartition(', ')[2]}: "
+        f"{level[loudest]:.1f} {unit.partition(' re ')[0]}.",
+        content=(Panel(x, y, (Line(name, along, level, palette.INK, width=1.4),)),),
+        table=_table(time, along, level, x.label, unit),
+        sound=_sound(heard, track),
+    )
+
+
+def _block_levels(heard: HeardRun) -> tuple[FloatArray, FloatArray]:
+    """Return the middles of blocks, s, and the level of each: dB(A), of a velocity dB re 1 nm/s."""
+    recording = heard.recording
+    duration = recording.samples.size / recording.sample_rate
+    blocks = np.array_split(recording.samples, max(1, int(duration / BLOCK)))
+    time = (np.arange(len(blocks)) + 0.5) * duration / len(blocks)
+    parts = [replace(recording, samples=block) for block in blocks]
+    if heard.figures is None:
+        return time, vibration_level([rms(part) for part in parts])
+    return time, np.array([sound_pressure_level(part, weighted=True) for part in parts])
+
+
+def _noun(heard: HeardRun) -> str:
+    return "velocity" if heard.figures is None else "sound pressure"
+
+
+def _table(time: FloatArray, along: FloatArray, level: FloatArray, label: str, unit: str) -> Table:
+    rows = tuple(
+        (f"{t:.3f}", number(float(x), 5), f"{dB:.1f}") for t, x, dB in zip(time, along, level, strict=True)
+    )
+    return Table("Level over the run", ("middle, s", label, unit), rows)
+
+
+def _sound(heard: HeardRun, along: FloatArray) -> Sound | None:
+    """Return what the plot sounds like; None of silence."""
+    recording = heard.recording
+    if recording.peak == 0.0:
+        return None
+    fits = SAMPLE_BYTES * recording.samples.size <= PAGE_BYTES
+    files = (wav_file(recording, recording.peak),) if fits else ()
+    caption = f"Full scale: {number(recording.peak, 2)} {recording.unit}."
+    return Sound(caption, (Track("run", heard.time, along, {}),), files)
+
+
+def _headlines(heard: HeardRun) -> tuple[Headline, ...]:
+    figures = heard.figures
+    if figures is None:
+        level = float(vibration_level(rms(heard.recording)))
+        return (Headline("velocity, rms", f"{engineering(rms(heard.recording), 4)} m/s", f"{level:.1f} dB"),)
+    rows = [
+        Headline("sound pressure level", f"{figures.weighted_level:.1f} dB(A)", f"{figures.level:.1f} dB")
+    ]
+    if figures.loudness is not None:
+        what = "loudness" if figures.steady else "loudness N5"
+        rows.append(Headline(what, f"{engineering(figures.loudness, 3)} sone", "ISO 532-1, free field"))
+    if figures.sharpness is not None:
+        rows.append(Headline("sharpness", f"{engineering(figures.sharpness, 3)} acum", "DIN 45692"))
+    if figures.tones:
+        tones = ", ".join(f"{number(hertz, 4)} Hz" for hertz, _ in figures.tones)
+        rows.append(Headline("prominent tones", tones, "ECMA-418-1"))
+    return tuple(rows)
+
+
+def _page(heard: HeardRun) -> Page:
+    title = f"{_noun(heard).capitalize()} of the run"
+    text = f"{heard.remark[0].upper()}{heard.remark[1:]}."
+    section = Section(title, text, figures=(_level_figure(heard),))
+    return Page("A run heard through its housing", "", _headlines(heard), (section,))
+
+
+def _text(heard: HeardRun) -> Iterator[Table | str]:
+    yield heard.recording.quantity
+    yield heard.remark
+
+
+def _series(heard: HeardRun) -> Table:
+    table = _level_figure(heard).table
+    assert table is not None
+    return table
+
+
+PAGE = Presentation(_level_figure, _page, _text, series=_series)

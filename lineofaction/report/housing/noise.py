@@ -1,0 +1,405 @@
+"""The sound of a scene: map over speed and frequency, orders, third octaves, bearings, the loudest points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from dynamics.acoustics import OrderPower, a_weighting, sound_power_level
+from dynamics.noise import LoudPoint, RadiatedSound, loudest
+from lineofaction.gearbox.units import RPM
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Figure,
+    FloatArray,
+    HeatMap,
+    Line,
+    Panel,
+    Table,
+    category_lines,
+    largest,
+    number,
+    shaded_levels,
+    step_line,
+)
+from lineofaction.report.drawing.page import Headline, Page, Part, Section
+from lineofaction.report.drawing.surface_view import surface_panels
+from lineofaction.report.housing.forces import (
+    DEPTH,
+    LABEL,
+    force_words,
+    model_tables,
+    most,
+    of_run,
+    region_table,
+    row_axis,
+    third_octaves_over_time,
+    total_line,
+)
+from lineofaction.report.presentation import Presentation, dynamics_page, model_text
+
+LINES, SHOWN = 160, 6
+"""Cells of the map in frequency; lines of orders and bearings."""
+
+
+def _sound_map(sound: RadiatedSound, table: Table, words: Sequence[str]) -> Figure:
+    orders, (x, along) = sound.orders, row_axis(sound.speed, sound.facts)
+    forces = "linear: mean mesh stiffness, no loss of contact"
+    if of_run(sound.facts) is not None:
+        forces = "with the amplitudes of the run"
+    return Figure(
+        key="sound_map",
+        title="Sound power over speed and frequency",
+        caption="A-weighted sound power level re 1 pW of each order as in a steady state, "
+        f"{forces}. Colors end {DEPTH:g} dB below the loudest.",
+        alternative=" ".join(f"Loudest: {text}." for text in words) or "Nothing radiates.",
+        content=(Panel(x, Axis("frequency, Hz"), shade=_cells(orders, along)),),
+        table=table,
+    )
+
+
+def _cells(orders: OrderPower, speed: FloatArray) -> HeatMap:
+    """Add up the orders in cells of speed and frequency, up to the highest that is shown.
+
+    They are tall enough that lines of orders are not broken.
+    """
+    top, steps = float(orders.frequency.max()), np.abs(np.diff(orders.frequency, axis=1))
+    height = max(top / LINES, float(steps.max(initial=0.0)))
+    edges = np.arange(0.0, top + 2.0 * height, height)
+    cell = np.digitize(orders.frequency, edges) - 1
+    power = np.zeros((edges.size - 1, speed.size))
+    np.add.at(power, (cell, np.broadcast_to(np.arange(speed.size), cell.shape)), orders.weighted_power)
+    level = sound_power_level(power)
+    shown = int(np.flatnonzero(np.any(level >= float(level.max()) - DEPTH, axis=1)).max(initial=0)) + 1
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    return shaded_levels(speed, middle[:shown], level[:shown], LABEL, DEPTH)
+
+
+def _level_over_speed(sound: RadiatedSound) -> Figure:
+    orders, (x, speed) = sound.orders, row_axis(sound.speed, sound.facts)
+    level, total = orders.weighted_level, orders.total_weighted_level
+    shown = largest(level.max(axis=1), SHOWN)
+    floor = float(total.max()) - DEPTH
+    names = [f"order {sound.order[h]:.4g}" for h in shown]
+    lines = (
+        Line("total", speed, _above(total, floor), palette.INK, width=2.2),
+        *category_lines(speed, names, _above(level[shown], floor)),
+    )
+    if (whole := total_line(sound.speed, sound.facts)) is not None:
+        lines += (Line("all of the run", whole[0], _above(whole[1], floor), palette.MUTED, width=1.4),)
+    at = int(total.argmax())
+    return Figure(
+        key="sound_levels",
+        title="Sound power of the orders over speed",
+        caption=f"Orders add up in power. The {SHOWN} loudest are shown.",
+        alternative=f"The total is largest at {_rpm(sound, at)}: {total[at]:.1f} dB(A).",
+        content=(Panel(x, Axis(LABEL), lines),),
+        table=_levels_table(sound, level, total),
+    )
+
+
+def _third_octaves(sound: RadiatedSound) -> Figure:
+    """Draw the levels of the bands: at the loudest speed, and the largest over all speeds."""
+    center, power = sound.orders.third_octaves()
+    weighting = a_weighting(center)[:, None]
+    level = sound_power_level(power) + weighting
+    at = int(sound.orders.total_weighted_level.argmax())
+    floor = float(level.max()) - DEPTH
+    edges = np.append(center, center[-1] * 10.0**0.1) * 10.0**-0.05
+    speed = number(float(sound.speed[at]) / RPM, 4)
+    lines = tuple(
+        step_line(name, edges, np.maximum(values, floor), color)
+        for name, values, color in (
+            ("largest over speed", level.max(axis=1), palette.BLUE),
+            (f"at {speed} rpm, the loudest speed", level[:, at], palette.VERMILLION),
+        )
+    )
+    worst = int(level.max(axis=1).argmax())
+    names = tuple((float(value), f"{value:g}") for value in center[:: max(center.size // 8, 1)])
+    x = Axis("nominal center of the band, Hz", "log", (float(edges[0]), float(edges[-1])), names)
+    rows = zip(center, level.max(axis=1), level[:, at], strict=True)
+    return Figure(
+        key="sound_third_octaves",
+        title="Sound power in third octaves",
+        caption="A band takes all of an order whose frequency lies in it (IEC 61260-1); A-weighting is that "
+        "of the nominal center.",
+        alternative=f"The loudest band is that at {center[worst]:g} Hz: {level[worst].max():.1f} dB(A).",
+        content=(Panel(x, Axis(LABEL), lines),),
+        table=Table(
+            "Third octaves",
+            ("band, Hz", "largest over speed, dB(A)", f"at {speed} rpm, dB(A)"),
+            tuple((f"{f:g}", f"{a:.1f}", f"{b:.1f}") for f, a, b in rows),
+        ),
+    )
+
+
+def _bearing_levels(sound: RadiatedSound) -> Figure:
+    (x, speed), total = row_axis(sound.speed, sound.facts), sound.orders.total_weighted_level
+    alone = np.stack([_total(sound, power) for power in sound.bearing_alone])
+    floor = float(total.max()) - DEPTH
+    most = np.argsort(-alone.max(axis=1), kind="stable")[:SHOWN]
+    lines = (
+        Line("all", speed, _above(total, floor), palette.INK, width=2.2),
+        *category_lines(speed, [sound.bearing[b] for b in most], _above(alone[most], floor)),
+    )
+    at = int(total.argmax())
+    loud = int(alone[:, at].argmax())
+    without = np.stack([_total(sound, power) for power in sound.without_bearing])
+    return Figure(
+        key="sound_bearings",
+        title="Sound power by the force of each bearing alone",
+        caption="Forces of bearings are coherent: their powers do not add up, and one may be louder alone "
+        "than all together.",
+        alternative=f"At {_rpm(sound, at)} bearing {sound.bearing[loud]} alone radiates "
+        f"{alone[loud, at]:.1f} dB(A) of {total[at]:.1f} dB(A).",
+        content=(Panel(x, Axis(LABEL), lines),),
+        table=Table.of(
+            f"Bearings at {_rpm(sound, at)}",
+            range(len(sound.bearing)),
+            {
+                "bearing": lambda b: sound.bearing[b],
+                "alone, dB(A)": lambda b: f"{alone[b, at]:.1f}",
+                "all without it, dB(A)": lambda b: f"{without[b, at]:.1f}",
+            },
+        ),
+    )
+
+
+def _panel_intensity(sound: RadiatedSound, where: str, table: Table) -> Figure | None:
+    """Draw the intensity on the hulls at the loudest point, `_where`; None where it was not looked at."""
+    panels = sound.panels
+    if panels is None:
+        return None
+    hull, value = panels.hull, 1e3 * panels.intensity
+    least, largest = (number(float(end), 2) for end in (value.min(), value.max()))
+    return Figure(
+        key="sound_panels",
+        title=f"Sound intensity on the surface: {where}",
+        caption="Active intensity normal to the hull that the radiation model takes: openings are covered, "
+        "fine details rounded off. Negative: takes power that other panels radiate.",
+        alternative=f"The intensity is between {least} and {largest} mW/m².",
+        content=surface_panels(
+            hull.nodes, hull.triangles, np.zeros_like(hull.nodes), value, "intensity, mW/m²", "outer hull"
+        ),
+        table=table,
+    )
+
+
+def _total(sound: RadiatedSound, power: FloatArray) -> FloatArray:
+    """Return the A-weighted level of all orders of a power (S, H), (S,), dB(A)."""
+    return OrderPower(sound.frequency.T, np.maximum(power.T, 0.0)).total_weighted_level
+
+
+def _levels_table(sound: RadiatedSound, level: FloatArray, total: FloatArray) -> Table:
+    rows = [("total", f"{total.max():.1f}", number(float(sound.speed[total.argmax()]) / RPM, 5), "")]
+    for order, at, row, hertz in zip(
+        sound.order, level.argmax(axis=1), level, sound.frequency.T, strict=True
+    ):
+        speed = number(float(sound.speed[at]) / RPM, 5)
+        rows.append((f"{order:.4g}", f"{row[at]:.1f}", speed, number(float(hertz[at]), 5)))
+    head = ("order", "dB(A)", "speed, rpm", "frequency, Hz")
+    return Table("Largest level of each order", head, tuple(rows))
+
+
+def _rpm(sound: RadiatedSound, row: int) -> str:
+    return f"{number(float(sound.speed[row]) / RPM, 4)} rpm"
+
+
+def _above(level: FloatArray, floor: float) -> FloatArray:
+    return np.where(level < floor, np.nan, level)
+
+
+Json = dict[str, Any]
+SHOWN_ORDERS, SHOWN_CAUSES = 6, 3
+
+
+def _uncertainty_tables(facts: Json) -> Iterator[Table]:
+    if facts["band"] is not None:
+        yield _band_table(facts["band"])
+    if facts["sensitivities"]:
+        yield _cost_table(facts["sensitivities"])
+
+
+def _band_table(band: Json) -> Table:
+    loudest = sorted(band["orders"], key=lambda row: -row["largest"]["level_db_a"])[:SHOWN_ORDERS]
+    levels = [("all orders", band["largest_total"])]
+    levels += [(f"order {row['order']:.4g}", row["largest"]) for row in loudest]
+    columns = {
+        "largest over the speeds": lambda row: row[0],
+        "dB(A)": lambda row: f"{row[1]['level_db_a']:.1f}",
+        "from": lambda row: f"{row[1]['low_db_a']:.1f}",
+        "to": lambda row: f"{row[1]['high_db_a']:.1f}",
+        "most by, dB": lambda row: ", ".join(_causes(row[1])),
+    }
+    return Table.of("Bands over the ranges of what is guessed", levels, columns)
+
+
+def _causes(level: Json) -> Iterator[str]:
+    below, above = level["below_db"], level["above_db"]
+    names = sorted(above, key=lambda name: -max(below[name], above[name]))
+    for name in names[:SHOWN_CAUSES]:
+        if max(below[name], above[name]) > 0.0:
+            yield f"{name.replace('_', ' ')} -{below[name]:.1f} +{above[name]:.1f}"
+
+
+def _cost_table(rows: list[Json]) -> Table:
+    """List what steps change of the largest level, the largest change first."""
+    caption = "What 1 dB costs: largest level of all orders; factors are on what the scene states"
+    columns = {
+        "figure": lambda row: str(row["figure"]),
+        "value": lambda row: f"{number(row['value'], 4)}{_unit(row)}",
+        "step": lambda row: f"{number(row['step'], 3)}{_unit(row)}",
+        "change, dB": lambda row: f"{row['change_db']:+.2f}",
+        "two steps, dB": lambda row: f"{row['change_of_two_steps_db']:+.2f}",
+        "for -1 dB about": _needed,
+        "linear within": lambda row: (
+            "any" if row["linear_range"] is None else f"{number(row['linear_range'], 2)}{_unit(row)}"
+        ),
+    }
+    return Table.of(caption, rows, columns)
+
+
+def _unit(row: Json) -> str:
+    return f" {row['unit'].replace('um', 'µm')}" if row["unit"] else ""
+
+
+def _needed(row: Json) -> str:
+    if row["for_one_db_less"] is None:
+        return "nothing does"
+    return f"{row['for_one_db_less']:+.3g}{_unit(row)}" + (
+        "" if row["linear"] else " (beyond the linear range)"
+    )
+
+
+def _loudest_table(sound: RadiatedSound) -> Table:
+    columns = {
+        "order": lambda point: f"{point.order:.4g}",
+        "speed, rpm": lambda point: number(point.speed / RPM, 5),
+        "frequency, Hz": lambda point: number(point.frequency, 5),
+        "dB(A)": lambda point: f"{point.weighted_level:.1f}" + ("" if point.in_contact else " (flanks part)"),
+        "mode": lambda point: f"{point.mode}",
+        "mode, Hz": lambda point: number(point.natural_frequency, 5),
+        "share of the mode, %": lambda point: number(100.0 * point.mode_share, 2),
+        "bearing": lambda point: point.bearing,
+        "alone, dB(A)": lambda point: f"{point.bearing_level:.1f}",
+        "without it, dB(A)": lambda point: f"{point.level_without_bearing:.1f}",
+    }
+    return Table.of("Loudest points, A-weighted", loudest(sound), columns)
+
+
+def _sentences(sound: RadiatedSound) -> tuple[str, ...]:
+    """Say what radiates at the loudest point, and through what; nothing in silence."""
+    return tuple(
+        f"{_where(point)}: {point.weighted_level:.1f} dB(A) through mode {point.mode} of "
+        f"{point.mode_housing} ({number(point.natural_frequency, 4)} Hz); bearing {point.bearing} alone "
+        f"{point.bearing_level:.1f} dB(A); {most(sound)}"
+        for point in loudest(sound, 1)
+    )
+
+
+def _where(point: LoudPoint) -> str:
+    return f"order {point.order:.4g} at {number(point.speed / RPM, 4)} rpm, {number(point.frequency, 4)} Hz"
+
+
+def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
+    """Return the loudest speed, the loudest order, and where flanks part."""
+    total, points = sound.orders.total_weighted_level, loudest(sound, 1)
+    at = int(total.argmax())
+    where = f"at {number(float(sound.speed[at]) / RPM, 4)} rpm, all orders"
+    if (band := sound.facts["band"]) is not None:
+        total_band = band["largest_total"]
+        where += f"; {total_band['low_db_a']:.1f} to {total_band['high_db_a']:.1f} over the ranges of guesses"
+    shown = [Headline("sound power level", f"{total[at]:.1f} dB(A)", where)]
+    shown += [
+        Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", words)
+        for point, words in zip(points, _sentences(sound), strict=True)
+    ]
+    parting = sound.speed[~sound.in_contact] / RPM
+    if parting.size:
+        first = f"from {number(float(parting[0]), 4)} rpm on"
+        shown.append(Headline("flanks part at", f"{parting.size} of {sound.speed.size} speeds", first))
+    return tuple(shown)
+
+
+def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
+    points = loudest(sound, 1)
+    panels = _panel_intensity(sound, _where(points[0]), region_table(sound)) if points else None
+    figures = (
+        _sound_map(sound, _loudest_table(sound), _sentences(sound)),
+        _level_over_speed(sound),
+        _third_octaves(sound),
+        _bearing_levels(sound),
+        panels,
+    )
+    shown = tuple(figure for figure in figures if figure is not None)
+    if sound.facts.get("over_time") is None:
+        return shown
+    return (*shown, third_octaves_over_time(sound.facts))
+
+
+def _limits(sound: RadiatedSound) -> Iterator[tuple[str, str]]:
+    yield from force_words(sound.facts)
+    for name in sound.housing:
+        yield from _radiation_limits(sound, name)
+    parting = sound.speed[~sound.in_contact] / RPM
+    if parting.size:
+        where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
+        what = "see loa steady" if of_run(sound.facts) is None else "their impacts are in the run's total"
+        yield "flanks lift off", f"at {parting.size} of {sound.speed.size} speeds, {where}: {what}"
+
+
+def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str, str]]:
+    about, compared = sound.facts["radiation"][housing], sound.facts["models"][housing]
+    resolved, valid, highest = about["resolved_frequency"], about["valid_frequency"], sound.frequency.max()
+    yield (
+        housing,
+        f"{about['model_name'].replace('_', ' ')}, outer hull {number(about['area'], 3)} m², "
+        f"{number(about['inner_area'], 3)} m² of inner walls left out",
+    )
+    if highest > resolved > 0.0:
+        words = "which the mesh does not resolve, equivalent radiated power"
+        yield f"above {number(resolved, 3)} Hz", words
+    if highest > valid:
+        words = "0.7 of the highest mode kept, modes are missing: keep more"
+        yield f"above {number(valid, 3)} Hz", words
+    for model, reason in compared.get("left_out", {}).items():
+        yield f"without {model.replace('_', ' ')}", reason
+
+
+def _text(sound: RadiatedSound) -> Iterator[Table | str]:
+    yield _loudest_table(sound)
+    yield region_table(sound)
+    yield from _sentences(sound)
+    yield from (f"{what}: {words}" for what, words in _limits(sound))
+    yield from model_tables(sound)
+    yield from _uncertainty_tables(sound.facts)
+    yield from (f"no sensitivity to {name}: {why}" for name, why in _missing(sound))
+    yield from model_text(sound.facts)
+
+
+def _missing(sound: RadiatedSound) -> tuple[tuple[str, str], ...]:
+    """Return the figures without a sensitivity, and why."""
+    return tuple(sound.facts["sensitivities_left_out"].items())
+
+
+def _page(sound: RadiatedSound) -> Page:
+    """Return the report: figures, bands and sensitivities, effects, and what the levels rest on."""
+    whole = dynamics_page("Sound power", _figures(sound), _headlines(sound), sound.facts)
+    tables = tuple(_uncertainty_tables(sound.facts))
+    if missing := _missing(sound):
+        tables += (Table("No sensitivity", ("to", "because"), missing),)
+    bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
+    rests = Table("Radiation models, and what the levels do not hold", ("what", "how"), tuple(_limits(sound)))
+    accuracy = Section("Accuracy of the levels", tables=(rests, *model_tables(sound)), part=Part.ACCURACY)
+    return replace(whole, sections=(*whole.sections, *bands, accuracy))
+
+
+PAGE = Presentation(
+    lambda sound: _sound_map(sound, _loudest_table(sound), _sentences(sound)),
+    _page,
+    _text,
+)

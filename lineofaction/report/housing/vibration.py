@@ -1,0 +1,320 @@
+"""A housing's vibration as people see it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from bounds.types import FloatArray, IntArray
+from dynamics.vibration import VibrationAnalysis, vibration_level
+from dynamics.vibration.vibration_analysis import Shares
+from lineofaction.gearbox.studies.vibration.run import MM_PER_S, HousingVibrationResult
+from lineofaction.gearbox.units import MM, RPM
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Bars,
+    Figure,
+    Line,
+    Panel,
+    Reference,
+    Table,
+    category_lines,
+    largest,
+    number,
+)
+from lineofaction.report.drawing.page import Headline, Page, Part, Section
+from lineofaction.report.drawing.surface_view import surface_panels
+from lineofaction.report.housing.forces import force_words, row_axis
+from lineofaction.report.presentation import Presentation, dynamics_page, model_text
+
+SHOWN = 12
+"""Modes in the table of contributions."""
+_LARGEST_HEAD = (
+    "velocity of", "order", "speed, rpm", "frequency, Hz", "nearest mode, Hz", "rms, mm/s",
+    "level, dB re 1 nm/s", "within valid modes",
+)  # fmt: skip
+
+
+def _where(found: VibrationAnalysis) -> str:
+    vibration, s, h = found.vibration, found.at_speed, found.at_order
+    speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(float(vibration.frequency[s, h]), 4)
+    return f"order {vibration.order[h]:.4g} at {speed} rpm, {hertz} Hz"
+
+
+def _largest_table(result: HousingVibrationResult) -> Table:
+    """List the largest velocity of every point and of the outer hull, with the nearest mode."""
+    vibration = result.analysis.vibration
+    sizes = [(name, vibration.rms[k]) for k, name in enumerate(vibration.point)]
+    if result.analysis.deflection is not None:
+        sizes.append(("outer hull, normal", np.sqrt(vibration.mean_square_velocity)))
+    rows = []
+    for name, rms in sizes:
+        s, h = map(int, np.unravel_index(int(np.argmax(rms)), rms.shape))
+        hertz = float(vibration.frequency[s, h])
+        near = result.natural_frequency[int(np.argmin(np.abs(result.natural_frequency - hertz)))]
+        speed, order = number(float(vibration.speed[s]) / RPM, 5), f"{vibration.order[h]:.4g}"
+        size = number(float(rms[s, h]) / MM_PER_S, 4), number(float(vibration_level(rms[s, h])), 4)
+        valid = "yes" if vibration.valid[s, h] else "no"
+        rows.append((name, order, speed, number(hertz, 5), number(float(near), 5), *size, valid))
+    return Table("Largest velocity of every point", _LARGEST_HEAD, tuple(rows))
+
+
+def _contribution_table(result: HousingVibrationResult) -> Table:
+    found = result.analysis
+    head = ["part", "frequency, Hz", *(f"{point}, %" for point in found.vibration.point)]
+    with_surface = found.deflection is not None
+    rows = [*_rows(found.bearings, with_surface), *_rows(found.modes, with_surface)]
+    if with_surface:
+        head.append("outer hull, %")
+    return Table(f"Contributions to the mean square velocity at {_where(found)}", tuple(head), tuple(rows))
+
+
+def _rows(shares: Shares, with_surface: bool) -> list[tuple[str, ...]]:
+    every = np.vstack([shares.point, shares.surface]) if with_surface else shares.point
+    most = largest(np.max(np.abs(every), axis=0), SHOWN)
+    return [
+        (
+            shares.name[p],
+            number(float(shares.frequency[p]), 5) if np.isfinite(shares.frequency[p]) else "",
+            *(f"{100.0 * float(value):.1f}" for value in every[:, p]),
+        )
+        for p in most
+    ]
+
+
+def _series(result: HousingVibrationResult) -> Table:
+    """Return every velocity: a row for each speed and order, rms along x, y, z in mm/s."""
+    found = result.analysis
+    vibration = found.vibration
+    head = ["speed_rpm", "order", "frequency_hz", "valid"]
+    head += [f"{name}_{axis}_mm_per_s" for name in vibration.point for axis in "xyz"]
+    columns = [
+        np.repeat(vibration.speed / RPM, vibration.order.size),
+        np.tile(vibration.order, vibration.speed.size),
+        vibration.frequency.ravel(),
+        vibration.valid.ravel().astype(float),
+        *(np.abs(vibration.velocity) / np.sqrt(2.0) / MM_PER_S).reshape(-1, vibration.frequency.size),
+    ]
+    if found.deflection is not None:
+        head.append("surface_mm_per_s")
+        columns.append(np.sqrt(vibration.mean_square_velocity).ravel() / MM_PER_S)
+    rows = tuple(tuple(f"{value:.9g}" for value in row) for row in zip(*columns, strict=True))
+    return Table("Velocities by speed and order", tuple(head), rows)
+
+
+SHOWN_ORDERS, SHOWN_POINTS, SHOWN_SEATS, SHOWN_MODES = 6, 3, 4, 8
+DRAWN = 0.06
+"""Largest motion as it is drawn, over the size of the housing."""
+
+
+def _velocity_figure(result: HousingVibrationResult) -> Figure:
+    found = result.analysis
+    vibration = found.vibration
+    size = {f"velocity of {name}": vibration.rms[k] for k, name in enumerate(vibration.point)}
+    size = dict(sorted(size.items(), key=lambda pair: -float(pair[1].max()))[:SHOWN_POINTS])
+    if found.deflection is not None:
+        size["velocity normal to the outer hull"] = np.sqrt(vibration.mean_square_velocity)
+    return Figure(
+        key="housing_velocity",
+        title=f"Vibration of {found.housing} by order",
+        caption="Root mean square velocity under the forces of the bearings: of points all directions "
+        "together, of the outer hull (no walls of cavities) its mean square normal to it. Dashed: above "
+        f"{number(vibration.highest_valid_frequency, 4)} Hz, 0.7 of the highest mode kept.",
+        alternative=_words(result),
+        content=tuple(_velocity_panel(found, name, rms / MM_PER_S) for name, rms in size.items()),
+        table=_largest_table(result),
+    )
+
+
+def _velocity_panel(found: VibrationAnalysis, name: str, rms: FloatArray) -> Panel:
+    """Draw one velocity (S, H) in mm/s by its largest orders."""
+    vibration = found.vibration
+    x, speed = row_axis(vibration.speed, found.facts)
+    lines = []
+    for k, h in enumerate(largest(rms.max(axis=0), SHOWN_ORDERS)):
+        valid, color, order = vibration.valid[:, h], palette.category(k), f"order {vibration.order[h]:.4g}"
+        lines.append(Line(order, speed, np.where(valid, rms[:, h], np.nan), color, width=1.4))
+        if not np.all(valid):
+            onward = ~valid | np.append(~valid[1:], False)
+            beyond = np.where(onward, rms[:, h], np.nan)
+            lines.append(Line(f"{order}, beyond", speed, beyond, color, "dash", 1.0))
+    return Panel(x, Axis("rms velocity, mm/s"), tuple(lines), title=name)
+
+
+def _transfer_figure(result: HousingVibrationResult) -> Figure:
+    found = result.analysis
+    mobilities = found.mobilities
+    hertz, force = mobilities.frequency, found.vibration.seat_force[found.at_speed, found.at_order]
+    x = Axis("frequency, Hz", limits=(0.0, float(hertz[-1])))
+    at = float(found.vibration.frequency[found.at_speed, found.at_order])
+    named = (("shown order", at), ("valid to", found.vibration.highest_valid_frequency))
+    marks = tuple(Reference(name, value) for name, value in named if value <= hertz[-1])
+    nearest = int(np.argmin(np.abs(hertz - at)))
+    per_force = Axis("velocity per force, m/(N s)", "log")
+    panels, title = [], "surface"
+
+    def curves(gain: FloatArray, seats: IntArray) -> tuple[Line, ...]:
+        return category_lines(hertz, [mobilities.seat[s] for s in seats], gain.T[seats], width=1.2)
+
+    if found.vibration.point:
+        point, axis = _fastest(found)
+        title = f"{found.vibration.point[point]} along {'xyz'[axis]}"
+        gain = mobilities.point[point, axis]
+        most = np.argsort(-np.abs(gain[nearest] * force), kind="stable")[:SHOWN_SEATS]
+        panels.append(Panel(x, per_force, curves(np.abs(gain), most), marks, title=title))
+        phase = curves(np.degrees(np.angle(gain)), most)
+        panels.append(Panel(x, Axis("phase, °", limits=(-180.0, 180.0)), phase))
+    if found.deflection is not None:
+        gain = np.sqrt(mobilities.surface)
+        most = np.argsort(-gain[nearest] * np.abs(force), kind="stable")[:SHOWN_SEATS]
+        panels.append(Panel(x, per_force, curves(gain, most), title="root mean square of the outer hull"))
+    return Figure(
+        key="housing_transfer",
+        title=f"Transfer functions of {found.housing}",
+        caption="Velocity per force on a seat (per moment in N m for tilts), along the seat's own axes: the "
+        "seats that act most in the order shown.",
+        alternative=f"From the seats to {title}, up to {number(float(hertz[-1]), 4)} Hz.",
+        content=tuple(panels),
+    )
+
+
+def _fastest(found: VibrationAnalysis) -> tuple[int, int]:
+    size = np.abs(found.vibration.velocity[:, :, found.at_speed, found.at_order])
+    point, axis = np.unravel_index(int(np.argmax(size)), size.shape)
+    return int(point), int(axis)
+
+
+def _contribution_figure(result: HousingVibrationResult) -> Figure:
+    found = result.analysis
+    of_surface = found.deflection is not None
+    point = 0 if of_surface else _fastest(found)[0]
+    what = "of the outer hull" if of_surface else f"of {found.vibration.point[point]}"
+    both = [
+        (shares, shares.surface if of_surface else shares.point[point])
+        for shares in (found.bearings, found.modes)
+    ]
+    return Figure(
+        key="housing_contributions",
+        title=f"Contributions to the mean square velocity {what}",
+        caption=f"At {_where(found)}. Bars of a panel add up to 100 %; below zero: against the sum.",
+        alternative=" ".join(
+            f"Most comes from {shares.name[int(np.argmax(part))]}, {number(100.0 * float(part.max()), 3)} %."
+            for shares, part in both
+        ),
+        content=tuple(_share_panel(*each) for each in both),
+        table=_contribution_table(result),
+    )
+
+
+def _share_panel(shares: Shares, part: FloatArray) -> Panel:
+    most = largest(np.abs(part), SHOWN_MODES)
+    values = [100.0 * float(part[p]) for p in most]
+    names = [_name(shares, p) for p in most]
+    if len(most) < part.size:
+        names.append("others")
+        values.append(100.0 - sum(values))
+    bars = Bars("contribution", np.arange(float(len(names))), np.array(values), 0.0, 0.6, palette.BLUE)
+    return Panel(Axis.of_names(names), Axis("contribution, %"), bars=(bars,))
+
+
+def _name(shares: Shares, index: int) -> str:
+    """Name a part: a mode by its frequency."""
+    hertz = float(shares.frequency[index])
+    return f"{number(hertz, 4)} Hz" if np.isfinite(hertz) else shares.name[index]
+
+
+def _shape_figure(result: HousingVibrationResult) -> Figure | None:
+    """Draw the mode or the operating deflection from two sides; None without a surface."""
+    shape = result.shape
+    if shape is None:
+        return None
+    if result.mode:
+        what = f"Mode {result.mode}, {number(float(result.natural_frequency[result.mode - 1]), 4)} Hz"
+        one, unit = 1.0, "1"
+    else:
+        what = f"Operating deflection at {_where(result.analysis)}"
+        one, unit = MM_PER_S, "mm/s"
+    fastest = float(np.linalg.norm(shape.motion, axis=1).max())
+    drawn = DRAWN * float(np.ptp(shape.points, axis=0).max())
+    turned = shape.motion * np.exp(-0.5j * np.angle(np.sum(shape.motion**2)))  # as much as can be is real
+    offset = drawn / max(fastest, 1e-300) * turned.real
+    scale = f"{number(fastest / one, 3)} {unit} drawn as {number(drawn / MM, 3)} mm"
+    label, value = f"normal to the surface, {unit}", np.abs(shape.normal_motion) / one
+    return Figure(
+        key="housing_shape",
+        title=what,
+        caption="Colors: peak amplitude normal to the surface. Drawn: the motion at the instant at which it "
+        "is largest. Lines: edges at rest.",
+        alternative=f"{what}: the largest motion is {number(fastest / one, 3)} {unit}.",
+        content=surface_panels(shape.points, shape.facets, offset, value, label, scale),
+    )
+
+
+def _words(result: HousingVibrationResult) -> str:
+    found, vibration = result.analysis, result.analysis.vibration
+    beyond = vibration.order[~np.all(vibration.valid, axis=0)]
+    text = f"Shown in detail: {_where(found)}."
+    if beyond.size:
+        orders = ", ".join(f"{order:.4g}" for order in beyond[:SHOWN_ORDERS])
+        text += f" Orders {orders} reach above what the modes kept carry."
+    return text
+
+
+def _figure(result: HousingVibrationResult) -> Figure:
+    """Draw the mode or the deflection; without a surface the velocities."""
+    return _shape_figure(result) or _velocity_figure(result)
+
+
+def _page(result: HousingVibrationResult) -> Page:
+    shape = _shape_figure(result)
+    figures = (_velocity_figure(result), _contribution_figure(result), _transfer_figure(result))
+    drawn = figures if shape is None else (figures[0], shape, *figures[1:])
+    whole = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.analysis.facts)
+    rests = Table("Forces that move the housing", ("what", "how"), force_words(result.analysis.facts))
+    accuracy = Section("Accuracy of the velocities", tables=(rests,), part=Part.ACCURACY)
+    return replace(whole, sections=(*whole.sections, accuracy))
+
+
+def _headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
+    found = result.analysis
+    vibration, at = found.vibration, (found.at_speed, found.at_order)
+    surface = found.deflection is not None
+    if vibration.point:
+        rms = vibration.rms[(slice(None), *at)]
+        fastest = int(np.argmax(rms))
+        name = f"velocity of {vibration.point[fastest]}"
+        first = Headline(name, _speed(float(rms[fastest])), _where(found))
+    else:
+        rms_of_hull = float(vibration.mean_square_velocity[at]) ** 0.5
+        first = Headline("velocity of the outer hull", _speed(rms_of_hull))
+    most = []
+    for what, shares in (("bearing", found.bearings), ("mode", found.modes)):
+        part = shares.surface if surface else shares.point[0]
+        p = int(np.argmax(part))
+        hertz = f"{number(float(shares.frequency[p]), 4)} Hz, " if np.isfinite(shares.frequency[p]) else ""
+        share = f"{hertz}{number(100.0 * float(part[p]), 3)} % of the mean square"
+        most.append(Headline(f"{what} that contributes most", shares.name[p], share))
+    return (first, *most)
+
+
+def _speed(rms: float) -> str:
+    return f"{number(rms / MM_PER_S, 3)} mm/s rms"
+
+
+def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
+    found, vibration = result.analysis, result.analysis.vibration
+    yield _largest_table(result)
+    yield _contribution_table(result)
+    beyond = vibration.order[~np.all(vibration.valid, axis=0)]
+    if beyond.size:
+        orders = ", ".join(f"{order:.4g}" for order in beyond)
+        limit = number(vibration.highest_valid_frequency, 4)
+        yield f"orders {orders} go beyond {limit} Hz, 0.7 of the highest mode kept: keep more modes"
+    yield from (f"{what}: {words}" for what, words in force_words(found.facts))
+    yield from model_text(found.facts)
+
+
+PAGE = Presentation(_figure, _page, _text, series=_series)

@@ -1,0 +1,411 @@
+"""A pair: its name, what speaks against it, its drawing and its data sheet."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from pydantic import ValidationError
+
+from bounds import Direction
+from fe_contact.geometry import (
+    BoreSeat,
+    FlankModification,
+    Gear,
+    GearBlank,
+    GearPair,
+    InternalGearPair,
+    ParallelAxes,
+    PitchDeviation,
+    RingGear,
+    Toothing,
+    sliding_factor,
+    specific_sliding,
+)
+from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
+from fe_contact.material import Material
+from fe_contact.plausibility import mesh_findings
+from fe_contact.ste import PairFacts, SteDatabase
+from fe_contact.types import Json
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.live import pair_outline
+from lineofaction.gearbox.schemas.case import Case
+from lineofaction.gearbox.units import DEGREE, MM, UM
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Dash,
+    Figure,
+    FloatArray,
+    Line,
+    Note,
+    Panel,
+    Reference,
+    Table,
+    number,
+)
+from lineofaction.report.drawing.page import Section
+
+_PARTS: dict[str, Callable[..., object]] = {
+    "modification": FlankModification,
+    "material": Material,
+    "pitch_deviation": PitchDeviation,
+    "blank": GearBlank,
+    "seat": BoreSeat,
+}
+
+
+def pair_of(database: SteDatabase) -> ParallelAxes | None:
+    """Return the pair of the case that the database echoes: a case file, or a request in SI; else None."""
+    case = database.metadata.case
+    try:
+        # strict models take JSON's lists for tuples only from text
+        return gear_pair(Case.model_validate_json(json.dumps(case)))
+    except ValidationError:
+        return _from_si(case)
+
+
+def iso_mesh_stiffness(database: SteDatabase) -> float | None:
+    """Mean mesh stiffness of ISO 6336-1 in N/m per m of face width, above 100 N/mm; None without a pair.
+
+    None for a ring gear too: its approximation by a rack says nothing of the rim.
+    """
+    pair = pair_of(database)
+    return iso6336_stiffness(pair).mesh_stiffness if isinstance(pair, GearPair) else None
+
+
+def _from_si(case: Json) -> ParallelAxes | None:
+    """Rebuild the pair of a request that was made from Python."""
+    try:
+        pair = case["pair"]
+        pinion, wheel, distance = pair["pinion"], pair["wheel"], pair["center_distance"]
+        if "rim_diameter" in wheel:
+            return InternalGearPair(Gear(**_fields(pinion)), RingGear(**_fields(wheel)), distance)
+        return GearPair(Gear(**_fields(pinion)), Gear(**_fields(wheel)), distance)
+    except (KeyError, TypeError):
+        return None
+
+
+def _fields(content: Json) -> Json:
+    parts = {name: kind(**content[name]) for name, kind in _PARTS.items() if content.get(name) is not None}
+    return content | parts
+
+
+def pair_title(facts: PairFacts) -> str:
+    """Name a pair by its teeth."""
+    one, other = facts.teeth
+    return f"Gear pair {one}/{other}, internal" if facts.internal else f"Gear pair {one}/{other}"
+
+
+def pair_lead(facts: PairFacts) -> str:
+    """Say the dimensions of a pair."""
+    return (
+        f"center distance {1e3 * facts.center_distance:.6g} mm, "
+        f"face width {1e3 * facts.face_width:.6g} mm, base pitch {1e3 * facts.base_pitch:.5g} mm"
+    )
+
+
+def pair_remarks(pair: ParallelAxes) -> list[Json]:
+    """Return the remarks as warnings: `check`, `message`."""
+    remarks = (*_undercut(pair), *_backlash(pair))
+    findings = [{"check": finding.check, "message": finding.message()} for finding in mesh_findings(pair)]
+    return [{"check": check, "message": message} for check, message in remarks] + findings
+
+
+def _undercut(pair: ParallelAxes) -> Iterator[tuple[str, str]]:
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        if isinstance(gear, Gear) and gear.form_point.undercut:
+            words = "the tool cuts into the involute near the root. Raise its profile shift."
+            yield "undercut", f"pair.{name}: {words}"
+
+
+def _backlash(pair: ParallelAxes) -> Iterator[tuple[str, str]]:
+    if pair.normal_backlash <= 0.0:
+        yield "backlash", "pair: no backlash. Give thickness_allowance_um, or a larger center distance."
+
+
+_POINTS = 201
+_AXES = (Direction.PROFILE, Direction.FACE)
+_SIDES = {"pinion": palette.BLUE, "wheel": palette.VERMILLION}
+_HEIGHT = 3.4
+"""Modules drawn above and below the pitch point."""
+_WIDTH = 3.4
+"""Width of the drawing over its height, nearly that of a panel."""
+
+
+def pair_drawing(pair: ParallelAxes) -> Figure:
+    """Return the section of the mesh; where flanks are modified, also their profiles and leads."""
+    gears = {"pinion": pair.pinion, "wheel": pair.wheel}
+    profiles = [
+        _profile(name, pair) for name, gear in gears.items() if gear.modification.varies_along_profile
+    ]
+    leads = {name: gear for name, gear in gears.items() if gear.modification.varies_along_face}
+    panels = (_section(pair), *profiles, *([_lead(leads)] if leads else ()))
+    return Figure(
+        key="pair_drawing",
+        title="The pair in mesh" if len(panels) == 1 else "The pair in mesh and its flank modifications",
+        caption=_caption(pair, modified=len(panels) > 1),
+        alternative=" ".join(_finding(name, gear) for name, gear in gears.items()),
+        content=panels,
+    )
+
+
+def _section(pair: ParallelAxes) -> Panel:
+    outline = pair_outline(pair)
+    lines = [_gear_line(name, outline[name]) for name in _SIDES]
+    for name, radius in zip(_SIDES, pair.operating_pitch_radii, strict=True):
+        center = outline[name]["centre_mm"]
+        angle = np.linspace(0.0, 2.0 * math.pi, 721)
+        x, y = center[0] + radius / MM * np.cos(angle), center[1] + radius / MM * np.sin(angle)
+        lines.append(Line("working pitch circles", x, y, palette.MUTED, "dash", 1.0))
+    points = outline["path_of_contact"]["points_mm"]
+    path = np.array(sorted(points.values()))
+    lines.append(Line("path of contact", path[:, 0], path[:, 1], palette.GREEN, width=2.4, markers=True))
+    notes = tuple(Note(x, y, name, -(name == "D"), left=name in "AB") for name, (x, y) in points.items())
+    pitch_point = pair.operating_pitch_radii[0] / MM
+    half = _HEIGHT * pair.pinion.normal_module / MM
+    x = Axis("mm", limits=(-_WIDTH * half, _WIDTH * half))
+    y = Axis("mm", limits=(pitch_point - half, pitch_point + half))
+    return Panel(x, y, tuple(lines), title="Transverse section", notes=notes, equal=True)
+
+
+def _gear_line(name: str, gear: Json) -> Line:
+    tooth = np.array(gear["tooth_mm"])
+    pitch = -2.0 * math.pi / gear["teeth"]  # teeth follow each other from left to right
+    angles = math.radians(gear["angle_deg"]) + pitch * np.arange(gear["teeth"])
+    x = np.cos(angles)[:, None] * tooth[:, 0] - np.sin(angles)[:, None] * tooth[:, 1]
+    y = np.sin(angles)[:, None] * tooth[:, 0] + np.cos(angles)[:, None] * tooth[:, 1]
+    closed = [np.append(part.ravel(), part.ravel()[0]) for part in (x, y)]
+    center = gear["centre_mm"]
+    return Line(name, closed[0] + center[0], closed[1] + center[1], _SIDES[name], width=1.4)
+
+
+def _profile(name: str, pair: ParallelAxes) -> Panel:
+    """Draw the K-chart of a gear: what is removed over its roll angle; at three places of a twisted flank."""
+    gear: Toothing = getattr(pair, name)
+    roll, half = _usable(gear), 0.5 * gear.face_width
+    faces: tuple[tuple[str, float, Dash], ...] = (
+        ("mid-face", 0.0, "solid"),
+        ("datum face", -half, "dash"),
+        ("non-datum face", half, "dot"),
+    )
+    twisted = any(part.varies and part.along not in _AXES for part in gear.modification.parts)
+    angle = roll / gear.base_radius / DEGREE
+    lines = tuple(
+        Line(f"{name}, {place}" if twisted else name, angle, _removed(gear, roll, face), _SIDES[name], dash)
+        for place, face, dash in faces[: 3 if twisted else 1]
+    )
+    pitch_point = pair.path_of_contact.pitch_point
+    at_pitch = pitch_point if name == "pinion" else float(pair.mating_roll_length(pitch_point))
+    mark = Reference("C", at_pitch / gear.base_radius / DEGREE)
+    title = f"Profile of the {name}, root to the {'left' if gear.sign > 0 else 'right'}"
+    return Panel(Axis("roll angle, deg"), Axis("removed, µm"), lines, (mark,), title=title)
+
+
+def _usable(gear: Toothing) -> FloatArray:
+    """Roll lengths in m over the usable flank."""
+    ends = sorted((gear.form_roll_length, gear.tip_form_roll_length))
+    return np.linspace(ends[0], ends[1], _POINTS)
+
+
+def _lead(gears: dict[str, Toothing]) -> Panel:
+    lines = []
+    for name, gear in gears.items():
+        face = np.linspace(-0.5, 0.5, _POINTS) * gear.face_width
+        removed = _removed(gear, np.full(_POINTS, _usable(gear).mean()), face)
+        lines.append(Line(name, face / MM, removed, _SIDES[name]))
+    x = Axis("face position, mm (0 = mid-face; left: datum face)")
+    return Panel(x, Axis("removed, µm"), tuple(lines), title="Lead at the middle of the profile")
+
+
+def _removed(gear: Toothing, roll: FloatArray, face: FloatArray | float) -> FloatArray:
+    return gear.modification.material_removed(gear, roll, face) / UM
+
+
+def _caption(pair: ParallelAxes, *, modified: bool) -> str:
+    section = (
+        f"Section at the pinion's mid-face; the pinion drives clockwise. The wheel's center is "
+        f"{'below' if pair.internal else 'above'}. A to E: the path of contact of the usable flanks."
+    )
+    return f"{section} Material removed along the line of action; 0 is the involute." if modified else section
+
+
+def _finding(name: str, gear: Toothing) -> str:
+    if gear.modification.neutral:
+        return f"The {name} is not modified."
+    roll, face = np.meshgrid(_usable(gear), np.linspace(-0.5, 0.5, _POINTS) * gear.face_width)
+    return f"At most {number(float(_removed(gear, roll, face).max()), 3)} µm are removed from the {name}."
+
+
+_UNITS: Mapping[str, float] = {"": 1.0, "mm": MM, "um": UM, "deg": DEGREE}
+_DECIMALS = {"": 4, "mm": 4, "um": 1, "deg": 4}
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A line of the sheet: words and symbol of ISO 21771-1, the unit of the boundary, and values in SI.
+
+    `of` returns those of pinion and wheel, or of the pair.
+    """
+
+    words: str
+    symbol: str
+    unit: str
+    of: Callable[[ParallelAxes], Sequence[float]]
+
+    @property
+    def name(self) -> str:
+        """Its name in JSON, with the unit."""
+        words = self.words.replace(" ", "_").replace("-", "_")
+        return f"{words}_{self.unit}" if self.unit else words
+
+    def values(self, pair: ParallelAxes) -> list[float]:
+        """Return the values in the unit of the boundary."""
+        return [float(value) / _UNITS[self.unit] + 0.0 for value in self.of(pair)]
+
+    def row(self, pair: ParallelAxes) -> tuple[str, ...]:
+        """Return the line as words."""
+        return (self.words, self.symbol, *(_text(value, self.unit) for value in self.values(pair)), self.unit)
+
+
+def _both(of: Callable[[Toothing], float]) -> Callable[[ParallelAxes], Sequence[float]]:
+    return lambda pair: (of(pair.pinion), of(pair.wheel))
+
+
+def _pair(of: Callable[[ParallelAxes], float]) -> Callable[[ParallelAxes], Sequence[float]]:
+    return lambda pair: (of(pair),)
+
+
+def _start_rolls(pair: ParallelAxes) -> tuple[float, float]:
+    """Roll lengths in m of both gears where their active flanks begin at the root."""
+    path = pair.active_path
+    return path.start, float(pair.mating_roll_length(path.end))
+
+
+def _start_diameters(pair: ParallelAxes) -> list[float]:
+    """Diameters in m at which the active flanks begin."""
+    gears = (pair.pinion, pair.wheel)
+    rolls = zip(gears, _start_rolls(pair), strict=True)
+    return [2.0 * math.hypot(gear.base_radius, roll) for gear, roll in rolls]
+
+
+GEARS = (
+    Entry("number of teeth", "z", "", _both(lambda gear: gear.teeth)),
+    Entry("profile shift coefficient", "x", "", _both(lambda gear: gear.profile_shift_coefficient)),
+    Entry("face width", "b", "mm", _both(lambda gear: gear.face_width)),
+    Entry("reference diameter", "d", "mm", _both(lambda gear: 2.0 * gear.reference_radius)),
+    Entry("base diameter", "d_b", "mm", _both(lambda gear: 2.0 * gear.base_radius)),
+    Entry("working pitch diameter", "d_w", "mm", lambda pair: [2.0 * r for r in pair.operating_pitch_radii]),
+    Entry("tip diameter", "d_a", "mm", _both(lambda gear: 2.0 * gear.tip_radius)),
+    Entry("tip form diameter", "d_Fa", "mm", _both(lambda gear: 2.0 * gear.tip_form_radius)),
+    Entry("active root diameter", "d_Nf", "mm", _start_diameters),
+    Entry("root form diameter", "d_Ff", "mm", _both(lambda gear: 2.0 * gear.form_radius)),
+    Entry("root diameter", "d_f", "mm", _both(lambda gear: 2.0 * gear.root_radius)),
+    Entry("transverse tooth thickness", "s_t", "mm", _both(lambda gear: gear.tooth_thickness)),
+    Entry("tooth thickness at the tip", "s_at", "mm", _both(lambda gear: gear.tip_tooth_thickness)),
+    Entry("tip clearance", "c", "mm", lambda pair: pair.tip_clearances),
+)
+"""Lines with a value for either gear."""
+
+MESH = (
+    Entry("center distance", "a", "mm", _pair(lambda pair: pair.center_distance)),
+    Entry("transmission ratio", "i", "", _pair(lambda pair: pair.speed_ratio)),
+    Entry("normal module", "m_n", "mm", _pair(lambda pair: pair.pinion.normal_module)),
+    Entry("transverse module", "m_t", "mm", _pair(lambda pair: pair.pinion.transverse_module)),
+    Entry("normal pressure angle", "alpha_n", "deg", _pair(lambda pair: pair.pinion.normal_pressure_angle)),
+    Entry(
+        "transverse pressure angle",
+        "alpha_t",
+        "deg",
+        _pair(lambda pair: pair.pinion.transverse_pressure_angle),
+    ),
+    Entry("working pressure angle", "alpha_wt", "deg", _pair(lambda pair: pair.working_pressure_angle)),
+    Entry("helix angle of the pinion", "beta", "deg", _pair(lambda pair: pair.pinion.helix_angle)),
+    Entry("base helix angle of the pinion", "beta_b", "deg", _pair(lambda pair: pair.base_helix_angle)),
+    Entry("transverse base pitch", "p_bt", "mm", _pair(lambda pair: pair.base_pitch)),
+    Entry("common face width", "b_w", "mm", _pair(lambda pair: pair.face_width)),
+    Entry("length of path of contact", "g_alpha", "mm", _pair(lambda pair: pair.active_path.length)),
+    Entry("transverse contact ratio", "eps_alpha", "", _pair(lambda pair: pair.active_contact_ratio)),
+    Entry("overlap ratio", "eps_beta", "", _pair(lambda pair: pair.overlap_ratio)),
+    Entry(
+        "total contact ratio",
+        "eps_gamma",
+        "",
+        _pair(lambda pair: pair.active_contact_ratio + pair.overlap_ratio),
+    ),
+    Entry("normal backlash", "j_bn", "um", _pair(lambda pair: pair.normal_backlash)),
+    Entry("circumferential backlash", "j_wt", "um", _pair(lambda pair: pair.circumferential_backlash)),
+)
+"""Lines with one value."""
+
+
+def _path_points(pair: ParallelAxes) -> dict[str, Json]:
+    """Return A to E of the usable flanks; values with two entries are of pinion and wheel."""
+    radii = pair.pinion.base_radius, pair.wheel.base_radius
+    points = {}
+    for name, roll in zip("ABCDE", pair.active_path.points, strict=True):
+        rolls = roll, float(pair.mating_roll_length(roll))
+        points[name] = {
+            "diameter_mm": [2.0 * math.hypot(*both) / MM for both in zip(radii, rolls, strict=True)],
+            "roll_angle_deg": [way / radius / DEGREE for way, radius in zip(rolls, radii, strict=True)],
+            "sliding_factor": float(sliding_factor(pair, roll)),
+            "specific_sliding": [float(value) for value in specific_sliding(pair, roll)],
+        }
+    return points
+
+
+def data_sheet(pair: ParallelAxes) -> tuple[Table, Table, Table]:
+    """Return the sheet as tables: gears, mesh, points of the path of contact."""
+    gears = tuple(entry.row(pair) for entry in GEARS)
+    mesh = tuple(entry.row(pair) for entry in MESH)
+    points = tuple(_point_row(*point) for point in _path_points(pair).items())
+    return (
+        Table("Gears", ("quantity", "symbol", "pinion", "wheel", "unit"), gears),
+        Table("Mesh", ("quantity", "symbol", "value", "unit"), mesh),
+        Table("Path of contact", _POINT_HEAD, points),
+    )
+
+
+_POINT_HEAD = (
+    "point", "d_y1 mm", "d_y2 mm", "roll angle 1 deg", "roll angle 2 deg", "sliding factor K_g",
+    "specific sliding 1", "specific sliding 2",
+)  # fmt: skip
+
+
+def _point_row(name: str, point: Json) -> tuple[str, ...]:
+    numbers = [_text(length, "mm") for length in point["diameter_mm"]]
+    numbers += [_text(angle, "deg") for angle in point["roll_angle_deg"]]
+    return (name, *numbers, *map(_ratio, (point["sliding_factor"], *point["specific_sliding"])))
+
+
+def data_sheet_section(pair: ParallelAxes) -> Section:
+    """Return the sheet as a section: what speaks against it, the drawing, then the tables."""
+    remarks = " ".join(f"Warning: {remark['message']}" for remark in pair_remarks(pair))
+    text = remarks or "No warnings: undercut, backlash, tip clearance, tip thickness, contact ratio."
+    return Section("Data sheet", text, figures=(pair_drawing(pair),), tables=data_sheet(pair))
+
+
+def data_sheet_json(pair: ParallelAxes) -> Json:
+    """Return the sheet as plain JSON: by gear, of the mesh, and by point of the path of contact."""
+    gears = {entry.name: entry.values(pair) for entry in GEARS}
+    sides = {
+        side: {name: both[index] for name, both in gears.items()}
+        for index, side in enumerate(("pinion", "wheel"))
+    }
+    return sides | {
+        "mesh": {entry.name: entry.values(pair)[0] for entry in MESH},
+        "path_of_contact": _path_points(pair),
+    }
+
+
+def _text(value: float, unit: str) -> str:
+    """Write a value with the decimals of its unit; numbers of teeth are whole."""
+    return f"{value:.0f}" if not unit and value.is_integer() else f"{value:.{_DECIMALS[unit]}f}"
+
+
+def _ratio(value: float) -> str:
+    """Write a ratio of speeds; what is zero but for rounding is zero."""
+    return f"{round(value, 3) + 0.0:.3f}"

@@ -1,0 +1,1 @@
+"""What a report shows of modes, forced responses and steady states."""

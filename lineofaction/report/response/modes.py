@@ -1,0 +1,407 @@
+"""Natural modes: of a run, and a modal analysis with Campbell diagram, critical speeds, energies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from bounds import leftover
+from dynamics.linearize import ModalAnalysis
+from dynamics.results import RunResult
+from lineofaction.gearbox.units import RPM
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Bars,
+    Dash,
+    Figure,
+    FloatArray,
+    Line,
+    Note,
+    Panel,
+    Table,
+    number,
+)
+from lineofaction.report.drawing.page import Headline
+from lineofaction.report.presentation import dynamics_presentation
+
+MOST_MODES, LEAST_DISTANCE, _CIRCULAR = 8, 0.01, 0.1
+MOVES, MET = "moves, share of the kinetic energy", "met by mesh order at mesh frequency"
+MODES_CAPTION = {
+    False: "Dashed: natural frequencies about the static equilibrium",
+    True: "Dashed: whirl modes about the static equilibrium, at the speeds of the run",
+}
+_COLOURS = {
+    "natural modes": palette.ORANGE,
+    "forward whirl": palette.SKY,
+    "backward whirl": palette.VERMILLION,
+    "whirl in a plane": palette.ORANGE,
+}
+
+
+@dataclass(frozen=True)
+class ModeLine:
+    """A mode over the blocks of a diagram: its name in the legend, color, frequency (B,), Hz, what moves.
+
+    `shares` are those of the parts in its kinetic energy; empty for runs that do not hold them.
+    """
+
+    name: str
+    color: str
+    frequency: FloatArray
+    moves: str
+    shares: dict[str, float]
+
+
+def whirling(run: RunResult) -> bool:
+    """Whether the run has modes over speed."""
+    return "over_speed" in run.modes
+
+
+def mode_lines(run: RunResult, mesh_frequency: FloatArray, top: float) -> list[ModeLine]:
+    """Return the lowest modes below `top` (Hz) that lie apart, over mesh frequencies (B,), Hz."""
+    frequencies, whirls = _frequencies(run, mesh_frequency)
+    modes = run.modes["over_speed"] if whirling(run) else run.modes
+    kept: list[ModeLine] = []
+    for index in np.argsort(frequencies[:, 0]) if frequencies.size else ():
+        values = frequencies[index]
+        apart = all(np.max(np.abs(line.frequency - values)) > LEAST_DISTANCE * top for line in kept)
+        if 0.0 < values[0] < top and apart:
+            name = _whirl_name(whirls[index]) if whirling(run) else "natural modes"
+            shares = dict(modes["moves"][index]) if "moves" in modes else {}
+            most = str(next(iter(shares)) if "moves" in modes else modes["freedom"][int(index)])
+            kept.append(ModeLine(name, _COLOURS[name], values, most, shares))
+    return kept[:MOST_MODES]
+
+
+def _frequencies(run: RunResult, mesh_frequency: FloatArray) -> tuple[FloatArray, list[float]]:
+    """Frequencies (a, B), and each mode's whirl at the highest speed."""
+    if not whirling(run):
+        rest = np.array(run.modes.get("frequency", ()), dtype=float)
+        return np.repeat(rest[:, None], mesh_frequency.size, axis=1), [0.0] * rest.size
+    over = run.modes["over_speed"]
+    knots = np.array(over["mesh_frequency"][0])
+    lines = [np.interp(mesh_frequency, knots, np.array(row)) for row in over["frequency"]]
+    return np.array(lines).reshape(-1, mesh_frequency.size), [row[-1] for row in over["whirl"]]
+
+
+def _whirl_name(whirl: float) -> str:
+    if abs(whirl) < _CIRCULAR:
+        return "whirl in a plane"
+    return "forward whirl" if whirl > 0.0 else "backward whirl"
+
+
+def mode_table(run: RunResult, top: float, orders: int) -> Table | None:
+    """List the modes below `top` (Hz) and the mesh orders that meet them within the speeds of the run."""
+    if not run.modes:
+        return None
+    low, high = float(run.mesh_frequency[0].min()), float(run.mesh_frequency[0].max())
+    modes, whirls = run.modes["over_speed"] if whirling(run) else run.modes, whirling(run)
+    rows = []
+    for index, (frequency, ratio) in enumerate(zip(modes["frequency"], modes["damping_ratio"], strict=True)):
+        line, damping = np.atleast_1d(frequency), np.atleast_1d(ratio)
+        if not 0.0 < line[0] < top:
+            continue
+        frequencies = [number(float(end), 4) for end in ((line[0], line[-1]) if whirls else line)]
+        whirl = (_whirl_name(modes["whirl"][index][-1]),) if whirls else ()
+        met = _met(modes["mesh_frequency"][0] if whirls else None, line, orders, (low, high))
+        rows.append((*frequencies, number(100.0 * float(damping[-1]), 2), *whirl, _moves(modes, index), met))
+    if whirls:
+        ends = ("at rest, Hz", "at the highest speed, Hz", "damping ratio there, %", "whirl")
+        return Table("Whirl modes in the range of the diagram", (*ends, MOVES, MET), tuple(rows))
+    head = ("natural frequency, Hz", "damping ratio, %", MOVES, MET)
+    return Table("Natural modes in the range of the diagram", head, tuple(rows))
+
+
+def _moves(modes: dict[str, Any], index: int) -> str:
+    """Write what moves in a mode; of a run that does not hold it, the freedom that moves most."""
+    if "moves" not in modes:
+        return str(modes["freedom"][index])
+    return "; ".join(f"{name} {number(100.0 * share, 2)} %" for name, share in modes["moves"][index].items())
+
+
+def _meeting(mesh: FloatArray, line: FloatArray, order: int) -> float | None:
+    """Mesh frequency at which a mode less an order changes its sign, linear between the speeds."""
+    gap = line - order * mesh
+    crossed = np.flatnonzero((gap[:-1] > 0.0) & (gap[1:] <= 0.0))
+    if not crossed.size:
+        return None
+    i = int(crossed[0])
+    return float(mesh[i] + (mesh[i + 1] - mesh[i]) * gap[i] / (gap[i] - gap[i + 1]))
+
+
+def _met(mesh: list[float] | None, line: FloatArray, orders: int, ends: tuple[float, float]) -> str:
+    """Name the orders up to `orders` that meet a mode, Hz over mesh frequencies, if it changes with them."""
+    met = []
+    for order in range(1, orders + 1):
+        where = float(line[0]) / order if mesh is None else _meeting(np.array(mesh), line, order)
+        if where is not None and ends[0] <= where <= ends[1]:
+            met.append(f"{order} at {number(where, 3)} Hz")
+    return ", ".join(met) or "none"
+
+
+OTHERS = "others"
+_WIDTH = 0.62
+
+
+def mode_bars(modes: Sequence[str], shares: Sequence[Mapping[str, float]], energy: str) -> Panel:
+    """Draw a bar for each mode, made up of its parts' shares of an energy.
+
+    Parameters
+    ----------
+    modes : sequence of str, (a,)
+        Names, below the bars.
+    shares : sequence of mapping of str to float, (a,)
+        By part, each at least 0; the rest up to 1 is drawn as others.
+    energy : str
+        Of the label.
+    """
+    place, base = np.arange(float(len(modes))), np.zeros(len(modes))
+    bars = []
+    for index, part in enumerate(_largest_parts(shares)):
+        top = base + [100.0 * of.get(part, 0.0) for of in shares]
+        bars.append(Bars(part, place, top, base, _WIDTH, palette.CATEGORIES[index]))
+        base = top
+    rest = np.where(base > 0.0, 100.0, 0.0)
+    if np.any(rest > base + 0.5):
+        bars.append(Bars(OTHERS, place, rest, base, _WIDTH, palette.GRID))
+    return Panel(
+        Axis.of_names(modes, "mode"), Axis(f"share of the {energy}, %", limits=(0.0, 100.0)), bars=tuple(bars)
+    )
+
+
+def _largest_parts(shares: Sequence[Mapping[str, float]]) -> list[str]:
+    """Return the parts that have most of the energy of all modes together, as many as there are colors."""
+    total: dict[str, float] = {}
+    for of in shares:
+        for part, share in of.items():
+            total[part] = total.get(part, 0.0) + share
+    return sorted(total, key=lambda part: -total[part])[: len(palette.CATEGORIES)]
+
+
+ALIKE = 1e-3  # of a frequency or a speed: nearer ones share a line of the tables
+SHOWN_PARTS = 2
+SHOWN_MODES = 10
+HEADROOM = 1.15  # of the highest mode or order: modes that no order reaches are only in the table
+LEAST_TOP = 1.0  # Hz
+ROOM = 0.03  # of the width, for the name of an order; orders that leave closer stay without
+WHIRLS: dict[str, tuple[str, Dash]] = {
+    "forward whirl": (palette.BLUE, "solid"),
+    "backward whirl": (palette.VERMILLION, "dash"),
+    "whirl in a plane": (palette.MUTED, "solid"),
+}
+
+
+def _modal_figures(modes: ModalAnalysis) -> tuple[Figure, ...]:
+    """Draw the Campbell diagram, if there are speeds, and the energies."""
+    return (_campbell(modes), *_energies(modes)) if modes.speed.size > 1 else _energies(modes)
+
+
+def _campbell(modes: ModalAnalysis) -> Figure:
+    speed = modes.speed / RPM
+    reach = float(modes.facts["orders"]) * float(np.max(modes.mesh_frequency, initial=0.0))
+    top = min(HEADROOM * float(np.nanmax(modes.frequency)), max(HEADROOM * reach, LEAST_TOP))
+    lines = [*_orders(modes, speed, top), *_modes(modes, speed)]
+    if modes.critical_speed.size:
+        there = modes.critical_speed / RPM
+        lines.append(
+            Line("critical speeds", there, modes.critical_frequency, palette.INK, width=0.0, markers=True)
+        )
+    x = Axis.over(f"speed of {modes.facts['leading_shaft']}, rpm", speed)
+    y = Axis("frequency, Hz", limits=(0.0, top))
+    return Figure(
+        key="modal_campbell",
+        title="Campbell diagram: whirl modes over speed",
+        caption="Damped frequencies about the static equilibrium with gyroscopic, Coriolis and centripetal "
+        "terms of each speed. Dotted: multiples of the mesh frequency. Points: critical speeds.",
+        alternative=_words(modes),
+        content=(Panel(x, y, tuple(lines), notes=tuple(_order_notes(modes, speed, top))),),
+        table=_critical_table(modes),
+    )
+
+
+def _orders(modes: ModalAnalysis, speed: FloatArray, top: float) -> Iterator[Line]:
+    """Multiples of every mesh frequency, each once."""
+    for mesh in _different(modes):
+        for order in range(1, int(modes.facts["orders"]) + 1):
+            height = order * modes.mesh_frequency[mesh]
+            yield Line(
+                "mesh orders", speed, np.where(height <= top, height, np.nan), palette.PURPLE, "dot", 1.0
+            )
+
+
+def _different(modes: ModalAnalysis) -> list[int]:
+    """Meshes whose frequency no earlier one has."""
+    last = modes.mesh_frequency[:, -1]
+    return [
+        m for m in range(last.size) if last[m] > 0.0 and not np.any(np.isclose(last[:m], last[m], rtol=1e-9))
+    ]
+
+
+def _order_notes(modes: ModalAnalysis, speed: FloatArray, top: float) -> Iterator[Note]:
+    """Name the orders where they leave the panel."""
+    several, width = len(_different(modes)) > 1, float(np.ptp(speed))
+    for mesh in _different(modes):
+        rate, last = float(modes.mesh_frequency[mesh, -1] / speed[-1]), np.inf
+        for order in range(1, int(modes.facts["orders"]) + 1):
+            end = min(float(speed[-1]), 0.97 * top / (order * rate))
+            if end <= speed[0] or last - end < ROOM * width:
+                continue
+            last, name = end, f"{order}x {modes.mesh[mesh]}" if several else f"{order}x"
+            yield Note(end - ROOM * width, order * rate * end * 0.985, name)
+
+
+def _modes(modes: ModalAnalysis, speed: FloatArray) -> Iterator[Line]:
+    """Every mode by its sense of whirl; points between two speeds take that of the first."""
+    for name, (color, dash) in WHIRLS.items():
+        for mode in range(modes.frequency.shape[1]):
+            here = np.array([_whirl_name(w) == name for w in modes.whirl[:, mode]])
+            if not np.any(here):
+                continue
+            shown = here | np.append(False, here[:-1])
+            frequency = np.where(shown, modes.frequency[:, mode], np.nan)
+            yield Line(name.removeprefix("whirl "), speed, frequency, color, dash, 1.6)
+
+
+def _energies(modes: ModalAnalysis) -> tuple[Figure, Figure]:
+    """Show what holds each natural mode (meshes, bearings, drives), and what moves in it (shafts)."""
+    shown = np.flatnonzero(modes.natural_frequency > 0.0)[:SHOWN_MODES]
+    names = [f"{number(float(modes.natural_frequency[mode]), 4)} Hz" for mode in shown]
+    held = [modes.held_by(modes.natural_strain_energy[mode]) for mode in shown]
+    moved = [modes.moved(modes.natural_kinetic_energy[mode]) for mode in shown]
+    alike = (
+        f"At most the {SHOWN_MODES} lowest modes; those of one frequency are any combination of each other."
+    )
+    return (
+        Figure(
+            key="modal_energy",
+            title="Strain energy of the natural modes at rest",
+            caption=f"Strain energy by mesh, bearing, coupling and drive. {alike}",
+            alternative=_energy_words(names, held, "strain"),
+            content=(mode_bars(names, held, "strain energy"),),
+            table=_modes_table(modes),
+        ),
+        Figure(
+            key="modal_motion",
+            title="Kinetic energy of the natural modes at rest",
+            caption=f"Kinetic energy by shaft and kind of motion. {alike}",
+            alternative=_energy_words(names, moved, "kinetic"),
+            content=(mode_bars(names, moved, "kinetic energy"),),
+        ),
+    )
+
+
+def _energy_words(names: list[str], shares: list[dict[str, float]], energy: str) -> str:
+    if not names:
+        return "Nothing vibrates."
+    part, share = next(iter(shares[0].items()))
+    return f"The lowest mode, {names[0]}, has {number(100.0 * share, 2)} % of its {energy} energy in {part}."
+
+
+def _modes_table(modes: ModalAnalysis) -> Table:
+    """List the natural modes at rest; those of one frequency are still one line each."""
+    strain, kinetic = modes.natural_strain_energy, modes.natural_kinetic_energy
+    columns = {
+        "mode": lambda mode: str(mode + 1),
+        "frequency, Hz": lambda mode: number(float(modes.natural_frequency[mode]), 5),
+        "damping ratio, %": lambda mode: number(100.0 * float(modes.natural_damping_ratio[mode]), 3),
+        "kind": lambda mode: modes.kind(strain[mode], kinetic[mode]),
+        "strain energy in": lambda mode: _shares(modes.held_by(strain[mode])),
+        "kinetic energy in": lambda mode: _shares(modes.moved(kinetic[mode])),
+    }
+    caption = "Natural modes about the static equilibrium, at rest"
+    return Table.of(caption, range(modes.natural_frequency.size), columns)
+
+
+def _shares(parts: dict[str, float]) -> str:
+    shown = [f"{name} {100.0 * share:.0f} %" for name, share in parts.items() if share >= 0.005]
+    return ", ".join(shown[:SHOWN_PARTS]) or "none"
+
+
+def _critical_table(modes: ModalAnalysis) -> Table:
+    """List the critical speeds; modes that an order meets together share a line."""
+    groups: list[list[int]] = []
+    for index, speed in enumerate(modes.critical_speed):
+        mate = next((g for g in groups if _together(modes, g[0], index, float(speed))), None)
+        if mate is None:
+            groups.append([index])
+        else:
+            mate.append(index)
+    columns = {
+        "speed, rpm": lambda group: number(float(modes.critical_speed[group[0]]) / RPM, 5),
+        "frequency, Hz": lambda group: number(float(modes.critical_frequency[group[0]]), 5),
+        "order": lambda group: str(int(modes.critical_order[group[0]])),
+        "mesh": lambda group: modes.mesh[int(modes.critical_mesh[group[0]])],
+        "modes": lambda group: ", ".join(str(int(modes.critical_mode[index]) + 1) for index in group),
+        "kind": lambda group: "; ".join(dict.fromkeys(_critical_kind(modes, k)[0] for k in group)),
+        "whirl": lambda group: ", ".join(dict.fromkeys(_critical_kind(modes, k)[1] for k in group)),
+        "damping ratio, %": lambda group: number(100.0 * float(modes.critical_damping_ratio[group].min()), 3),
+    }
+    return Table.of("Critical speeds: where a mesh order meets a mode", groups, columns)
+
+
+def _together(modes: ModalAnalysis, first: int, other: int, speed: float) -> bool:
+    same = modes.critical_order[first] == modes.critical_order[other]
+    same = same and modes.critical_mesh[first] == modes.critical_mesh[other]
+    return bool(same and abs(modes.critical_speed[first] - speed) <= ALIKE * speed)
+
+
+def _critical_kind(modes: ModalAnalysis, index: int) -> tuple[str, str]:
+    """Return the kind and the sense of whirl of the mode met, at the speed nearest to the crossing."""
+    mode = int(modes.critical_mode[index])
+    known = np.isfinite(modes.frequency[:, mode])
+    row = int(np.argmin(np.where(known, np.abs(modes.speed - modes.critical_speed[index]), np.inf)))
+    whirl = _whirl_name(float(modes.whirl[row, mode])).replace("whirl", "").strip()
+    return modes.kind(modes.strain_energy[row, mode], modes.kinetic_energy[row, mode]), whirl
+
+
+def _words(modes: ModalAnalysis) -> str:
+    """Say how many crossings there are and where the least damped is."""
+    if not modes.critical_speed.size:
+        return "No mesh order meets a mode in this range."
+    least = int(np.argmin(modes.critical_damping_ratio))
+    return (
+        f"{modes.critical_speed.size} crossings; the least damped, with "
+        f"{number(100.0 * float(modes.critical_damping_ratio[least]), 3)} %, at "
+        f"{number(float(modes.critical_speed[least]) / RPM, 4)} rpm and "
+        f"{number(float(modes.critical_frequency[least]), 4)} Hz, mesh order "
+        f"{int(modes.critical_order[least])}."
+    )
+
+
+def _headlines(modes: ModalAnalysis) -> tuple[Headline, ...]:
+    elastic = np.flatnonzero(modes.natural_frequency > 0.0)
+    if not elastic.size:
+        return ()
+    first = int(elastic[0])
+    kind = modes.kind(modes.natural_strain_energy[first], modes.natural_kinetic_energy[first])
+    frequency = f"{number(float(modes.natural_frequency[first]), 4)} Hz"
+    lowest = Headline("lowest natural frequency", frequency, kind)
+    return (lowest, _least_damped(modes)) if modes.speed.size else (lowest,)
+
+
+def _least_damped(modes: ModalAnalysis) -> Headline:
+    count = modes.critical_speed.size
+    if not count:
+        return Headline("critical speeds", "none", "no mesh order meets a mode in this range")
+    least = int(np.argmin(modes.critical_damping_ratio))
+    damping = f"{number(100.0 * float(modes.critical_damping_ratio[least]), 3)} %"
+    order = f"mesh order {int(modes.critical_order[least])}"
+    speed = f"{number(float(modes.critical_speed[least]) / RPM, 4)} rpm"
+    return Headline("least damped critical speed", speed, f"{order}, damping ratio {damping}, of {count}")
+
+
+def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
+    start = modes.facts["equilibrium"]
+    forces = ", ".join(f"{name} {force:.5g} N" for name, force in start["mesh_force"].items())
+    yield f"static equilibrium {start['status'].lower()}, {leftover(start['residual'])} N left; {forces}"
+    yield _modes_table(modes)
+    if modes.speed.size:
+        yield ""
+        yield _critical_table(modes)
+
+
+PAGE = dynamics_presentation("Modes", _modal_figures, _headlines, _text)

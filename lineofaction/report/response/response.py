@@ -1,0 +1,217 @@
+"""A forced response: transmission error, mesh force and bearing force by mesh order over speed, and peaks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from bounds import engineering, leftover
+from dynamics.linearize import ForcedResponse, peaks
+from lineofaction.gearbox.units import RPM
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Figure,
+    FloatArray,
+    Line,
+    Panel,
+    Reference,
+    Table,
+    category_lines,
+    largest,
+    number,
+)
+from lineofaction.report.drawing.page import Headline
+from lineofaction.report.presentation import dynamics_presentation
+
+LEAST_SHARE = 1e-3
+"""%, of what is listed."""
+
+
+def _loses_power(response: ForcedResponse) -> bool:
+    """Whether any part loses power; files of older versions do not know."""
+    return bool(np.any(_total(response) > 0.0))
+
+
+def _power_table(response: ForcedResponse) -> Table:
+    """List where the power goes at the speed at which most is lost."""
+    power, total = response.power, _total(response)
+    at = int(np.argmax(total))
+    by_part = np.sum(power.loss[:, at], axis=1)
+    rows = []
+    for kind, lost in power.by_kind().items():
+        own = [part for part, each in enumerate(power.kind) if each == kind]
+        most = max(own, key=lambda part: by_part[part])
+        share = 100.0 * float(lost[at] / total[at])
+        if abs(share) >= LEAST_SHARE:
+            rows.append((kind, power.sink[most], number(float(lost[at]), 3), number(share, 3)))
+    title = f"Power lost at {number(float(response.speed[at]) / RPM, 4)} rpm, all orders"
+    return Table(title, ("lost in", "most in", "W", "%"), tuple(rows))
+
+
+def _power_figure(response: ForcedResponse) -> Figure:
+    table = _power_table(response)
+    kinds = {row[0] for row in table.rows}
+    lost = response.power.by_kind()
+    # a kind keeps the color of its place among all
+    lines = tuple(
+        line for line in category_lines(response.speed / RPM, list(lost), lost.values()) if line.name in kinds
+    )
+    most = max(lost, key=lambda kind: float(np.max(lost[kind])))
+    return Figure(
+        key="power",
+        title="Power lost by the vibration",
+        caption="Mean power of all orders that transmission errors and loads put in, by the parts that take "
+        "it. Friction of a mesh may feed the vibration: then its power is negative.",
+        alternative=f"At its largest, most of it is lost in parts of the kind {most}.",
+        content=(Panel(_speed_axis(response), Axis("power lost, W"), lines),),
+        table=table,
+    )
+
+
+def _speed_axis(response: ForcedResponse) -> Axis:
+    return Axis.over(f"speed of {response.facts['leading_shaft']}, rpm", response.speed / RPM)
+
+
+def _total(response: ForcedResponse) -> FloatArray:
+    """Return what all parts lose, (S,) W."""
+    return np.asarray(np.sum(response.power.loss, axis=(0, 2)))
+
+
+SHOWN_ORDERS, SHOWN_PEAKS = 6, 15
+
+WITH_MESHES = (
+    "Peak amplitudes of the mesh orders about the static equilibrium, linear: mean mesh stiffness, no loss "
+    "of contact. Below: the least mesh force; negative means that flanks lift off."
+)
+WITHOUT_MESHES = "Peak amplitudes of the orders of the leading shaft about the static equilibrium, linear."
+
+
+def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
+    x, speed, quantities = _speed_axis(response), response.speed / RPM, _quantities(response, mesh)
+    shown = (
+        largest(np.max(quantities[1 if response.mesh else 0][1], axis=0), SHOWN_ORDERS) if quantities else []
+    )
+    names, panels = [f"order {response.order[h]:.4g}" for h in shown], []
+    for label, amplitude in quantities:
+        panels.append(Panel(x, Axis(label), category_lines(speed, names, amplitude[:, shown].T)))
+    if response.mesh:
+        panels.append(_least(x, speed, response, mesh))
+    return Figure(
+        key="response",
+        title="Forced response to transmission errors and loads" if response.mesh else "Forced response",
+        caption=WITH_MESHES if response.mesh else WITHOUT_MESHES,
+        alternative=_words(response),
+        content=tuple(panels),
+        table=_peak_table(response),
+    )
+
+
+def _quantities(response: ForcedResponse, mesh: int) -> list[tuple[str, FloatArray]]:
+    """Return what is shown by name, (S, H) each."""
+    quantities = []
+    if response.mesh:
+        name = f" of {response.mesh[mesh]}" if len(response.mesh) > 1 else ""
+        quantities += [
+            (f"transmission error{name}, µm", 1e6 * np.abs(response.dynamic_transmission_error[mesh])),
+            (f"mesh force{name}, N", np.abs(response.mesh_force[mesh])),
+        ]
+    force = _bearing_force(response)
+    if force.size:
+        loudest = int(np.argmax(np.max(force, axis=(1, 2))))
+        quantities.append((f"force on {response.bearing[loudest]}, N", force[loudest]))
+    return quantities
+
+
+def _bearing_force(response: ForcedResponse) -> FloatArray:
+    """Return the size of the force on each bearing, (b, S, H)."""
+    return np.asarray(np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1)))
+
+
+def _least(x: Axis, speed: FloatArray, response: ForcedResponse, mesh: int) -> Panel:
+    line = Line("least mesh force", speed, response.least_mesh_force[mesh], palette.INK, width=1.4)
+    return Panel(
+        x, Axis("least mesh force, N"), (line,), (Reference("flanks part", 0.0, "horizontal", 0.12),)
+    )
+
+
+def _peak_table(response: ForcedResponse) -> Table:
+    every = peaks(response)
+    listed = [
+        peak
+        for quantity in ("mesh_force", "bearing_force")
+        for peak in [peak for peak in every if peak.quantity == quantity][:SHOWN_PEAKS]
+    ]
+    columns = {
+        "peak of": lambda peak: f"{peak.quantity.replace('_', ' ')}, {peak.name}",
+        "order": lambda peak: f"{peak.order:.4g}",
+        "speed, rpm": lambda peak: number(peak.speed / RPM, 5),
+        "frequency, Hz": lambda peak: number(peak.frequency, 5),
+        "nearest mode, Hz": lambda peak: number(peak.natural_frequency, 5),
+        "amplitude, N": lambda peak: number(peak.amplitude, 4),
+        "dynamic over static": lambda peak: number(peak.amplification, 3),
+    }
+    return Table.of("Peaks over speed, the largest first", listed, columns)
+
+
+def _words(response: ForcedResponse) -> str:
+    """Say the largest amplitude, and where flanks part."""
+    if not response.mesh:
+        return " ".join(f"{part.name}: {part.value}, {part.remark}." for part in _headlines(response))
+    size = np.abs(response.mesh_force)
+    mesh, s, h = np.unravel_index(int(np.argmax(size)), size.shape)
+    text = (
+        f"Largest mesh force: {number(float(size[mesh, s, h]), 3)} N of order {response.order[h]:.4g} at "
+        f"{number(float(response.speed[s]) / RPM, 4)} rpm."
+    )
+    parting = response.speed[~response.in_contact] / RPM
+    if parting.size:
+        first = number(float(parting[0]), 4)
+        text += f" Flanks lift off at {parting.size} of {response.speed.size} speeds, from {first} rpm on."
+    return text
+
+
+def _headlines(response: ForcedResponse) -> tuple[Headline, ...]:
+    """Return the largest mesh force, and the largest bearing force or where flanks part."""
+    parting, force = response.speed[~response.in_contact] / RPM, _bearing_force(response)
+    own = [("mesh force of", response.mesh, np.abs(response.mesh_force))]
+    own += [("force on bearing", response.bearing, force)]
+    shown = [_largest(what, names, size, response) for what, names, size in own if size.size]
+    if not parting.size:
+        return tuple(shown)
+    at = f"{parting.size} of {response.speed.size} speeds"
+    return (shown[0], Headline("flanks part at", at, f"from {number(float(parting[0]), 4)} rpm on"))
+
+
+def _largest(what: str, names: Sequence[str], size: FloatArray, response: ForcedResponse) -> Headline:
+    """Name the part of the largest amplitude (part, speed, order) with its order and speed."""
+    part, s, h = map(int, np.unravel_index(int(np.argmax(size)), size.shape))
+    at = f"order {response.order[h]:.4g} at {number(float(response.speed[s]) / RPM, 4)} rpm"
+    return Headline(f"largest {what} {names[part]}", f"{number(float(size[part, s, h]), 3)} N", at)
+
+
+def _figures(response: ForcedResponse) -> tuple[Figure, ...]:
+    """Return amplitudes, and the power lost if any is."""
+    figure = _response_figure(response)
+    return (figure, _power_figure(response)) if _loses_power(response) else (figure,)
+
+
+def _text(response: ForcedResponse) -> Iterator[Table | str]:
+    yield _peak_table(response)
+    parting = response.speed[~response.in_contact] / RPM
+    if parting.size:
+        where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
+        yield f"flanks lift off at {parting.size} of {response.speed.size} speeds, {where}: see loa steady"
+    worst = 100.0 * float(response.excitation_difference.max(initial=0.0))
+    yield (
+        "first-order theory: the other excitation changes "
+        f"amplitudes by up to {engineering(worst, 2)} % of the largest"
+    )
+    if _loses_power(response):
+        yield _power_table(response)
+    left = response.power.residual
+    yield f"residual of the solves {leftover(response.residual)}, of the power balance {leftover(left)}"
+
+
+PAGE = dynamics_presentation("Forced response", _figures, _headlines, _text)

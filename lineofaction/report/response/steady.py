@@ -1,0 +1,218 @@
+"""Periodic steady states over speed: transmission error, forces and contact of sweeps and branch."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from bounds import leftover
+from dynamics.periodic import SteadyStates
+from dynamics.periodic.steady_states import BRANCH, DOWN, UP
+from lineofaction.gearbox.studies.steady.run import KINDS, facts, status_name
+from lineofaction.gearbox.units import RPM
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Dash,
+    Figure,
+    FloatArray,
+    Line,
+    Panel,
+    Reference,
+    Table,
+    number,
+)
+from lineofaction.report.drawing.page import Headline
+from lineofaction.report.presentation import dynamics_presentation
+
+APART = 0.1  # of the axis: nearer folds share a label
+MARKED = 80  # sweeps of more motions are drawn as lines
+_BEARING_HEAD = ("bearing", "state", "rms force, N")
+_MESH_HEAD = (
+    "mesh", "state", "largest multiplier", "rms error, µm", "peak to peak, µm", "least force, N",
+    "largest force, N", "contact", "step error, nm",
+)  # fmt: skip
+_SWEEPS = ((UP, "rising speed", palette.BLUE), (DOWN, "falling speed", palette.ORANGE))
+
+
+def _steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
+    """Draw one mesh: stable motions of the branch solid, unstable ones dashed, both sweeps as points."""
+    swept = states.speed[states.curve != BRANCH] / RPM
+    ends = (float(swept.min()), float(swept.max()))
+    x = Axis(f"speed of {states.facts['leading_shaft']}, rpm", limits=ends)
+    quantities = _quantities(states, mesh)
+    marks = tuple(Reference(f"fold {number(speed, 5)}", speed) for speed in _folds(states, ends))
+    panels = tuple(Panel(x, Axis(label), tuple(_lines(states, shown)), marks) for label, shown in quantities)
+    return Figure(
+        key="steady",
+        title="Periodic steady states over speed",
+        caption="Motions at constant speed by shooting. Line: the branch, solid where stable, dashed where "
+        "not. Points: steady states at slowly rising and falling speeds. Error: alternating part.",
+        alternative=_words(states),
+        content=panels,
+        table=_steady_table(states),
+    )
+
+
+def _quantities(states: SteadyStates, mesh: int) -> list[tuple[str, FloatArray]]:
+    """Return what is shown by name, (P,) each; without meshes the bearing that feels most."""
+    if not states.mesh:
+        if not states.bearing:
+            return []
+        loudest = int(np.argmax(np.nanmax(states.rms_bearing_force, axis=0)))
+        return [(f"rms force on {states.bearing[loudest]}, N", states.rms_bearing_force[:, loudest])]
+    name = f" of {states.mesh[mesh]}" if len(states.mesh) > 1 else ""
+    quantities = [
+        (f"rms of the transmission error{name}, µm", 1e6 * states.rms_error[:, mesh]),
+        (f"peak to peak{name}, µm", 1e6 * states.peak_to_peak_error[:, mesh]),
+        (f"largest mesh force{name}, N", states.largest_force[:, mesh]),
+    ]
+    if np.nanmax(states.parted[:, mesh], initial=0.0) > 0.0:
+        quantities.append(
+            (f"driving flank lifted off{name}, % of the period", 100.0 * states.parted[:, mesh])
+        )
+    if np.nanmax(states.coasting[:, mesh], initial=0.0) > 0.0:
+        quantities.append((f"coast flank touching{name}, % of the period", 100.0 * states.coasting[:, mesh]))
+    return quantities
+
+
+def _folds(states: SteadyStates, ends: tuple[float, float]) -> list[float]:
+    """Return the folds in rpm that lie apart: corners come in clusters, of which the outermost counts."""
+    folds = states.bifurcation_speed[states.bifurcation_kind == KINDS.index("fold")] / RPM
+    kept: list[float] = []
+    if folds.size:
+        middle = 0.5 * (folds.min() + folds.max())
+        for speed in folds[np.argsort(-np.abs(folds - middle), kind="stable")]:
+            if all(abs(speed - other) > APART * (ends[1] - ends[0]) for other in kept):
+                kept.append(float(speed))
+    return kept
+
+
+def _lines(states: SteadyStates, values: FloatArray) -> Iterator[Line]:
+    """Yield the branch in its stable and unstable parts, and the sweeps."""
+    on = np.flatnonzero(states.curve == BRANCH)
+    for stable, name, dash in ((True, "branch, stable", "solid"), (False, "branch, unstable", "dash")):
+        here = (states.instability[on] == 0) == stable
+        if not np.any(here):
+            continue
+        shown = here | (np.append(here[1:], False) if not stable else False)
+        shown = shown | (np.append(False, here[:-1]) if not stable else False)
+        style: Dash = "solid" if dash == "solid" else "dash"
+        line = np.where(shown, values[on], np.nan)
+        yield Line(name, states.speed[on] / RPM, line, palette.INK, style, 1.3)
+    for curve, name, color in _SWEEPS:
+        there = np.flatnonzero(states.curve == curve)
+        if there.size:
+            few = there.size <= MARKED
+            yield Line(
+                name, states.speed[there] / RPM, values[there], color, width=0.0 if few else 1.4, markers=few
+            )
+
+
+def _steady_table(states: SteadyStates) -> Table:
+    """List both sweeps, one line per speed and mesh, or without meshes per speed and bearing."""
+    parts = states.mesh or states.bearing
+    entries = [
+        (int(index), part)
+        for curve in (UP, DOWN)
+        for index in np.flatnonzero(states.curve == curve)
+        for part in range(len(parts))
+    ]
+    head = ("sweep", "speed, rpm", *(_MESH_HEAD if states.mesh else _BEARING_HEAD))
+    cells = _mesh_cells if states.mesh else _bearing_cells
+    rows = [
+        (
+            "up" if states.curve[index] == UP else "down",
+            number(float(states.speed[index]) / RPM, 5),
+            parts[part],
+            *cells(states, index, part),
+        )
+        for index, part in entries
+    ]
+    return Table("Periodic steady states", head, tuple(rows))
+
+
+def _bearing_cells(states: SteadyStates, index: int, bearing: int) -> tuple[str, ...]:
+    state = KINDS[int(states.instability[index])] if not states.status[index] else "not found"
+    return state, number(float(states.rms_bearing_force[index, bearing]), 4)
+
+
+def _mesh_cells(states: SteadyStates, index: int, mesh: int) -> tuple[str, ...]:
+    """Describe a motion; of one that was not found say how far the search came."""
+    if states.status[index]:
+        left = leftover(1e6 * float(states.residual[index]), 2)
+        return (f"{status_name(int(states.status[index]))}, {left} µm left", *("none",) * 7)
+    return (
+        KINDS[int(states.instability[index])],
+        number(float(np.abs(states.multiplier[index, 0])), 4),
+        number(1e6 * float(states.rms_error[index, mesh]), 4),
+        number(1e6 * float(states.peak_to_peak_error[index, mesh]), 4),
+        number(float(states.least_force[index, mesh]), 4),
+        number(float(states.largest_force[index, mesh]), 4),
+        _contact_name(float(states.parted[index, mesh]), float(states.coasting[index, mesh])),
+        number(1e9 * float(states.step_error[index]), 2),
+    )
+
+
+def _contact_name(parted: float, coasting: float) -> str:
+    if coasting > 0.0:
+        return f"both flanks, apart from the driving one {100.0 * parted:.0f} %"
+    return f"lift-off, {100.0 * parted:.0f} %" if parted > 0.0 else "driving flank"
+
+
+def _words(states: SteadyStates) -> str:
+    if np.all(states.status != 0):
+        return "No periodic motion was found."
+    if not states.mesh:
+        return " ".join(f"{part.name}: {part.value}, {part.remark}." for part in _headlines(states))
+    index, mesh = np.unravel_index(int(np.nanargmax(states.rms_error)), states.rms_error.shape)
+    text = (
+        f"Largest rms: {number(1e6 * float(states.rms_error[index, mesh]), 3)} µm at "
+        f"{number(float(states.speed[index]) / RPM, 4)} rpm."
+    )
+    for curve, (before, behind) in zip(states.jump_curve, states.jump_speed / RPM, strict=True):
+        sweep = "Rising" if curve == UP else "Falling"
+        text += f" {sweep} speeds jump between {number(float(before), 5)} and {number(float(behind), 5)} rpm."
+    return text
+
+
+def _headlines(states: SteadyStates) -> tuple[Headline, ...]:
+    if np.all(states.status != 0):
+        return ()
+    if not states.mesh:
+        force, names = states.rms_bearing_force, states.bearing
+        return (_largest(states, "rms bearing force", force, "N", names),) if force.size else ()
+    error = _largest(states, "rms transmission error", 1e6 * states.rms_error, "µm")
+    if not states.jump_curve.size:
+        return (error, _largest(states, "mesh force", states.largest_force, "N"))
+    sense = "rising" if states.jump_curve[0] == UP else "falling"
+    before, behind = (number(float(speed), 5) for speed in states.jump_speed[0] / RPM)
+    first = f"the first at {sense} speed between {before} and {behind} rpm"
+    return (error, Headline("jumps", str(states.jump_curve.size), first))
+
+
+def _largest(
+    states: SteadyStates, what: str, values: FloatArray, unit: str, names: tuple[str, ...] = ()
+) -> Headline:
+    """Name the largest of values (motion, mesh) with mesh, or other part, speed and stability."""
+    index, mesh = np.unravel_index(int(np.nanargmax(values)), values.shape)
+    at = f"{number(float(states.speed[index]) / RPM, 4)} rpm, {KINDS[int(states.instability[index])]}"
+    value = f"{number(float(values[index, mesh]), 3)} {unit}"
+    return Headline(f"largest {what} of {(names or states.mesh)[mesh]}", value, at)
+
+
+def _text(states: SteadyStates) -> Iterator[Table | str]:
+    yield _steady_table(states)
+    answer = facts(states)
+    for jump in answer["jumps"]:
+        before, behind = jump["between_rpm"]
+        sense = "rising" if jump["sweep"] == "up" else "falling"
+        yield f"{sense} speeds jump between {before:.6g} and {behind:.6g} rpm"
+    if answer["branch"]["status"] != "none":
+        branch, points = answer["branch"], answer["bifurcations"]
+        turns = ", ".join(f"{point['kind']} at {point['speed_rpm']:.6g} rpm" for point in points)
+        yield f"branch {branch['status']}, {len(branch['points'])} motions; {turns or 'no bifurcation'}"
+
+
+PAGE = dynamics_presentation("Steady states", lambda states: (_steady_figure(states),), _headlines, _text)

@@ -1,0 +1,283 @@
+"""Levels of a run over its speed: maps, orders, the Campbell diagram, the loudest moment."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dynamics.orders import Waterfall, frequency_waterfall, highest_valid_order, order_waterfall
+from dynamics.results import RunResult
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.studies.listen.through_housing import PRINCIPAL
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Figure,
+    FloatArray,
+    HeatMap,
+    Line,
+    Note,
+    Panel,
+    Table,
+    category_lines,
+    number,
+    unit_of,
+)
+from lineofaction.report.drawing.placing import placed
+from lineofaction.report.response.modes import MODES_CAPTION, ModeLine, mode_lines, mode_table, whirling
+from lineofaction.report.run.view import SCALES, Signal, along_direction, decibels, run_axis, validity
+
+LINES, MAP_DEPTH = 220, 60.0
+
+
+def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: float) -> HeatMap:
+    """Return levels below the largest on an even grid of the axis; the loudest of the lines in each cell.
+
+    `along` (B,) is speed or time of the blocks, rising or falling; `line` (K,) are frequencies or orders,
+    equally spaced from 0, of which those above 0 and up to `top` are shown; `amplitude` is (B, K).
+    """
+    kept = np.flatnonzero((line > 0.0) & (line <= top))
+    group = max(int(np.ceil(kept.size / LINES)), 1)
+    kept = kept[: kept.size // group * group]
+    rows = amplitude[:, kept].reshape(amplitude.shape[0], -1, group).max(axis=-1)
+    order = np.argsort(along)
+    even = np.linspace(along.min(), along.max(), along.size)
+    middle = 0.5 * (along[order][1:] + along[order][:-1])
+    columns = rows[order][np.searchsorted(middle, even)]
+    level = 20.0 * np.log10(np.maximum(columns / max(float(columns.max()), 1e-300), 1e-12))
+    z = np.clip(level + MAP_DEPTH, 0.0, None).T
+    height = line[kept].reshape(-1, group).mean(axis=-1)
+    return HeatMap(even, height, z, f"level above −{MAP_DEPTH:g} dB of the largest, dB", MAP_DEPTH)
+
+
+POINTS, SHORTEST, OVERLAP, DEPTH = 400, 16, 0.75, 80.0
+MAPPED, NAMED = 10, 5
+"""Mesh orders of an order map, as far as the output holds them, and how many of them are cut unless named."""
+
+
+def _pitches_passed(run: RunResult, mesh: int = 0) -> float:
+    """Return how many base pitches a mesh passes; 0 of a run without meshes."""
+    return float(np.ptp(np.unwrap(run.position[mesh], period=1.0))) if run.mesh else 0.0
+
+
+def order_blocks(run: RunResult, signal: Signal) -> Waterfall:
+    """Return spectra over mesh orders in blocks of whole base pitches along the run.
+
+    Raises `BadInput`: it has no mesh, or is shorter than one block.
+    """
+    highest = max((*signal.orders, min(MAPPED, highest_valid_order(run, signal.mesh)), 1))
+    travel = _pitches_passed(run, signal.mesh)
+    if travel < SHORTEST:
+        bound = f"at least {SHORTEST} base pitches of a mesh, in which its orders are counted"
+        raise BadInput.of("run", f"{travel:.4g} base pitches", bound, "Simulate a longer one.")
+    pitches = max(SHORTEST, int(travel / POINTS))
+    return order_waterfall(run, signal.quantity.series, pitches, highest, signal.mesh, signal.window, OVERLAP)
+
+
+def levels_over_speed(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
+    """Draw the overall level and the levels of mesh orders over speed or time, in dB re one unit."""
+    axis, abscissa = run_axis(run, made.time, signal.mesh)
+    cuts = {
+        order: signal.amplitude(made.cut(order)) for order in signal.orders or largest_orders(signal, made)
+    }
+    overall = signal.magnitude(made.rms)
+    largest = max(float(overall.max()), *(float(cut.max()) for cut in cuts.values()))
+    floor = largest * 10.0 ** (-DEPTH / 20.0)
+    names = [f"{order}×" for order in cuts]
+    lines = (
+        Line("overall, rms", abscissa, decibels(overall, floor), palette.INK, width=2.2),
+        *category_lines(abscissa, names, (decibels(cut, floor) for cut in cuts.values())),
+    )
+    level = Axis(f"level, dB re 1 {signal.unit}")
+    valid = highest_valid_order(run, signal.mesh)
+    top = float(run.mesh_frequency[signal.mesh].max())
+    return Figure(
+        key="levels",
+        title=f"Overall level and mesh orders of the {signal.name}",
+        caption="Overall: rms about the mean in blocks of whole base pitches. Orders: "
+        f"{signal.scale} values of those named, or of the {NAMED} largest, resampled to equal steps of "
+        f"position. {validity(valid, top)}",
+        alternative=_words(signal, made, abscissa, unit_of(axis.label)),
+        content=(Panel(axis, level, lines),),
+        table=_table(signal, made, overall, cuts, (axis, abscissa)),
+    )
+
+
+def largest_orders(signal: Signal, made: Waterfall) -> tuple[int, ...]:
+    """Return the orders that are largest anywhere in the run, by their number."""
+    orders = range(1, int(made.line[-1]) + 1)
+    largest = sorted(orders, key=lambda order: -float(signal.magnitude(made.cut(order)).max()))
+    return tuple(sorted(largest[:NAMED]))
+
+
+def _words(signal: Signal, made: Waterfall, along: FloatArray, unit: str) -> str:
+    """Say where it is loudest, and which order makes it."""
+    overall = signal.magnitude(made.rms)
+    worst = int(np.argmax(overall))
+    orders = range(1, int(made.line[-1]) + 1)
+    power = {order: 0.5 * float(signal.magnitude(made.cut(order))[worst]) ** 2 for order in orders}
+    order = max(power, key=lambda key: power[key])
+    share = min(power[order] / max(float(overall[worst]) ** 2, 1e-300), 1.0)
+    return (
+        f"Loudest at {number(float(along[worst]), 3)} {unit}: {number(float(overall[worst]), 3)} "
+        f"{signal.quantity.unit} rms, {number(100.0 * share, 2)} % of its power at mesh order {order}."
+    )
+
+
+def _table(
+    signal: Signal,
+    made: Waterfall,
+    overall: FloatArray,
+    cuts: dict[int, FloatArray],
+    along: tuple[Axis, FloatArray],
+) -> Table:
+    axis, abscissa = along
+    rows = []
+    for name, values, order in [
+        ("overall, rms", overall, 0),
+        *((f"{k}×", cut, k) for k, cut in cuts.items()),
+    ]:
+        at = int(np.argmax(values))
+        level = f"{20.0 * np.log10(max(float(values[at]), 1e-300)):.1f}"
+        hertz = number(float(order * made.mesh_frequency[at]), 4) if order else ""
+        rows.append((name, number(float(values[at]), 4), level, number(float(abscissa[at]), 4), hertz))
+    head = ("mesh order", f"largest, {signal.unit}", "dB", axis.label, "frequency, Hz")
+    return Table("Largest value of each line", head, tuple(rows))
+
+
+BLOCKS, ORDERS = 90, 8
+ORDER_COLOUR = "#9FB3C8"  # seen on the dark of the map and on paper
+
+
+def frequency_blocks(run: RunResult, signal: Signal) -> Waterfall:
+    """Return spectra over frequency of short blocks along the run."""
+    block = 2.0 * float(run.time[-1]) / BLOCKS
+    return frequency_waterfall(run, signal.quantity.series, block, 0.5, signal.mesh, signal.window)
+
+
+def campbell(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
+    """Draw spectra of short blocks side by side."""
+    amplitude = signal.amplitude(made.amplitude)
+    axis, along = run_axis(run, made.time, signal.mesh)
+    valid = highest_valid_order(run, signal.mesh)
+    top = top_frequency(run, signal, made)
+    modes = mode_lines(run, made.mesh_frequency, top)
+    return Figure(
+        key="campbell",
+        title=f"Campbell diagram of the {signal.name}",
+        caption="Color: amplitude of each block's spectrum, in dB below the largest. Dotted: "
+        f"multiples of the mesh frequency. {MODES_CAPTION[whirling(run)]}, one for those that lie together. "
+        f"{validity(valid, float(run.mesh_frequency[signal.mesh].max()))}",
+        alternative=_campbell_words(signal, made, amplitude, (axis, along), modes),
+        content=(_panel(made, amplitude, axis, along, top, modes),),
+        table=mode_table(run, top, ORDERS),
+    )
+
+
+def top_frequency(run: RunResult, signal: Signal, made: Waterfall) -> float:
+    """Return the upper end of the diagram, Hz: above the highest order that the run resolves."""
+    last = max(min(ORDERS, highest_valid_order(run, signal.mesh)), 1)
+    return min((last + 0.5) * float(made.mesh_frequency.max()), float(made.line[-1]))
+
+
+def _panel(
+    made: Waterfall, amplitude: FloatArray, axis: Axis, along: FloatArray, top: float, modes: list[ModeLine]
+) -> Panel:
+    shade = level_map(along, made.line, amplitude, top)
+    lines = [_order(made, along, order, top) for order in range(1, ORDERS + 1)]
+    lines += [Line(mode.name, along, mode.frequency, mode.color, "dash", 1.4) for mode in modes]
+    notes = [*_order_notes(made, along, top), *_mode_notes(along, modes)]
+    x, y = Axis.over(axis.label, shade.x), Axis("frequency, Hz", limits=(0.0, top))
+    return Panel(x, y, tuple(lines), shade=shade, notes=placed(notes, x, y, (0.0, top)))
+
+
+def _order(made: Waterfall, along: FloatArray, order: int, top: float) -> Line:
+    height = order * made.mesh_frequency
+    return Line("mesh orders", along, np.where(height <= top, height, np.nan), ORDER_COLOUR, "dot", 1.0)
+
+
+def _order_notes(made: Waterfall, along: FloatArray, top: float) -> Iterator[Note]:
+    """Name every order where it ends."""
+    for order in range(1, ORDERS + 1):
+        height = order * made.mesh_frequency
+        last = int(np.argmax(np.where(height <= 0.97 * top, height, -1.0)))
+        if 0.0 < height[last] <= top:
+            yield Note(float(along[last]), float(height[last]), f"{order}×", left=True)
+
+
+def _mode_notes(along: FloatArray, modes: list[ModeLine]) -> Iterator[Note]:
+    """Name every mode where the run is slowest: what moves most, and its frequency there."""
+    start = int(np.argmin(along))
+    for mode in modes:
+        at = float(mode.frequency[start])
+        yield Note(float(along[start]), at, f"{mode.moves} {number(at, 4)} Hz")
+
+
+def _campbell_words(
+    signal: Signal,
+    made: Waterfall,
+    amplitude: FloatArray,
+    over: tuple[Axis, FloatArray],
+    modes: list[ModeLine],
+) -> str:
+    """Say where the largest amplitude is, and by which mode."""
+    axis, along = over
+    block, line = np.unravel_index(int(np.argmax(amplitude[:, 1:])), amplitude[:, 1:].shape)
+    frequency = float(made.line[line + 1])
+    order = frequency / float(made.mesh_frequency[block])
+    where = f"at {number(float(along[block]), 3)} {unit_of(axis.label)}"
+    text = (
+        f"Largest: {number(float(amplitude[block, line + 1]), 3)} {signal.unit} at {number(frequency, 4)} Hz "
+    )
+    text += f"{where}, mesh order {number(order, 3)}."
+    if modes:
+        there = [float(mode.frequency[block]) for mode in modes]
+        near = min(there, key=lambda value: abs(value - frequency))
+        text += f" The nearest natural frequency is {number(near, 4)} Hz."
+    return text
+
+
+LEAST_PITCHES = 64  # of a run whose orders are shown
+
+
+@dataclass(frozen=True)
+class Loudest:
+    """The block of a run with the highest overall level: where on the axis of speed or time, and when, s.
+
+    `overall` is rms about the mean in the signal's unit, `orders` the rms of the mesh orders that were named,
+    or of the largest of the run.
+    """
+
+    axis: Axis
+    where: float
+    time: float
+    overall: float
+    orders: dict[int, float]
+
+
+def has_orders(run: RunResult, mesh: int = 0) -> bool:
+    """Whether a run passes enough base pitches for orders over it."""
+    return _pitches_passed(run, mesh) >= LEAST_PITCHES
+
+
+def loudest(run: RunResult, signal: Signal) -> Loudest | None:
+    """Return where what is heard of a run is loudest; None of a run without orders.
+
+    Raises `BadInput`: it does not vary.
+    """
+    if not has_orders(run, signal.mesh):
+        return None
+    if signal.quantity.part == "bearing" and not signal.direction:
+        signal = replace(signal, direction=PRINCIPAL)
+    seen = along_direction(run, signal)
+    blocks = order_blocks(seen, signal)
+    axis, along = run_axis(seen, blocks.time, signal.mesh)
+    overall = signal.magnitude(blocks.rms)
+    worst = int(np.argmax(overall))
+    rms = {
+        order: SCALES["rms"] * float(signal.magnitude(blocks.cut(order))[worst])
+        for order in signal.orders or largest_orders(signal, blocks)
+    }
+    return Loudest(axis, float(along[worst]), float(blocks.time[worst]), float(overall[worst]), rms)

@@ -1,0 +1,312 @@
+"""A run on the page: main results, figures, accuracy, cost, effects and scene."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from bounds import leftover
+from dynamics.errors import InputError
+from dynamics.orders import Waterfall, highest_valid_order, sidebands
+from dynamics.results import RunResult
+from dynamics.results.mesh_figures import (
+    PlanetLoadSharing,
+    contact_shares,
+    dynamic_factor,
+    planet_load_sharing,
+)
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number, unit_of
+from lineofaction.report.drawing.page import Headline, Part, Section
+from lineofaction.report.drawing.placing import envelope
+from lineofaction.report.drawing.tables import facts, ledger_section, peak_table, sampling_table
+from lineofaction.report.response.modes import ModeLine, mode_bars, mode_lines, whirling
+from lineofaction.report.run.levels import MAP_DEPTH as DEPTH
+from lineofaction.report.run.levels import (
+    MAPPED,
+    campbell,
+    frequency_blocks,
+    has_orders,
+    level_map,
+    levels_over_speed,
+    order_blocks,
+    top_frequency,
+)
+from lineofaction.report.run.signals import (
+    TOO_SHORT,
+    dynamic_error,
+    has_spectrum,
+    octave_bands,
+    signal_over_time,
+    signal_spectrum,
+)
+from lineofaction.report.run.sound import Heard, sound_of
+from lineofaction.report.run.view import (
+    RunView,
+    Signal,
+    along_direction,
+    run_axis,
+    shown_signal,
+    validity,
+)
+
+
+def _planet_sharing(run: RunResult) -> Figure | None:
+    """Draw what each planet carries at sun and ring; None without planets."""
+    sharings = planet_load_sharing(run)
+    if not sharings:
+        return None
+    rows = tuple(
+        (sharing.central, mesh, *(number(float(v)) for v in (mean, np.nanmin(ratio), np.nanmax(ratio))))
+        for sharing in sharings
+        for mesh, mean, ratio in zip(sharing.mesh, sharing.mean, sharing.ratio, strict=True)
+    )
+    factors = "; ".join(f"{s.central} {number(s.mesh_load_factor)}" for s in sharings)
+    return Figure(
+        key="planet_sharing",
+        title="Load sharing of the planets",
+        caption="Force of each planet's mesh times the number of planets over the sum of their forces: 1 "
+        "for equal loads.",
+        alternative=f"Largest share in the mean (K_gamma): {factors}.",
+        content=tuple(_panel(run, sharing) for sharing in sharings),
+        table=Table("Load sharing", ("gear", "mesh", "of means", "least", "largest"), rows),
+    )
+
+
+def _panel(run: RunResult, sharing: PlanetLoadSharing) -> Panel:
+    lines = []
+    for index, ratio in enumerate(sharing.ratio):
+        envelope_of = envelope(run.time, ratio)
+        lines.append(Line(f"planet {index + 1}", *envelope_of, palette.category(index), width=1.0))
+    time = Axis.over("time, s", run.time)
+    return Panel(time, Axis("load sharing ratio"), tuple(lines), title=sharing.central)
+
+
+def _order_map(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
+    """Draw spectra over mesh orders side by side: what follows the mesh lies level."""
+    valid = highest_valid_order(run, signal.mesh)
+    last = max(min(MAPPED, valid), 1)
+    amplitude = signal.amplitude(made.amplitude)[:, made.line <= last]
+    axis, along = run_axis(run, made.time, signal.mesh)
+    shade = level_map(along, made.line[made.line <= last], amplitude, float(last))
+    names = tuple((float(order), f"{order}×") for order in range(1, last + 1))
+    orders = Axis("mesh order", limits=(0.0, float(made.line[-1])), names=names)
+    block, line = np.unravel_index(int(np.argmax(amplitude[:, 1:])), amplitude[:, 1:].shape)
+    loudest = number(float(amplitude[block, line + 1]), 3)
+    where = f"{number(float(along[block]), 3)} {unit_of(axis.label)}"
+    return Figure(
+        key="order_map",
+        title=f"Order map of the {signal.name}",
+        caption=f"Color: {signal.scale} amplitude of each block's spectrum over mesh orders, in dB below the "
+        f"largest, down to −{DEPTH:g} dB. {validity(valid, float(run.mesh_frequency[signal.mesh].max()))}",
+        alternative=f"Largest: {loudest} {signal.unit} at order "
+        f"{number(float(made.line[line + 1]), 4)} and {where}.",
+        content=(Panel(Axis.over(axis.label, shade.x), orders, shade=shade),),
+    )
+
+
+PITCHES = 16
+
+
+def _dynamic_factor_figure(run: RunResult) -> Figure:
+    factor = dynamic_factor(run, PITCHES)
+    axis, abscissa = run_axis(run, factor.time)
+    lines = (
+        Line("largest", abscissa, factor.largest, palette.VERMILLION),
+        Line("mean", abscissa, factor.mean, palette.INK, "dash"),
+        Line("least", abscissa, factor.least, palette.BLUE),
+    )
+    worst = int(np.argmax(factor.largest))
+    return Figure(
+        key="dynamic_factor",
+        title=f"Dynamic factor of {run.mesh[0]}",
+        caption=f"Force of the driving flank over the nominal one, in blocks of {PITCHES} pitches. "
+        "The largest is the dynamic factor K_v; where the least is 0 the flanks lift off. The mean "
+        "differs from 1 by the torque that accelerates the train.",
+        alternative=f"Largest {number(float(factor.largest[worst]), 4)} at "
+        f"{number(float(abscissa[worst]), 3)} {unit_of(axis.label)}, least "
+        f"{number(float(factor.least.min()), 3)}.",
+        content=(Panel(axis, Axis("mesh force over nominal, 1"), lines),),
+    )
+
+
+SHARE, ROWS = 1e-3, 12  # of the largest mesh order
+
+
+def _sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
+    """Tabulate the largest sidebands of the loudest component; nothing if the run is too short for them."""
+    values = max(signal.components(run).values(), key=lambda series: float(np.var(series)))
+    try:
+        lines = sidebands(run, values, mesh=signal.mesh)
+    except InputError:  # fewer than four revolutions
+        return ()
+    least = SHARE * max(line.amplitude for line in lines if line.number == 0)
+    beside = sorted((s for s in lines if s.number and s.amplitude > least), key=lambda s: -s.amplitude)
+    if not beside:
+        return ()
+    columns = {
+        "mesh order": lambda line: str(line.mesh_order),
+        "sideband": lambda line: f"{line.number:+d} × {line.source}",
+        "order": lambda line: number(line.order, 5),
+        f"amplitude, {signal.quantity.unit} peak": lambda line: number(line.amplitude, 3),
+    }
+    caption = f"Sidebands of the {signal.name}, once per revolution of a gear and its multiples"
+    return (Table.of(caption, beside[:ROWS], columns),)
+
+
+def _mode_shares(run: RunResult, signal: Signal, made: Waterfall) -> Figure | None:
+    """Draw the shares of the parts in the kinetic energy of each mode of the diagram; None without modes."""
+    modes = mode_lines(run, made.mesh_frequency, top_frequency(run, signal, made))
+    shown = [mode for mode in modes if mode.shares]
+    if not shown:
+        return None
+    names = [f"{number(float(mode.frequency[0]), 4)} Hz" for mode in shown]
+    where = "whirl modes at the highest speed of the run" if whirling(run) else "natural modes"
+    return Figure(
+        key="mode_shares",
+        title="What moves in the modes of the Campbell diagram",
+        caption=f"Kinetic energy of the {where} by shaft and kind of motion, named by their frequency "
+        "at the start of the run. Parts below a twentieth are among the others.",
+        alternative=_words(shown[0], names[0]),
+        content=(mode_bars(names, [mode.shares for mode in shown], "kinetic energy"),),
+    )
+
+
+def _words(mode: ModeLine, name: str) -> str:
+    part, share = max(mode.shares.items(), key=lambda item: item[1])
+    return f"In the lowest mode, {name}, {number(100.0 * share, 2)} % of the kinetic energy are of {part}."
+
+
+_ERRORS = {
+    "time_step": ("step error", "nm rms"),
+    "table_interpolation": ("table error", "nm rms"),
+    "left_out_effects": ("neglected effects", "nm at rest"),
+}
+"""Sources of error, and the unit of what they do to transmission errors."""
+
+
+def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:
+    """Mean mesh force, and the balance of energy."""
+    headlines = []
+    if run.mesh:
+        force, nominal = (number(float(v)) for v in (np.mean(run.mesh_force[0]), run.nominal_force[0]))
+        headlines.append(Headline("mean mesh force", f"{force} N", f"nominal {nominal} N"))
+    if run.energy is not None:
+        headlines.append(
+            Headline("energy balance", f"{leftover(100 * run.energy.relative, 2)} %", "unaccounted for")
+        )
+    return tuple(headlines)
+
+
+def dynamic_alarms(run: RunResult) -> tuple[str, ...]:
+    """Say loudly that a run ended early, or what makes its result wrong."""
+    wrong = [check for check in run.effect_ledger.get("checks", ()) if check.get("valid") is False]
+    alarms = [f"Not valid: {check['assumption']} ({check['part']}); {check['reason']}." for check in wrong]
+    if not run.status.usable:
+        ended = run.status.name.lower().replace("_", " ")
+        alarms.insert(0, f"The run ended early at {run.time[-1]:g} s: {ended}.")
+    return tuple(alarms)
+
+
+def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
+    """Show the motion of one run, and the quantity that the view names.
+
+    Raises `BadInput`: the run does not hold what the view names.
+    """
+    signal = shown_signal(run, view)
+    seen = along_direction(run, signal)
+    over_time = signal_over_time(run, signal)
+    spectrum = (signal_spectrum(seen, signal),) if has_spectrum(run) else ()
+    section = Section(signal.heading, "" if spectrum else TOO_SHORT, figures=(over_time, *spectrum))
+    if not run.mesh:
+        return (section,)
+    text = "" if len(run.mesh) == 1 else f"Of {len(run.mesh)} meshes, {run.mesh[signal.mesh]} is shown."
+    motion = Section("Dynamic transmission error", text, figures=(dynamic_error(run, signal.mesh),))
+    return motion, section, *_orders(run, signal), *_forces(run)
+
+
+def dynamic_making(run: RunResult) -> tuple[Section, ...]:
+    """Show how exact the run is, what it cost, and what it was made from."""
+    accuracy = Section(
+        "Accuracy of the run",
+        tables=(_accuracy(run), sampling_table(run), peak_table(run)),
+        folded=(_energy(run),),
+        part=Part.ACCURACY,
+    )
+    text = "The scene with all defaults, in SI."
+    scene = Section("Scene", text, folded=(facts("Scene", run.case),), part=Part.INPUT)
+    steps = facts("Step statistics", run.statistics.to_json())
+    receipt = Section("Receipt of the run", tables=(_seconds(run),), folded=(steps,), part=Part.RECEIPT)
+    return ledger_section(run.effect_ledger), accuracy, scene, receipt
+
+
+def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
+    if not has_orders(run, signal.mesh):
+        return ()
+    seen = along_direction(run, signal)
+    orders, frequencies = order_blocks(seen, signal), frequency_blocks(seen, signal)
+    of_orders = _order_map(run, signal, orders)
+    figures = (
+        levels_over_speed(run, signal, orders),
+        replace(of_orders, sound=sound_of((Heard(signal.name, run, signal),), of_orders.content[0].x)),
+        campbell(run, signal, frequencies),
+        _mode_shares(run, signal, frequencies),
+        octave_bands(run, signal, frequencies),
+    )
+    shown = tuple(figure for figure in figures if figure is not None)
+    return (Section("Levels and orders", figures=shown, tables=_sideband_tables(run, signal)),)
+
+
+def _forces(run: RunResult) -> tuple[Section, ...]:
+    factor = _dynamic_factor_figure(run) if run.nominal_force[0] > 0.0 and has_orders(run) else None
+    shown = tuple(figure for figure in (factor, _planet_sharing(run)) if figure is not None)
+    return (Section("Mesh forces", figures=shown, tables=(_contact(run),)),)
+
+
+def _contact(run: RunResult) -> Table:
+    shares = contact_shares(run)
+    states = tuple(shares[0])
+    rows = tuple(
+        (mesh, *(number(100.0 * share[state], 3) for state in states))
+        for mesh, share in zip(run.mesh, shares, strict=True)
+    )
+    flanks = {"off": "apart, %", "both": "both flanks, %"}
+    head = ("mesh", *(flanks.get(state, f"{state} flank, %") for state in states))
+    return Table("Contact state, share of the samples", head, rows)
+
+
+def _accuracy(run: RunResult) -> Table:
+    rows = [("status", run.status.name.lower().replace("_", " "))]
+    for name, (title, unit) in _ERRORS.items():
+        rows += _errors(title, unit, run.receipt.get("error", {}).get(name, {}))
+    if run.energy is not None:
+        rows.append(
+            ("energy unaccounted for, % of the turnover of vibration", leftover(100 * run.energy.relative, 2))
+        )
+        through = run.energy.relative_to_throughput
+        rows.append(("energy unaccounted for, % of the drive's work", leftover(100 * through, 2)))
+    return Table("Accuracy of the run", ("quantity", "value"), tuple(rows))
+
+
+def _errors(title: str, unit: str, error: dict[str, Any]) -> list[tuple[str, str]]:
+    """Write the error of one source: of transmission errors, and of the worst order of a bearing force."""
+    rows = []
+    if "rms" in error:
+        rows.append((f"{title}, {unit} ({error.get('source', '')})", number(1e9 * float(error["rms"]), 3)))
+    if error.get("bearing_force_orders"):
+        worst = max(float(value) for value in error["bearing_force_orders"])
+        rows.append((f"{title}, N at the worst mesh order of a bearing force", number(worst, 2)))
+    return rows
+
+
+def _seconds(run: RunResult) -> Table:
+    stages = run.receipt.get("seconds", {})
+    rows = tuple((name.replace("_", " "), number(float(value), 3)) for name, value in stages.items())
+    return Table("Time of the run by stage", ("stage", "wall s"), rows)
+
+
+def _energy(run: RunResult) -> Table:
+    audit = {} if run.energy is None else run.energy.to_json()
+    return facts("Energy audit, J", {name: value for name, value in audit.items() if "relative" not in name})

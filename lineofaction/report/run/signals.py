@@ -1,0 +1,298 @@
+"""A signal of a run over time, over frequency and in bands, and the dynamic transmission error."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dynamics.errors import InputError
+from dynamics.orders import (
+    ThirdOctaves,
+    Waterfall,
+    highest_valid_order,
+    order_frequency,
+    spectrum,
+    third_octaves,
+)
+from dynamics.results import RunResult
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Figure,
+    FloatArray,
+    Line,
+    Panel,
+    Reference,
+    Table,
+    number,
+    step_line,
+    um,
+)
+from lineofaction.report.drawing.placing import envelope
+from lineofaction.report.run.view import (
+    PITCHES,
+    Signal,
+    Travel,
+    counted_by,
+    decibels,
+    is_steady,
+    travel,
+    validity,
+    window_speeds,
+)
+
+AXES = "Components in the fixed frame; of a planet bearing in its carrier's."
+DETAIL = "Below: less the mean of the window."
+
+
+def signal_over_time(run: RunResult, signal: Signal) -> Figure:
+    """Draw the components of the quantity, over the few base pitches less their means: the ripple is seen."""
+    way = travel(run, signal.mesh)
+    speed = window_speeds(way.speed_rpm)[-1]
+    window = way.window(speed)
+    of = "base pitches" if run.mesh else "turns"
+    detail = f"three {of} at {number(speed, 3)} rpm"
+    vector = signal.quantity.part == "bearing"
+    quantity, _, unit = signal.label.rpartition(", ")
+    return Figure(
+        key="signal",
+        title=f"Time history of the {signal.name}",
+        caption=f"{AXES} {DETAIL}" if vector else DETAIL,
+        alternative=_words(run, signal, window),
+        content=(
+            _panel(run, signal, slice(None), "whole run", signal.label),
+            _panel(run, signal, window, detail, f"{quantity} less its mean, {unit}", about_mean=True),
+        ),
+        table=_table(run, signal),
+    )
+
+
+def _panel(
+    run: RunResult, signal: Signal, window: slice, title: str, label: str, *, about_mean: bool = False
+) -> Panel:
+    lines = []
+    for index, (component, values) in enumerate(signal.components(run).items()):
+        own = values[window]
+        time, decimated = envelope(run.time[window], own - own.mean() if about_mean else own)
+        name = component or signal.quantity.noun
+        lines.append(Line(name, time, decimated, palette.category(index), width=1.2))
+    return Panel(Axis.over("time, s", run.time[window]), Axis(label), tuple(lines), title=title)
+
+
+def _words(run: RunResult, signal: Signal, window: slice) -> str:
+    size = signal.magnitude(getattr(run, signal.quantity.series)[..., window])
+    mean, swing = number(float(size.mean()), 4), number(float(np.ptp(size)), 3)
+    unit = signal.quantity.unit
+    return f"Magnitude {mean} {unit} on average, {swing} {unit} peak to peak."
+
+
+def _table(run: RunResult, signal: Signal) -> Table:
+    """Mean and standard deviation of the quantity at every part over the run."""
+    unit, values = signal.quantity.unit, signal.quantity.factor * getattr(run, signal.quantity.series)
+    names = run.bearing if values.ndim == 3 else run.mesh
+    parts = ("x", "y", "z") if values.ndim == 3 else ("",)
+    moments = np.stack([values.mean(axis=-1), values.std(axis=-1)], axis=1).reshape(len(names), -1)
+    rows = [(name, *(number(float(v), 4) for v in row)) for name, row in zip(names, moments, strict=True)]
+    head = (
+        signal.quantity.part,
+        *(f"mean {part}, {unit}".replace(" ,", ",") for part in parts),
+        *(f"deviation {part}, {unit}".replace(" ,", ",") for part in parts),
+    )
+    return Table("Mean and standard deviation over the run", head, tuple(rows))
+
+
+WINDOW = (0.9, 0.95)  # of the duration
+ORDERS = 8
+LEAST_SAMPLES = 8  # of a window
+TOO_SHORT = f"Too short for a spectrum: 90 to 95 % of the duration holds fewer than {LEAST_SAMPLES} samples."
+_NAMES = {"hann": "Hann", "rectangular": "rectangular", "flat_top": "flat top"}
+
+
+def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
+    """Draw the amplitude spectrum."""
+    window = spectrum_window(run.time)
+    frequency, amplitude = amplitude_spectrum(run, signal, window)
+    whole, of = order_frequency(run, signal.mesh), counted_by(run)
+    mesh = whole[window]
+    valid = highest_valid_order(run, signal.mesh)
+    first, last = (number(float(run.time[at]), 3) for at in (window.start, window.stop - 1))
+    return Figure(
+        key="spectrum",
+        title=f"Spectrum of the {signal.name}",
+        caption=f"From {first} to {last} s, "
+        f"{_NAMES[signal.window]} window, {signal.scale} values. "
+        f"Dashed: the {of} frequency in the middle of the window and its multiples. "
+        f"{validity(valid, float(whole.max()), of)}",
+        alternative=_spectrum_words(signal, frequency, amplitude, mesh, of),
+        content=(_spectrum_panel(signal, frequency, amplitude, float(np.median(mesh)), valid),),
+        table=_spectrum_table(signal, frequency, amplitude, mesh, (of, valid)),
+    )
+
+
+def has_spectrum(run: RunResult) -> bool:
+    """Whether a run is long enough for one: its window holds a line beside the mean."""
+    window = spectrum_window(run.time)
+    return len(run.time[window]) >= LEAST_SAMPLES
+
+
+def spectrum_window(time: FloatArray) -> slice:
+    """Return the samples between 90 and 95 % of the duration."""
+    first, last = (int(share * (len(time) - 1)) for share in WINDOW)
+    return slice(first, last + 1)
+
+
+def amplitude_spectrum(run: RunResult, signal: Signal, window: slice) -> tuple[FloatArray, FloatArray]:
+    """Return frequencies in Hz and amplitudes of a stretch in the signal's unit, without the mean."""
+    values = getattr(run, signal.quantity.series)[..., window]
+    made = spectrum(values, run.sample_rate, window=signal.window)
+    return made.frequency[1:], signal.amplitude(made.amplitude)[1:]
+
+
+def _order_amplitudes(
+    frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray
+) -> list[tuple[float, float]]:
+    peaks = []
+    spacing = float(frequency[0])  # the first line stands one spacing above zero
+    for order in range(1, ORDERS + 1):
+        low, high = order * float(mesh.min()) - spacing, order * float(mesh.max()) + spacing
+        band = np.flatnonzero((frequency >= low) & (frequency <= high))
+        if band.size == 0:
+            break
+        peak = band[np.argmax(amplitude[band])]
+        peaks.append((float(frequency[peak]), float(amplitude[peak])))
+    return peaks
+
+
+def _spectrum_panel(
+    signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: float, valid: int
+) -> Panel:
+    last = max(min(ORDERS, valid), 1)
+    end = float(np.clip((last + 0.5) * mesh or np.inf, frequency[0], frequency[-1]))  # a line at least
+    shown = frequency <= end
+    orders = [Reference(f"{k}×", k * mesh) for k in range(1, last + 1) if k * mesh < end]
+    line = Line(signal.name, frequency[shown], np.maximum(amplitude[shown], 1e-12), palette.BLUE, width=1.2)
+    top = float(amplitude[shown].max())
+    y = Axis(f"amplitude, {signal.unit}", "log", (1e-5 * top, 3.0 * top))
+    return Panel(Axis("frequency, Hz", limits=(0.0, end)), y, (line,), tuple(orders))
+
+
+def _spectrum_words(
+    signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray, of: str
+) -> str:
+    """Name the largest line and where the frequency of the orders is."""
+    peak = int(np.argmax(amplitude))
+    low, high = number(float(mesh.min()), 3), number(float(mesh.max()), 3)
+    runs = f"is {low} Hz" if low == high else f"runs from {low} to {high} Hz"
+    return (
+        f"The largest line is {number(float(amplitude[peak]), 3)} {signal.unit} at "
+        f"{number(float(frequency[peak]), 4)} Hz; the {of} frequency {runs}."
+    )
+
+
+def _spectrum_table(
+    signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray, orders: tuple[str, int]
+) -> Table:
+    of, valid = orders
+    rows = tuple(
+        (str(order), number(where, 4), number(size, 3))
+        for order, (where, size) in enumerate(_order_amplitudes(frequency, amplitude, mesh)[:valid], start=1)
+    )
+    head = ("order", "frequency, Hz", f"amplitude, {signal.unit}")
+    return Table(f"Largest line in the band of each {of} order", head, rows)
+
+
+DEPTH = 80.0
+
+
+def octave_bands(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure | None:
+    """Draw the rms of each band over the whole run and in its loudest block; None where no band fits."""
+    try:
+        made = third_octaves(blocks, float(run.receipt["sampling"]["pass_frequency"]))
+    except InputError:  # the run is too short for a band
+        return None
+    rms = signal.magnitude(made.rms)
+    mean, most = np.sqrt(np.mean(rms**2, axis=0)), np.max(rms, axis=0)
+    floor = float(most.max()) * 10.0 ** (-DEPTH / 20.0)
+    lines = (
+        step_line("loudest block", made.edges, decibels(most, floor), palette.VERMILLION),
+        step_line("whole run", made.edges, decibels(mean, floor), palette.BLUE),
+    )
+    unit, worst = signal.quantity.unit, int(np.argmax(mean))
+    names = tuple((float(at), _nominal(at)) for at in made.nominal[made.band % 3 == 0])
+    x = Axis("nominal center of the band, Hz", "log", (float(made.edges[0]), float(made.edges[-1])), names)
+    return Figure(
+        key="octave_bands",
+        title=f"One-third-octave levels of the {signal.name}",
+        caption=f"Effective values in bands after IEC 61260-1, lines of blocks of "
+        f"{number(1.0 / float(blocks.line[1]), 2)} s added in power: over the whole run, and the largest of "
+        "any block.",
+        alternative=f"The band at {_nominal(made.nominal[worst])} Hz is the loudest over the run: "
+        f"{number(float(mean[worst]), 3)} {unit} rms.",
+        content=(Panel(x, Axis(f"level, dB re 1 {unit} rms"), lines),),
+        table=_band_table(made, mean, most, unit),
+    )
+
+
+def _nominal(frequency: float) -> str:
+    return f"{frequency:g}" if frequency < 1000.0 else f"{frequency / 1000.0:g}k"
+
+
+def _band_table(made: ThirdOctaves, mean: FloatArray, most: FloatArray, unit: str) -> Table:
+    rows = tuple(
+        (f"{at:g}", number(float(a), 3), number(float(b), 3))
+        for at, a, b in zip(made.nominal, mean, most, strict=True)
+    )
+    head = ("band, Hz", f"whole run, {unit} rms", f"loudest block, {unit} rms")
+    return Table("One-third-octave bands", head, rows)
+
+
+_X = Axis("travel of the driving gear within the window, base pitches", limits=(0, PITCHES))
+
+
+def dynamic_error(run: RunResult, mesh: int = 0) -> Figure:
+    """Draw three base pitches of both errors at each of several speeds that the run passes."""
+    way = travel(run, mesh)
+    windows = {speed: way.window(speed) for speed in window_speeds(way.speed_rpm)}
+    errors = run.dynamic_transmission_error[mesh], run.static_transmission_error[mesh]
+    swings = [
+        f"{um(np.ptp(errors[0][window]))} (static {um(np.ptp(errors[1][window]))}) at {speed:g} rpm"
+        for speed, window in windows.items()
+    ]
+    return Figure(
+        key="dynamic_error",
+        title="Dynamic and static transmission error",
+        caption="The static curve is the table at the nominal force and the same position; the dynamic one "
+        "responds to its steps as an oscillating system.",
+        alternative=f"Peak to peak in µm: {'; '.join(swings)}.",
+        content=tuple(_error_panel(run, errors, way, *each) for each in windows.items()),
+        table=_error_table(run, mesh, errors, windows),
+    )
+
+
+def _error_panel(
+    run: RunResult, errors: tuple[FloatArray, FloatArray], way: Travel, speed: float, window: slice
+) -> Panel:
+    position = way.position[window] - np.floor(way.position[window][0] + 1e-6)
+    lines = (
+        Line("dynamic", position, 1e6 * errors[0][window], palette.BLUE),
+        Line("static", position, 1e6 * errors[1][window], palette.VERMILLION, "dash"),
+    )
+    passed = "" if is_steady(way.speed_rpm) else "passed "
+    title = f"{number(speed, 3)} rpm, {passed}at {number(float(run.time[window].mean()), 3)} s"
+    return Panel(_X, Axis("transmission error, µm"), lines, title=title)
+
+
+def _error_table(
+    run: RunResult, mesh: int, errors: tuple[FloatArray, FloatArray], windows: dict[float, slice]
+) -> Table:
+    """Mean and peak-to-peak of both errors and the extremes of the mesh force at each speed."""
+    rows = []
+    for speed, window in windows.items():
+        cells = [um(float(take(error[window]))) for error in errors for take in (np.mean, np.ptp)]
+        mean = run.mesh_force[mesh, window].mean()
+        ends = run.least_mesh_force[mesh, window].min(), run.largest_mesh_force[mesh, window].max()
+        rows.append((number(speed, 3), *cells, *(number(float(v), 4) for v in (ends[0], mean, ends[1]))))
+    head = (
+        "speed, rpm", "DTE mean, µm", "DTE peak to peak, µm", "STE mean, µm", "STE peak to peak, µm",
+        "least mesh force, N", "mean mesh force, N", "largest mesh force, N",
+    )  # fmt: skip
+    return Table("Transmission error and mesh force by speed", head, tuple(rows))

@@ -1,0 +1,172 @@
+"""Runs as sounds, of files and of a service's store."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dynamics.acoustics import Recording, common_full_scale, wav_file
+from dynamics.acoustics.recording import PASSED, SAMPLE_RATE
+from dynamics.errors import InputError
+from dynamics.results import RunResult
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.studies.listen.heard_run import KIND, SCHEMA, HeardRun
+from lineofaction.gearbox.studies.listen.sound_figures import driving_shaft
+from lineofaction.report.drawing.figure import Axis, Sound, Track, number, unit_of
+from lineofaction.report.run.view import (
+    QUANTITIES,
+    RunView,
+    Signal,
+    same_view,
+    shown_signal,
+    signal_recording,
+)
+from model_studies.record_file import read_record
+
+PAGE_RATE, PAGE_BYTES, SAMPLE_BYTES = 24_000, 2_000_000, 4
+"""Hz of a sound in a page if it passes what the run holds; bytes of the sounds of a plot; of a sample."""
+POINTS = 200  # of the way along an axis
+
+
+@dataclass(frozen=True)
+class Heard:
+    """A run to listen to: its name, the run, and what is shown of it."""
+
+    name: str
+    run: RunResult
+    signal: Signal
+
+    def recording(self, sample_rate: int = SAMPLE_RATE) -> Recording:
+        """Return it as a recording; raises as `signal_recording`."""
+        return signal_recording(self.run, self.signal, sample_rate)
+
+    @property
+    def query(self) -> dict[str, str]:
+        """Return what names the signal to the service."""
+        name = next(key for key, value in QUANTITIES.items() if value is self.signal.quantity)
+        part: dict[str, str] = {self.signal.quantity.part: self.signal.part}
+        along = {"direction": self.signal.direction} if self.signal.direction else {}
+        return {"quantity": name, **part, **along}
+
+
+def heard_runs(runs: dict[str, RunResult], view: RunView) -> Iterator[Heard]:
+    """Yield runs by their names as they are heard; the others are heard as the first one is.
+
+    Raises `BadInput`: a run does not hold what the view names.
+    """
+    for name, run in runs.items():
+        try:
+            signal = shown_signal(run, view)
+        except BadInput as error:
+            raise error.within(name) from None
+        yield Heard(name, run, signal)
+        view = same_view(view, signal)
+
+
+def full_scale_of(recordings: list[Recording]) -> float:
+    """Return the common full scale; raises `BadInput`: their units differ."""
+    try:
+        return common_full_scale(*recordings)
+    except InputError as error:
+        raise BadInput.of(
+            "files", "runs of several units", "runs that hold one quantity", f"{error}"
+        ) from None
+
+
+def sound_of(heard: tuple[Heard, ...], axis: Axis) -> Sound | None:
+    """Return the sound of runs beside a plot over `axis`, their speed or time; None if one is silent."""
+    passed = max(_passed(one) for one in heard)
+    rate = PAGE_RATE if passed <= PASSED * PAGE_RATE else SAMPLE_RATE
+    try:
+        recordings = [one.recording(rate) for one in heard]
+    except BadInput:
+        return None
+    scale = full_scale_of(recordings)
+    fits = SAMPLE_BYTES * sum(one.samples.size for one in recordings) <= PAGE_BYTES
+    return Sound(
+        _caption(heard, recordings, scale),
+        tuple(_track(one, axis) for one in heard),
+        tuple(wav_file(one, scale) for one in recordings) if fits else (),
+    )
+
+
+def _passed(heard: Heard) -> float:
+    """Return the highest frequency that a run holds, Hz."""
+    return float(heard.run.receipt["sampling"]["pass_frequency"])
+
+
+def _track(heard: Heard, axis: Axis) -> Track:
+    """Return where a run is on the axis as it plays."""
+    run = heard.run
+    time = np.linspace(float(run.time[0]), float(run.time[-1]), POINTS)
+    along = time
+    if unit_of(axis.label) == "rpm":
+        speed = run.speed[run.shaft.index(driving_shaft(run, heard.signal.mesh))]
+        along = np.interp(time, run.time, np.abs(speed)) * 30.0 / np.pi
+    return Track(heard.name, time - time[0], along, heard.query)
+
+
+def _caption(heard: tuple[Heard, ...], recordings: list[Recording], scale: float) -> str:
+    what = ". ".join(dict.fromkeys(one.quantity for one in recordings))
+    together = " of all, which play at their true relative level" if len(heard) > 1 else ""
+    return (
+        f"Sound: {what}. From 20 Hz to {number(min(map(_passed, heard)), 3)} Hz, which the run holds. Full "
+        f"scale{together}: {number(scale, 2)} {recordings[0].unit}."
+    )
+
+
+# The sound of a stored run or recording as a WAV file; work of the live worker.
+
+
+Json = dict[str, Any]
+LONGEST = 300.0
+"""s of a run that the service makes a file of: 58 MB."""
+
+
+def stored_sound(inputs: Json) -> Json:
+    """Return ``{"wav": base64}`` of the first of ``{"files": [...], "view": {...}}``, on one full scale.
+
+    Files are those of runs, seen by the view, or of recordings: ``"kind"``.
+
+    Raises
+    ------
+    BadInput
+        The run does not hold what the view names, is silent or too long; a view of a recording.
+    """
+    files = [Path(file) for file in inputs["files"]]
+    recordings = (_recordings if inputs["kind"] == KIND else _of_runs)(files, inputs["view"])
+    wav = wav_file(recordings[0], full_scale_of(recordings))
+    return {"wav": base64.b64encode(wav).decode("ascii")}
+
+
+def _of_runs(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recording]:
+    """Return what is shown of runs, all as of the first."""
+    runs = [RunResult.from_netcdf(file) for file in files]
+    for run in runs:
+        _require_short(float(np.ptp(run.time)))
+    view = RunView(**named)
+    first = Heard("", runs[0], shown_signal(runs[0], view))
+    others = heard_runs(dict(zip(("against",), runs[1:], strict=False)), same_view(view, first.signal))
+    return [one.recording() for one in (first, *others)]
+
+
+def _recordings(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recording]:
+    for name, value in named.items():
+        if value:
+            raise BadInput.of(name, value, "left out of a recording", "It holds one quantity.")
+    recordings = [read_record(file, {SCHEMA: HeardRun}).recording for file in files]
+    for recording in recordings:
+        _require_short(recording.samples.size / recording.sample_rate)
+    return recordings
+
+
+def _require_short(lasting: float) -> None:
+    """Refuse what lasts too long, s."""
+    if lasting > LONGEST:
+        advice = "Fetch the file of the run and write it by loa listen."
+        raise BadInput.of("duration_s", lasting, f"at most {LONGEST:g} s", advice)

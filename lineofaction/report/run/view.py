@@ -1,0 +1,332 @@
+"""What of a run is shown: its view, its signal along one direction, and its series."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from bounds import one_of
+from dynamics.acoustics import Recording, principal_direction, series_recording
+from dynamics.acoustics.recording import SAMPLE_RATE
+from dynamics.errors import InputError
+from dynamics.orders import highest_valid_order, order_frequency
+from dynamics.orders.spectrum import WINDOWS
+from dynamics.results import RunResult
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.studies.listen.sound_figures import driving_shaft
+from lineofaction.gearbox.studies.listen.through_housing import DIRECTIONS, PRINCIPAL
+from lineofaction.report.drawing.figure import Axis, FloatArray, number
+
+MONOTONE = 0.2  # least change of speed over the run, of the highest, for a speed axis
+SCALES = {"rms": float(np.sqrt(0.5)), "peak": 1.0}
+"""Of an amplitude."""
+"""Along which a quantity of bearings is taken; the principal one is that in which it varies most."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A series of a run that is shown: its field, where it is taken, its noun, and its unit over SI."""
+
+    series: str
+    part: Literal["bearing", "mesh"]
+    noun: str
+    unit: str = "N"
+    factor: float = 1.0
+    asked_for: str = ""
+
+
+QUANTITIES = {
+    "force": Quantity("bearing_force", "bearing", "force on"),
+    "moment": Quantity("bearing_moment", "bearing", "moment on", "N m"),
+    "acceleration": Quantity(
+        "bearing_acceleration", "bearing", "acceleration at", "m/s²", 1.0, "outputs.accelerations = true"
+    ),
+    "mesh_force": Quantity("mesh_force", "mesh", "mesh force of"),
+    "transmission_error": Quantity("dynamic_transmission_error", "mesh", "transmission error of", "µm", 1e6),
+}
+
+
+@dataclass(frozen=True)
+class RunView:
+    """What a reader wants to see of a run; what is left out, the run decides.
+
+    - `quantity`, one of `QUANTITIES`: the force on bearings, of a run without them that of the mesh
+    - `bearing`: where the quantity varies most
+    - `mesh`, whose orders are shown, and where quantities of meshes are taken: the first
+    - `orders`, whole mesh orders of the order cuts: the five largest
+    - `window` of the spectra; `scale`: whether amplitudes are effective or peak values
+    - `direction`, one of `DIRECTIONS`, along which a quantity of bearings is taken for orders and sound:
+      orders of all three components in power, sound along the principal one
+    """
+
+    quantity: str = ""
+    bearing: str = ""
+    mesh: str = ""
+    orders: tuple[float, ...] = ()
+    window: str = "hann"
+    scale: str = "rms"
+    direction: str = ""
+
+
+@dataclass(frozen=True)
+class Signal:
+    """What is shown of one run: a series, the row of its first axis, and how amplitudes are written.
+
+    `part` names the bearing or the mesh, `mesh` is that whose orders are shown, `orders` are those named.
+    """
+
+    quantity: Quantity
+    row: int
+    part: str
+    mesh: int
+    orders: tuple[int, ...]
+    window: str
+    scale: str
+    direction: str = ""
+
+    @property
+    def name(self) -> str:
+        """What and where, and along which direction if that is named."""
+        where = f"bearing {self.part}" if self.quantity.part == "bearing" else self.part
+        along = {"": "", PRINCIPAL: " along its principal direction"}.get(
+            self.direction, f" along {self.direction}"
+        )
+        return f"{self.quantity.noun} {where}{along}"
+
+    @property
+    def heading(self) -> str:
+        """The name as a heading."""
+        return self.name[0].upper() + self.name[1:]
+
+    @property
+    def label(self) -> str:
+        """The quantity with its unit, as on an axis over time."""
+        return f"{self.quantity.noun.rpartition(' ')[0]}, {self.quantity.unit}"
+
+    @property
+    def unit(self) -> str:
+        """The unit with the scale, as on an axis."""
+        return f"{self.quantity.unit} {self.scale}"
+
+    def components(self, run: RunResult) -> dict[str, FloatArray]:
+        """Return the components (n,) over time by name, in the unit; those that stay at zero are left out."""
+        values = self.quantity.factor * getattr(run, self.quantity.series)[self.row]
+        if values.ndim == 1:
+            return {"": values}
+        return {name: row for name, row in zip("xyz", values, strict=True) if np.any(row)}
+
+    def amplitude(self, peak: FloatArray) -> FloatArray:
+        """Take the row of peak amplitudes (rows, ...) in the scale; three components are added in power."""
+        return np.asarray(SCALES[self.scale] * self.magnitude(peak))
+
+    def magnitude(self, values: FloatArray) -> FloatArray:
+        """Take the row of values (rows, ...) in the unit; three components are added in power."""
+        taken = self.quantity.factor * values[self.row]
+        vector = self.quantity.part == "bearing"
+        return np.asarray(np.sqrt(np.sum(taken**2, axis=0)) if vector else np.abs(taken))
+
+
+def shown_signal(run: RunResult, view: RunView) -> Signal:
+    """Find what the view names in a run.
+
+    Raises `BadInput`: the run has no such quantity, part or order, or the view no such window or scale.
+    """
+    for field, name, names in (("window", view.window, WINDOWS), ("scale", view.scale, SCALES)):
+        if name not in names:
+            raise BadInput.of(field, name, str(one_of(names)))
+    name = view.quantity or ("mesh_force" if run.mesh and not run.bearing else "force")
+    if name not in QUANTITIES:
+        raise BadInput.of("quantity", name, str(one_of(QUANTITIES)))
+    quantity = QUANTITIES[name]
+    values = getattr(run, quantity.series)
+    if not values.shape[0]:
+        advice = f"Run with {quantity.asked_for}." if quantity.asked_for else "Show another quantity."
+        raise BadInput.of("quantity", name, "one that the run holds", advice)
+    mesh = _index("mesh", view.mesh, run.mesh) if view.mesh else 0
+    parts, row = run.mesh, mesh
+    if quantity.part == "bearing":
+        parts, row = run.bearing, int(np.argmax(np.var(values, axis=-1).sum(axis=-1)))
+        row = _index("bearing", view.bearing, parts) if view.bearing else row
+    if view.direction and (view.direction not in DIRECTIONS or quantity.part != "bearing"):
+        bound = str(one_of(DIRECTIONS)) + ", of a quantity of bearings"
+        raise BadInput.of("direction", view.direction, bound)
+    orders = _orders(run, view.orders, mesh)
+    return Signal(quantity, row, parts[row], mesh, orders, view.window, view.scale, view.direction)
+
+
+def same_view(view: RunView, signal: Signal) -> RunView:
+    """Return the view that shows of another run what `signal` shows of the first."""
+    quantity = next(name for name, value in QUANTITIES.items() if value is signal.quantity)
+    bearing = signal.part if signal.quantity.part == "bearing" else ""
+    return replace(view, quantity=quantity, bearing=bearing)
+
+
+def _index(field: str, name: str, names: tuple[str, ...]) -> int:
+    if name not in names:
+        raise BadInput.of(field, name, str(one_of(names)))
+    return names.index(name)
+
+
+def _orders(run: RunResult, orders: tuple[float, ...], mesh: int) -> tuple[int, ...]:
+    valid = max(highest_valid_order(run, mesh), 1)
+    for order in orders:
+        if order != int(order) or not 1 <= order <= valid:
+            bound = f"a whole number, 1 to {valid}: what the run's output holds"
+            raise BadInput.of("orders", order, bound, "Run with outputs.mesh_orders for higher ones.")
+    return tuple(map(int, orders))
+
+
+def run_axis(run: RunResult, time: FloatArray, mesh: int = 0) -> tuple[Axis, FloatArray]:
+    """Return the axis for blocks at `time`: speed where it rises or falls all along, else time."""
+    shaft = run.shaft.index(driving_shaft(run, mesh))
+    return speed_axis(time, np.interp(time, run.time, np.abs(run.speed[shaft])))
+
+
+def speed_axis(time: FloatArray, speed: FloatArray) -> tuple[Axis, FloatArray]:
+    """Return the axis of what is at speeds (rad/s) over time: the speed where it rises or falls all along."""
+    speed = speed * 30.0 / np.pi
+    steps = np.diff(speed)
+    swept = bool(np.all(steps > 0.0) or np.all(steps < 0.0))
+    if swept and np.ptp(speed) > MONOTONE * speed.max():
+        return Axis("speed of the driving gear, rpm"), speed
+    return Axis("time, s"), time
+
+
+def decibels(values: FloatArray, floor: float) -> FloatArray:
+    """Return levels in dB re 1 unit, of nothing below `floor`."""
+    return np.asarray(20.0 * np.log10(np.maximum(values, max(floor, 1e-300))))
+
+
+@dataclass(frozen=True)
+class Travel:
+    """How the driving gear of a mesh moves over a run: speed (n,) without sign, position (n,) not wrapped.
+
+    Positions are in base pitches, without gears of the shaft in turns.
+    """
+
+    speed_rpm: FloatArray
+    position: FloatArray
+
+    def window(self, speed: float) -> slice:
+        """Return the few base pitches around the first passing of a speed, rpm."""
+        return speed_window(self.position, self.speed_rpm, speed)
+
+
+def travel(run: RunResult, mesh: int = 0) -> Travel:
+    """Return the way of one mesh; of a run without meshes that of its leading shaft."""
+    speed = np.abs(run.speed[run.shaft.index(driving_shaft(run, mesh))]) * 30.0 / np.pi
+    if run.mesh:
+        return Travel(speed, np.abs(np.unwrap(run.position[mesh], period=1.0)))
+    frequency = order_frequency(run, mesh)
+    turns = np.cumsum(0.5 * np.diff(run.time) * (frequency[1:] + frequency[:-1]))
+    return Travel(speed, np.concatenate([[0.0], turns]))
+
+
+def validity(valid_order: int, top: float, of: str = "mesh") -> str:
+    """Say up to which order of a `mesh` or `shaft` a picture holds at its highest frequency `top`, Hz."""
+    return f"Valid to {of} order {valid_order} at the highest {of} frequency, {number(top, 4)} Hz."
+
+
+def counted_by(run: RunResult) -> str:
+    """Say what orders of a run are multiples of: "mesh", or "shaft" where it has none."""
+    return "mesh" if run.mesh else "shaft"
+
+
+PITCHES = 3
+STEADY = 0.1
+"""Greatest change of speed over a run, of the highest, at which it has one speed alone."""
+
+
+def window_speeds(speed: FloatArray, fractions: tuple[float, ...] = (0.1, 0.4, 0.9)) -> tuple[float, ...]:
+    """Choose speeds to look at: fractions of the highest one that the run passes, rounded but never above it.
+
+    Of a run at one speed, and of one that passes none of them, that at its end.
+    """
+    highest, lowest = float(np.max(np.abs(speed))), float(np.min(np.abs(speed)))
+    chosen = [_rounded(fraction * highest, highest) for fraction in fractions]
+    passed = tuple(dict.fromkeys(value for value in chosen if value > 0.0 and value >= lowest))
+    return (float(f"{abs(speed[-1]):.4g}"),) if is_steady(speed) or not passed else passed
+
+
+def is_steady(speed: FloatArray) -> bool:
+    """Return whether a run has one speed alone."""
+    size = np.abs(speed)
+    return bool(np.ptp(size) <= STEADY * np.max(size))
+
+
+def _rounded(value: float, highest: float) -> float:
+    """Round to one digit, to two where that would exceed the highest."""
+    short = float(f"{value:.1g}")
+    return short if short <= highest else float(f"{value:.2g}")
+
+
+def speed_window(position: FloatArray, speed: FloatArray, target: float, pitches: int = PITCHES) -> slice:
+    """Return the samples of `pitches` whole base pitches around the first passing of the speed `target`.
+
+    Of a run at one speed the last ones, where what began with it has died away. `position` (n,) in base
+    pitches is not wrapped and monotone; of `speed` (n,), in the unit of `target`, the magnitude counts.
+    """
+    traveled = np.abs(position - position[0])
+    passing = int(np.argmax(np.abs(speed) >= target)) or int(np.argmin(np.abs(np.abs(speed) - target)))
+    if is_steady(speed):
+        passing = traveled.size - 1
+    first = min(np.floor(traveled[passing] - pitches / 2), np.floor(traveled[-1]) - pitches)
+    start = int(np.searchsorted(traveled, max(first, 0.0)))
+    stop = int(np.searchsorted(traveled, max(first, 0.0) + pitches, side="right"))
+    return slice(start, max(stop, start + 2))
+
+
+ROUNDING = 1e-12  # of the largest value: what varies less is constant
+
+
+def along_direction(run: RunResult, signal: Signal) -> RunResult:
+    """Return the run with the quantity along the signal's direction alone, (rows, 1, T); whole without one.
+
+    Raises `BadInput`: the direction is the principal one of what does not vary.
+    """
+    if not signal.direction:
+        return run
+    values = getattr(run, signal.quantity.series)
+    along = np.einsum("c,bct->bt", _axis(run, signal)[0], values)[:, None]
+    return replace(run, **{signal.quantity.series: along})
+
+
+def signal_recording(run: RunResult, signal: Signal, sample_rate: int = SAMPLE_RATE) -> Recording:
+    """Return what is shown of a run as a recording in the signal's unit; of bearings along one direction.
+
+    Raises `BadInput`: it does not vary, or the run is shorter than 4 samples.
+    """
+    values, where = getattr(run, signal.quantity.series)[signal.row], ""
+    if values.ndim == 2:
+        axis, where = _axis(run, signal)
+        values = axis @ values
+    name, unit = f"{signal.name}{where}; no sound pressure", signal.quantity.unit
+    try:
+        recording = series_recording(
+            signal.quantity.factor * values, run.sample_rate, name, unit, sample_rate
+        )
+    except InputError as error:
+        raise _silent(signal, error) from None
+    if not recording.peak > ROUNDING * np.abs(signal.quantity.factor * values).max():
+        raise _silent(signal, "It is silent.")
+    return recording
+
+
+def _axis(run: RunResult, signal: Signal) -> tuple[FloatArray, str]:
+    """Return the direction (3,) of a vector that is heard, and what to say of it beside the signal's name."""
+    if signal.direction not in ("", PRINCIPAL):
+        return np.eye(3)["xyz".index(signal.direction)], ""
+    values = getattr(run, signal.quantity.series)[signal.row]
+    try:
+        axis, share = principal_direction(values, run.sample_rate)
+    except InputError as error:
+        raise _silent(signal, error) from None
+    x, y, z = axis
+    joint = "," if signal.direction else " along"
+    return axis, f"{joint} ({x:.3f}, {y:.3f}, {z:.3f}), {number(100.0 * share, 3)} % of its variance"
+
+
+def _silent(signal: Signal, reason: object) -> BadInput:
+    return BadInput.of("quantity", signal.name, "one that varies over the run", f"{reason}")

@@ -1,0 +1,440 @@
+"""The transmission error of a table: its curves, Harris map and spectrum, for the aligned pair."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_contact.ste import Curve, SteDatabase
+from fe_contact.types import Estimate, IntArray
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Bars,
+    Figure,
+    FloatArray,
+    Line,
+    Panel,
+    Table,
+    number,
+    ordered_lines,
+    thousands,
+    um,
+)
+
+POINTS_PER_PITCH = 240
+POSITION_LABEL = "position of the driving gear, base pitches (0 = reference pair at the pitch point)"
+MOST_PITCHES = 40  # of a long period
+MOST_LINES = 5  # of loads in one panel
+_FEWEST_POINTS = 32
+_LIFT_OFF = 0.002  # loads up to this part of the largest serve lift-off
+
+
+def aligned_index(database: SteDatabase) -> tuple[int, int]:
+    """Return the indices on the misalignment and center-distance axes nearest to zero."""
+    axes = (database.misalignment, database.center_distance_change)
+    return int(np.argmin(np.abs(axes[0]))), int(np.argmin(np.abs(axes[1])))
+
+
+def aligned(database: SteDatabase) -> tuple[float, float]:
+    """Return the misalignment and center-distance change (m) that plots show."""
+    m, d = aligned_index(database)
+    return float(database.misalignment[m]), float(database.center_distance_change[d])
+
+
+def pitches_shown(database: SteDatabase) -> int:
+    """Return how many base pitches plots show: two, or a longer period up to its first 40."""
+    return 2 if database.period == 1 else min(database.period, MOST_PITCHES)
+
+
+def position_axis(database: SteDatabase) -> Axis:
+    """Return the axis of the positions shown."""
+    return Axis(POSITION_LABEL, limits=(0, pitches_shown(database)))
+
+
+def shown_rows(database: SteDatabase) -> tuple[FloatArray, NDArray[np.int64]]:
+    """Return the positions shown, (n,), and the row of the table that holds each; the last closes them."""
+    shown, rows = pitches_shown(database), np.arange(database.position.size)
+    if database.period == 1:
+        position = np.concatenate([database.position, database.position + 1.0, [2.0]])
+        return position, np.concatenate([rows, rows, [0]])
+    inside = database.position < shown
+    last = np.searchsorted(database.position, shown) % database.position.size
+    return np.append(database.position[inside], shown), np.append(rows[inside], last)
+
+
+def ste_shown(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
+    """Return the positions shown, (n,), and STE there at every load, (n, F) in m.
+
+    A table with failed points cannot be interpolated: it shows its stored points with gaps.
+    """
+    if database.n_failed:
+        m, d = aligned_index(database)
+        position, rows = shown_rows(database)
+        return position, database.static_transmission_error[rows][:, :, m, d]
+    if database.period > 1:
+        return _over_long_period(database)
+    once, values = _interpolated(database, 1, POINTS_PER_PITCH)
+    position = np.concatenate([once, once + 1.0, [2.0]])
+    return position, np.concatenate([values, values, values[:1]])
+
+
+def _over_long_period(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
+    """Return the first pitches of a long period with their end."""
+    shown = pitches_shown(database)
+    once, values = _interpolated(database, shown, max(POINTS_PER_PITCH // shown, _FEWEST_POINTS))
+    end = database.ste(float(shown), database.force, *aligned(database))
+    return np.append(once, float(shown)), np.concatenate([values, end[None]])
+
+
+def _interpolated(database: SteDatabase, pitches: int, per_pitch: int) -> tuple[FloatArray, FloatArray]:
+    """Return some pitches, densely, as the table's users see them."""
+    stored = database.position[database.position < pitches]
+    once = np.union1d(np.arange(pitches * per_pitch) / per_pitch, stored)
+    return once, database.ste(once[:, None], database.force, *aligned(database))
+
+
+def load_curve(database: SteDatabase, load: int) -> Curve:
+    """Return the curve at a stored load, from the complete rows where points failed."""
+    misalignment, change = aligned(database)
+    return database.curve(
+        force=float(database.force[load]),
+        misalignment=misalignment,
+        center_distance_change=change,
+        allow_failed=True,
+    )
+
+
+def shown_loads(database: SteDatabase) -> tuple[int, ...]:
+    """Return the indices of the loads that plots show.
+
+    A table may reach down to a load far below the rest, which serves the extraction near lift-off only.
+    """
+    level = database.force / database.force[-1]
+    return tuple(int(k) for k in range(len(level)) if level[k] > _LIFT_OFF or len(level) == 1)
+
+
+def mean_over(position: FloatArray, values: FloatArray) -> float:
+    """Return the mean of values (n,) over their positions, which may lie unevenly; NaN is left out."""
+    step, middle = np.diff(position), 0.5 * (values[1:] + values[:-1])
+    known = np.isfinite(middle)
+    return float(step[known] @ middle[known] / step[known].sum())
+
+
+def load_labels(database: SteDatabase) -> tuple[str, ...]:
+    """Name every load by its torque on the driving gear."""
+    return tuple(f"{label} N m" for label in thousands([float(t) for t in database.torque]))
+
+
+def few_loads(database: SteDatabase, most: int = MOST_LINES) -> tuple[int, ...]:
+    """Return the indices of the loads shown; of more than `most` those nearest to evenly spaced torques."""
+    loads = np.array(shown_loads(database))
+    if loads.size <= most:
+        return shown_loads(database)
+    torque = database.torque[loads]
+    even = np.linspace(torque[0], torque[-1], most)
+    return tuple(int(k) for k in np.unique(loads[np.abs(torque[:, None] - even).argmin(axis=0)]))
+
+
+def load_lines(
+    database: SteDatabase, x: FloatArray, values: FloatArray, bands: FloatArray | None = None
+) -> tuple[Line, ...]:
+    """Draw `values` (n, F), with error bands if given, as one line for each of a few loads, labeled by it."""
+    labels, loads = load_labels(database), few_loads(database)
+    shown = [labels[k] for k in loads]
+    return ordered_lines(x, shown, values.T[[*loads]], None if bands is None else bands.T[[*loads]])
+
+
+def um_of(estimates: Sequence[Estimate]) -> FloatArray:
+    """Return values and errors (2, n), µm."""
+    return np.asarray(1e6 * np.array([[e.value, e.error] for e in estimates]).T)
+
+
+def middle_load(database: SteDatabase) -> int:
+    """Return the index of the middle one of the loads shown."""
+    loads = shown_loads(database)
+    return loads[len(loads) // 2]
+
+
+def headline_load(database: SteDatabase, force: float | None = None) -> int:
+    """Return the index of the stored load nearest to `force` (N); None: of the middle one."""
+    return middle_load(database) if force is None else int(np.argmin(np.abs(database.force - force)))
+
+
+_EQUAL = 1e-6
+
+
+def pairs_in_words(database: SteDatabase, load: int) -> str:
+    """Say how many tooth pairs carry one load of the aligned pair: "2 to 4 tooth pairs carry the load"."""
+    low, high = pair_range(database, load)
+    if low == high:
+        return f"{low} tooth {'pair carries' if low == 1 else 'pairs carry'} the load at every position"
+    joint = "or" if high == low + 1 else "to"
+    return f"{low} {joint} {high} tooth pairs carry the load"
+
+
+def pair_range(database: SteDatabase, load: int) -> tuple[int, int]:
+    """Return the least and the largest number of pairs that carry one load of the aligned pair."""
+    counts = _counts(database, load)
+    return int(counts.min()), int(counts.max())
+
+
+def _steps_with_pairs(database: SteDatabase, load: int) -> bool:
+    """Whether the deflection steps down where more pairs carry: of spur pairs, if flanks do not hide it."""
+    counts = _counts(database, load)
+    low, high = counts.min(), counts.max()
+    if low == high or database.facts.base_helix_angle != 0.0:
+        return False
+    m, d = aligned_index(database)
+    ste = database.static_transmission_error[:, load, m, d]
+    means = [float(np.nanmean(ste[counts == number])) for number in (low, high)]
+    return means[1] < (1.0 - _EQUAL) * means[0]
+
+
+def _counts(database: SteDatabase, load: int) -> IntArray:
+    m, d = aligned_index(database)
+    return np.asarray(database.pairs_in_contact[:, load, m, d], dtype=int)
+
+
+MOST_CURVES = 8
+_APART = 1.1  # of what would let two neighbors touch
+_LEAST = 0.15  # of the largest ripple, between neighbors that would not touch anyway
+_ROOM = 0.04  # of the height
+
+
+@dataclass(frozen=True)
+class HarrisScale:
+    """Offset from load to load, and the axis, µm; of maps that are compared one for all."""
+
+    step: float
+    axis: Axis
+
+    @classmethod
+    def of(cls, *maps: FloatArray) -> HarrisScale:
+        """Return the scale on which no curve touches the next.
+
+        `maps` (n, F) are curves less their means in µm, the loads rising.
+        """
+        ripple = max(float((np.nanmax(one, axis=0) - np.nanmin(one, axis=0)).max()) for one in maps)
+        above = max(float(np.nanmax(one[:, :-1] - one[:, 1:], initial=0.0)) for one in maps)
+        step = max(_APART * above, _LEAST * ripple) or 1.0
+        drawn = np.concatenate([(one + step * np.arange(one.shape[1])).ravel() for one in maps])
+        low, high = float(np.nanmin(drawn)), float(np.nanmax(drawn))
+        room = _ROOM * (high - low) or 1.0
+        label = f"STE, each load {number(step, 2)} µm higher, µm"
+        return cls(step, Axis(label, limits=(low - room, high + room)))
+
+
+def harris_panel(
+    title: str, across: Axis, x: FloatArray, curves: FloatArray, names: Sequence[str], scale: HarrisScale
+) -> Panel:
+    """Draw the curves (n, F) in µm over `x`, each higher than the last, named at its end."""
+    lines = ordered_lines(x, names, (curve + k * scale.step for k, curve in enumerate(curves.T)))
+    return Panel(across, scale.axis, lines, title=title)
+
+
+_TONES = 3
+_LEAST_ROOM, _MOST_ROOM = 0.08, 0.45
+"""Of the ripple, above and below it: for its error band, and no more, so that it fills half of the height."""
+_FLAT = 1e-3  # µm, the height of a curve without any ripple
+
+
+def ste_curves(database: SteDatabase) -> Figure:
+    """Draw STE less its mean at a few loads, and at more of them as a Harris map."""
+    curves = [load_curve(database, load) for load in range(database.force.size)]
+    ripple = _ripple(database, curves)
+    panels = (ripple, _harris(database, curves)) if len(shown_loads(database)) > 1 else (ripple,)
+    return Figure(
+        key="ste",
+        title=f"Static transmission error over {_pitches(database)}",
+        caption="STE: displacement on the transverse line of action by which the driven gear lags, relative "
+        f"to conjugate motion; drawn less its mean. {_bands(ripple)}{_carriers(database)}"
+        + _period(database),
+        alternative=_words(database, curves),
+        content=panels,
+        table=_table(database, curves),
+    )
+
+
+def _ripple(database: SteDatabase, curves: list[Curve]) -> Panel:
+    position, ripple = _less_mean(database, curves)
+    lines = tuple(
+        replace(line, label=_label(line, curves[load]), band=_half_error(curves[load]))
+        for line, load in zip(load_lines(database, position, ripple), few_loads(database), strict=True)
+    )
+    return Panel(
+        position_axis(database),
+        Axis("STE less its mean, µm", limits=_ripple_limits(lines)),
+        lines,
+        title="Ripple",
+    )
+
+
+def _ripple_limits(lines: tuple[Line, ...]) -> tuple[float, float]:
+    values = np.concatenate([line.y for line in lines])
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    ripple = high - low or _FLAT
+    room = np.clip(
+        max(float(np.nan_to_num(line.band)) for line in lines), _LEAST_ROOM * ripple, _MOST_ROOM * ripple
+    )
+    return low - float(room), high + float(room)
+
+
+def _label(line: Line, curve: Curve) -> str:
+    mean, ripple = (um(e.value, 3) for e in (curve.mean, curve.peak_to_peak))
+    return f"{line.name}: mean {mean} µm,\n{ripple} µm peak to peak"
+
+
+def _harris(database: SteDatabase, curves: list[Curve]) -> Panel:
+    position, ripple = _less_mean(database, curves)
+    loads, labels = few_loads(database, MOST_CURVES), load_labels(database)
+    chosen, names = ripple[:, loads], [labels[k] for k in loads]
+    return harris_panel(
+        "Harris map", position_axis(database), position, chosen, names, HarrisScale.of(chosen)
+    )
+
+
+def _less_mean(database: SteDatabase, curves: list[Curve]) -> tuple[FloatArray, FloatArray]:
+    """Return the positions shown (n,), and STE there less the mean of each load (n, F), µm."""
+    position, values = ste_shown(database)
+    return position, 1e6 * (values - np.array([curve.mean.value for curve in curves]))
+
+
+def _half_error(curve: Curve) -> float:
+    """Half the error of peak-to-peak, µm: two curves within such a band differ by no more."""
+    return 0.5e6 * curve.peak_to_peak.error
+
+
+def _bands(ripple: Panel) -> str:
+    """Say what the bands are, where there are any, and which are cut."""
+    if not any(line.has_band for line in ripple.lines):
+        return ""
+    said = "Bands: half the error of peak-to-peak on either side"
+    low, high = ripple.y.limits or (-np.inf, np.inf)
+    cut = [
+        line.name
+        for line in ripple.lines
+        if np.nanmax(line.y + line.band) > high or np.nanmin(line.y - line.band) < low
+    ]
+    return f"{said}, cut by the axis at {', '.join(cut)}. " if cut else f"{said}. "
+
+
+def _pitches(database: SteDatabase) -> str:
+    shown = pitches_shown(database)
+    return "two base pitches" if shown == 2 else f"{shown} base pitches"
+
+
+def _carriers(database: SteDatabase) -> str:
+    load = shown_loads(database)[-1]
+    carried = f"At {load_labels(database)[load]} {pairs_in_words(database, load)}"
+    return (
+        f"{carried}: low where more do, high where fewer."
+        if _steps_with_pairs(database, load)
+        else f"{carried}."
+    )
+
+
+def _period(database: SteDatabase) -> str:
+    if database.period == 1:
+        return ""
+    return f" The teeth have pitch errors: the curve repeats after {database.period} base pitches."
+
+
+def _words(database: SteDatabase, curves: list[Curve]) -> str:
+    labels, loads = load_labels(database), shown_loads(database)
+    ends = {labels[k]: curves[k] for k in (loads[-1], loads[0])}
+    parts = [
+        f"{_band(curve.peak_to_peak, 3)} µm at {label}, about a mean of {um(curve.mean.value, 3)} µm"
+        for label, curve in ends.items()
+    ]
+    return f"Peak to peak is {'; '.join(parts)}."
+
+
+def _table(database: SteDatabase, curves: list[Curve]) -> Table:
+    """Mean, peak to peak and the first harmonics with their error estimates at every load."""
+    rows = []
+    for load, (label, curve) in enumerate(zip(load_labels(database), curves, strict=True)):
+        band = [_band(e) for e in (curve.mean, curve.peak_to_peak)]
+        tones = [um(e.value, 3) for e in curve.harmonics[:_TONES]]
+        rows.append((label, number(float(database.force[load]), 5), *band, *tones))
+    head = ("torque", "normal force, N", "mean, µm", "peak to peak, µm")
+    orders = tuple(f"harmonic {k}, µm" for k in range(1, _TONES + 1))
+    return Table("Static transmission error by load", head + orders, tuple(rows))
+
+
+def _band(estimate: Estimate, digits: int = 4) -> str:
+    """Write a number in micrometers, with its error if that was estimated."""
+    value = um(estimate.value, digits)
+    return value if np.isnan(estimate.error) else f"{value} ± {um(estimate.error, 2)}"
+
+
+ORDERS = 20
+LONG_ORDERS = 4  # over a period of many pitches, where as many lines lie between two mesh orders
+_UM = 1e6
+_DEPTH = 10.0  # dB below the least error, or below the level that counts where none is known
+_UNKNOWN = -80.0  # dB below the largest
+
+
+def ste_spectrum(database: SteDatabase) -> Figure:
+    """Draw the amplitude of every order at the middle load, what is below its error veiled."""
+    load = middle_load(database)
+    curve, label = load_curve(database, load), load_labels(database)[load]
+    order, amplitude, error = _spectrum_of(curve)
+    return Figure(
+        key="ste_spectrum",
+        title=f"Spectrum of the transmission error at {label}",
+        caption="Order 1 is the mesh frequency. Amplitudes in the gray are below their stated "
+        "error."
+        + (" Orders between the whole ones come from the pitch errors." if database.period > 1 else ""),
+        alternative=_spectrum_words(label, order, amplitude, error),
+        content=(_panel(order, amplitude, error),),
+        table=_spectrum_table(order, amplitude, error),
+    )
+
+
+def _spectrum_of(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return orders (K,), amplitudes and errors, m: the mesh harmonics, or all orders of a long period."""
+    if curve.period == 1:
+        values = np.array([[e.value, e.error] for e in curve.harmonics[:ORDERS]])
+        return np.arange(1.0, len(values) + 1.0), values[:, 0], values[:, 1]
+    lines = curve.spectrum
+    shown = lines.order <= LONG_ORDERS + 1e-9
+    return lines.order[shown], lines.amplitude[shown], np.full(np.count_nonzero(shown), lines.error)
+
+
+def _panel(order: FloatArray, amplitude: FloatArray, error: FloatArray) -> Panel:
+    level, limit = _level(amplitude), _level(error)
+    top = float(np.nanmax(np.concatenate([level, limit])))
+    least = np.nanmin(limit) if np.isfinite(limit).any() else top + _UNKNOWN
+    base = float(np.floor((least - _DEPTH) / 10.0) * 10.0)
+    spacing = float(order[0])
+    bars = Bars("amplitude", order, np.maximum(level, base), base, 0.6 * spacing, palette.BLUE)
+    veil = Bars("below its error", order, np.maximum(limit, base), base, spacing, palette.MUTED, veiled=True)
+    x = Axis("mesh order", limits=(float(order[0]) - spacing, float(order[-1]) + spacing))
+    return Panel(x, Axis("amplitude, dB re 1 µm", limits=(base, top + 5.0)), bars=(bars, veil))
+
+
+def _level(values: FloatArray) -> FloatArray:
+    """Return lengths in dB re 1 µm; NaN for nothing, and for what is not known."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        level = 20.0 * np.log10(_UM * values)
+    return np.where(np.isfinite(level), level, np.nan)
+
+
+def _spectrum_words(label: str, order: FloatArray, amplitude: FloatArray, error: FloatArray) -> str:
+    most = int(np.argmax(amplitude))
+    size = f"{um(amplitude[most], 3)} µm"
+    text = f"At {label} order {order[most]:.4g} is the largest, {size}"
+    if np.isnan(error).all():
+        return f"{text}; the errors were not estimated."
+    above = int(np.count_nonzero(amplitude > error))
+    return f"{text}; {above} of {order.size} orders exceed their error."
+
+
+def _spectrum_table(order: FloatArray, amplitude: FloatArray, error: FloatArray) -> Table:
+    chosen = np.sort(np.argsort(-amplitude, kind="stable")[:ORDERS])
+    rows = tuple((f"{order[k]:.4g}", um(amplitude[k], 3), um(error[k], 2)) for k in chosen)
+    return Table("Orders of the transmission error", ("mesh order", "amplitude, µm", "error, µm"), rows)

@@ -1,0 +1,282 @@
+"""Ripple, deviations, pressure and place of the load of a table, over torque and over position."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.ste import Curve, SteDatabase
+from fe_contact.types import BoolArray
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Figure,
+    FloatArray,
+    Line,
+    Panel,
+    Reference,
+    Table,
+    number,
+    ordered_lines,
+    ripple_panel,
+    um,
+    unit_of,
+)
+from lineofaction.report.ste.curves import (
+    aligned,
+    aligned_index,
+    load_curve,
+    load_labels,
+    load_lines,
+    middle_load,
+    position_axis,
+    shown_loads,
+    shown_rows,
+    um_of,
+)
+
+HARMONICS = 8
+_DEPTH = 1e-4  # of the largest harmonic: 80 dB, the lowest level drawn
+_ROOM = 0.02  # of the range of torques, beside its ends
+
+
+def ripple_over_torque(database: SteDatabase) -> Figure:
+    """Draw peak-to-peak with its error, and harmonics as they are and in dB, over torque."""
+    curves = {load: load_curve(database, load) for load in shown_loads(database)}
+    across, torque = _torque_axis(np.array([curve.torque for curve in curves.values()]))
+    value, error = np.stack([um_of(curve.harmonics[:HARMONICS]) for curve in curves.values()], axis=1)
+    known = ~(error >= value)  # also where no error was estimated
+    level = 20.0 * np.log10(np.maximum(value, _DEPTH * value.max()))
+    ripple, band = um_of([curve.peak_to_peak for curve in curves.values()])
+    line = Line("peak to peak", torque, ripple, palette.BLUE, markers=True, band=band)
+    return Figure(
+        key="ripple",
+        title="Ripple over torque",
+        caption="Peak-to-peak STE with the band of its error, and its mesh harmonics; dotted: below their "
+        "errors.",
+        alternative=_ripple_words({f"at {load_labels(database)[k]}": c for k, c in curves.items()}),
+        content=(
+            ripple_panel(across, (line,), title="Peak to peak"),
+            _harmonics(across, torque, value, known, "amplitude, µm"),
+            _harmonics(across, torque, level, known, "amplitude, dB re 1 µm"),
+        ),
+        table=_table(database, curves),
+    )
+
+
+def _torque_axis(torque: FloatArray) -> tuple[Axis, FloatArray]:
+    room = _ROOM * float(np.ptp(torque))
+    return Axis("torque on the driving gear, N m", limits=(torque[0] - room, torque[-1] + room)), torque
+
+
+def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: BoolArray, label: str) -> Panel:
+    """Draw the harmonics (n, H), each labeled by its number; solid lines where they are known."""
+    lines: list[Line] = []
+    for order in range(values.shape[1]):
+        name, color = f"{order + 1}", palette.ordered(order, values.shape[1])
+        lines.append(Line(name, torque, values[:, order], color, "dot", 1.2, label=name))
+        sure = np.where(known[:, order], values[:, order], np.nan)
+        if known[:, order].any():
+            lines.append(Line(name, torque, sure, color, markers=True))
+    return Panel(across, Axis(label), tuple(lines), title=f"Mesh harmonics 1 to {HARMONICS}")
+
+
+def _ripple_words(curves: dict[str, Curve]) -> str:
+    """Say where, by the names of the curves, the ripple is least and largest, and whether that is shown."""
+    ripple = {name: curve.peak_to_peak for name, curve in curves.items()}
+    least, most = (ripple[end(ripple, key=lambda name: ripple[name].value)] for end in (min, max))
+    where = {name: f"{um(e.value, 3)} µm {name}" for name, e in ripple.items()}
+    ends = [next(where[name] for name, e in ripple.items() if e is end) for end in (least, most)]
+    if most.value - least.value <= least.error + most.error:
+        return f"Peak to peak, {ends[0]} to {ends[1]}, changes by no more than its errors."
+    return f"Peak to peak is least, {ends[0]}, and largest, {ends[1]}."
+
+
+def _table(database: SteDatabase, curves: dict[int, Curve]) -> Table:
+    labels = load_labels(database)
+    rows = tuple(
+        (labels[load], *(um(harmonic.value, 3) for harmonic in curve.harmonics[:HARMONICS]))
+        for load, curve in curves.items()
+    )
+    head = ("torque", *(f"harmonic {k}, µm" for k in range(1, HARMONICS + 1)))
+    return Table("Mesh harmonics by load", head, rows)
+
+
+@dataclass(frozen=True)
+class _Deviation:
+    """One axis of more than one value: how it is named, its values, and the curves (n, F) there."""
+
+    name: str
+    axis: Axis
+    at: FloatArray
+    curves: tuple[tuple[Curve, ...], ...]
+
+    @property
+    def places(self) -> list[str]:
+        """Name its values."""
+        return [f"{self.name} {number(float(value), 3)} {unit_of(self.axis.label)}" for value in self.at]
+
+
+def has_deviations(database: SteDatabase) -> bool:
+    """Whether the database has an axis to draw over."""
+    return max(database.misalignment.size, database.center_distance_change.size) > 1
+
+
+def deviation_curves(database: SteDatabase) -> Figure:
+    """Draw peak-to-peak STE, one line for each of a few loads, over each axis of more than one value.
+
+    The other deviation is kept at the value nearest to zero.
+    """
+    deviations = _deviations(database)
+    return Figure(
+        key="deviations",
+        title=f"Peak-to-peak transmission error over {' and '.join(d.name for d in deviations)}",
+        caption="Bands: errors. Each deviation alone, the other at its stored value nearest to zero. "
+        "Misalignment > 0: the gap grows towards the +z end of the face, and the load moves to the −z end. "
+        "Seen from +z, the driving gear turns clockwise.",
+        alternative=" ".join(_words(database, deviation) for deviation in deviations),
+        content=tuple(_panel(database, deviation) for deviation in deviations),
+        table=_deviation_table(database, deviations),
+    )
+
+
+def _deviations(database: SteDatabase) -> list[_Deviation]:
+    misalignment, change = aligned(database)
+    skew, distance = database.misalignment, database.center_distance_change
+    found = []
+    if skew.size > 1:
+        axis = Axis("misalignment over the common face width, µm")
+        curves = tuple(_curves(database, float(m), change) for m in skew)
+        found.append(_Deviation("misalignment", axis, 1e6 * skew, curves))
+    if distance.size > 1:
+        axis = Axis("change of the center distance, mm")
+        curves = tuple(_curves(database, misalignment, float(d)) for d in distance)
+        found.append(_Deviation("change of the center distance", axis, 1e3 * distance, curves))
+    return found
+
+
+def _curves(database: SteDatabase, misalignment: float, change: float) -> tuple[Curve, ...]:
+    point = {"misalignment": misalignment, "center_distance_change": change}
+    return tuple(database.curve(force=float(force), **point, allow_failed=True) for force in database.force)
+
+
+def _panel(database: SteDatabase, deviation: _Deviation) -> Panel:
+    value, error = np.stack([um_of([c.peak_to_peak for c in row]) for row in deviation.curves], axis=1)
+    lines = load_lines(database, deviation.at, value, bands=error)
+    return ripple_panel(deviation.axis, lines)
+
+
+def _words(database: SteDatabase, deviation: _Deviation) -> str:
+    """Say where peak to peak is least and largest at the largest load."""
+    names = [f"at {name}" for name in deviation.places]
+    said = _ripple_words(dict(zip(names, (row[-1] for row in deviation.curves), strict=True)))
+    return f"At {load_labels(database)[-1]} {said[0].lower()}{said[1:]}"
+
+
+def _deviation_table(database: SteDatabase, deviations: list[_Deviation]) -> Table:
+    loads, labels = shown_loads(database), load_labels(database)
+    rows = tuple(
+        (name, *(um(row[k].peak_to_peak.value) for k in loads))
+        for deviation in deviations
+        for name, row in zip(deviation.places, deviation.curves, strict=True)
+    )
+    return Table("Peak to peak, µm", ("deviation", *(labels[k] for k in loads)), rows)
+
+
+def has_face_load(database: SteDatabase) -> bool:
+    """Whether the load moves along the face: a table in three dimensions of a helical or misaligned pair."""
+    moves = np.nanmax(database.face_centroid) - np.nanmin(database.face_centroid)
+    return bool(moves > 1e-6 * database.facts.face_width)
+
+
+def face_load(database: SteDatabase) -> Figure:
+    """Draw load centroid and peak pressure at the middle load, one line per misalignment."""
+    load, (_, d) = middle_load(database), aligned_index(database)
+    centroid = 1e3 * database.face_centroid[:, load, :, d]
+    pressure = 1e-6 * database.max_pressure[:, load, :, d]
+    label, oblique = load_labels(database)[load], database.facts.base_helix_angle
+    waves = ", which fluctuates as the contact lines pass from slice to slice of the model" if oblique else ""
+    return Figure(
+        key="face_load",
+        title="Load along the face",
+        caption="Above: distance of the load's centroid from the pinion's mid-face. Below: the largest Hertz "
+        f"pressure anywhere on the flanks{waves}; at a tip edge the true pressure is singular.",
+        alternative=f"At {label} the load acts from {number(float(np.nanmin(centroid)), 3)} to "
+        f"{number(float(np.nanmax(centroid)), 3)} mm from mid-face; the largest pressure is "
+        f"{number(float(np.nanmax(pressure)), 3)} MPa.",
+        content=(
+            Panel(
+                position_axis(database),
+                Axis("load centroid, mm"),
+                _lines(database, centroid),
+                (Reference("mid-face", 0.0, "horizontal"),),
+                title=label,
+            ),
+            Panel(position_axis(database), Axis("largest pressure, MPa"), _lines(database, pressure)),
+        ),
+    )
+
+
+def _lines(database: SteDatabase, values: FloatArray) -> tuple[Line, ...]:
+    """Draw `values` (P, M) over the pitches shown, dark for the first misalignment."""
+    position, rows = shown_rows(database)
+    names = [f"misalignment {number(1e6 * float(m), 3)} µm" for m in database.misalignment]
+    return ordered_lines(position, names, values[rows].T, labeled=len(names) > 1)
+
+
+def flanks_over_torque(database: SteDatabase) -> Figure:
+    """Draw the largest pressure over torque, and where the load moves along the face, its range."""
+    loads = list(shown_loads(database))
+    m, d = aligned_index(database)
+    across, torque = _torque_axis(database.torque[loads])
+    pressure = 1e-6 * np.nanmax(database.max_pressure[:, loads, m, d], axis=0)
+    centroid = 1e3 * database.face_centroid[:, loads, m, d]
+    ends = np.stack([np.nanmin(centroid, axis=0), np.nanmean(centroid, axis=0), np.nanmax(centroid, axis=0)])
+    y = Axis("largest pressure, MPa", limits=(0.0, 1.05 * float(pressure.max())))
+    line = Line("largest pressure", torque, pressure, palette.BLUE, markers=True)
+    panels: tuple[Panel, ...] = (Panel(across, y, (line,), title="Flank pressure"),)
+    panels += (_centroid(across, torque, ends),) if has_face_load(database) else ()
+    return Figure(
+        key="flanks_over_torque",
+        title="Flank pressure over torque"
+        if len(panels) == 1
+        else "Flank pressure and load centroid over torque",
+        caption="The largest Hertz pressure of the mesh cycle at every stored load"
+        + ("; below, how far the load's centroid is from the pinion's mid-face." if len(panels) > 1 else "."),
+        alternative=_flanks_words(database, loads, pressure),
+        content=panels,
+        table=_flanks_table(database, loads, pressure, ends),
+    )
+
+
+def _centroid(across: Axis, torque: FloatArray, ends: FloatArray) -> Panel:
+    names = ("least", "mean", "largest")
+    colors = (palette.SKY, palette.BLUE, palette.VERMILLION)
+    lines = tuple(
+        Line(name, torque, values, color, markers=True, label=name)
+        for name, values, color in zip(names, ends, colors, strict=True)
+    )
+    mark = Reference("mid-face", 0.0, "horizontal")
+    return Panel(across, Axis("load centroid, mm"), lines, (mark,), title="Load along the face")
+
+
+def _flanks_words(database: SteDatabase, loads: list[int], pressure: FloatArray) -> str:
+    names, torque = load_labels(database), database.torque
+    first, last = loads[0], loads[-1]
+    growth = f"{number(float(torque[last] / torque[first]), 3)} times the torque"
+    return (
+        f"The largest pressure grows from {number(float(pressure[0]), 3)} MPa at {names[first]} to "
+        f"{number(float(pressure[-1]), 3)} MPa at {names[last]}: "
+        f"{number(float(pressure[-1] / pressure[0]), 3)} times for {growth}."
+    )
+
+
+def _flanks_table(database: SteDatabase, loads: list[int], pressure: FloatArray, ends: FloatArray) -> Table:
+    labels = load_labels(database)
+    rows = tuple(
+        (labels[k], number(float(p), 4), *(number(float(end), 3) for end in column))
+        for k, p, column in zip(loads, pressure, ends.T, strict=True)
+    )
+    places = (f"{name} centroid, mm" for name in ("least", "mean", "largest"))
+    return Table("Flanks by load", ("torque", "largest pressure, MPa", *places), rows)

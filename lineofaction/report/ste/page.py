@@ -1,0 +1,214 @@
+"""An STE database on the page: main results, figures, accuracy, cost, effects and case."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from bounds import leftover
+from fe_contact.ste import SteDatabase
+from fe_contact.types import Estimate
+from lineofaction.gearbox.convert.effects import by_size, influence_place, influence_words, trifles_title
+from lineofaction.report.drawing.figure import (
+    Figure,
+    Table,
+    number,
+    um,
+)
+from lineofaction.report.drawing.page import Headline, Part, Section
+from lineofaction.report.drawing.tables import (
+    EffectRow,
+    effect_table,
+    effects_section,
+    facts,
+    records,
+    side_by_side,
+)
+from lineofaction.report.pair import data_sheet_section, pair_of
+from lineofaction.report.ste.curves import (
+    aligned_index,
+    headline_load,
+    load_curve,
+    load_labels,
+    shown_loads,
+    ste_curves,
+    ste_spectrum,
+)
+from lineofaction.report.ste.over_torque import (
+    deviation_curves,
+    face_load,
+    flanks_over_torque,
+    has_deviations,
+    has_face_load,
+    ripple_over_torque,
+)
+from lineofaction.report.ste.stiffness import budget_figure, load_sharing, mesh_stiffness
+
+_RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
+_DECISIONS = {
+    "name": "effect",
+    "cost": "cost",
+    "decision": "decision",
+    "price": "price of the choice",
+    "checked": "checked",
+}
+
+
+_UNBOUNDED = "no error is stated for it"
+"""Why the largest pressure has no error: where it is largest differs between meshes and between slices."""
+
+
+def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:
+    """Mean and peak-to-peak STE and the largest pressure at the stored load nearest to `force` (N)."""
+    load = headline_load(database, force)
+    at = (slice(None), load, *aligned_index(database))
+    pressure = float(np.nanmax(database.max_pressure[at]))
+    edge = float(np.nanmax(database.edge_pressure[at])) if database.edge_pressure.size else 0.0
+    remark = f"{_UNBOUNDED}{edge_words(edge)}"
+    curve, label = load_curve(database, load), load_labels(database)[load]
+    return (
+        Headline(f"mean STE at {label}", f"{um(curve.mean.value)} µm", _band(curve.mean)),
+        Headline(
+            f"peak-to-peak STE at {label}", f"{um(curve.peak_to_peak.value)} µm", _band(curve.peak_to_peak)
+        ),
+        Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", remark),
+    )
+
+
+def edge_words(pressure: float) -> str:
+    """Name the pressure (Pa) of contacts that reach an edge apart from that of the flank; nothing for 0."""
+    return f"; up to {number(1e-6 * pressure, 4)} MPa at edges, indicative" if pressure > 0.0 else ""
+
+
+def static_alarms(database: SteDatabase) -> tuple[str, ...]:
+    """Say loudly which points failed."""
+    return (database.failure_message(),) if database.n_failed else ()
+
+
+def static_results(database: SteDatabase, force: float | None = None) -> tuple[Section, ...]:
+    """Show what one database says of its pair; the deflection is split at the load nearest to `force` (N)."""
+    pair = pair_of(database)
+    sheet = () if pair is None else (data_sheet_section(pair),)
+    sharing = Section("Load sharing", figures=(load_sharing(database),))
+    return (*sheet, _transmission_error(database), sharing, *_stiffness(database, force), *_flanks(database))
+
+
+def _transmission_error(database: SteDatabase) -> Section:
+    figures = [ste_curves(database)]
+    figures += [ripple_over_torque(database)] if len(shown_loads(database)) > 1 else []
+    figures += [ste_spectrum(database)]
+    figures += [deviation_curves(database)] if has_deviations(database) else []
+    return Section("Static transmission error", figures=tuple(figures))
+
+
+def _stiffness(database: SteDatabase, force: float | None) -> tuple[Section, ...]:
+    """Show the mesh stiffness and what yields.
+
+    Over a longer period the deflection holds the teeth's errors, and a secant through them means nothing.
+    """
+    if database.period > 1:
+        return ()
+    text, figures = "", [mesh_stiffness(database)]
+    budget = budget_figure(database, headline_load(database, force))
+    if budget is None:
+        text = "The table does not contain its pair, so its deflection is not split into parts."
+    else:
+        figures.append(budget)
+    return (Section("Mesh stiffness and deflection", text, figures=tuple(figures)),)
+
+
+def _flanks(database: SteDatabase) -> tuple[Section, ...]:
+    figures: list[Figure] = [flanks_over_torque(database)] if len(shown_loads(database)) > 1 else []
+    figures += [face_load(database)] if has_face_load(database) else []
+    return (Section("Flank pressure and load along the face", figures=tuple(figures)),) if figures else ()
+
+
+def static_making(database: SteDatabase) -> tuple[Section, ...]:
+    """Show how exact the database is, what it cost, and what it was made from."""
+    metadata = database.metadata
+    text = "Errors are half-widths of the band around each number."
+    accuracy = Section("Accuracy of the table", text, tables=(_accuracy(database),), part=Part.ACCURACY)
+    text = "With all defaults filled in. Numbers without a unit are in SI."
+    case = Section("Case", text, folded=case_tables(metadata.case), part=Part.INPUT)
+    receipt = Section(
+        "Receipt of the table",
+        tables=(_stages(metadata.receipt),),
+        folded=(facts("Receipt", _without(metadata.receipt, "stages")), _software(database)),
+        part=Part.RECEIPT,
+    )
+    return contact_effects(metadata.effect_ledger), accuracy, case, receipt
+
+
+def contact_effects(ledger: Any) -> Section:
+    """Tabulate which effects were simulated, why, and their influence; trifles and decisions are folded."""
+    entries = [{"name": k, **v} for k, v in ledger.items()] if isinstance(ledger, dict) else ledger
+    shown, trifles = by_size(entries)
+    where = influence_place(entries)
+    text = f"Effects in the contact: estimated change without each, {where}." if where else ""
+    folded: tuple[Table, ...] = (
+        (effect_table(trifles_title(trifles), map(_effect_row, trifles)),) if trifles else ()
+    )
+    decided = [{title: entry.get(field) for field, title in _DECISIONS.items()} for entry in entries]
+    folded += (records("Decisions on the effects in the contact", decided),)
+    return effects_section(text, map(_effect_row, shown), folded)
+
+
+def _effect_row(entry: Mapping[str, Any]) -> EffectRow:
+    return entry["name"], "contact", entry["on"], influence_words(entry), entry["reason"]
+
+
+def case_tables(case: dict[str, Any]) -> tuple[Table, ...]:
+    """Tabulate both gears beside each other, then the rest of the case."""
+    pair = case.get("pair")
+    if not isinstance(pair, dict) or not {"pinion", "wheel"} <= set(pair):
+        return (facts("Case", case),)
+    gears = side_by_side("Gears", {"pinion (drives)": pair["pinion"], "wheel": pair["wheel"]})
+    rest = {**_without(pair, "pinion", "wheel"), **_without(case, "pair")}
+    return gears, facts("Pair, loads and accuracy", rest)
+
+
+def _stages(receipt: dict[str, Any]) -> Table:
+    stages = receipt.get("stages")
+    entries = stages.items() if isinstance(stages, dict) else ()
+    rows = tuple(
+        (name, *(number(float(times.get(clock, math.nan)), 3) for clock in ("cpu_seconds", "wall_seconds")))
+        for name, times in entries
+    )
+    return Table("Time by stage", ("stage", "CPU s", "wall s"), rows)
+
+
+def _software(database: SteDatabase) -> Table:
+    metadata = database.metadata
+    return facts("Made with", {**metadata.software_versions, "content_hash": metadata.content_hash})
+
+
+def _without(content: dict[str, Any], *names: str) -> dict[str, Any]:
+    """Return the content without some of its fields."""
+    return {name: value for name, value in content.items() if name not in names}
+
+
+def _accuracy(database: SteDatabase) -> Table:
+    """Worst error estimate and residuals over the table."""
+    good = ~database.failed
+    relative = database.error_estimate[good] / database.static_transmission_error[good]
+    rows = [("points", f"{database.status.size}, {database.n_failed} failed")]
+    if np.isnan(relative).any():
+        rows += [("error estimate", "not estimated")]
+    else:
+        rows += [
+            ("largest error estimate, µm", um(float(np.max(database.error_estimate[good])), 2)),
+            ("median error estimate, % of STE", number(100.0 * float(np.median(relative)), 2)),
+        ]
+    worst = np.max(np.abs(database.residuals[good]), axis=0)
+    rows += [
+        (f"largest residual, {name}", leftover(float(value), 2))
+        for name, value in zip(_RESIDUALS, worst, strict=True)
+    ]
+    return Table("Accuracy", ("quantity", "value"), tuple(rows))
+
+
+def _band(estimate: Estimate) -> str:
+    return "not estimated" if math.isnan(estimate.error) else f"± {um(estimate.error, 2)} µm"
