@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import binascii
 import ipaddress
 import os
 import re
@@ -24,7 +26,6 @@ from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, Settings
 from host.directories import absolute, data_home
 from lineofaction.gearbox.problems import BadInput, Fault
 from service.origin import Origin
-from service.signature import secret_bytes
 
 # Secrets of the settings from files: ``LOA_NAME_FILE`` instead of ``LOA_NAME``.
 
@@ -88,6 +89,7 @@ def _content(file: Path, variable: str, field: str) -> str:
 
 LEAST_MEMORY_MB = 256
 """What a worker needs to load the program."""
+_SIGNING = "whsec_"
 _SCHEDULER = re.compile(r"(?:tcp|tls|ws|wss|ucx)://[^\s/]+:[0-9]{1,5}")
 
 
@@ -264,6 +266,17 @@ class Settings(BaseSettings):
 
 def _entries(text: str) -> list[str]:
     return [entry.strip() for entry in text.split(",") if entry.strip()]
+
+
+def secret_bytes(secret: str) -> bytes:
+    """Return the key of a written secret; raises ValueError unless it is 24 to 64 bytes in base64."""
+    try:
+        key = base64.b64decode(secret.removeprefix(_SIGNING), validate=True)
+    except binascii.Error:
+        raise ValueError("secret") from None
+    if not secret.startswith(_SIGNING) or not 24 <= len(key) <= 64:
+        raise ValueError("secret")
+    return key
 
 
 def load_settings(**options: object) -> Settings:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import structlog
 
-from service.bounded_folder import evict
+from service.folders import evict
 from service.store.files import PARTIAL
 
 MOST_BYTES = 200_000_000

@@ -25,8 +25,8 @@ import structlog
 
 from host import child_environment, kill_group
 from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, Superseded, Unexpected
+from service.folders import own_folder, remove_left
 from service.live.order import AnswerHead, LiveOrder, propagated
-from service.own_folder import own_folder, remove_left
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.worker.usage import machine_memory_mb
 

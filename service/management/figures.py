@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import platform
 import shutil
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -45,42 +46,40 @@ _STATES = ("accepted", "running", "successful", "failed", "dismissed")
 _ENDED = ["process", "outcome"]
 
 
-class _DatabaseFigures(Collector):
-    """Metrics of the database, read when requested; without one, that it is gone."""
+class _Collected(Collector):
+    """Figures that are read when they are requested."""
 
-    def __init__(self, workload: WorkloadReader) -> None:
-        self._workload = workload
+    def __init__(self, read: Callable[[], Iterable[Metric]]) -> None:
+        self._read = read
 
     def collect(self) -> Iterable[Metric]:
         """Return the figures."""
-        up = GaugeMetricFamily("loa_database_up", "Whether the database answers this process")
-        try:
-            load = self._workload.read()
-        except DatabaseUnavailable:
-            up.add_metric([], 0)
-            yield up
-            return
-        up.add_metric([], 1)
+        return self._read()
+
+
+def _of_database(workload: WorkloadReader) -> Iterable[Metric]:
+    """Yield figures of the database; without one, that it is gone."""
+    up = GaugeMetricFamily("loa_database_up", "Whether the database answers this process")
+    try:
+        load = workload.read()
+    except DatabaseUnavailable:
+        up.add_metric([], 0)
         yield up
-        yield from _queue(load)
-        yield from _ended(load)
-        yield from _results(load)
+        return
+    up.add_metric([], 1)
+    yield up
+    yield from _queue(load)
+    yield from _ended(load)
+    yield from _results(load)
 
 
-class _WriteFigures(Collector):
-    """Metrics of writing, tried when requested."""
-
-    def __init__(self, writes: WriteCheck) -> None:
-        self._writes = writes
-
-    def collect(self) -> Iterable[Metric]:
-        """Return a figure for each part."""
-        outcome = self._writes.outcome()
-        text = "Whether this process can write to the database, and to the place of results"
-        writable = GaugeMetricFamily("loa_writable", text, labels=["part"])
-        writable.add_metric(["database"], float(not outcome.database))
-        writable.add_metric(["results"], float(not outcome.results))
-        yield writable
+def _of_writing(writes: WriteCheck) -> Iterable[Metric]:
+    outcome = writes.outcome()
+    text = "Whether this process can write to the database, and to the place of results"
+    writable = GaugeMetricFamily("loa_writable", text, labels=["part"])
+    writable.add_metric(["database"], float(not outcome.database))
+    writable.add_metric(["results"], float(not outcome.results))
+    yield writable
 
 
 def _queue(load: Workload) -> Iterable[Metric]:
@@ -135,51 +134,30 @@ def _build_info() -> Info:
     return info
 
 
-class _SchedulerFigures(Collector):
-    """The workers of a scheduler now."""
-
-    def __init__(self, scheduler: Scheduler, most_workers: int) -> None:
-        self._scheduler, self._most = scheduler, most_workers
-
-    def collect(self) -> Iterable[Metric]:
-        """Return the figures."""
-        scheduler = self._scheduler
-        age = "Seconds since the scheduler's last turn"
-        for name, text, value in (
-            ("loa_workers_busy", "Workers that run", scheduler.busy),
-            ("loa_workers_limit", "Workers that may run at the same time (LOA_WORKERS)", self._most),
-            ("loa_workers_warm", "Warm processes that workers are forked from", scheduler.warm),
-            ("loa_scheduler_up", "Whether the scheduler's thread runs", scheduler.alive),
-            ("loa_scheduler_turn_age_seconds", age, scheduler.turn_age_s),
-        ):
-            yield GaugeMetricFamily(name, text, value=float(value))
+def _of_scheduler(scheduler: Scheduler, most_workers: int) -> Iterable[Metric]:
+    age = "Seconds since the scheduler's last turn"
+    for name, text, value in (
+        ("loa_workers_busy", "Workers that run", scheduler.busy),
+        ("loa_workers_limit", "Workers that may run at the same time (LOA_WORKERS)", most_workers),
+        ("loa_workers_warm", "Warm processes that workers are forked from", scheduler.warm),
+        ("loa_scheduler_up", "Whether the scheduler's thread runs", scheduler.alive),
+        ("loa_scheduler_turn_age_seconds", age, scheduler.turn_age_s),
+    ):
+        yield GaugeMetricFamily(name, text, value=float(value))
 
 
-class _SpaceFigures(Collector):
-    """The file system of the data directory: workspaces, caches, and results that have no other place."""
-
-    def __init__(self, data_directory: Path) -> None:
-        self._directory = data_directory
-
-    def collect(self) -> Iterable[Metric]:
-        """Return the figures; none while the directory is not there."""
-        with suppress(OSError):
-            space = shutil.disk_usage(self._directory)
-            yield GaugeMetricFamily("loa_data_free_bytes", "Free space of the data directory", space.free)
-            yield GaugeMetricFamily("loa_data_size_bytes", "Size of its file system", space.total)
+def _of_space(directory: Path) -> Iterable[Metric]:
+    """Yield the space of the data directory: workspaces, caches, and results that have no other place."""
+    with suppress(OSError):  # while the directory is not there
+        space = shutil.disk_usage(directory)
+        yield GaugeMetricFamily("loa_data_free_bytes", "Free space of the data directory", space.free)
+        yield GaugeMetricFamily("loa_data_size_bytes", "Size of its file system", space.total)
 
 
-class _StoreFigures(Collector):
-    """What this process looked for in the store."""
-
-    def __init__(self, store: ResultStore) -> None:
-        self._store = store
-
-    def collect(self) -> Iterable[Metric]:
-        """Return the figures."""
-        yield _reads("loa_result_lookups", "Results looked for in the store", self._store.lookups)
-        text = "Files of a remote store looked for in the cache of this machine"
-        yield _reads("loa_file_cache_reads", text, self._store.files.reads)
+def _of_store(store: ResultStore) -> Iterable[Metric]:
+    yield _reads("loa_result_lookups", "Results looked for in the store", store.lookups)
+    text = "Files of a remote store looked for in the cache of this machine"
+    yield _reads("loa_file_cache_reads", text, store.files.reads)
 
 
 def _reads(name: str, text: str, reads: CacheReads) -> CounterMetricFamily:
@@ -204,12 +182,15 @@ def process_registry(
     registry = CollectorRegistry()
     ProcessCollector(registry=registry)
     registry.register(_build_info())
-    registry.register(_DatabaseFigures(WorkloadReader(engine)))
-    registry.register(_WriteFigures(writes))
-    registry.register(_StoreFigures(store))
-    registry.register(_SpaceFigures(settings.data_directory))
+    for read in (
+        partial(_of_database, WorkloadReader(engine)),
+        partial(_of_writing, writes),
+        partial(_of_store, store),
+        partial(_of_space, settings.data_directory),
+    ):
+        registry.register(_Collected(read))
     if isinstance(scheduler, Scheduler):
-        registry.register(_SchedulerFigures(scheduler, settings.workers))
+        registry.register(_Collected(partial(_of_scheduler, scheduler, settings.workers)))
         registry.register(scheduler.figures)
     return registry
 

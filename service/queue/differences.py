@@ -4,70 +4,42 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
-from typing import Any, Self
+from typing import Any
+
+from service.schemas.answers import Difference, Differences, Value
 
 Json = dict[str, Any]
-Value = bool | int | float | str | list[bool | int | float | str | None] | None
 _MOST = 12
 _LONGEST_LIST, _LONGEST_TEXT = 16, 200
+NOT_COMPARED = Differences(since=None, first=[], number=0)
 
 
-@dataclass(frozen=True)
-class Difference:
-    """An input that differs.
+def differences_between(reference: Json, inputs: Json, since: str | None = None) -> Differences:
+    """Return how `inputs` differ from `reference`, those of the job `since`; None: the defaults.
 
-    Attributes
-    ----------
-    field : str
-        Its path, such as ``case.load.torque_n_m`` or ``scene.shafts[0].length_mm``.
-    before, value
-        There and here; None where it is not stated. Of a long list or text its length in words.
+    Lists of tables are compared by place. The first ones are in the order of the inputs; of long lists and
+    texts they have the length in words.
     """
-
-    field: str
-    before: Value
-    value: Value
-
-
-@dataclass(frozen=True)
-class Differences:
-    """What sets a job apart.
-
-    Attributes
-    ----------
-    since : str
-        The job that it is compared with; empty: compared with the defaults.
-    first : tuple[Difference, ...]
-        The first ones in the order of the inputs, at most 12.
-    number : int
-        Of all.
-    """
-
-    since: str = ""
-    first: tuple[Difference, ...] = ()
-    number: int = 0
-
-    @classmethod
-    def between(cls, reference: Json, inputs: Json, since: str = "") -> Self:
-        """Return the differences of `inputs` from `reference`; lists of tables are compared by place."""
-        before, now = dict(_leaves(reference)), dict(_leaves(inputs))
-        differing = [field for field in now | before if not _same(before.get(field), now.get(field))]
-        first = (Difference(f, _short(before.get(f)), _short(now.get(f))) for f in differing[:_MOST])
-        return cls(since, tuple(first), len(differing))
-
-    @classmethod
-    def of(cls, text: str) -> Self:
-        """Return what `str` wrote; nothing of jobs from before differences were kept."""
-        facts = json.loads(text or "{}")
-        first = tuple(Difference(**difference) for difference in facts.pop("first", ()))
-        return cls(**facts, first=first)
-
-    def __str__(self) -> str:
-        return json.dumps(asdict(self))
+    before, now = dict(_leaves(reference)), dict(_leaves(inputs))
+    differing = [field for field in now | before if not _same(before.get(field), now.get(field))]
+    first = [
+        Difference(field=field, before=_short(before.get(field)), value=_short(now.get(field)))
+        for field in differing[:_MOST]
+    ]
+    return Differences(since=since, first=first, number=len(differing))
 
 
-NOT_COMPARED = Differences()
+def differences_column(differences: Differences) -> str:
+    """Return differences as the job table has them."""
+    return json.dumps(differences.model_dump())
+
+
+def differences_of(column: str) -> Differences:
+    """Return what `differences_column` wrote; nothing of jobs from before differences were kept."""
+    facts = json.loads(column or "{}")
+    return Differences.model_validate(
+        {"first": [], "number": 0, **facts, "since": facts.get("since") or None}
+    )
 
 
 def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:

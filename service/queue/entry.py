@@ -14,10 +14,11 @@ from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select
 from lineofaction.gearbox.problems import BadInput, QueueFull
 from service.access.keyring import Holder
 from service.project import COMMON, address_of
-from service.queue.differences import NOT_COMPARED, Differences
+from service.queue.differences import NOT_COMPARED, differences_between, differences_column
 from service.queue.tables import computations, jobs
 from service.queue.terms import ANYBODY, AS_IT_IS, NO_LABEL, USUAL, Terms, extended, raised
 from service.queue.workload import FOR_EVER, HELD, batch_steps
+from service.schemas.answers import Differences
 from service.store import now, retried, writing
 from service.tracing.tracer import TRACEPARENT
 from service.version import solver_version
@@ -173,7 +174,11 @@ class Entry:
     ) -> None:
         """Enter the batch and its jobs; the first of equal ones bears their cost."""
         common = {"created": now(), "caller": self._caller.name, "delivery": str(AS_IT_IS)}
-        common |= {"project": self._project, "differences": str(NOT_COMPARED), **NO_LABEL.columns()}
+        common |= {
+            "project": self._project,
+            "differences": differences_column(NOT_COMPARED),
+            **NO_LABEL.columns(),
+        }
         rows = [
             _entered_batch(connection, identifier, process, len(cases)) | common | self._terms.label.columns()
         ]
@@ -185,7 +190,7 @@ class Entry:
             counted.add(case.key)
             row: dict[str, Any] = {"id": names[place], "computation_id": shared[case.key]}
             row |= {"parent": identifier, "place": place, "children": 0}
-            row |= {"weight": weight, "differences": str(apart)}
+            row |= {"weight": weight, "differences": differences_column(apart)}
             rows.append(common | row)
         connection.execute(insert(jobs), rows)
 
@@ -214,7 +219,7 @@ def _differences(cases: Sequence[BatchCase], names: Sequence[str]) -> Iterator[D
     """Yield what sets each job of a batch apart from the one before it."""
     yield NOT_COMPARED
     for (before, case), name in zip(pairwise(cases), names, strict=False):
-        yield Differences.between(before.inputs, case.inputs, name)
+        yield differences_between(before.inputs, case.inputs, name)
 
 
 def _refuse_more(number: int, most: int, of_what: str) -> None:

@@ -12,9 +12,10 @@ from sqlalchemy import ColumnElement, case, select
 
 from bounds import engineering
 from service.project import at_address
-from service.queue.differences import Differences
+from service.queue.differences import differences_of
 from service.queue.tables import computations, jobs
 from service.queue.terms import Delivery, Label, labeled
+from service.schemas.answers import Differences
 
 Json = dict[str, Any]
 
@@ -155,7 +156,7 @@ def job_of(row: Any) -> Job:
         inputs=row.inputs,
         stated=row.stated or row.inputs,
         label=Label.from_row(row),
-        differences=Differences.of(row.differences),
+        differences=differences_of(row.differences),
         priority=row.priority,
         max_cost_s=row.max_cost_s,
         caller=row.caller,

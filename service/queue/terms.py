@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal, Self
 
 from sqlalchemy import ColumnElement, Update, update
@@ -12,8 +12,9 @@ from bounds import engineering
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import NETCDF
 from service.access.keyring import Holder
-from service.queue.differences import NOT_COMPARED, Differences
+from service.queue.differences import NOT_COMPARED, differences_column
 from service.queue.tables import computations, jobs
+from service.schemas.answers import Differences
 
 ANYBODY = Holder(name="")
 """The caller of a service without keys."""
@@ -184,7 +185,7 @@ class Terms:
 
     delivery: Delivery = AS_IT_IS
     label: Label = NO_LABEL
-    differences: Differences = NOT_COMPARED
+    differences: Differences = field(default_factory=lambda: NOT_COMPARED)
     priority: int = 0
     max_cost_s: float | None = None
     stated: str = ""
@@ -192,7 +193,11 @@ class Terms:
 
     def columns(self) -> dict[str, str]:
         """Return the columns of a job that hold them; the others are its computation's."""
-        said = {"delivery": str(self.delivery), "differences": str(self.differences), "stated": self.stated}
+        said = {
+            "delivery": str(self.delivery),
+            "differences": differences_column(self.differences),
+            "stated": self.stated,
+        }
         return {**said, **self.label.columns()}
 
 

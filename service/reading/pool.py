@@ -28,8 +28,8 @@ from lineofaction.gearbox.problems import (
     TooManyHeld,
     Unexpected,
 )
+from service.folders import own_folder, remove_left
 from service.live.order import AnswerHead, LiveOrder, propagated
-from service.own_folder import own_folder, remove_left
 from service.reading.child import LONGEST_S, MOST_ANSWER_BYTES
 from service.worker.forks import ChildProcess, Ends, Forks
 

@@ -25,7 +25,6 @@ from lineofaction.gearbox.problems import (
 from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.result_kinds import RESULTS
 from service.access import Scope
-from service.queue.differences import Differences
 from service.queue.job import Job, JobFilter, subject_of
 from service.queue.terms import Delivery, Transmission, delivery
 from service.queue.terms import Response as Form
@@ -43,7 +42,6 @@ from service.routes.media_types import (
 from service.routes.openapi import documented
 from service.routes.results import FILE, OF_RESULT, file_response, known_result
 from service.routes.scopes import ScopedRoute, needs, require
-from service.schemas.answers import Differences as ShownDifferences
 from service.schemas.answers import (
     JobInputs,
     JobList,
@@ -235,7 +233,7 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
         priority=job.priority,
         max_cost_s=job.max_cost_s,
         subject=subject_of(job.inputs),
-        differences=_shown(job.differences),
+        differences=job.differences,
         message=job.message,
         created=job.created,
         started=job.started,
@@ -252,11 +250,6 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
         links=links,
         warnings=list(input_warnings(job.inputs)),
     )
-
-
-def _shown(differences: Differences) -> ShownDifferences:
-    facts = asdict(differences)
-    return ShownDifferences.model_validate(facts | {"since": facts["since"] or None})
 
 
 # Results in the form that was requested.

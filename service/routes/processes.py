@@ -19,7 +19,7 @@ from lineofaction.gearbox.schemas.reading import validated
 from service.access import Holder, Scope
 from service.live.order import LiveOrder
 from service.origin import Origin
-from service.queue.differences import Differences
+from service.queue.differences import differences_between
 from service.queue.entry import BatchCase
 from service.queue.terms import Label, Terms, check_priority, cost_limit, delivery, refuse_beyond
 from service.routes.context import Context, Ctx, From
@@ -29,6 +29,7 @@ from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.answers import (
     AdditionalParameters,
+    Differences,
     Link,
     Parameter,
     ProcessDescription,
@@ -224,8 +225,8 @@ def _differences(
     """Return what sets normalized inputs apart from the caller's job before, or else from the defaults."""
     former = context.submissions.newest(caller, process.id)
     if former is None:
-        return Differences.between({}, stated.model_dump(mode="json", exclude_defaults=True))
-    return Differences.between(former[1], inputs, former[0])
+        return differences_between({}, stated.model_dump(mode="json", exclude_defaults=True))
+    return differences_between(former[1], inputs, former[0])
 
 
 def _submit(

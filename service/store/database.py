@@ -12,9 +12,8 @@ from sqlalchemy import URL, Connection, Engine, MetaData, inspect, make_url, tex
 from sqlalchemy.exc import ArgumentError
 
 from lineofaction.gearbox.problems import BadInput
-from service.store.dialects import RESTORE, dialect_of
+from service.store.dialects import RESTORE, dialect_of, retried, unusable
 from service.store.migrations import REVISIONS, USABLE_SINCE, migrate
-from service.store.outages import retried, unusable
 
 NEWEST = "schema_version"
 """The table with the number of the last step that was made."""

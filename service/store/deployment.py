@@ -23,9 +23,8 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable, NoSpace, ServiceError
 from service.store.database import metadata, now, reading, shown, writing
-from service.store.dialects import dialect_of, shortage
+from service.store.dialects import dialect_of, outage_of, retried, shortage
 from service.store.files import ResultName
-from service.store.outages import outage_of, retried
 from service.store.results import ResultStore
 
 NOTE = "deployment.json"

@@ -1,24 +1,28 @@
-"""All that differs between SQLite and PostgreSQL."""
+"""All that differs between SQLite and PostgreSQL; steps that outlast a lost connection."""
 
 from __future__ import annotations
 
 import contextlib
 import errno
+import functools
 import os
 import shutil
 import sqlite3
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Protocol, cast
+from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, cast
 
+import structlog
 from sqlalchemy import URL, Connection, Engine, NullPool, Table, create_engine, event, func, select, text
 from sqlalchemy.dialects import postgresql, sqlite
-from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
+from tenacity import RetryCallState, Retrying, retry_if_exception, stop_after_attempt, stop_after_delay
+from tenacity.wait import wait_exponential, wait_random
 
-from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.problems import BadInput, DatabaseDamaged, DatabaseUnavailable, NoSpace, OutOfFiles
 
 # Space on the disks that are written to, and files that this process may still open.
 
@@ -357,13 +361,116 @@ def dialect_of(database: Engine | Connection | URL) -> Dialect:
     return _DIALECTS[database.dialect.name]
 
 
-def is_lost(error: BaseException, database: Engine) -> bool:
+def _is_lost(error: BaseException, database: Engine) -> bool:
     """Whether `error` says that the database cannot be reached or asks to try again."""
     if isinstance(error, DBAPIError):
-        return remedy_of(error, database) is None and dialect_of(database).lost(error)
+        return _remedy_of(error, database) is None and dialect_of(database).lost(error)
     return isinstance(error, PoolTimeout)
 
 
-def remedy_of(error: BaseException, database: Engine) -> str | None:
+def _remedy_of(error: BaseException, database: Engine) -> str | None:
     """Return what a person has to do if `error` says that the database cannot be used as it is."""
     return dialect_of(database).remedy(error, database.url) if isinstance(error, DBAPIError) else None
+
+
+# Steps that outlast a lost connection: tried again for a while, then refused for the caller to try later.
+
+
+_ATTEMPTS = 6
+_PATIENCE_S = 5.0
+"""After which a step is not tried again: one attempt may have waited for a lock as long as it may."""
+_FIRST_WAIT_S, _LONGEST_WAIT_S = 0.05, 1.0
+
+_KINDS: Mapping[str, tuple[str, type[DatabaseUnavailable]]] = {
+    ROOM: ("no space", NoSpace),
+    FILES: ("out of files", OutOfFiles),
+}
+"""Event of the log and error by what is to be done, where the database itself is sound."""
+
+P = ParamSpec("P")
+R = TypeVar("R")
+logger = structlog.get_logger(__name__)
+
+
+class _OnDatabase(Protocol):
+    """An object that works on a database."""
+
+    _engine: Engine
+
+
+S = TypeVar("S", bound=_OnDatabase)
+
+
+def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P], R]:
+    """Let a method outlast a lost connection.
+
+    The method may be run again after its transaction was committed, when the answer to that was lost: a
+    second run must change nothing.
+
+    Raises
+    ------
+    DatabaseUnavailable
+        The database has not come back after about two seconds, or others hold what is needed for too long.
+    DatabaseDamaged
+        It has to be mended first: damaged, read-only. Not tried again.
+    NoSpace, OutOfFiles
+        Its disk is full, or this process may open no more files. Not tried again.
+    """
+
+    @functools.wraps(step)
+    def run(self: S, *args: P.args, **kwargs: P.kwargs) -> R:
+        engine = self._engine
+        attempts = Retrying(
+            retry=retry_if_exception(lambda error: _is_lost(error, engine)),
+            stop=stop_after_attempt(_ATTEMPTS) | stop_after_delay(_PATIENCE_S),
+            wait=wait_exponential(_FIRST_WAIT_S, _LONGEST_WAIT_S) + wait_random(0.0, _FIRST_WAIT_S),
+            before_sleep=_note,
+            reraise=True,
+        )
+        try:
+            return attempts(step, self, *args, **kwargs)
+        except SQLAlchemyError as error:
+            outage = outage_of(error, engine)
+            if outage is None:
+                raise
+            raise outage from error
+
+    return cast(Callable[Concatenate[S, P], R], run)
+
+
+def outage_of(error: SQLAlchemyError, engine: Engine) -> DatabaseUnavailable | None:
+    """Return the message about an error of the database itself; None: it is the statement's."""
+    if _is_lost(error, engine):
+        return DatabaseUnavailable("The database cannot be reached. Try again later.")
+    remedy = _remedy_of(error, engine)
+    return None if remedy is None else unusable(engine, str(getattr(error, "orig", error)), remedy)
+
+
+def unusable(engine: Engine, fault: str, remedy: str) -> DatabaseUnavailable:
+    """Return the error of a database that somebody has to see to; the log alone says where it is."""
+    where = engine.url.render_as_string(hide_password=True)
+    event, kind = _KINDS.get(remedy, ("database damaged", DatabaseDamaged))
+    logger.error(event, database=where, error=fault, remedy=remedy)
+    error = kind(f"{kind.title}: {fault}.")
+    error.add_note(f"{where}: {remedy}")
+    return error
+
+
+def optional(step: Callable[Concatenate[S, P], None]) -> Callable[Concatenate[S, P], None]:
+    """Let a method pass without effect when the database is lost: what calls it goes on without."""
+
+    @functools.wraps(step)
+    def run(self: S, *args: P.args, **kwargs: P.kwargs) -> None:
+        try:
+            step(self, *args, **kwargs)
+        except SQLAlchemyError as error:
+            if not _is_lost(error, self._engine) and _remedy_of(error, self._engine) is None:
+                raise
+
+    return cast(Callable[Concatenate[S, P], None], run)
+
+
+def _note(state: RetryCallState) -> None:
+    outcome = state.outcome
+    error = outcome.exception() if outcome is not None else None
+    logger.warning("database lost", attempt=state.attempt_number, error=type(error).__name__)

@@ -17,7 +17,7 @@ from sqlalchemy import Engine
 
 from fe_contact.cache_reads import CacheReads
 from lineofaction.gearbox.problems import BadInput, StoreUnavailable
-from service.bounded_folder import evict
+from service.folders import evict
 from service.store.database import open_database
 from service.store.deployment import Deployment
 from service.store.files import (

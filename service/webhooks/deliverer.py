@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
+import hmac
 import http.client
 import ipaddress
 import json
@@ -19,7 +22,6 @@ import structlog
 
 from lineofaction.gearbox.problems import ServiceError
 from service.origin import Origin
-from service.signature import signed_headers
 from service.webhooks.calls import Call, Calls
 
 # One request to a receiver: to an address that may be called, bounded in time, redirects not followed.
@@ -168,6 +170,17 @@ class Outbox:
         body = json.dumps(self.compose(call.job, call.event), allow_nan=False).encode()
         headers = signed_headers(self.key, call.id, int(time.time()), body)
         return send(call.uri, body, {"Content-Type": "application/json", **headers})
+
+
+def signed_headers(key: bytes, identifier: str, timestamp: int, body: bytes) -> dict[str, str]:
+    """Return the headers of a call, signed as of Standard Webhooks 1.0.0; `timestamp` is in s since 1970."""
+    content = b".".join((identifier.encode(), str(timestamp).encode(), body))
+    digest = base64.b64encode(hmac.new(key, content, hashlib.sha256).digest()).decode()
+    return {
+        "webhook-id": identifier,
+        "webhook-timestamp": str(timestamp),
+        "webhook-signature": f"v1,{digest}",
+    }
 
 
 class Deliverer:

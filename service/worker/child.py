@@ -151,7 +151,7 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
 
 def _stamp(order: WorkOrder, products: tuple[Product, ...]) -> None:
     """Write into the files what is implausible about what they were made from."""
-    from service.worker.product_warnings import stamp_products  # noqa: PLC0415 (start-up time)
+    from service.worker.input_warnings import stamp_products  # noqa: PLC0415 (start-up time)
 
     stamp_products(order, products)
 

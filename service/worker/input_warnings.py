@@ -1,8 +1,9 @@
-"""Warnings about implausible inputs of a job, before it is done."""
+"""Warnings about implausible inputs of a job, before it is done and in the files that it makes."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -16,6 +17,8 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
+from service.worker.order import Product, WorkOrder
+from service.worker.process import on_demand
 
 Json = dict[str, Any]
 
@@ -36,11 +39,11 @@ def _warnings(inputs: Json) -> list[Json]:
     if inputs.get("scene") is not None:
         return _of_scene(SceneInput.model_validate_json(json.dumps(inputs["scene"])))
     if inputs.get("case") is not None:
-        return warnings_of_case(inputs["case"])
+        return _warnings_of_case(inputs["case"])
     return []
 
 
-def warnings_of_case(case: Json) -> list[Json]:
+def _warnings_of_case(case: Json) -> list[Json]:
     """Assess a normalized case."""
     return case_warnings(Case.model_validate_json(json.dumps(case)))
 
@@ -58,3 +61,16 @@ def _of_scene(scene: SceneInput) -> list[Json]:
         return warnings
     moving = check_scene(scene, {name: facts_of(gear_pair(case)) for name, case in cases.items()})
     return unique([*warnings, *scene_warnings(scene, moving)])
+
+
+stamp = on_demand("lineofaction.gearbox.convert.result_files:stamp")
+
+
+def stamp_products(order: WorkOrder, products: Sequence[Product]) -> None:
+    """Write into each file what is implausible about what it was made from; a database says so itself."""
+    case = list(_warnings_of_case(order.inputs["case"])) if "case" in order.inputs else None
+    for product in products:
+        of_case = None if product.kind == "database" else case
+        if product.warnings is not None or of_case is not None:
+            warnings = (*(of_case or ()), *(product.warnings or ()))
+            stamp(product.file, list({warning["message"]: warning for warning in warnings}.values()))

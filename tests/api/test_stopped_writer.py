@@ -50,7 +50,7 @@ def address(tmp_path: Path, database_url: str | None, monkeypatch: pytest.Monkey
         "service.store.dialects._PRAGMAS", ("PRAGMA journal_mode=WAL", "PRAGMA busy_timeout=1000")
     )
     monkeypatch.setattr("service.store.dialects._STALLED", "-c lock_timeout=1s")
-    monkeypatch.setattr("service.store.outages._PATIENCE_S", 0.5)
+    monkeypatch.setattr("service.store.dialects._PATIENCE_S", 0.5)
     return database_url or f"sqlite:///{tmp_path / 'service.sqlite3'}"
 
 

@@ -14,7 +14,7 @@ from typer.testing import CliRunner, Result
 from fe_contact.compliance.cache import read_compliance
 from fe_contact.compliance.flank import FlankCompliance
 from lineofaction.cli.commands import app
-from service.bounded_folder import evict, files_in
+from service.folders import evict, files_in
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 HOUR = 3600.0

@@ -24,8 +24,7 @@ from service.app import create_app
 from service.settings import Settings
 from service.store.database import database_engine
 from service.store.deployment import NOTE
-from service.store.dialects import out_of_files
-from service.store.outages import outage_of
+from service.store.dialects import out_of_files, outage_of
 
 EXECUTION = "/v1/processes/fake/execution"
 PAGE = 4096

@@ -15,13 +15,13 @@ from fastapi.testclient import TestClient
 from postgres_server import PostgresServer, migrated, running_server
 from running_service import Bench, bench
 from service_fakes import REGISTRY
-from sqlalchemy import Connection, event, false
+from sqlalchemy import Connection, event
 
 from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable
 from service.app import create_app
-from service.queue.terms import ANYBODY, USUAL
+from service.queue.entry import BatchCase, Entry
 from service.settings import Settings, load_settings
-from service.store import open_database
+from service.store import now, open_database
 from service.store.database import Schema, database_engine
 
 KEEPALIVE = (socket.TCP_KEEPIDLE, socket.TCP_KEEPINTVL, socket.TCP_KEEPCNT)
@@ -67,11 +67,11 @@ def test_steps_go_on_when_their_connections_are_ended(machine: Bench, postgres: 
 
 def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine: Bench) -> None:
     """The transaction was committed; the connection broke before the answer came: the step runs again."""
-    submit = machine.submissions._submit.__wrapped__  # type: ignore[attr-defined]
+    entry, work = machine.submissions.entry(), BatchCase("ab" * 32, {"wish": {}})
+    enter = Entry._job.__wrapped__  # type: ignore[attr-defined]
     identifier = "7a8a9f0e-26f4-4f55-9e0b-3a3e3a3f3a3f"
-    arguments = (identifier, "fake", "ab" * 32, {"wish": {}}, False, false(), ANYBODY, USUAL)
     for _ in range(2):
-        submit(machine.submissions, *arguments)
+        enter(entry, identifier, "fake", work, now())
     assert len(machine.submissions.page(10)) == 1
     assert machine.submissions.counts() == {"accepted": 1}
 
@@ -149,7 +149,7 @@ def test_a_file_that_another_holds_is_waited_for_and_then_refused(
     with pytest.raises(DatabaseUnavailable):
         machine.submit(text="refused")
     # let go at the first refusal
-    monkeypatch.setattr("service.store.outages._note", lambda _state: holder.rollback())
+    monkeypatch.setattr("service.store.dialects._note", lambda _state: holder.rollback())
     assert machine.submit(text="waits").status == "accepted"
     holder.close()
 

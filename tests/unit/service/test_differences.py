@@ -7,14 +7,15 @@ from typing import Any
 
 import pytest
 
-from service.queue.differences import Difference, Differences
+from service.queue.differences import differences_between, differences_column, differences_of
 from service.queue.job import subject_of
+from service.schemas.answers import Difference
 from service.schemas.examples import CASE, SCENE
 
 
 def between(before: Any, now: Any) -> list[tuple[str, Any, Any]]:
     """Return the differences of inputs."""
-    found = Differences.between(before, now).first
+    found = differences_between(before, now).first
     return [(difference.field, difference.before, difference.value) for difference in found]
 
 
@@ -39,11 +40,11 @@ def test_differences_are_those_of_the_leaves(before: Any, now: Any, differences:
 
 
 def test_the_first_twelve_are_kept_and_all_are_counted() -> None:
-    found = Differences.between({}, {f"x{n}": n for n in range(40)}, "there")
+    found = differences_between({}, {f"x{n}": n for n in range(40)}, "there")
     assert (found.number, found.since) == (40, "there")
     assert [difference.field for difference in found.first] == [f"x{n}" for n in range(12)]
-    assert Differences.of(str(found)) == found
-    assert found.first[3] == Difference("x3", None, 3)
+    assert differences_of(differences_column(found)) == found
+    assert found.first[3] == Difference(field="x3", before=None, value=3)
 
 
 def test_the_subject_names_the_pair_or_the_scene() -> None:

@@ -26,8 +26,8 @@ from lineofaction.gearbox.problems import (
     Unexpected,
 )
 from service.app import create_app
+from service.folders import own_folder, remove_left
 from service.live.order import LiveOrder
-from service.own_folder import own_folder, remove_left
 from service.reading.pool import AT_ONCE, MOST_WAITING, ReadingPool
 from service.settings import Settings
 
@@ -143,7 +143,7 @@ def test_a_reader_sees_no_file_of_the_service(pool: ReadingPool, tmp_path: Path)
 
 
 def test_a_system_that_confines_nothing_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("host.confinement.version", lambda: 0)
+    monkeypatch.setattr("host.confinement._landlock", lambda: 0)
     with capture_logs() as log, TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as http:
         ready = http.get("/ready", headers={"Host": "localhost"})
     assert ready.json()["missing_protections"] == ["files (Landlock)"]

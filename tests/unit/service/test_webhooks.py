@@ -15,10 +15,10 @@ from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import BadInput
 from service.origin import Origin
-from service.settings import Settings, load_settings
-from service.signature import secret_bytes, signed_headers
+from service.settings import Settings, load_settings, secret_bytes
 from service.webhooks import calls, deliverer
 from service.webhooks.calls import Calls
+from service.webhooks.deliverer import signed_headers
 
 SECRET = "whsec_" + base64.b64encode(bytes(32)).decode()
 
