@@ -53,7 +53,6 @@ def spread(nodes: FloatArray, sample: IntArray, values: FloatArray, axis: int) -
         Nodes of `values`, both ends among them.
     values : ndarray
         k long along `axis`; NaN goes to both intervals beside it.
-    axis : int
 
     Returns
     -------

@@ -50,7 +50,6 @@ class RunPlan:
         The request with its model and its ledger of effects.
     choice : MeshChoice
         The mesh that would be taken.
-    plan : Plan
     chosen : PlannedLevel
         The prediction for the mesh that would be taken.
     levels : tuple of PlannedLevel
@@ -96,9 +95,6 @@ def plan_run(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
-    axes : TableAxes
-    options : AnalysisOptions
     time_budget : float, optional
         CPU seconds in place of that of the options. It may stand beside a level: the plan says whether the
         level fits the time.

@@ -223,7 +223,6 @@ class SolvedTable(SolvedRun):
         Model and discretization.
     prediction : Prediction
         What it was expected to cost.
-    nodes : PositionNodes
     support : list of (ContactProblem, ContactSolution)
         Of every place at the support loads.
     table : SteDatabase
@@ -251,9 +250,6 @@ def solve_table(
 
     Parameters
     ----------
-    checked : Checked
-    clock : StageClock
-    run : Run
     before : SolvedTable, optional
         The same pair with other effects: its compliance is taken if the bodies are the same.
     decided : Decided, optional

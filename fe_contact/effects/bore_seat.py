@@ -25,8 +25,7 @@ class BoreSeatElasticity(Effect):
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where either bore has a seat that is not fixed all over."""
-        gears = {"pinion": scene.pair.pinion, "wheel": scene.pair.wheel}
-        seated = [name for name, gear in gears.items() if gear.seat != CLAMPED]
+        seated = [name for name, gear in scene.gears.items() if gear.seat != CLAMPED]
         if not seated:
             return Verdict(False, "both bores are fixed over their whole surface", neutral=True)
         return Verdict(True, f"{' and '.join(seated)} on a seat of the bore")
@@ -37,16 +36,16 @@ class BoreSeatElasticity(Effect):
 
     def across_face(self, scene: ContactScene) -> str | None:
         """Say so where there is one."""
-        seated = any(gear.seat != CLAMPED for gear in (scene.pair.pinion, scene.pair.wheel))
+        seated = any(gear.seat != CLAMPED for gear in scene.gears.values())
         return "a seat of the bore" if seated else None
 
     def estimable(self, scene: ContactScene) -> bool:
         """Return False for a seat on part of the face."""
-        return all(gear.seat.width is None for gear in (scene.pair.pinion, scene.pair.wheel))
+        return all(gear.seat.width is None for gear in scene.gears.values())
 
     def refuse_plane(self, scene: ContactScene) -> None:
         """Refuse seats of bores: in the plane every bore is fixed."""
-        for name, gear in (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel)):
+        for name, gear in scene.gears.items():
             if gear.seat != CLAMPED:
                 advice = "Use the 3-D model for it."
                 raise InputError(f"{name}.seat", "given", "left out for a plane model", advice)

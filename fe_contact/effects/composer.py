@@ -21,10 +21,8 @@ def flipped(registry: Sequence[Effect], decided: Mapping[str, str], name: str, c
 
     Parameters
     ----------
-    registry : sequence of Effect
     decided : mapping of str to str
         Every effect "on" or "off".
-    name, choice : str
     """
     choices = {**decided, name: choice}
     face, width = named(registry, "across_face"), named(registry, "finite_width")
@@ -44,14 +42,12 @@ class LedgerEntry:
 
     Attributes
     ----------
-    name : str
     on : bool
         Whether it was simulated.
     choice : str
         "on", "off" or "auto", as requested.
     verdict : Verdict
         What the scene calls for; its reason stands even when the caller decided otherwise.
-    cost : str
     override : str
         Why it is not as the verdict has it, though the choice is "auto"; empty if it is.
     """
@@ -93,7 +89,6 @@ def compose(scene: ContactScene, choices: Mapping[str, str]) -> tuple[ContactMod
 
     Parameters
     ----------
-    scene : ContactScene
     choices : mapping of str to str
         Effect name to "on", "off" or "auto"; names left out are "auto".
 

@@ -24,7 +24,6 @@ class ContactScene:
 
     Attributes
     ----------
-    pair : GearPair or InternalGearPair
     torque : ndarray
         Torques on the driving gear, N m.
     registry : sequence of Effect
@@ -54,10 +53,14 @@ class ContactScene:
         """Return the effect of a name."""
         return next(effect for effect in self.registry if effect.name == name)
 
+    @property
+    def gears(self) -> dict[str, Toothing]:
+        """Both gears by name."""
+        return {"pinion": self.pair.pinion, "wheel": self.pair.wheel}
+
     def with_gears(self, change: Callable[[Toothing], dict[str, object]]) -> ContactScene:
         """Return the scene with some fields of both gears changed."""
-        gears = {"pinion": self.pair.pinion, "wheel": self.pair.wheel}
-        changed: Any = {name: replace(gear, **change(gear)) for name, gear in gears.items()}  # type: ignore[arg-type]
+        changed: Any = {name: replace(gear, **change(gear)) for name, gear in self.gears.items()}  # type: ignore[arg-type]
         return replace(self, pair=replace(self.pair, **changed))
 
     @property
@@ -72,7 +75,6 @@ class Verdict:
 
     Attributes
     ----------
-    on : bool
     reason : str
         Why, in words an engineer would use.
     neutral : bool

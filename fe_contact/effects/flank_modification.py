@@ -72,16 +72,14 @@ class ProfileModification(Effect):
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where either gear has a modification along its profile."""
-        gears = (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel))
-        modified = [name for name, gear in gears if not gear.modification.along_profile.neutral]
+        modified = [name for name, gear in scene.gears.items() if not gear.modification.along_profile.neutral]
         if not modified:
             return Verdict(False, "both profiles are plain involutes", neutral=True)
         return Verdict(True, f"modified profile on {' and '.join(modified)}")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the gap of both flanks."""
-        gears = (scene.pair.pinion, scene.pair.wheel)
-        term = ModificationGap(*(gear.modification.along_profile for gear in gears))
+        term = ModificationGap(*(gear.modification.along_profile for gear in scene.gears.values()))
         return replace(model, gaps=(*model.gaps, term))
 
     def without(self, scene: ContactScene) -> ContactScene:
@@ -106,22 +104,23 @@ class LeadModification(Effect):
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where either gear has a modification that differs over its face."""
-        gears = (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel))
-        modified = [name for name, gear in gears if gear.modification.varies_along_face]
+        modified = [name for name, gear in scene.gears.items() if gear.modification.varies_along_face]
         if not modified:
             return Verdict(False, "both leads are plain", neutral=True)
         return Verdict(True, f"modified lead on {' and '.join(modified)}")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the gap of both flanks."""
-        gears = (scene.pair.pinion, scene.pair.wheel)
-        term = ModificationGap(*(gear.modification.along_face for gear in gears))
+        term = ModificationGap(*(gear.modification.along_face for gear in scene.gears.values()))
         return replace(model, gaps=(*model.gaps, term))
 
     def across_face(self, scene: ContactScene) -> str | None:
         """Say so where there is one."""
-        gears = (scene.pair.pinion, scene.pair.wheel)
-        return "lead modification" if any(gear.modification.varies_along_face for gear in gears) else None
+        return (
+            "lead modification"
+            if any(gear.modification.varies_along_face for gear in scene.gears.values())
+            else None
+        )
 
     def without(self, scene: ContactScene) -> ContactScene:
         """Return the scene with plain leads."""

@@ -50,8 +50,11 @@ class PitchError(Effect):
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where a tooth of either gear is out of its place."""
-        gears = (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel))
-        erring = [(name, gear.pitch_deviation) for name, gear in gears if not gear.pitch_deviation.neutral]
+        erring = [
+            (name, gear.pitch_deviation)
+            for name, gear in scene.gears.items()
+            if not gear.pitch_deviation.neutral
+        ]
         if not erring:
             return Verdict(False, "no tooth has a pitch deviation", neutral=True)
         figures = ", ".join(
@@ -62,12 +65,11 @@ class PitchError(Effect):
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the gap of both gears' teeth."""
-        gears = (scene.pair.pinion, scene.pair.wheel)
-        if all(gear.pitch_deviation.neutral for gear in gears):
+        if all(gear.pitch_deviation.neutral for gear in scene.gears.values()):
             return model
         first, second = (
             tuple((-gear.pitch_deviation.on_line_of_action(gear.transverse_pressure_angle)).tolist())
-            for gear in gears
+            for gear in scene.gears.values()
         )
         return replace(model, tooth_gaps=(*model.tooth_gaps, _PitchGap(first, second, _period(scene))))
 
@@ -78,5 +80,4 @@ class PitchError(Effect):
 
 def _period(scene: ContactScene) -> int:
     """Return the pitches requested, or those after which the deviations of both gears repeat together."""
-    gears = (scene.pair.pinion, scene.pair.wheel)
-    return scene.pitches or math.lcm(*(gear.pitch_deviation.period for gear in gears))
+    return scene.pitches or math.lcm(*(gear.pitch_deviation.period for gear in scene.gears.values()))

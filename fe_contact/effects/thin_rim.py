@@ -24,8 +24,7 @@ class ThinRim(Effect):
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where either gear has a web."""
-        webs = {"pinion": scene.pair.pinion.web, "wheel": scene.pair.wheel.web}
-        with_web = [name for name, web in webs.items() if web is not None]
+        with_web = [name for name, gear in scene.gears.items() if gear.web is not None]
         if not with_web:
             return Verdict(False, "both bodies are solid", neutral=True)
         return Verdict(True, f"{' and '.join(with_web)} with rim and web")
@@ -40,7 +39,7 @@ class ThinRim(Effect):
 
     def refuse_plane(self, scene: ContactScene) -> None:
         """Refuse a web that tilts its gear: the plane has no tilt."""
-        for name, gear in (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel)):
+        for name, gear in scene.gears.items():
             if gear.web is not None and gear.web.low + gear.web.high != 0.0:
                 offset, advice = 0.5 * (gear.web.low + gear.web.high), "Use the 3-D model for it."
                 raise InputError(f"{name}.blank.web_offset", offset, "0 for a plane model", advice)

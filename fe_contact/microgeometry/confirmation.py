@@ -144,11 +144,9 @@ class DesignSpace:
 
     Attributes
     ----------
-    pair : GearPair or InternalGearPair
     varied : mapping
         ``gear.quantity`` to m of a design in which nothing that is varied is zero: by it the effects are
         decided.
-    scatter : Scatter
     misalignment : float or sequence of float
         About which it scatters, m: one value, or one for each torque.
     positions : int
@@ -200,10 +198,8 @@ def design_study(
 
     Parameters
     ----------
-    space : DesignSpace
     torques, further_torques : sequence of float
         Those that count, and those that only maps show, N m.
-    clock : StageClock
     run : Run
         Only this process works.
 
@@ -324,7 +320,6 @@ class ConfirmedDesign:
     ----------
     values : dict of str to float
         ``gear.quantity`` to m.
-    harris_map : HarrisMap
     figures : Evaluation
         Pressures, factors and curves at the nodes and the torques that count.
     objective : Estimate
@@ -368,10 +363,8 @@ def confirm(
 
     Parameters
     ----------
-    problem : DesignProblem
     values : mapping
         ``gear.quantity`` to m.
-    study : DesignStudy
     cache : Path, optional
         Directory of flank compliances.
     """

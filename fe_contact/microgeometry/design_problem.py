@@ -50,10 +50,6 @@ class DesignProblem:
 
     Attributes
     ----------
-    evaluator : Evaluator
-    variables : tuple of DesignVariable
-    objective : Objective
-    limits : Limits
     scale : float
         m; merits are in parts of it.
     memory : Memory, optional

@@ -85,7 +85,6 @@ class Evaluator:
         Normal forces, N.
     misalignment : ndarray, shape (L,)
         Of each load, about which it scatters, m.
-    nodes : ScatterNodes
     """
 
     contact: PairContact

@@ -137,7 +137,6 @@ def curve_derivatives(
 
     Parameters
     ----------
-    bodies : CondensedPair
     pair : GearPair or InternalGearPair
         The same macro geometry with any flank modification.
     torques : sequence of float
@@ -251,7 +250,6 @@ class _LinearizedDesign:
 
     Attributes
     ----------
-    evaluation : Evaluation
     curves : ndarray, shape (S, P, L, d)
         dSTE/dvariable, m/m.
     limits : tuple of Rows
@@ -273,7 +271,6 @@ class _Solved:
     pair, problem, solution, figures
     names : tuple of str
         Of the variables.
-    strips : CarryingStrips
     opened : ndarray, shape (d, k)
         Normal approach that each variable takes away from them, m/m.
     """

@@ -145,7 +145,6 @@ class Perturbation(Record):
 
     Attributes
     ----------
-    name : str
     low, high : float
         Values of the variable on both sides, m: a standard deviation away where it scatters, else a twentieth
         of its range, kept within its bounds.

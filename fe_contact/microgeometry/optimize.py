@@ -58,7 +58,6 @@ class _DesignMemory:
 
     Attributes
     ----------
-    file : Path
     known : dict
         What is in it.
     """
@@ -155,8 +154,6 @@ class _Choice:
     ----------
     problem : DesignProblem
         By which `run` was assessed.
-    start, optimum : ConfirmedDesign
-    runs : tuple of SearchRun
     best : int
         Index of the run of the optimum.
     """
@@ -201,18 +198,7 @@ def _choose(
     cache: Path | None,
     cancel: Cancel,
 ) -> _Choice:
-    """Confirm the start and the best of all runs; go on searching where that exceeds the limits after all.
-
-    Parameters
-    ----------
-    problem : DesignProblem
-    runs : tuple of SearchRun
-    request : OptimizationRequest
-    study : DesignStudy
-    clock : StageClock
-    cache : Path, optional
-    cancel : callable
-    """
+    """Confirm the start and the best of all runs; go on searching where that exceeds the limits after all."""
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     with clock.stage("confirmation"):
         start = confirm(problem, dict(zip(problem.names, request.own, strict=True)), study, cache)

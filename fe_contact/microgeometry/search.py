@@ -38,7 +38,6 @@ class _Budget:
 
     Parameters
     ----------
-    total : int
     cancel : callable
         Asked before every design whether the search is to end.
     report : callable
@@ -72,8 +71,6 @@ class CountedMerit:
 
     Parameters
     ----------
-    problem : DesignProblem
-    budget : Budget
     most : int
         It raises `_BudgetUsed` when so many designs of the budget are used.
 
@@ -394,10 +391,6 @@ class SearchRun:
     ----------
     place : ndarray, shape (d,)
         Best design, in parts of the ranges of the variables.
-    assessed : Assessed
-    evaluations : int
-    ended : Ended
-    cpu_seconds : float
     explored : int
         Of the evaluations, those at few positions.
     spread : float
@@ -444,8 +437,6 @@ def search_from(
 
     Parameters
     ----------
-    problem : DesignProblem
-    search : Search
     start : ndarray, shape (d,)
         In the unit cube.
     index : int

@@ -211,7 +211,6 @@ class Sweep(Record):
         Names of one or two `SweepAxis`.
     point : ndarray, shape (N, axes)
         N m of the torque, m of all others.
-    quantities : tuple of SweptQuantity
     reason : tuple of str
         Why a point has no figures, empty if it has (N,).
     held : dict
@@ -243,7 +242,6 @@ def sweep(request: SweepRequest, run: Run = Run()) -> Sweep:  # noqa: B008 (froz
 
     Parameters
     ----------
-    request : SweepRequest
     run : Run
         Its workers take a design each, all torques at once.
 

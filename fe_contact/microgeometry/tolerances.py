@@ -95,14 +95,12 @@ def iso1328_tolerances(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     tolerance_class : int
         1 (finest) to 11.
     misalignment : float
         Of the assembly, m; the standard has none.
     across_face : bool
         Whether helix slopes deviate too; a plane model cannot have it.
-    distribution : str
 
     Raises
     ------

@@ -130,7 +130,6 @@ def modified(pair: ParallelAxes, values: Mapping[str, float]) -> ParallelAxes:
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     values : mapping
         ``gear.quantity`` to m.
 

@@ -254,8 +254,6 @@ def predict_run(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
-    plan : Plan
     model : ContactModel
         For the base pitches of its period.
     alignments : (int, int)

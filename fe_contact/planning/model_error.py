@@ -38,7 +38,6 @@ def _flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     force : ndarray
         Normal forces, N.
     """
@@ -73,7 +72,6 @@ def model_errors(pair: ParallelAxes, force: FloatArray, own: FloatArray) -> Floa
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     force : ndarray, shape (F,)
         Normal forces, N.
     own : ndarray, shape (Q, F, ...)

@@ -50,7 +50,6 @@ class PlaneDiscretization:
 
     Attributes
     ----------
-    hypothesis : PlaneHypothesis
     recipes, coarse_recipes : (MeshRecipe, MeshRecipe)
         Driving and driven gear; the coarse ones are half as fine, for the discretization error.
     finite_width : (SectorRecipe, SectorRecipe) or None
@@ -273,8 +272,6 @@ class Plan:
 
     Attributes
     ----------
-    discretization : PlaneDiscretization or FaceDiscretization
-    patch : PatchRule
     positions : int or None
         Fixed number, or None for adaptive nodes.
     nodes : NodeRule
@@ -324,10 +321,8 @@ def make_plan(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     load : ndarray
         Requested normal forces in N, increasing, > 0.
-    options : AnalysisOptions
     model : ContactModel
         `across_face` asks for three dimensions, `finite_width` for a plane corrected towards them, `parts`
         for what the bodies have.

@@ -151,8 +151,6 @@ def expected_error(pair: ParallelAxes, plan: Plan, curves: ExpectedCurves | None
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
-    plan : Plan
     curves : ExpectedCurves, optional
         What is known of mean and peak-to-peak before the run; default: those of usual pairs.
     """
@@ -225,7 +223,6 @@ class MeshOption:
         "draft", "standard" or "fine".
     slices : int
         Of the face; 1 in the plane.
-    error : ExpectedError
     effort : float
         Work of a run, in CPU seconds of the host on which the models were measured and with nothing in the
         cache: equal on every host, so that the choice is.
@@ -248,7 +245,6 @@ class MeshChoice:
 
     Attributes
     ----------
-    option : MeshOption
     met : bool
         Whether the models promise what was requested.
     reason : str
@@ -343,11 +339,8 @@ def chosen_mesh(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     load : ndarray
         Requested normal forces in N.
-    options : AnalysisOptions
-    model : ContactModel
     alignments : (int, int)
         Numbers of misalignments and of center distances.
     cache : Path, optional

@@ -106,7 +106,6 @@ def pair_findings(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     load : sequence of float
         Normal forces F_bn, N, increasing.
     misalignment, center_distance_change : sequence of float

@@ -90,8 +90,6 @@ class SteFields:
         Half-width of the error band of the transmission error, m, >= 0; NaN where it was not estimated.
     residuals : (P, F, M, D, 4) array
         Equilibrium, penetration, tension, complementarity of the contact solution.
-    facts : PairFacts
-    metadata : Metadata
     support_force : (S,) array
         Further loads in N, not among `force`, solved only to carry the force extraction down to lift-off and
         beyond the highest load; S may be 0.

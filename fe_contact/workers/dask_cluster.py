@@ -37,7 +37,6 @@ class ByDask:
         Stays the caller's to close.
     patience : float
         Seconds without any worker after which the run is given up.
-    cost : RunCost
     """
 
     client: Client

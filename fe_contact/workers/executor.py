@@ -81,7 +81,6 @@ class RunCost:
 
     Attributes
     ----------
-    tasks : int
     cpu_seconds : float
         Of the threads that did them and of the processes they started. A worker that does its tasks in its
         main thread, as those of a pool of processes, has no others: then of all its threads.
@@ -146,7 +145,6 @@ class ByExecutor:
     ----------
     executor : concurrent.futures.Executor
         Processes are to be spawned, not forked: compiled code and numerical libraries do not survive a fork.
-    cost : RunCost
     """
 
     executor: Executor
@@ -244,7 +242,6 @@ class OrHere:
 
     Attributes
     ----------
-    others : Workers
     told : callable
         Called once, with the reason, when they are lost; nobody looks for them again.
     """

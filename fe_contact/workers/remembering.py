@@ -71,7 +71,6 @@ class Remembering:
 
     Attributes
     ----------
-    others : Workers
     folder : Path
         Of this study alone, and of nobody else: its files are unpickled. It is the caller's to remove.
     version : str

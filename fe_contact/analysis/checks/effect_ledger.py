@@ -35,7 +35,6 @@ def effect_ledger(
 
     Parameters
     ----------
-    checked : Checked
     cache : Path, optional
         Directory of compliances and of what is known of the host, for predicted times.
     assumptions : sequence of Assumption

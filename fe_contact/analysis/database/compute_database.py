@@ -173,10 +173,8 @@ def compute_pass(
 
     Parameters
     ----------
-    checked : Checked
     case : dict
         Echoed into the result and hashed.
-    run : Run
     decided : Decided, optional
         Model and discretization; default: those that the accuracy asks for.
     clock : StageClock, optional

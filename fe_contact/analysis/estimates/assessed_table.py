@@ -237,13 +237,10 @@ def estimate_errors(
 
     Parameters
     ----------
-    points : OperatingPoints
     solutions : list of ContactSolution
         The table's.
-    nested : Nested
     positions : PositionErrors
         The largest of the assessed operating points stand for every place.
-    plan : Plan
     """
     made, pair = plan.discretization, points.places[0].contact.pair
     missing = left_out(pair, made)
@@ -466,9 +463,6 @@ def assessed_table(
         On the meshes of the run and on the coarse ones.
     solved : list of (ContactProblem, ContactSolution)
         Of every place.
-    nodes : PositionNodes
-    checked : Checked
-    plan : Plan
     """
     made, solutions = plan.discretization, [solution for _, solution in solved]
     axes = plan.load, table.misalignment, table.center_distance_change

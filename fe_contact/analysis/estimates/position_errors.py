@@ -63,7 +63,6 @@ def position_errors(
     ----------
     nodes : PositionNodes
         As the search left them; those of fixed positions, and of several pitches, are measured here.
-    points : OperatingPoints
     solutions : list of ContactSolution
         Of all places.
     plan : Plan

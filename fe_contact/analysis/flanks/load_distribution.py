@@ -42,7 +42,6 @@ class FlankScene:
         Points A, B, C, D, E as roll lengths of the driving gear, m.
     common_face : (float, float)
         Ends of the common face, as distances from the pinion's mid-face, m.
-    facts : PairFacts
     """
 
     normal_force: float
@@ -248,7 +247,6 @@ def load_distribution(
     ----------
     pair : GearPair or InternalGearPair
         At its center distance.
-    problem : ContactProblem
     solution : ContactSolution
         Converged at all positions.
     load : int
@@ -324,7 +322,6 @@ def pressure_map(flanks: LoadDistribution, roll: FloatArray) -> tuple[FloatArray
 
     Parameters
     ----------
-    flanks : LoadDistribution
     roll : ndarray, shape (P, N, K)
         Roll lengths on this flank, m.
     """

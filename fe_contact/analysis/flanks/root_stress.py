@@ -213,7 +213,6 @@ class _PlaneRootMeshes:
 
     Attributes
     ----------
-    hypothesis : PlaneHypothesis
     recipes, coarse_recipes : (MeshRecipe, MeshRecipe)
         Driving and driven gear; the coarse ones are half as fine.
     """
@@ -373,7 +372,6 @@ def _pair_histories(
 
     Parameters
     ----------
-    solved : SolvedOperatingPoint
     units : (UnitRootStress, UnitRootStress)
         Of the driving and the driven gear, on any mesh.
     """

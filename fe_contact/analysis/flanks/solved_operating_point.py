@@ -44,7 +44,6 @@ def solved_point(
         As `flank_results` takes them.
     at : array_like, optional
         Positions in base pitches; default: 64 over one mesh cycle.
-    clock : StageClock
 
     Returns
     -------

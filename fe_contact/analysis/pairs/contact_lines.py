@@ -37,7 +37,6 @@ class _ContactBlock:
     ----------
     pair : GearPair or InternalGearPair
         At the center distance of the line.
-    plan : Plan
     candidates : Candidates
         Of plain involutes at the positions of the block.
     models : tuple of ContactModel
@@ -294,7 +293,6 @@ def solve_operating_points(
 
     Parameters
     ----------
-    points : OperatingPoints
     position : ndarray, shape (P,)
         In [0, 1).
     loads : tuple of ndarray
@@ -343,14 +341,12 @@ def deflected_operating_points(
 
     Parameters
     ----------
-    points : sequence of OperatingPoint
     position : sequence of ndarray, shape (P,)
         Of each place, in [0, 1).
     load : ndarray, shape (L,)
         Normal forces, N.
     pitches : ndarray of int, shape (T,), or None
         Base pitches; None: as `OperatingPoint.solve` takes it.
-    workers : Workers
     known : sequence of Candidates, optional
         Of plain involutes at the positions, for each place.
     starts : sequence of Start, optional

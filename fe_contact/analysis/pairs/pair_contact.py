@@ -59,8 +59,6 @@ class PairContact:
 
     Attributes
     ----------
-    pair : GearPair or InternalGearPair
-    plan : Plan
     plane, face : pair of compliances or None
         Of both gears, in the plane or over the face width; exactly one of the two.
     uncorrected : pair of compliances or None
@@ -211,8 +209,6 @@ def pair_contact(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
-    plan : Plan
     cache : Path, optional
         Directory of stored compliances; None computes afresh.
     coarse : bool

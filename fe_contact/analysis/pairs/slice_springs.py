@@ -132,7 +132,6 @@ def _solve_springs(candidates: Candidates, stiffness: FloatArray, load: FloatArr
 
     Parameters
     ----------
-    candidates : Candidates
     stiffness : ndarray, shape (P, n)
         Normal force per normal approach, N/m.
     load : ndarray, shape (L,)

@@ -60,8 +60,6 @@ def _contact_fields(
 
     Parameters
     ----------
-    problem : ContactProblem
-    solution : ContactSolution
     pairs : ndarray of int, shape (N,)
         Pair indices of the table.
     """

@@ -83,8 +83,6 @@ class Decided:
     ----------
     checked : Checked
         With the chosen model, and a ledger that says why.
-    mesh : MeshChoice
-    plan : Plan
     wished : Decided, optional
         What the tolerance needs, where the time does not allow it.
     """
@@ -147,7 +145,6 @@ def decide(
 
     Parameters
     ----------
-    checked : Checked
     cache : Path, optional
         Directory of compliances and of what is known of the host: a time depends on them.
     keep_model : bool

@@ -36,10 +36,8 @@ class Request:
 
     Attributes
     ----------
-    pair : GearPair or InternalGearPair
     load : ndarray
         Normal forces F_bn in N, increasing.
-    options : AnalysisOptions
     misalignment, center_distance_change : ndarray
         Table axes, m.
     pitches : int, optional
@@ -187,7 +185,6 @@ def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -
 
     Parameters
     ----------
-    checked : Checked
     names : iterable of str, optional
         Effects; default all.
 

@@ -36,7 +36,6 @@ def _neglected_effects(
 
     Parameters
     ----------
-    scene : ContactScene
     ledger : sequence of LedgerEntry
         As the scene alone decides.
     tolerance : AllowedError or None
@@ -93,7 +92,7 @@ def _refuse_face_effects(scene: ContactScene) -> None:
     pair, advice = scene.pair, "Use the 3-D model for it."
     if pair.pinion.helix_angle != 0.0:
         raise InputError("pinion.helix_angle", pair.pinion.helix_angle, "0 for a plane model", advice)
-    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+    for name, gear in scene.gears.items():
         _refuse_varying_flanks(f"{name}.modification", gear.modification.along_face, advice)
         if pair.shafts[name == "wheel"] is not None:
             raise InputError(f"{name}.shaft", "given", "left out for a plane model", advice)
@@ -122,9 +121,6 @@ def check_request(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
-    axes : TableAxes
-    options : AnalysisOptions
     whole_table : bool
         False leaves out the limit on the size of a table.
     spare : bool

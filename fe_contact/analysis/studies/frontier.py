@@ -110,8 +110,6 @@ class _ClosedFormFidelity:
 
     Attributes
     ----------
-    name, title : str
-    law : SliceLaw
     relative_error : float
         Of the transmission error, stated with every point of its table.
     """
@@ -202,7 +200,6 @@ class _FiniteElementFidelity:
 
     Attributes
     ----------
-    name, title : str
     model : str
         "plane_strain", "3d", or "auto" for the plane corrected for its finite width.
     level : str
@@ -293,7 +290,6 @@ class FidelityResult(model_studies.FidelityResult):
 
     Attributes
     ----------
-    name, title : str
     cpu_seconds : float
         Of the whole run, its error estimate included.
     mean, peak_to_peak : ndarray, shape (C,)

@@ -51,12 +51,7 @@ class EstimatedCurve:
 
 @dataclass(frozen=True)
 class Springs:
-    """Slice models of one pair; what states of it have in common is assembled once.
-
-    Attributes
-    ----------
-    pair : GearPair or InternalGearPair
-    """
+    """Slice models of one pair; what states of it have in common is assembled once."""
 
     pair: ParallelAxes
     _known: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)

@@ -128,10 +128,8 @@ def estimate_influence(
 
     Parameters
     ----------
-    scene : ContactScene
     decided : mapping of str to str
         Every effect "on" or "off"; all but `name` stay so.
-    name : str
     least : float
         Size in m that smaller means and ripples count as where a change is a part of them.
 

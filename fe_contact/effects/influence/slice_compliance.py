@@ -229,7 +229,6 @@ def slice_compliances(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     slices : LoadedSlices
         P positions, n slices.
     model : ContactModel
