@@ -19,19 +19,7 @@ KINDS = (
 )
 """Kinds whose parts have a name."""
 
-ON_A_SHAFT = (
-    "gears",
-    "discs",
-    "bushings",
-    "rolling_bearings",
-    "planet_bearings",
-    "drives",
-    "free_rotations",
-    "loads",
-    "speed_torques",
-    "forces",
-    "unbalances",
-)
+ON_A_SHAFT = tuple(kind for kind in KINDS if kind not in ("shafts", "couplings", "meshes", "housings"))
 """Kinds whose parts name the shaft that they are on."""
 
 LAWS_OF_BEARINGS = ("rolling_contacts", "spring_curves")

@@ -13,7 +13,7 @@ from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.effects.ledger import mechanism_of
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.scene import Scene
-from dynamics.shafts import GearBody, Inertia, Shaft
+from dynamics.shafts import Inertia, Shaft
 from dynamics.types import FloatArray
 
 # The plausibility checks of scenes: quantity, limits, source.
@@ -243,7 +243,7 @@ def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
     for index, shaft in enumerate(mechanism.scene.shafts):
         yield from _shaft(f"shafts[{index}]", shaft)
     for index, gear in enumerate(mechanism.scene.gears):
-        yield from _gear(f"gears[{index}]", gear)
+        yield from _gyration("gear_inertia", f"gears[{index}]", gear.inertia, gear.base_radius)
     for index, rotor in enumerate(mechanism.rotors):
         if rotor.radial_stiffness or rotor.axial_stiffness:
             reason = "bearings carry a shaft and gears without mass"
@@ -265,10 +265,6 @@ def _shaft(path: str, shaft: Shaft) -> Iterator[Finding]:
         yield from assessed("shaft_modulus", f"{where}.youngs_modulus", section.youngs_modulus, "Pa")
     yield from assessed("material_damping", f"{path}.damping_ratio", shaft.damping_ratio, "1")
     yield from _gyration("shaft_inertia", path, shaft.inertia, shaft.length)
-
-
-def _gear(path: str, gear: GearBody) -> Iterator[Finding]:
-    yield from _gyration("gear_inertia", path, gear.inertia, gear.base_radius)
 
 
 def _gyration(check: str, path: str, inertia: Inertia, size: float) -> Iterator[Finding]:

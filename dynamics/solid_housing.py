@@ -99,17 +99,13 @@ def check_mesh_content(name: str, content: bytes) -> None:
     InputError
         Naming ``mesh_file``.
     """
-    if fault := _FAULTS.get(PurePath(name).suffix.lower(), _none)(content):
+    find = _FAULTS.get(PurePath(name).suffix.lower())  # other formats name no files
+    if find and (fault := find(content)):
         raise InputError(FIELD, name, *fault)
 
 
 Fault = tuple[str, str] | None
 """The bound that a content breaks, and what to do."""
-
-
-def _none(_content: bytes) -> Fault:
-    """Find nothing in formats that name no files."""
-    return None
 
 
 def _of_abaqus(content: bytes) -> Fault:

@@ -118,7 +118,8 @@ def free_modes(housing: AssembledHousing, count: int) -> FreeModes:
         The stiffness is singular.
     """
     loose = housing.loose.shape[1]
-    shift = _shift(housing) if loose else 0.0
+    squares = housing.stiffness.diagonal() / housing.mass.diagonal() if loose else np.zeros(1)
+    shift = SHIFT * float(np.max(squares))
     shifted = sp.csr_array(housing.stiffness + shift * housing.mass) if loose else housing.stiffness
     solve = _factorized(shifted)
     rigid = _orthonormal(housing.loose, housing.mass)
@@ -143,10 +144,6 @@ def _status(complete: bool, residual: float) -> ModeStatus:
     if not complete:
         return ModeStatus.ITERATION_LIMIT
     return ModeStatus.CONVERGED if residual <= ACCEPTED else ModeStatus.ILL_CONDITIONED
-
-
-def _shift(housing: AssembledHousing) -> float:
-    return SHIFT * float(np.max(housing.stiffness.diagonal() / housing.mass.diagonal()))
 
 
 def _lanczos(
