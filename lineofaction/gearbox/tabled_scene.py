@@ -20,6 +20,7 @@ from lineofaction.gearbox.convert.case import (
     boundary_errors,
     case_json,
     check_case,
+    gear_pair,
     table_axes,
 )
 from lineofaction.gearbox.convert.housings import housings_in
@@ -51,7 +52,7 @@ def database_of(
     BadInput
         No such pair exists, or not under these loads.
     """
-    pair = check_case(case)
+    pair = gear_pair(case)
     with boundary_errors():
         database = ste_database(
             pair,

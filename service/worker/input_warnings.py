@@ -68,7 +68,8 @@ stamp = on_demand("lineofaction.gearbox.convert.result_files:stamp")
 
 def stamp_products(order: WorkOrder, products: Sequence[Product]) -> None:
     """Write into each file what is implausible about what it was made from; a database says so itself."""
-    case = list(_warnings_of_case(order.inputs["case"])) if "case" in order.inputs else None
+    others = any(product.kind != "database" for product in products)
+    case = list(_warnings_of_case(order.inputs["case"])) if others and "case" in order.inputs else None
     for product in products:
         of_case = None if product.kind == "database" else case
         if product.warnings is not None or of_case is not None:

@@ -168,7 +168,7 @@ def _split_index(part: str) -> tuple[str, str]:
 
 
 @dataclass(frozen=True)
-class CaseReader(Reader):
+class _CaseReader(Reader):
     """Whoever wrote a case file."""
 
     knows_si: ClassVar[bool] = False
@@ -202,7 +202,7 @@ class CaseReader(Reader):
 
 
 @dataclass(frozen=True)
-class SceneReader(CaseReader):
+class _SceneReader(_CaseReader):
     """Whoever wrote a scene file."""
 
     model: ClassVar[type[BaseModel]] = SceneInput
@@ -216,9 +216,9 @@ class SceneReader(CaseReader):
 def translated(error: Exception) -> ServiceError | None:
     """Return an error of the libraries as the boundary's, None for one they do not raise on purpose."""
     if isinstance(error, ContactInputError):
-        return BadInput([_fault(error, CaseReader(error.field))])
+        return BadInput([_fault(error, _CaseReader(error.field))])
     if isinstance(error, DynamicsInputError):
-        return BadInput([_fault(error, SceneReader(error.field))])
+        return BadInput([_fault(error, _SceneReader(error.field))])
     if isinstance(error, FeContactError | DynamicsError | Unavailable):
         return JobFailed(str(error))
     if isinstance(error, ModuleNotFoundError) and (missing := missing_extra(error)):
@@ -235,7 +235,7 @@ def named(part: str) -> Iterator[None]:
         raise translated(error.within(part) if part else error) or error from None
 
 
-def _fault(error: RefusedValue, reader: CaseReader) -> Fault:
+def _fault(error: RefusedValue, reader: _CaseReader) -> Fault:
     bound = error.bound.worded(reader)
     if isinstance(error, InfeasibleGeometry):
         bound = f"{bound} ({error.name})"

@@ -56,7 +56,7 @@ def _plain(kind: type[T]) -> Callable[[BaseModel], T]:
     return lambda table: kind(**in_si(kind, table))
 
 
-def bushing_of(table: BushingInput) -> Bushing:
+def _bushing(table: BushingInput) -> Bushing:
     """Return a bushing; force and moment of its preload where one of them is given."""
     force, moment = table.preload_force_n, table.preload_moment_n_m
     preload = None if force is None and moment is None else (*(force or (0.0,) * 3), *(moment or (0.0,) * 2))
@@ -336,7 +336,7 @@ def _assembled(
             shafts=_shafts(scene),
             gears=gears,
             discs=_all(scene, "discs", _disc),
-            bushings=_all(scene, "bushings", bushing_of),
+            bushings=_all(scene, "bushings", _bushing),
             meshes=meshes,
             drives=_all(scene, "drives", _drive),
             planet_bearings=_all(scene, "planet_bearings", _plain(PlanetBearing)),

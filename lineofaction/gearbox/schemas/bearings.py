@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
-from pydantic import ConfigDict, Field, Strict, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
 from dynamics.bearings.rolling_bearing import RollingBearing
@@ -13,6 +13,7 @@ from dynamics.bearings.seat import Bushing, PlanetBearing
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
+    Listed,
     Name,
     Number,
     SeatRows,
@@ -125,28 +126,28 @@ class SpringCurveInput(BoundaryModel):
     direction: Literal["x", "y", "z", "tilt_x", "tilt_y"] = Field(
         description="Direction of displacement and force", examples=["x"]
     )
-    displacement_um: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+    displacement_um: Listed[Number] | None = Field(
         default=None,
         min_length=2,
         max_length=1000,
         description="Displacements in um, increasing; for x, y, z",
         examples=[[-40.0, 0.0, 40.0]],
     )
-    force_n: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+    force_n: Listed[Number] | None = Field(
         default=None,
         min_length=2,
         max_length=1000,
         description="Forces in N at these displacements, increasing",
         examples=[[-6000.0, 0.0, 6000.0]],
     )
-    tilt_mrad: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+    tilt_mrad: Listed[Number] | None = Field(
         default=None,
         min_length=2,
         max_length=1000,
         description="Tilts in mrad, increasing; for tilt_x, tilt_y",
         examples=[[-1.0, 0.0, 1.0]],
     )
-    moment_n_m: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+    moment_n_m: Listed[Number] | None = Field(
         default=None,
         min_length=2,
         max_length=1000,
@@ -197,7 +198,7 @@ class BearingInput(BoundaryModel):
         description="Radial force of a rolling bearing with clearance, beside the linear stiffness",
         examples=[{"stiffness_n_per_m_n": 5e8, "radial_clearance_um": 20.0}],
     )
-    spring_curves: Annotated[tuple[SpringCurveInput, ...], Strict(False)] = Field(
+    spring_curves: Listed[SpringCurveInput] = Field(
         default=(),
         max_length=5,
         description="Forces by displacement, one per direction, beside the linear ones",
@@ -222,14 +223,14 @@ class BushingInput(BearingInput):
     """A linear bearing between a shaft and the ground."""
 
     position_mm: float
-    preload_force_n: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+    preload_force_n: Listed[Number] | None = Field(
         default=None,
         min_length=3,
         max_length=3,
         description="Force x, y, z in N on the shaft at zero displacement",
         examples=[[0.0, 0.0, 500.0]],
     )
-    preload_moment_n_m: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+    preload_moment_n_m: Listed[Number] | None = Field(
         default=None,
         min_length=2,
         max_length=2,

@@ -16,6 +16,7 @@ from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
     Coordinate,
     CouplingRows,
+    Listed,
     Name,
     exactly_one_of,
     refuse,
@@ -75,7 +76,7 @@ class PlanetsInput(BoundaryModel):
 
     planet: Name = Field(description="The shaft of the first planet", examples=["planet"])
     number: int = Field(ge=1, le=100, description="Number of planets in all", examples=[3])
-    angles_deg: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+    angles_deg: Listed[Coordinate] | None = Field(
         default=None,
         description="Angles from the first planet about +z in degrees; left out: equally spaced",
         examples=[[0.0, 120.0, 240.0]],
@@ -120,7 +121,7 @@ class ShaftInput(BoundaryModel):
 
     name: Name = Field(description="Name of the shaft", examples=["input"])
     length_mm: float
-    origin_mm: Annotated[tuple[Coordinate, ...], Strict(False)] = Field(
+    origin_mm: Listed[Coordinate] = Field(
         default=(0.0, 0.0, 0.0),
         min_length=3,
         max_length=3,
@@ -134,7 +135,7 @@ class ShaftInput(BoundaryModel):
         description="Diameter in mm of a solid steel shaft: one section",
         examples=[40.0],
     )
-    sections: Annotated[tuple[SectionInput, ...], Strict(False)] | None = Field(
+    sections: Listed[SectionInput] | None = Field(
         default=None,
         min_length=1,
         max_length=200,

@@ -6,7 +6,7 @@ from dataclasses import MISSING, replace
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import ConfigDict, Field, Strict, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from bounds import declarations
 from fe_contact.geometry.gear import Gear
@@ -16,6 +16,7 @@ from lineofaction.gearbox.schemas.declared import as_fields, figures, with_field
 from lineofaction.gearbox.schemas.gear import SHARED, GearInput, MaterialInput, ToothingInput
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
+    Listed,
     at_most_one_of,
     both,
     exactly_one_of,
@@ -96,11 +97,9 @@ class WheelInput(ToothingInput):
 Load = Annotated[float, Field(ge=1e-9, le=1e9)]  # smaller ones underflow where they are squared
 Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
 CenterDistanceChange = Annotated[float, Field(ge=-10.0, le=10.0)]
-Loads = Annotated[tuple[Load, ...], Strict(False), Field(min_length=1, max_length=256)]
-Misalignments = Annotated[tuple[Misalignment, ...], Strict(False), Field(min_length=1, max_length=64)]
-CenterDistanceChanges = Annotated[
-    tuple[CenterDistanceChange, ...], Strict(False), Field(min_length=1, max_length=64)
-]
+Loads = Annotated[Listed[Load], Field(min_length=1, max_length=256)]
+Misalignments = Annotated[Listed[Misalignment], Field(min_length=1, max_length=64)]
+CenterDistanceChanges = Annotated[Listed[CenterDistanceChange], Field(min_length=1, max_length=64)]
 _WISHES = ("tolerance", "time_budget_s", "level")
 Switch = Literal["on", "off", "auto"]
 EffectName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]

@@ -20,7 +20,7 @@ from lineofaction.gearbox.schemas.declared import (
     parts_of,
     with_fields,
 )
-from lineofaction.gearbox.schemas.model import BoundaryModel, Spelling, at_most_one_of, refuse, stated
+from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, Spelling, at_most_one_of, refuse, stated
 
 
 @with_fields(declared_in(Material))
@@ -59,7 +59,7 @@ class FlankGridInput(BoundaryModel):
     face_position_mm: GridAxis = Field(
         description="Distances of the columns from mid-face in mm, increasing", examples=[[-12.5, 12.5]]
     )
-    removed_um: Annotated[tuple[GridRow, ...], Strict(False)] = Field(
+    removed_um: Listed[GridRow] = Field(
         min_length=2,
         max_length=500,
         description="Material removed in um, a row per roll length",

@@ -15,6 +15,7 @@ from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
     Coordinate,
     HousingRows,
+    Listed,
     Name,
     Point,
     exactly_one_of,
@@ -144,7 +145,7 @@ class _MatrixHousing(BoundaryModel):
 
     damping_ratio: float
     name: Name = Field(description="Name of the housing", examples=["gearbox"])
-    bushings: Annotated[tuple[Name, ...], Strict(False)] = Field(
+    bushings: Listed[Name] = Field(
         default=(),
         max_length=1000,
         description="Bushings and rolling bearings in the order of the matrix; in a scene file with "
@@ -172,7 +173,7 @@ class _MatrixHousing(BoundaryModel):
         description="Mass over all seats, likewise; kg, m, rad; left out: no mass",
         exclude_if=_left_out,
     )
-    seat_positions_mm: Annotated[tuple[Point, ...], Strict(False)] | None = Field(
+    seat_positions_mm: Listed[Point] | None = Field(
         default=None,
         min_length=1,
         max_length=1000,
@@ -234,16 +235,16 @@ class HousingInput(_MatrixHousing):
         examples=["gray_cast_iron"],
         exclude_if=_left_out,
     )
-    seats: Annotated[tuple[HousingSeatInput, ...], Strict(False)] = Field(
+    seats: Listed[HousingSeatInput] = Field(
         default=(), max_length=100, description="Bearing seats of the solid", exclude_if=_left_out
     )
-    feet: Annotated[tuple[HousingFootInput, ...], Strict(False)] = Field(
+    feet: Listed[HousingFootInput] = Field(
         default=(), max_length=100, description="Faces that hold the solid", exclude_if=_left_out
     )
-    points: Annotated[tuple[HousingPointInput, ...], Strict(False)] = Field(
+    points: Listed[HousingPointInput] = Field(
         default=(), max_length=1000, description="Points of interest of the solid", exclude_if=_left_out
     )
-    origin_mm: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+    origin_mm: Listed[Coordinate] | None = Field(
         default=None,
         min_length=3,
         max_length=3,

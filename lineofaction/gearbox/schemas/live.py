@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Optional
 
-from pydantic import Field, Strict, create_model
+from pydantic import Field, create_model
 
 from fe_contact.flank.modification import FlankModification
 from lineofaction.gearbox.schemas.case import Case, Load
 from lineofaction.gearbox.schemas.declared import figures
 from lineofaction.gearbox.schemas.gear import ToothingInput
-from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.model import BoundaryModel, Listed
 
 
 def _left_out(name: str) -> Any:
@@ -28,7 +28,7 @@ FlankChange = create_model(
     **{figure.field: _left_out(figure.field) for figure in figures(FlankModification)},
 )
 
-Torques = Annotated[tuple[Load, ...], Strict(False), Field(min_length=1, max_length=16)]
+Torques = Annotated[Listed[Load], Field(min_length=1, max_length=16)]
 Caller = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
 
 

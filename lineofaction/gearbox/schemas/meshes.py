@@ -10,6 +10,7 @@ from pydantic import ConfigDict, Field, Strict, model_validator
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
+    Listed,
     Name,
     at_most_one_of,
     exactly_one_of,
@@ -22,7 +23,7 @@ from lineofaction.gearbox.schemas.result_kinds import HASH
 
 
 Value = Annotated[float, Field(ge=-1e15, le=1e15)]
-Values = Annotated[tuple[Value, ...], Strict(False)]
+Values = Listed[Value]
 Phases = Annotated[tuple[Annotated[float, Field(ge=-1e6, le=1e6)], ...], Strict(False)]
 Positions = Annotated[tuple[Annotated[float, Field(ge=0.0, lt=1.0)], ...], Strict(False)]
 Teeth = Annotated[int, Field(ge=1, le=100_000)]
@@ -81,7 +82,7 @@ class PeriodicInput(BoundaryModel):
 class StiffnessMeshInput(BoundaryModel):
     """A mesh whose force in contact is k(x) (d - e(x)), x the position in base pitches."""
 
-    teeth: Annotated[tuple[Teeth, ...], Strict(False)] = Field(
+    teeth: Listed[Teeth] = Field(
         min_length=2, max_length=2, description="Teeth of pinion and wheel", examples=[[20, 40]]
     )
     base_radius_mm: float = Field(

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import islice
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn, cast, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn, TypeVar, cast, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Strict
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
@@ -118,21 +118,24 @@ def refuse(field: str, value: object, bound: str, suggestion: str = "") -> NoRet
 
 # Types that the tables of a scene file share.
 
+T = TypeVar("T")
+Listed = Annotated[tuple[T, ...], Strict(False)]
+"""A list, which Python has as a tuple."""
 Name = Annotated[str, Field(min_length=1, max_length=64)]
 Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
-Point = Annotated[tuple[Coordinate, ...], Strict(False), Field(min_length=3, max_length=3)]
+Point = Annotated[Listed[Coordinate], Field(min_length=3, max_length=3)]
 Acceleration = Annotated[float, Field(ge=-1e6, le=1e6)]
 Number = Annotated[float, Field(ge=-1e9, le=1e9)]
 Times = Annotated[tuple[Annotated[float, Field(ge=0.0, le=1e9)], ...], Strict(False)]
-Numbers = Annotated[tuple[Number, ...], Strict(False)]
+Numbers = Listed[Number]
 Course = Literal["linear", "smooth"]
 Stiffness = Annotated[float, Field(ge=-1e15, le=1e15)]
-SeatRow = Annotated[tuple[Stiffness, ...], Strict(False), Field(min_length=5, max_length=6)]
-SeatRows = Annotated[tuple[SeatRow, ...], Strict(False)]
-HousingRow = Annotated[tuple[Stiffness, ...], Strict(False), Field(min_length=3, max_length=6000)]
-HousingRows = Annotated[tuple[HousingRow, ...], Strict(False)]
-CouplingRow = Annotated[tuple[Number, ...], Strict(False), Field(min_length=6, max_length=6)]
-CouplingRows = Annotated[tuple[CouplingRow, ...], Strict(False)]
+SeatRow = Annotated[Listed[Stiffness], Field(min_length=5, max_length=6)]
+SeatRows = Listed[SeatRow]
+HousingRow = Annotated[Listed[Stiffness], Field(min_length=3, max_length=6000)]
+HousingRows = Listed[HousingRow]
+CouplingRow = Annotated[Listed[Number], Field(min_length=6, max_length=6)]
+CouplingRows = Listed[CouplingRow]
 
 
 # Rules over several fields of a table, as JSON Schema states them; validators of the models enforce them.

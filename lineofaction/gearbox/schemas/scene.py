@@ -29,7 +29,7 @@ from lineofaction.gearbox.schemas.loads import (
     UnbalanceInput,
 )
 from lineofaction.gearbox.schemas.meshes import MeshInput
-from lineofaction.gearbox.schemas.model import Acceleration, BoundaryModel, refuse
+from lineofaction.gearbox.schemas.model import Acceleration, BoundaryModel, Listed, refuse
 
 
 class RunInput(BoundaryModel):
@@ -72,41 +72,35 @@ class SceneInput(BoundaryModel):
     """A geared system and the run to make with it."""
 
     run: RunInput = Field(description="The run", examples=[{"duration_s": 5.0}])
-    gravity_m_per_s2: Annotated[tuple[Acceleration, ...], Strict(False)] = Field(
+    gravity_m_per_s2: Listed[Acceleration] = Field(
         default=(0.0, 0.0, 0.0),
         min_length=3,
         max_length=3,
         description="Acceleration of gravity in x, y, z in m/s^2",
         examples=[[0.0, -9.81, 0.0]],
     )
-    shafts: Annotated[tuple[ShaftInput, ...], Strict(False)] = Field(
+    shafts: Listed[ShaftInput] = Field(
         min_length=1, max_length=1000, description="Shafts: a table [[shafts]] for each"
     )
-    gears: Annotated[tuple[GearBodyInput, ...], Strict(False)] = Field(
+    gears: Listed[GearBodyInput] = Field(
         default=(), max_length=1000, description="Gears on the shafts: a table [[gears]] for each"
     )
-    discs: Annotated[tuple[DiscInput, ...], Strict(False)] = Field(default=(), max_length=1000)
-    bushings: Annotated[tuple[BushingInput, ...], Strict(False)] = Field(default=(), max_length=1000)
-    rolling_bearings: Annotated[tuple[RollingBearingInput, ...], Strict(False)] = Field(
-        default=(), max_length=1000
-    )
-    meshes: Annotated[tuple[MeshInput, ...], Strict(False)] = Field(
+    discs: Listed[DiscInput] = Field(default=(), max_length=1000)
+    bushings: Listed[BushingInput] = Field(default=(), max_length=1000)
+    rolling_bearings: Listed[RollingBearingInput] = Field(default=(), max_length=1000)
+    meshes: Listed[MeshInput] = Field(
         default=(), max_length=1000, description="Gear pairs in mesh: a table [[meshes]] for each"
     )
-    drives: Annotated[tuple[DriveInput, ...], Strict(False)] = Field(default=(), max_length=1000)
-    free_rotations: Annotated[tuple[FreeRotationInput, ...], Strict(False)] = Field(
-        default=(), max_length=1000
-    )
-    planet_bearings: Annotated[tuple[PlanetBearingInput, ...], Strict(False)] = Field(
-        default=(), max_length=1000
-    )
-    couplings: Annotated[tuple[CouplingInput, ...], Strict(False)] = Field(default=(), max_length=1000)
-    speed_torques: Annotated[tuple[SpeedTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
-    housings: Annotated[tuple[HousingInput, ...], Strict(False)] = Field(default=(), max_length=100)
-    planets: Annotated[tuple[PlanetsInput, ...], Strict(False)] = Field(default=(), max_length=100)
-    loads: Annotated[tuple[LoadTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
-    forces: Annotated[tuple[ForceInput, ...], Strict(False)] = Field(default=(), max_length=1000)
-    unbalances: Annotated[tuple[UnbalanceInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    drives: Listed[DriveInput] = Field(default=(), max_length=1000)
+    free_rotations: Listed[FreeRotationInput] = Field(default=(), max_length=1000)
+    planet_bearings: Listed[PlanetBearingInput] = Field(default=(), max_length=1000)
+    couplings: Listed[CouplingInput] = Field(default=(), max_length=1000)
+    speed_torques: Listed[SpeedTorqueInput] = Field(default=(), max_length=1000)
+    housings: Listed[HousingInput] = Field(default=(), max_length=100)
+    planets: Listed[PlanetsInput] = Field(default=(), max_length=100)
+    loads: Listed[LoadTorqueInput] = Field(default=(), max_length=1000)
+    forces: Listed[ForceInput] = Field(default=(), max_length=1000)
+    unbalances: Listed[UnbalanceInput] = Field(default=(), max_length=1000)
     accuracy: SceneAccuracyInput = Field(
         default=SceneAccuracyInput(), description="Tolerance that decides on automatic effects", examples=[{}]
     )

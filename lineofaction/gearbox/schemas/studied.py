@@ -5,11 +5,12 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Annotated, Self
 
-from pydantic import ConfigDict, Field, Strict, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
+    Listed,
     Spelling,
     both,
     exactly_one_of,
@@ -49,7 +50,7 @@ class OverSpeeds(BoundaryModel):
 class OverOrders(OverSpeeds):
     """Inputs of a study of mesh orders over speeds at which the shafts turn."""
 
-    speed_rpm: Annotated[tuple[TurningSpeed, ...], Strict(False)] = Field(
+    speed_rpm: Listed[TurningSpeed] = Field(
         min_length=1,
         max_length=MOST_SPEEDS,
         description="Speeds of the first driven shaft in rpm, increasing",
@@ -63,7 +64,7 @@ class OverSpeedsOrRun(OverOrders):
 
     model_config = ConfigDict(json_schema_extra=stated({"oneOf": [_OF_RUN, _OVER_SPEEDS]}))
 
-    speed_rpm: Annotated[tuple[TurningSpeed, ...], Strict(False)] = Field(
+    speed_rpm: Listed[TurningSpeed] = Field(
         default=(),
         max_length=MOST_SPEEDS,
         description="Speeds of the first driven shaft in rpm, increasing; a run has its own",
@@ -89,7 +90,7 @@ class OverSpeedsOrRun(OverOrders):
 # Ranges of what is only guessed about a scene, and whether the sound is computed over them.
 
 Factor = Annotated[float, Field(ge=0.05, le=20.0)]
-Factors = Annotated[tuple[Factor, ...], Strict(False)]
+Factors = Listed[Factor]
 RANGES = (
     "housing_damping",
     "housing_frequency",
