@@ -46,6 +46,10 @@ def stored_study(attributes: Mapping[str, object]) -> Study | None:
     return next((study for study in STUDIES.values() if study.run.file.holds(attributes)), None)
 
 
+def _study_page(study: Study, file: Path, database: SteDatabase | None = None) -> Page:
+    return page_beside(study, read_stored(study, file), database)
+
+
 def read_stored(study: Study, file: Path) -> Any:
     """Return the result in a study's file; raises `BadInput`: it is damaged."""
     with _undamaged(study, file):
@@ -122,7 +126,7 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
         ((study, file) for study, file in by_kind.values() if study is not None),
         key=lambda pair: list(STUDIES).index(pair[0].name),
     )
-    pages = {study.kind: page_beside(study, read_stored(study, file), database) for study, file in studies}
+    pages = {study.kind: _study_page(study, file, database) for study, file in studies}
     return Inputs(**read, pages=pages, warnings=warnings)
 
 

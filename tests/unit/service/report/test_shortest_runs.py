@@ -22,7 +22,7 @@ from lineofaction.cli.output import console
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.report.comparison.compare import stored_comparison
-from lineofaction.report.document import read_stored, stored_figures
+from lineofaction.report.document import _study_page, stored_figures
 from lineofaction.report.run.signals import TOO_SHORT
 
 STORED = "lineofaction.report.document"
@@ -88,7 +88,7 @@ def test_a_defect_of_drawing_is_no_damage_of_the_file(
     monkeypatch.setattr(f"{STORED}.read_stored", lambda _study, _file: object())
     monkeypatch.setattr(f"{STORED}.page_beside", _defect)
     with pytest.raises(ValueError, match="argmax of an empty sequence"):
-        read_stored(study, tmp_path / "response.nc")
+        _study_page(study, tmp_path / "response.nc")
 
 
 def _defect(*_arguments: object) -> None:
