@@ -42,11 +42,11 @@ class Reader:
 
     def shown(self, value: Any) -> Any:
         """Return a value of the field, in its unit."""
-        return value.worded(self) if isinstance(value, Worded) else value
+        return value.worded(self) if isinstance(value, _Worded) else value
 
 
 @runtime_checkable
-class Worded(Protocol):
+class _Worded(Protocol):
     """Anything that can be put into words for a reader."""
 
     def worded(self, reader: Reader) -> str:
@@ -54,7 +54,7 @@ class Worded(Protocol):
         ...
 
 
-Words = str | Worded
+Words = str | _Worded
 """Words without numbers that carry a unit, or anything that can be put into words."""
 
 
@@ -115,7 +115,7 @@ class Text:
 
     Attributes
     ----------
-    parts : tuple of str and Worded
+    parts : tuple of Words
         Plain words, `Quantity`, `SiNote`, `Bound`, another `Text` or a whole `RefusedValue`.
     """
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from bounds import Unit, engineering, finding_of
+from bounds import Unit, finding_of
 from dynamics.plausibility import scene_findings
 from dynamics.scene import Scene
 from fe_contact.plausibility import pair_findings
@@ -18,10 +18,9 @@ from lineofaction.gearbox.convert.errors import case_field, named, scene_field
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.units import DEGREE, GPA, MM, UM, factor, unit_name
+from lineofaction.gearbox.units import factor, unit_name
 
 Json = dict[str, Any]
-MPA = 1e6
 
 
 def case_warnings(case: Case) -> list[Json]:
@@ -59,7 +58,7 @@ def scene_warnings(
     """
     with named(""):
         findings = [finding.to_json() for finding in scene_findings(scene)]
-    warnings = left_out_warnings(inputs.left_out) + phrased(
+    warnings = left_out_warnings(inputs.left_out) + _in_own_terms(
         [each for each in findings if _in_file(inputs, each["field"])], scene_field
     )
     for index, mesh in enumerate(inputs.meshes):
@@ -81,7 +80,7 @@ def within(warning: Json, owner: str) -> Json:
 
 def phrased_for(case: Case, findings: Iterable[Json]) -> list[Json]:
     """Return findings of a library about a case in its fields and units."""
-    return phrased(findings, _field_in(case))
+    return _in_own_terms(findings, _field_in(case))
 
 
 def phrased_database(database: SteDatabase, case: Case) -> SteDatabase:
@@ -90,7 +89,7 @@ def phrased_database(database: SteDatabase, case: Case) -> SteDatabase:
     return replace(database, metadata=replace(database.metadata, warnings=warnings))
 
 
-def phrased(findings: Iterable[Json], name: Callable[[str], str]) -> list[Json]:
+def _in_own_terms(findings: Iterable[Json], name: Callable[[str], str]) -> list[Json]:
     """Return findings of a library, as plain JSON in SI, in the fields and units of the boundary."""
     return unique(_phrased(content, name) for content in findings)
 
@@ -123,18 +122,3 @@ def _field_in(case: Case) -> Callable[[str], str]:
         return boundary
 
     return field
-
-
-def limit_text(limit: float | None, unit: str) -> str:
-    """Return a limit of a check as people read it; empty for none."""
-    if limit is None:
-        return ""
-    small, soft = limit < 1e-3, limit < 1e9
-    scales = {
-        "m": (UM, "um") if small else (MM, "mm"),
-        "Pa": (MPA, "MPa") if soft else (GPA, "GPa"),
-        "rad": (DEGREE, "deg"),
-        "1": (1.0, ""),
-    }
-    scale, name = scales.get(unit, (1.0, unit))
-    return f"{engineering(limit / scale, 3)} {name}".strip()

@@ -8,9 +8,10 @@ from typing import Any
 
 import pytest
 
+from bounds import engineering
 from dynamics.plausibility import CHECKS as SCENE_CHECKS
 from fe_contact.plausibility import CHECKS as PAIR_CHECKS
-from lineofaction.gearbox.convert.plausibility import limit_text
+from lineofaction.gearbox.units import DEGREE, GPA, MM, UM
 
 DOCS = Path(__file__).parents[3] / "docs"
 PAGE = (DOCS / "plausibility.md").read_text(encoding="utf-8")
@@ -40,3 +41,18 @@ def test_the_page_has_no_check_that_is_gone() -> None:
 
 def test_the_page_is_linked() -> None:
     assert "(plausibility.md)" in (DOCS / "cli.md").read_text(encoding="utf-8")
+
+
+def limit_text(limit: float | None, unit: str) -> str:
+    """Return a limit of a check as people read it; empty for none."""
+    if limit is None:
+        return ""
+    small, soft = limit < 1e-3, limit < 1e9
+    scales = {
+        "m": (UM, "um") if small else (MM, "mm"),
+        "Pa": (1e6, "MPa") if soft else (GPA, "GPa"),
+        "rad": (DEGREE, "deg"),
+        "1": (1.0, ""),
+    }
+    scale, name = scales.get(unit, (1.0, unit))
+    return f"{engineering(limit / scale, 3)} {name}".strip()
