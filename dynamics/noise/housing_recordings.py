@@ -187,7 +187,7 @@ def pressure_signal(
 ) -> FloatArray:
     """Return the sound pressure at a microphone under forces over time, (T,), Pa.
 
-    The modes follow the forces as in `motion_signal`, and each panel is heard r/c later. Nothing wraps: the
+    The modes follow the forces as in `motion_pieces`, and each panel is heard r/c later. Nothing wraps: the
     modes are integrated, and the paths are a finite impulse response. The housing starts at rest: silence
     comes before the first sound.
 
@@ -203,7 +203,7 @@ def pressure_signal(
     Raises
     ------
     InputError
-        As `outer_hull`, `sound_paths` and `motion_signal` do.
+        As `outer_hull`, `sound_paths` and `motion_pieces` do.
     """
     paths = _paths(housing, microphone, model, air)
     rows = np.eye(len(housing.mass))

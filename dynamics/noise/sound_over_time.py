@@ -121,7 +121,7 @@ def sound_over_time(
     ------
     InputError
         The run is shorter than a block, no band lies in the range, or as `run_seat_forces` and
-        `motion_signal`.
+        `motion_pieces`.
     """
     samples, rate = round(block * result.sample_rate), result.sample_rate
     if not 4 * LEAKAGE <= samples <= result.time.size:

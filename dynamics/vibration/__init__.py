@@ -16,7 +16,7 @@ from dynamics.vibration.housing_vibration import (
     surface_weight,
     vibration_level,
 )
-from dynamics.vibration.time_signal import motion_pieces, motion_signal, point_signal
+from dynamics.vibration.time_signal import motion_pieces, point_signal
 from dynamics.vibration.vibration_analysis import (
     SurfaceShape,
     VibrationAnalysis,
@@ -45,7 +45,6 @@ __all__ = [
     "mode_parts",
     "mode_shape",
     "motion_pieces",
-    "motion_signal",
     "operating_deflection",
     "overall",
     "point_signal",

@@ -109,7 +109,7 @@ def finer_seat_forces(
 ) -> tuple[FloatArray, FloatArray]:
     """Return times (F,) and `run_seat_forces` (F, s) at `factor` times the rate of the run.
 
-    Between finer samples a cubic spline follows what the run's output passes: see `motion_signal`.
+    Between finer samples a cubic spline follows what the run's output passes: see `motion_pieces`.
     """
     force = run_seat_forces(result, housing, bearings)
     finer = np.empty((factor * (len(force) - 1) + 1, force.shape[1]))

@@ -54,12 +54,12 @@ def point_signal(
 ) -> FloatArray:
     """Return the motion of points of a housing under forces over time.
 
-    As `motion_signal` does, of named points along the axes of the mesh.
+    As `motion_pieces` does, of named points along the axes of the mesh.
 
     Parameters
     ----------
     housing, time, force, quantity
-        As in `motion_signal`.
+        As in `motion_pieces`.
     points : sequence of str, optional
         By default all, in their order.
 
@@ -71,21 +71,22 @@ def point_signal(
     Raises
     ------
     InputError
-        As `motion_signal` does, or the housing has no such point.
+        As `motion_pieces` does, or the housing has no such point.
     """
     motion = np.stack([point.motion for point in named_points(housing, points)])
     rows = motion.reshape(-1, motion.shape[2])
-    return motion_signal(housing, time, force, rows, quantity).reshape(-1, *motion.shape[:2])
+    moved = np.concatenate(list(motion_pieces(housing, time, force, rows, quantity)))
+    return moved.reshape(-1, *motion.shape[:2])
 
 
-def motion_signal(
+def motion_pieces(
     housing: ReducedHousing,
     time: FloatArray,
     force: FloatArray,
     rows: FloatArray,
     quantity: MotionQuantity = MotionQuantity.VELOCITY,
-) -> FloatArray:
-    """Return combinations of the reduced coordinates of a housing under forces over time.
+) -> Iterator[FloatArray]:
+    """Yield combinations of the reduced coordinates of a housing under forces over time, piece by piece.
 
     Between the samples the force is a cubic spline, and the modes follow it exactly, damping between them
     included. The only error is that of the spline: a harmonic of n samples a period enters with the gain
@@ -93,6 +94,7 @@ def motion_signal(
     at 6, 1.5 % at 4, and with images about multiples of the sampling rate, (n - 1)^-4 of it.
 
     The housing starts at rest, deflected by the first force; motions that nothing holds start at zero.
+    What is held beside the force does not grow with its length.
 
     Parameters
     ----------
@@ -107,29 +109,15 @@ def motion_signal(
     quantity : MotionQuantity
         Displacement, velocity or acceleration.
 
-    Returns
-    -------
-    (T, q) array
-        Of unit m, m/s or m/s^2 for rows of points.
+    Yields
+    ------
+    (P, q) array
+        At most `PIECE` samples, one after the other; m, m/s or m/s^2 for rows of points.
 
     Raises
     ------
     InputError
         Shapes differ, times are not uniform, a force is no number, or the housing has no mass.
-    """
-    return np.concatenate(list(motion_pieces(housing, time, force, rows, quantity)))
-
-
-def motion_pieces(
-    housing: ReducedHousing,
-    time: FloatArray,
-    force: FloatArray,
-    rows: FloatArray,
-    quantity: MotionQuantity = MotionQuantity.VELOCITY,
-) -> Iterator[FloatArray]:
-    """Yield what `motion_signal` returns in pieces (P, q) of at most `PIECE` samples, one after the other.
-
-    What is held beside the force does not grow with its length. Parameters and errors as in `motion_signal`.
     """
     times, forces = np.asarray(time, dtype=float), np.asarray(force, dtype=float)
     step = _checked_step(times, forces, housing)

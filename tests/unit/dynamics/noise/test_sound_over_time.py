@@ -17,7 +17,7 @@ from dynamics.acoustics import EquivalentRadiatedPower, a_weighting
 from dynamics.errors import InputError
 from dynamics.noise import SoundOverTime, housing_radiation, radiated_sound, sound_over_time
 from dynamics.orders import bearing_orders
-from dynamics.vibration import motion_signal, run_seat_forces, time_signal
+from dynamics.vibration import motion_pieces, run_seat_forces, time_signal
 
 ORDERS, TOLERANCE = 3, 0.3  # dB
 FORCE = order_forces(drawn_amplitudes(ORDERS))
@@ -75,7 +75,8 @@ def test_parseval():
     run = swept_run(500.0, 500.0, 1.0, lambda *_: smooth)
     body = housing()
     found = sound_over_time(run, body, None, radiation(), 0.25)
-    velocity = motion_signal(body, run.time, run_seat_forces(run, body), np.eye(len(body.stiffness)))
+    every = np.eye(len(body.stiffness))
+    velocity = np.concatenate(list(motion_pieces(body, run.time, run_seat_forces(run, body), every)))
     samples = round(0.25 * RATE)
     matrix = radiation().impedance * radiation().surface
     for row, start in enumerate(range(0, velocity.shape[0] - samples + 1, samples // 2)):
