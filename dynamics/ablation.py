@@ -63,7 +63,8 @@ def _run_figures(result: RunResult, seconds: float) -> RunFigures:
     """
     settled = slice(int(SETTLED * result.time.size), None)
     error = result.dynamic_transmission_error[:, settled]
-    pitches = max(1, min(PITCHES, int(_travel(result) / 4.0)))
+    travel = float(np.abs(np.sum(np.diff(np.unwrap(result.position[0], period=1.0)))))  # of the first mesh
+    pitches = max(1, min(PITCHES, int(travel / 4.0)))
     transmission = _largest(result, "dynamic_transmission_error", pitches)
     bearings = np.empty((0, HIGHEST))
     if result.bearing_force.size:
@@ -75,11 +76,6 @@ def _run_figures(result: RunResult, seconds: float) -> RunFigures:
         transmission,
         bearings,
     )
-
-
-def _travel(result: RunResult) -> float:
-    """Return the base pitches that the first mesh runs through."""
-    return float(np.abs(np.sum(np.diff(np.unwrap(result.position[0], period=1.0)))))
 
 
 def _largest(result: RunResult, series: str, pitches: int) -> FloatArray:

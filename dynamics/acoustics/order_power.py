@@ -107,7 +107,8 @@ class ModalResistance:
         interval = np.searchsorted(self.frequency[1:-1], frequency, "right")
         for knot in np.unique(np.concatenate([interval, interval + 1])):
             near = (interval == knot) | (interval + 1 == knot)
-            weight = _hat(frequency[near], self.frequency[interval[near]], self.frequency[interval[near] + 1])
+            low_of, high_of = self.frequency[interval[near]], self.frequency[interval[near] + 1]
+            weight = (frequency[near] - low_of) / (high_of - low_of)
             share = np.where(interval[near] == knot, 1.0 - weight, weight)
             yield int(knot), near, share * (frequency[near] / self.frequency[knot]) ** 2
 
@@ -143,10 +144,6 @@ def modal_resistance(
     return ModalResistance(
         knots, np.stack([resistance(model, hull, float(knot), shapes, air) for knot in knots])
     )
-
-
-def _hat(frequency: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
-    return np.asarray((frequency - low) / (high - low))
 
 
 @dataclass(frozen=True)

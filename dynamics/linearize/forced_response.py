@@ -361,19 +361,13 @@ def forced_response(
         **{f.name: getattr(response, f.name) for f in fields(response)},
         excitation_difference=_difference(response, other),
         natural_frequency=frequency,
-        **_power_fields(power),
+        power_source=power.source,
+        power_input=power.input,
+        power_sink=power.sink,
+        power_sink_kind=power.kind,
+        power_loss=power.loss,
         facts=facts,
     )
-
-
-def _power_fields(power: PowerBalance) -> Json:
-    return {
-        "power_source": power.source,
-        "power_input": power.input,
-        "power_sink": power.sink,
-        "power_sink_kind": power.kind,
-        "power_loss": power.loss,
-    }
 
 
 def _halves(progress: Callable[[float], None] | None) -> Callable[[float], Callable[[float], None] | None]:

@@ -317,7 +317,7 @@ def sound_band(
     ranges = USUAL_RANGES if ranges is None else ranges
     for name in ranges:
         one_of("ranges", name, GUESSES)
-    ranges = {name: span for name, span in ranges.items() if _has(model, name)}
+    ranges = {name: span for name, span in ranges.items() if GUESSES[name].varied(model, 2.0) is not model}
     others = {"mode_number": _with_half_of_modes(model), **(alternatives or {})}
     count, done = 1 + len(others) + len(ranges) * (steps - 1) + joint, [0]
 
@@ -329,10 +329,6 @@ def sound_band(
 
     varied = partial(level_bands, ranges=ranges, steps=steps, joint=joint)
     return _band(model, np.asarray(speed, dtype=float), varied, others, powers)
-
-
-def _has(model: SoundModel, name: str) -> bool:
-    return GUESSES[name].varied(model, 2.0) is not model
 
 
 def _band(

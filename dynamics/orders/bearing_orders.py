@@ -248,7 +248,7 @@ def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | 
     harmonics = _mesh_harmonics(result, checked_order(result, "orders", orders, mesh))
     pitches = _checked_pitches(harmonics, pitches)
     cycles = harmonics.cycles(result)
-    own = cycles[_first_of(harmonics, mesh)]
+    own = cycles[np.argmax((harmonics.mesh == mesh) & (harmonics.multiple == 1))]
     windows = list(_windows(own, pitches))
     rows = [_row(result, harmonics, cycles, signals, window) for window in windows]
     kept = [row for row in rows if row.sweep <= MOST_SWEEP]  # a mesh that rests or reverses sweeps from 0
@@ -273,11 +273,6 @@ def _checked_pitches(harmonics: MeshHarmonics, pitches: int | None) -> int:
         advice = "Longer windows, or fewer orders."
         raise InputError("pitches", pitches, at_least(least, note=", which tell the orders apart"), advice)
     return pitches
-
-
-def _first_of(harmonics: MeshHarmonics, mesh: int) -> int:
-    """Return the index of the order 1, that of the mesh that counts."""
-    return int(np.argmax((harmonics.mesh == mesh) & (harmonics.multiple == 1)))
 
 
 def _windows(own: FloatArray, pitches: int) -> Iterator[slice]:

@@ -28,7 +28,6 @@ from dynamics.linearize.linear_system import LinearSystem, freedom_parts, linear
 from dynamics.linearize.operating_speeds import leading_law, mesh_frequencies
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.bearing_elements import BearingElement
-from dynamics.mechanism.bodies import Rotor
 from dynamics.meshes import GearMesh
 from dynamics.motion.observation import local_state, observe, static_deflections
 from dynamics.motion.sampled_states import States
@@ -116,11 +115,6 @@ def _ledger_entry(
 # The model of flexible shafts: elements, modes, errors, in plain JSON.
 
 
-def _flexible_shafts(rotors: Sequence[Rotor]) -> list[Json]:
-    """Return one entry per flexible shaft, SI."""
-    return [_flexible_shaft(rotor.shaft.name, rotor.elastic) for rotor in rotors if rotor.elastic is not None]
-
-
 def _flexible_shaft(name: str, elastic: ElasticShaft) -> Json:
     """One shaft: how its beam was divided, what was kept of it, and the errors of either."""
     families = {"bending": elastic.bending, "extension": elastic.extension, "torsion": elastic.torsion}
@@ -163,7 +157,11 @@ def _resolved_case(system: System) -> Json:
             for shaft, row in zip(scene.shafts, system.kinematics.ratio, strict=True)
         },
         "loads": [asdict(load) for load in scene.loads],
-        "flexible_shafts": _flexible_shafts(system.rotors),
+        "flexible_shafts": [
+            _flexible_shaft(rotor.shaft.name, rotor.elastic)
+            for rotor in system.rotors
+            if rotor.elastic is not None
+        ],
         "duration": scene.duration,
         "gravity": list(scene.gravity),
         "effects": dict(scene.effects),

@@ -167,7 +167,7 @@ def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
         or requested["time_step"],
         "table_interpolation": _estimate(tables, TABLE_REST, "runs of windows on every second position"),
         "left_out_effects": left_out,
-        "windows": _first_and_last_samples(looked),
+        "windows": [[window.first, window.stop - 1] for window in looked],
         "cpu_seconds": seconds,
     }
 
@@ -202,7 +202,3 @@ def _estimate(differences: Sequence[_Difference | None], rest: float, source: st
         ],
         "bearing_force_unit": "N",
     }
-
-
-def _first_and_last_samples(looked: Sequence[Window]) -> list[list[int]]:
-    return [[window.first, window.stop - 1] for window in looked]
