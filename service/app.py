@@ -14,7 +14,7 @@ from prometheus_client import CollectorRegistry
 from service.access import open_identities
 from service.access.capacity import capacity
 from service.live.kept_answers import KeptAnswers
-from service.live.pool import live_pool
+from service.live.pool import LivePool
 from service.management.figures import Metrics, process_registry
 from service.queue.machinery import job_machinery
 from service.queue.watcher import Watcher
@@ -131,7 +131,7 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
 
 def _context(settings: Settings, registry: Registry, works: bool) -> Context:
     parts = job_machinery(settings, registry, works=works)
-    pools, engine = (live_pool(settings), ReadingPool(settings.data_directory)), parts.engine
+    pools, engine = (LivePool.of(settings), ReadingPool(settings.data_directory)), parts.engine
     kept = KeptAnswers(settings.data_directory / CACHE_DIRECTORY / "figures")
     writes = WriteCheck(Deployment(engine, parts.store))
     watcher = Watcher(engine, partial(events.event_of, registry=registry))

@@ -184,6 +184,12 @@ class LivePool:
         self._stopping = False
         remove_left(self._home)
 
+    @classmethod
+    def of(cls, settings: Settings) -> LivePool:
+        """Return the pool of a service; its worker may have as much memory as one computation."""
+        share = settings.memory_limit_mb or machine_memory_mb() // settings.workers
+        return cls(settings.data_directory, max(share, LEAST_MEMORY_MB))
+
     @property
     def worker_pid(self) -> int | None:
         """Process id of the worker, None while there is none."""
@@ -308,12 +314,3 @@ class LivePool:
 def _refuse(question: _Question, error: Exception) -> None:
     if question.future.set_running_or_notify_cancel():
         question.future.set_exception(error)
-
-
-def live_pool(settings: Settings) -> LivePool:
-    """Return the pool of a service; its worker may have as much memory as one computation."""
-    return LivePool(settings.data_directory, _share(settings))
-
-
-def _share(settings: Settings) -> int:
-    return max(settings.memory_limit_mb or machine_memory_mb() // settings.workers, LEAST_MEMORY_MB)

@@ -9,14 +9,14 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select
+from sqlalchemy import ColumnElement, Connection, Engine, Update, func, insert, select, update
 
 from lineofaction.gearbox.problems import BadInput, QueueFull
 from service.access.keyring import Holder
 from service.project import COMMON, address_of
 from service.queue.differences import NOT_COMPARED, differences_between, differences_column
 from service.queue.tables import computations, jobs
-from service.queue.terms import ANYBODY, AS_IT_IS, NO_LABEL, USUAL, Terms, extended, raised
+from service.queue.terms import ANYBODY, AS_IT_IS, NO_LABEL, USUAL, Terms
 from service.queue.workload import FOR_EVER, HELD, batch_steps
 from service.schemas.answers import Differences
 from service.store import now, retried, writing
@@ -131,8 +131,8 @@ class Entry:
         """Return the computation of a job: the shared one, to these terms, or a new one."""
         if shared is None:
             return _enter_computation(connection, process, work, self._terms)
-        connection.execute(raised(shared, self._terms.priority))
-        connection.execute(extended(shared, self._terms.max_cost_s))
+        connection.execute(_raised(shared, self._terms.priority))
+        connection.execute(_extended(shared, self._terms.max_cost_s))
         return shared
 
     @retried
@@ -309,3 +309,19 @@ def _enter_computation(connection: Connection, process: str, work: BatchCase, te
         row |= {"started": instant, "finished": instant}
     connection.execute(insert(computations).values(**row))
     return identifier
+
+
+def _raised(computation: str, priority: int) -> Update:
+    """Return the statement that gives a computation at least this priority, as long as it waits."""
+    lower = computations.c.priority < priority
+    waits = (computations.c.id == computation) & (computations.c.state == "accepted")
+    return update(computations).where(waits & lower).values(priority=priority)
+
+
+def _extended(computation: str, limit: float | None) -> Update:
+    """Return the statement that lets a computation cost what one more job of it may; None: there is no limit.
+
+    A computation costs as much as the most generous of its jobs allows.
+    """
+    lower = computations.c.max_cost_s < limit if limit is not None else computations.c.max_cost_s.is_not(None)
+    return update(computations).where(computations.c.id == computation, lower).values(max_cost_s=limit)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -14,7 +15,7 @@ from bounds import engineering
 from service.project import at_address
 from service.queue.differences import differences_of
 from service.queue.tables import computations, jobs
-from service.queue.terms import Delivery, Label, labeled
+from service.queue.terms import Delivery, Label
 from service.schemas.answers import Differences
 
 Json = dict[str, Any]
@@ -107,13 +108,8 @@ def job_state() -> ColumnElement[Any]:
     return case((jobs.c.dismissed.is_not(None), "dismissed"), else_=computations.c.state)
 
 
-def select_jobs(project: str) -> Any:
-    """Select the jobs of a project with their computations: callers find jobs in no other way."""
-    return jobs_of_all_projects().where(jobs.c.project == project)
-
-
 def jobs_of_all_projects() -> Any:
-    """Select jobs with their computations, for those who know which of them their callers have found."""
+    """Select jobs with their computations; callers find those of their project alone."""
     return select(
         jobs.c.id.label("job_id"),
         jobs.c.created.label("job_created"),
@@ -209,7 +205,7 @@ class JobFilter:
     def conditions(self) -> list[ColumnElement[bool]]:
         """Return what the database decides: all but the time run."""
         within = jobs.c.parent.is_(None) if self.parent is None else jobs.c.parent == self.parent
-        conditions = [within, *labeled(self.tags, self.words)]
+        conditions = [within, *_labeled(self.tags, self.words)]
         if self.processes:
             conditions.append(computations.c.process.in_(self.processes))
         if self.statuses:
@@ -235,6 +231,13 @@ class JobFilter:
         seconds = (end - datetime.fromisoformat(job.started)).total_seconds()
         low = 0.0 if self.shortest_s is None else self.shortest_s
         return low <= seconds and (self.longest_s is None or seconds <= self.longest_s)
+
+
+def _labeled(tags: Iterable[str], words: Iterable[str]) -> list[ColumnElement[bool]]:
+    """Return the conditions of jobs that have all of these tags, and all of these words in their title."""
+    of_tags = [jobs.c.tags.contains(f"\n{tag.lower()}\n", autoescape=True) for tag in tags]
+    of_words = [jobs.c.title_folded.contains(word.casefold(), autoescape=True) for word in words]
+    return [*of_tags, *of_words]
 
 
 EVERY_JOB = JobFilter()

@@ -14,7 +14,7 @@ from lineofaction.gearbox.problems import NoSuchJob
 from service.access.keyring import Holder
 from service.project import COMMON
 from service.queue.entry import LIVE, BatchCase, Entry
-from service.queue.job import ENDED, EVERY_JOB, Job, JobFilter, job_of, select_jobs
+from service.queue.job import ENDED, EVERY_JOB, Job, JobFilter, job_of, jobs_of_all_projects
 from service.queue.tables import computations, jobs
 from service.queue.terms import ANYBODY, USUAL, Label, Terms
 from service.queue.workload import HELD, end_computations, states_of
@@ -213,7 +213,7 @@ class Submissions:
             _abandon(connection, computations.c.id.in_(owners) & ~wanted)
 
     def _jobs(self) -> Any:
-        return select_jobs(self._project)
+        return jobs_of_all_projects().where(jobs.c.project == self._project)
 
     @retried
     def counts(self) -> dict[str, int]:

@@ -6,14 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal, Self
 
-from sqlalchemy import ColumnElement, Update, update
-
 from bounds import engineering
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import NETCDF
 from service.access.keyring import Holder
 from service.queue.differences import NOT_COMPARED, differences_column
-from service.queue.tables import computations, jobs
 from service.schemas.answers import Differences
 
 ANYBODY = Holder(name="")
@@ -26,13 +23,6 @@ def check_priority(priority: int, caller: Holder) -> None:
     if highest is not None and priority > highest:
         bound = f"at most {highest}, the limit of key {caller.name!r}"
         raise BadInput.of("priority", priority, bound, "Leave it out, or ask the operator of the service.")
-
-
-def raised(computation: str, priority: int) -> Update:
-    """Return the statement that gives a computation at least this priority, as long as it waits."""
-    lower = computations.c.priority < priority
-    waits = (computations.c.id == computation) & (computations.c.state == "accepted")
-    return update(computations).where(waits & lower).values(priority=priority)
 
 
 LOWER_COST = (
@@ -54,15 +44,6 @@ def refuse_beyond(limit: float, stages: dict[str, float]) -> None:
     parts = ", ".join(f"{name} {engineering(seconds, 2)} s" for name, seconds in largest)
     bound = f"at least the predicted cost, {engineering(predicted, 3)} CPU s ({parts})"
     raise BadInput.of("max_cost_s", limit, bound, LOWER_COST)
-
-
-def extended(computation: str, limit: float | None) -> Update:
-    """Return the statement that lets a computation cost what one more job of it may; None: there is no limit.
-
-    A computation costs as much as the most generous of its jobs allows.
-    """
-    lower = computations.c.max_cost_s < limit if limit is not None else computations.c.max_cost_s.is_not(None)
-    return update(computations).where(computations.c.id == computation, lower).values(max_cost_s=limit)
 
 
 @dataclass(frozen=True)
@@ -96,13 +77,6 @@ class Label:
 
 
 NO_LABEL = Label()
-
-
-def labeled(tags: Iterable[str], words: Iterable[str]) -> list[ColumnElement[bool]]:
-    """Return the conditions of jobs that have all of these tags, and all of these words in their title."""
-    of_tags = [jobs.c.tags.contains(f"\n{tag.lower()}\n", autoescape=True) for tag in tags]
-    of_words = [jobs.c.title_folded.contains(word.casefold(), autoescape=True) for word in words]
-    return [*of_tags, *of_words]
 
 
 Response = Literal["raw", "document"]

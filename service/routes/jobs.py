@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
 from datetime import UTC, datetime
 from typing import Annotated, Any, Literal, Union
 
@@ -50,7 +49,6 @@ from service.schemas.answers import (
     ProblemBody,
     ResultReference,
     StatusInfo,
-    WebhookState,
     results_document,
 )
 from service.schemas.execute import BatchResult, BatchResults, LabelChange, Tag, Title
@@ -167,8 +165,7 @@ def list_jobs(
 def job_status(job_id: str, context: Ctx) -> StatusInfo:
     """Status and progress of the job."""
     status = status_info(context.submissions.find(job_id), context.registry)
-    calls = [WebhookState(**asdict(call)) for call in Calls(context.engine).of(job_id)]
-    return status.model_copy(update={"webhooks": calls or None})
+    return status.model_copy(update={"webhooks": Calls(context.engine).of(job_id) or None})
 
 
 @router.get("/{job_id}/inputs", summary="Inputs of a job", responses=documented(NoSuchJob))

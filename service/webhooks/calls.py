@@ -15,6 +15,7 @@ from sqlalchemy import ColumnElement, Connection, Engine, Select, and_, or_, sel
 from service.origin import Origin
 from service.queue.job import ENDED, job_state
 from service.queue.tables import computations, jobs, webhooks
+from service.schemas.answers import WebhookState
 from service.store import dialect_of, now, reading, retried, writing
 
 LEASE_S = 30.0
@@ -40,16 +41,6 @@ class Call:
     lease: str
 
 
-@dataclass(frozen=True)
-class CallState:
-    """How far a call is: waiting, delivered, skipped or given up, and what came of the last attempt."""
-
-    event: str
-    state: str
-    attempts: int
-    message: str
-
-
 class Calls:
     """The calls in a database."""
 
@@ -69,12 +60,12 @@ class Calls:
                 connection.execute(entry.values(**row, updated=now()).on_conflict_do_nothing())
 
     @retried
-    def of(self, job: str) -> list[CallState]:
+    def of(self, job: str) -> list[WebhookState]:
         """Return the calls about a job."""
         facts = (webhooks.c.event, webhooks.c.state, webhooks.c.attempts, webhooks.c.message)
         with reading(self._engine) as connection:
             rows = connection.execute(select(*facts).where(webhooks.c.job == job).order_by(webhooks.c.id))
-            return [CallState(*row) for row in rows]
+            return [WebhookState.model_validate(row, from_attributes=True) for row in rows]
 
     @retried
     def project_of(self, job: str) -> str:

@@ -27,10 +27,10 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from fe_contact.cache_reads import COMPLIANCE_READS
-from host import cpu_seconds, kill_own_group, lock, lower_priority
+from host import cpu_seconds, kill_own_group, lock, lower_priority, peak_memory
 from lineofaction.gearbox.problems import ServiceError
 from service.worker.order import Product, WorkOrder
-from service.worker.usage import hold_to, machine_memory_mb, no_space, out_of_memory, own_peak_mb
+from service.worker.usage import BYTES_PER_MB, hold_to, machine_memory_mb, no_space
 
 _NICENESS = 10
 _SHORTEST_INTERVAL_S = 0.1
@@ -58,7 +58,7 @@ def work(descriptor: int) -> None:
             "hits": COMPLIANCE_READS.hits - begun.hits,
             "misses": COMPLIANCE_READS.misses - begun.misses,
         }
-        _send(channel, outcome | {"peak_mb": own_peak_mb(), "compliance_reads": reads})
+        _send(channel, outcome | {"peak_mb": peak_memory() / BYTES_PER_MB, "compliance_reads": reads})
 
 
 def _first_line() -> tuple[bytes, bytes]:
@@ -137,7 +137,7 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
         _stamp(order, products)
     except MemoryError:
         limit = order.memory_limit_mb
-        return {"failure": out_of_memory(machine_memory_mb() if limit is None else limit)}
+        return {"failure": _out_of_memory(machine_memory_mb() if limit is None else limit)}
     except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
         if isinstance(error, OSError) and (full := no_space(error)):
             return {"failure": full}
@@ -147,6 +147,14 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
             return {"failure": "unexpected", "unexpected": True}
         return {"failure": str(known), "faults": [fault.as_json() for fault in known.faults]}
     return {"products": [{"key": p.key, "kind": p.kind, "file": str(p.file)} for p in products]}
+
+
+def _out_of_memory(limit_mb: int) -> str:
+    """Return the message of a job that needed more."""
+    return (
+        f"The computation ran out of memory: it may have {limit_mb} MB (LOA_MEMORY_LIMIT_MB). Select a "
+        "coarser level or fewer positions, or start the service with a higher limit."
+    )
 
 
 def _stamp(order: WorkOrder, products: tuple[Product, ...]) -> None:

@@ -6,7 +6,7 @@ import errno
 from dataclasses import dataclass
 from pathlib import Path
 
-from host import limit_memory, peak_memory, physical_memory
+from host import limit_memory, physical_memory
 
 BYTES_PER_MB = float(1 << 20)
 
@@ -39,11 +39,6 @@ class Usage:
         }
 
 
-def own_peak_mb() -> float:
-    """Return the most resident memory this process has had, MB."""
-    return peak_memory() / BYTES_PER_MB
-
-
 _MB = 1 << 20
 _GROUP_LIMIT = Path("/sys/fs/cgroup/memory.max")
 
@@ -61,14 +56,6 @@ def machine_memory_mb(group_limit: Path = _GROUP_LIMIT) -> int:
 def hold_to(limit_mb: int) -> None:
     """Let allocations of this process fail beyond so many MB; a stricter limit of the system stays."""
     limit_memory(limit_mb * _MB)
-
-
-def out_of_memory(limit_mb: int) -> str:
-    """Return the message of a job that needed more."""
-    return (
-        f"The computation ran out of memory: it may have {limit_mb} MB (LOA_MEMORY_LIMIT_MB). Select a "
-        "coarser level or fewer positions, or start the service with a higher limit."
-    )
 
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
