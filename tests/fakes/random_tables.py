@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 
 import numpy as np
 
-from fe_contact.analysis.pairs.tabulate import pair_facts
+from fe_contact.analysis.tables import pair_facts
 from fe_contact.geometry import FlankModification, Gear, GearPair
 from fe_contact.ste import Metadata, SteDatabase
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fe_contact.analysis.pairs.tabulate import pair_facts
+from fe_contact.analysis.tables import pair_facts
 from fe_contact.contact import ContactProblem, ContactSolution, at_edges, contact_pressure
 from fe_contact.contact.touch import rolls_at
 from fe_contact.errors import DatabaseError

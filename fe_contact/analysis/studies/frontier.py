@@ -20,7 +20,6 @@ from fe_contact.analysis.pairs.slice_springs import (
     mean_stiffness,
     parabolic_stiffness,
 )
-from fe_contact.analysis.pairs.tabulate import pair_facts, table_fields, table_support
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_asked, check_request
@@ -33,6 +32,7 @@ from fe_contact.analysis.studies.measured_full_contact import (
     known_full_contact,
     measure_full_contact,
 )
+from fe_contact.analysis.tables import pair_facts, table_fields, table_support
 from fe_contact.contact import ContactSolution
 from fe_contact.errors import InputError, MeshError, SolveError, chosen, integer
 from fe_contact.geometry import Gear, GearPair, ParallelAxes

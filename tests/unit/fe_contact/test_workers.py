@@ -19,8 +19,7 @@ from fe_contact import Gear, GearPair
 from fe_contact.errors import InputError, WorkersLost
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.search import NelderMead, Search
-from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, scatter
-from fe_contact.microgeometry.tolerances import Tolerances
+from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, ToleranceStudy, scatter
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers

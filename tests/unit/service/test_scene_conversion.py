@@ -71,7 +71,7 @@ def test_given_inertia_is_used_as_it_is() -> None:
 
 
 def test_facts_of_a_pair_are_those_its_table_will_have() -> None:
-    from fe_contact.analysis.pairs.tabulate import pair_facts  # noqa: PLC0415
+    from fe_contact.analysis.tables import pair_facts  # noqa: PLC0415
     from fe_contact.geometry import Gear, GearPair  # noqa: PLC0415
 
     right = Gear(17, 4e-3, 25e-3, 20e-3, helix_angle=0.2)

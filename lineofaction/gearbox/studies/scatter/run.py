@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, scatter, toleranced
-from fe_contact.microgeometry.tolerances import iso1328_tolerances
+from fe_contact.microgeometry.tolerance_study import (
+    Sampling,
+    ToleranceStudy,
+    iso1328_tolerances,
+    scatter,
+    toleranced,
+)
 from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair
 from lineofaction.gearbox.convert.errors import boundary_name

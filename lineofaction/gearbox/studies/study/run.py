@@ -25,7 +25,7 @@ from dynamics.study import (
     keep_runs,
     study,
 )
-from fe_contact.microgeometry.tolerances import PROCESS_SPREAD, iso1328_tolerances
+from fe_contact.microgeometry.tolerance_study import PROCESS_SPREAD, iso1328_tolerances
 from fe_contact.workers.remembering import content_digest
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
 from lineofaction.gearbox.convert.scene import TabledScene

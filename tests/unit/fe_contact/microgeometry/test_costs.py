@@ -12,8 +12,7 @@ from analysis_requests import design_request
 from fe_contact import GearPair
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.search import NelderMead, Search
-from fe_contact.microgeometry.tolerance_study import Sampling, scatter
-from fe_contact.microgeometry.tolerances import Tolerances
+from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, scatter
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.workers import RunCost

@@ -15,7 +15,7 @@ import pytest
 
 from fe_contact import Gear, GearPair
 from fe_contact.errors import InputError
-from fe_contact.microgeometry.tolerances import (
+from fe_contact.microgeometry.tolerance_study import (
     _helix_slope_tolerance,
     _profile_slope_tolerance,
     _rounded,

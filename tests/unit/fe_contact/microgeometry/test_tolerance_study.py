@@ -11,8 +11,7 @@ from scipy.special import ndtr
 
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
-from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, _quantile, scatter
-from fe_contact.microgeometry.tolerances import Tolerances
+from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, ToleranceStudy, _quantile, scatter
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, Run
 from model_studies.spread import rank_correlation
