@@ -50,7 +50,12 @@ def piece_at(curves: Cubics, index: int, at: float) -> int:
 @inner
 def value_and_slope(curves: Cubics, index: int, at: float) -> tuple[float, float]:
     """Return curve `index` and its derivative at `at`."""
-    piece = piece_at(curves, index, at)
+    return cubic(curves, piece_at(curves, index, at), at)
+
+
+@inner
+def cubic(curves: Cubics, piece: int, at: float) -> tuple[float, float]:
+    """Return a piece and its derivative at `at`."""
     s, c = at - curves.start[piece], curves.coefficient
     value = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))
     return value, c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])

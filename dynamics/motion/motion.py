@@ -8,7 +8,7 @@ from dynamics.arrays.arrays import KinematicMotion, SystemArrays
 from dynamics.arrays.sparse_rows import add_modal_motion, row_product, row_products
 from dynamics.forces.elements import UNBALANCE, Elements
 from dynamics.kernels.compiled import compiled, inner
-from dynamics.kernels.cubics import Cubics, area, piece_at, value_and_slope
+from dynamics.kernels.cubics import Cubics, area, cubic, piece_at, value_and_slope
 from dynamics.kernels.local_state import LocalState
 from dynamics.loads.load_laws import unbalance
 from dynamics.meshes.table_lookup import wrapped
@@ -42,7 +42,7 @@ def write_motion(reference: KinematicMotion, time: float, moved: IntArray, motio
         whole = math.floor(turns)
         motion[k, WHOLE] = reference.whole[piece] + whole + moved[k] // QUANTA_PER_TURN
         motion[k, FRACTION] = turns - whole + (moved[k] % QUANTA_PER_TURN) / QUANTA_PER_TURN
-        motion[k, SPEED], motion[k, ACCELERATION] = value_and_slope(reference.speed, k, time)
+        motion[k, SPEED], motion[k, ACCELERATION] = cubic(reference.speed, piece, time)
 
 
 @inner
