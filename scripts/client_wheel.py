@@ -38,8 +38,8 @@ def client_files() -> list[Path]:
     files = {file.relative_to(ROOT) for file in loaded if file.is_relative_to(ROOT)}
     files = {file for file in files if not file.parts[0].startswith(".")}
     for file in list(files):
-        typed = (file.with_suffix(".pyi"), file.with_name("py.typed"))
-        files |= {other for other in typed if (ROOT / other).exists()}
+        typed = file.with_name("py.typed")
+        files |= {typed} if (ROOT / typed).exists() else set()
     return sorted(files)
 
 

@@ -25,7 +25,7 @@ from fe_contact.microgeometry.variables import effect_of, figure, modified
 from fe_contact.options import LARGEST_DEVIATION, AnalysisOptions, Levels, Run, TableAxes
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import SteDatabase
-from fe_contact.types import Estimate, FloatArray, IntArray, Json
+from fe_contact.types import Estimate, FloatArray, IntArray
 from model_studies import NOT_STORED, in_unit
 
 # The start of every study of a pair's micro-geometry: one model, one compliance, one evaluator.
@@ -291,20 +291,6 @@ class HarrisMap:
         """Its error (T,) in m: errors of the nodes may all have the same sign."""
         return np.asarray(self.weight @ self.error)
 
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        return {
-            "torque_n_m": self.torque.tolist(),
-            "position": self.position.tolist(),
-            "ste_m": self.ste.T.tolist(),
-            "nominal_peak_to_peak_m": self.nominal.tolist(),
-            "nominal_error_m": self.nominal_error.tolist(),
-            "expected_peak_to_peak_m": self.expected.tolist(),
-            "expected_error_m": self.expected_error.tolist(),
-            "peak_to_peak_m": self.peak_to_peak.tolist(),
-            "error_m": self.error.tolist(),
-        }
-
 
 def rising(before: HarrisMap, after: HarrisMap) -> IntArray:
     """Return the indices of torques at which the expected ripple rises by more than the errors of both."""
@@ -339,21 +325,6 @@ class ConfirmedDesign:
     scatter_error: float = field(metadata=in_unit("m"))
     violation: float
     table: SteDatabase | None = field(default=None, metadata=NOT_STORED)
-
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        return {
-            "values_m": self.values,
-            "objective_m": self.objective.value,
-            "objective_error_m": self.objective.error,
-            "scatter_error_m": self.scatter_error,
-            "violation": self.violation,
-            "peak_to_peak_m": self.figures.peak_to_peak.tolist(),
-            "max_pressure_pa": self.figures.pressure.max(axis=0).tolist(),
-            "face_load_factor": self.figures.face_load_factor.max(axis=0).tolist(),
-            "edge_load_share": self.figures.edge_load_share.max(axis=0).tolist(),
-            "harris_map": self.harris_map.to_json(),
-        }
 
 
 def confirm(

@@ -228,25 +228,3 @@ class Optimization:
     def evaluations(self) -> int:
         """Designs that the search evaluated."""
         return sum(run.evaluations for run in self.runs)
-
-    def to_json(self) -> Json:
-        """Return plain JSON in SI units."""
-        return {
-            "outcome": self.outcome.value,
-            "reason": self.reason,
-            "variables": [each.to_json() for each in self.variables],
-            "torque_n_m": self.torque.tolist(),
-            "misalignment_m": self.misalignment.tolist(),
-            "nodes": self.nodes.to_json(),
-            "gain_m": self.gain.value,
-            "gain_error_m": self.gain.error,
-            "start": self.start.to_json(),
-            "optimum": self.optimum.to_json(),
-            "evaluations": self.evaluations,
-            "runs": [run.to_json() for run in self.runs],
-            "best_run": self.best_run,
-            "sensitivity": [each.to_json() for each in self.sensitivity],
-            "not_tried": list(self.not_tried),
-            "cost": self.cost,
-            "asked": self.asked,
-        }

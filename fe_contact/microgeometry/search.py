@@ -410,19 +410,6 @@ class SearchRun:
         """Whether it ended by itself."""
         return self.ended is Ended.CONVERGED
 
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        return {
-            "objective_m": self.assessed.objective,
-            "violation": self.assessed.violation,
-            "evaluations": self.evaluations,
-            "explored": self.explored,
-            "converged": self.converged,
-            "ended": self.ended.value,
-            "spread_m": self.spread,
-            "cpu_seconds": self.cpu_seconds,
-        }
-
 
 def search_from(
     problem: DesignProblem,

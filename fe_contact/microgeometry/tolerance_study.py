@@ -185,15 +185,6 @@ class Quantile:
     low: FloatArray = field(metadata=in_unit("m", "torque"))
     high: FloatArray = field(metadata=in_unit("m", "torque"))
 
-    def to_json(self) -> Json:
-        """Return plain JSON; a bound that the sample is too small for is null."""
-        return {
-            "fraction": self.fraction,
-            "value_m": self.value.tolist(),
-            "low_m": self.low.tolist() if self.low.any() else None,
-            "high_m": self.high.tolist() if np.isfinite(self.high).all() else None,
-        }
-
 
 def _quantile(sample: FloatArray, fraction: float, confidence: float) -> Quantile:
     """Estimate a quantile of samples (N, L) of lengths with distribution-free bounds."""
@@ -294,26 +285,6 @@ class ToleranceStudy:
     def influence(self) -> FloatArray:
         """Rank correlation (d, L) of each deviation with the ripple."""
         return rank_correlation(self.deviation, self.peak_to_peak)
-
-    def to_json(self) -> Json:
-        """Return plain JSON in SI units."""
-        return {
-            "torque_n_m": self.torque.tolist(),
-            "samples": self.peak_to_peak.shape[0],
-            "nominal_m": self.nominal.tolist(),
-            "error_m": self.error.tolist(),
-            "mean_m": self.mean.tolist(),
-            "mean_standard_error_m": self.mean_error.tolist(),
-            "confidence": self.confidence,
-            "quantiles": [each.to_json() for each in self.quantiles],
-            "names": list(self.names),
-            "influence": self.influence.tolist(),
-            "deviation_m": self.deviation.tolist(),
-            "peak_to_peak_m": self.peak_to_peak.tolist(),
-            "first_order_m": self.first_order.tolist(),
-            "cost": self.cost,
-            "asked": self.asked,
-        }
 
 
 def scatter(

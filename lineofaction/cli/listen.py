@@ -17,16 +17,17 @@ from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.studies.listen.heard_run import (
+from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.listen import SoundPressure
+from lineofaction.gearbox.studies.listen.run import (
     NO_LOUDNESS,
     Receiver,
+    SceneHousings,
+    SoundFigures,
     heard_run,
     recording_facts,
     rms,
-    sound_facts,
 )
-from lineofaction.gearbox.studies.listen.sound_figures import SoundFigures
-from lineofaction.gearbox.studies.listen.through_housing import SceneHousings
 from lineofaction.report.comparison.compare import named_files
 from lineofaction.report.document import read_run
 from lineofaction.report.drawing.figure import number, unit_of
@@ -144,8 +145,7 @@ def _housing_sounds(
         except BadInput as error:
             raise error.within(name) from None
         warn(heard.warnings)
-        cells = {} if heard.figures is None else _figures_cells(heard.figures)
-        sounds.append(RunSound(name, heard.recording, sound_facts(heard), cells))
+        sounds.append(RunSound(name, heard.recording, *_of_pressure(heard.figures)))
         remarks += heard.remarks
     return sounds, "; ".join(dict.fromkeys(remarks))
 
@@ -160,8 +160,12 @@ def _require_no_view(view: RunView, receiver: Receiver) -> None:
             raise BadInput.of(f"--{name}", value, "left out with --microphone or --point")
 
 
-def _figures_cells(figures: SoundFigures) -> dict[str, str]:
-    """Say what the ear makes of a sound."""
+def _of_pressure(figures: SoundFigures | None) -> tuple[Json, dict[str, str]]:
+    """Return what the ear makes of a sound pressure, as JSON and as printed; nothing of a velocity."""
+    return ({}, {}) if figures is None else ({"sound": figures_of(SoundPressure, figures)}, _cells(figures))
+
+
+def _cells(figures: SoundFigures) -> dict[str, str]:
     loudness = "without extra" if figures.loudness is None else engineering(figures.loudness, 3)
     sharpness = "" if figures.sharpness is None else engineering(figures.sharpness, 3)
     tones = ", ".join(number(hertz, 4) for hertz, _ in figures.tones)

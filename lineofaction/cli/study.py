@@ -120,7 +120,7 @@ def _tell(
         _writers(study, subject)[target.suffix](result, target)
         stamp(target, warnings_so_far())
     if options["json"]:
-        print_json(_written(study, targets) | study.run.facts(result))
+        print_json(_written(study, targets) | study.run.figures(result))
     elif options.get("csv"):
         sys.stdout.write(_csv(study, result))
     else:
@@ -211,7 +211,7 @@ def _writers(study: Study, subject: Any) -> dict[str, Writer]:
     }
     return {
         ".nc": run.file.write,
-        ".json": run.save_facts,
+        ".json": run.save_figures,
         ".png": lambda result, file: file.write_bytes(png(page.figure(result))),
         ".html": lambda result, file: write_whole(page.page(result), file, warnings=messages()),
         ".csv": lambda result, file: file.write_text(_csv(study, result), encoding="utf-8"),

@@ -9,9 +9,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from lineofaction.gearbox.loading import LOADING
+
+if TYPE_CHECKING:
+    from lineofaction.gearbox.schemas.figures import Figures
+    from lineofaction.gearbox.schemas.model import BoundaryModel
+    from lineofaction.gearbox.studies.computation import Computation
+
+    Work = Computation[Any, Any, Any, Any, Any]
 
 NETCDF = "application/x-netcdf"
 JSON = "application/json"
@@ -76,7 +83,7 @@ class Study:
     @property
     def argument(self) -> str:
         """Name of what is studied, as the client's method and the verb have it."""
-        return "given" if self.subject == "case or scene" else self.subject
+        return "subject" if self.subject == "case or scene" else self.subject
 
     @property
     def package(self) -> str:
@@ -89,19 +96,22 @@ class Study:
         return (".nc", ".json", ".png", ".html", *self.further)
 
     @property
-    def inputs(self) -> Any:
+    def inputs(self) -> type[BoundaryModel]:
         """Model of what is varied."""
-        return self._part("", "Inputs")
+        inputs: type[BoundaryModel] = self._part("", "Inputs")
+        return inputs
 
     @property
-    def run(self) -> Any:
-        """Its `lineofaction.gearbox.studies.computation.Computation`."""
-        return self._part(".run", "RUN")
+    def run(self) -> Work:
+        """Its work."""
+        work: Work = self._part(".run", "RUN")
+        return work
 
     @property
-    def answer(self) -> Any:
-        """Model of its figures, a `lineofaction.gearbox.schemas.figures.Figures`."""
-        return self._part("", "ANSWER")
+    def answer(self) -> type[Figures]:
+        """Model of its figures."""
+        figures: type[Figures] = self._part("", f"{self.name.title().replace('-', '')}Figures")
+        return figures
 
     def _part(self, module: str, name: str) -> Any:
         """Load a module of the package; return what it offers."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from dynamics.results import RunResult
 from dynamics.scene import Scene
@@ -15,6 +15,7 @@ from fe_contact import analyze as analyze_pair
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import InProcess, Workers
+from fe_contact.workers.remembering import content_digest
 from host.directories import cache_home
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -28,13 +29,32 @@ from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.files import READERS, beside, written_out
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.computation import Computation, Means
 from lineofaction.gearbox.subjects import MeshTables, case_of, finished, scene_of, with_own_files
 from lineofaction.gearbox.tabled_scene import ComputedTables, database_of
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from model_studies.progress import Progress, silent
 
+if TYPE_CHECKING:
+    from lineofaction.gearbox.studies.ablate.run import RUN as ABLATE
+    from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
+    from lineofaction.gearbox.studies.flank.run import RUN as FLANK
+    from lineofaction.gearbox.studies.frontier.run import RUN as FRONTIER
+    from lineofaction.gearbox.studies.listen.run import RUN as LISTEN
+    from lineofaction.gearbox.studies.modes.run import RUN as MODES
+    from lineofaction.gearbox.studies.noise.run import RUN as NOISE
+    from lineofaction.gearbox.studies.optimize.run import RUN as OPTIMIZE
+    from lineofaction.gearbox.studies.response.run import RUN as RESPONSE
+    from lineofaction.gearbox.studies.root_stress.run import RUN as ROOT_STRESS
+    from lineofaction.gearbox.studies.scatter.run import RUN as SCATTER
+    from lineofaction.gearbox.studies.sensitivity.run import RUN as SENSITIVITY
+    from lineofaction.gearbox.studies.steady.run import RUN as STEADY
+    from lineofaction.gearbox.studies.study.run import RUN as STUDY
+    from lineofaction.gearbox.studies.sweep.run import RUN as SWEEP
+    from lineofaction.gearbox.studies.vibration.run import RUN as VIBRATION
+
 Subject = Case | SceneInput | OpenedUnit | Mapping[str, Any] | Path | str
+Result = TypeVar("Result")
 
 
 class InputWarning(UserWarning):
@@ -151,7 +171,7 @@ def _tabled(scene: SceneInput, folder: Path, progress: Progress) -> TabledScene:
 
 
 @dataclass(frozen=True)
-class StudyCall:
+class StudyCall(Generic[Result]):
     """A study as a function; `name` is its row of `lineofaction.gearbox.registry`."""
 
     name: str
@@ -174,7 +194,7 @@ class StudyCall:
         progress: Progress = silent,
         folder: Path | None = None,
         **fields: Any,
-    ) -> Any:
+    ) -> Result:
         """Study a case, a scene or a unit.
 
         Parameters
@@ -201,13 +221,14 @@ class StudyCall:
         BadInput, JobFailed
         """
         study = STUDIES[self.name]
-        varied = validated(study.inputs, {**(inputs or {}), **fields})
+        named = {} if run is None else {"run": content_digest(run)}
+        varied = validated(study.inputs, {**named, **(inputs or {}), **fields})
         stated, files = self._stated(subject)
         chosen = study.run.narrowed(stated, varied)
         study.run.check(chosen, varied)
         made = chosen if isinstance(chosen, Case) else _tabled(chosen, files, progress)
         means = Means(cache_home(), progress, workers, folder=folder, run=run)
-        result = study.run.compute(made, varied, means)
+        result: Result = study.run.compute(made, varied, means)
         _warn(study.run.warnings(result) or ())
         if failure := study.run.failure(result):
             raise JobFailed(failure)
@@ -259,20 +280,25 @@ def _warn(found: Iterable[Mapping[str, Any]]) -> None:
         warnings.warn(warning["message"], InputWarning, stacklevel=4)
 
 
-Study = Callable[..., Any]
-flank: Study = StudyCall("flank")
-ablate: Study = StudyCall("ablate")
-frontier: Study = StudyCall("frontier")
-sensitivity: Study = StudyCall("sensitivity")
-root_stress: Study = StudyCall("root-stress")
-optimize: Study = StudyCall("optimize")
-scatter: Study = StudyCall("scatter")
-sweep: Study = StudyCall("sweep")
-modes: Study = StudyCall("modes")
-response: Study = StudyCall("response")
-noise: Study = StudyCall("noise")
-vibration: Study = StudyCall("vibration")
-listen: Study = StudyCall("listen")
-steady: Study = StudyCall("steady")
-deflect: Study = StudyCall("deflect")
-study: Study = StudyCall("study")
+if TYPE_CHECKING:
+
+    def _function(study: Computation[Any, Any, Any, Any, Result]) -> StudyCall[Result]: ...
+
+    flank = _function(FLANK)
+    ablate = _function(ABLATE)
+    frontier = _function(FRONTIER)
+    sensitivity = _function(SENSITIVITY)
+    root_stress = _function(ROOT_STRESS)
+    optimize = _function(OPTIMIZE)
+    scatter = _function(SCATTER)
+    sweep = _function(SWEEP)
+    modes = _function(MODES)
+    response = _function(RESPONSE)
+    noise = _function(NOISE)
+    vibration = _function(VIBRATION)
+    listen = _function(LISTEN)
+    steady = _function(STEADY)
+    deflect = _function(DEFLECT)
+    study = _function(STUDY)
+else:
+    globals().update({study.package: StudyCall(name) for name, study in STUDIES.items()})

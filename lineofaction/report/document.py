@@ -370,7 +370,7 @@ def _write(path: Path, data: bytes) -> None:
 
 def facts(result: Any) -> dict[str, Any]:
     """Return the figures of a study's result in the units of their names, as its verb prints them as JSON."""
-    found: dict[str, Any] = _study_of(result).run.facts(result)
+    found: dict[str, Any] = _study_of(result).run.figures(result)
     return found
 
 
@@ -397,7 +397,7 @@ def write(result: Any, file: Path | str) -> Path:
     if path.suffix == ".nc":
         study.run.file.write(result, path)
     elif path.suffix == ".json":
-        study.run.save_facts(result, path)
+        study.run.save_figures(result, path)
     elif path.suffix == ".png":
         path.write_bytes(png(presentation_of(study).figure(result)))
     elif path.suffix == ".html":

@@ -20,7 +20,7 @@ from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.stages import PacedFraction
 from lineofaction.gearbox.studies.ablate import Inputs
-from lineofaction.gearbox.studies.ablate.run import ablation_of, facts
+from lineofaction.gearbox.studies.ablate.run import RUN
 from lineofaction.gearbox.studies.computation import Means
 from service.store import stored_results
 from service.store.results import IndexLine
@@ -48,11 +48,11 @@ def scene(tmp_path: Path) -> SceneInput:
 def test_the_ablation_of_a_case_is_that_of_python(served: Served, tmp_path: Path) -> None:
     seen: list[JobState] = []
     told = figures_alone(served.client.ablate.submit(CASE, only=ONLY).figures(seen.append))
-    here = ablation_of(validated(Case, CASE), Inputs(only=tuple(ONLY)), Means(tmp_path, lambda *_: None))
+    here = RUN.compute(validated(Case, CASE), Inputs(only=tuple(ONLY)), Means(tmp_path, lambda *_: None))
     assert [effect["name"] for effect in told["effects"]] == ["tooth_coupling"]
     assert told["left_out"] == {"misalignment": "the gears are aligned"}
     assert abs(told["effects"][0]["mean_change_um"][1]) > 1e-3
-    expected = json.loads(json.dumps(facts(here))) | {"warnings": []}
+    expected = json.loads(json.dumps(RUN.figures(here))) | {"warnings": []}
     assert without(TIMES, told) == without(TIMES, expected)
     progress = [state.progress for state in seen]
     assert progress == sorted(progress) and progress[-1] == 100
@@ -93,11 +93,11 @@ def test_the_ablation_of_a_scene_is_that_of_python(served: Served, scene: SceneI
     told = figures_alone(client.ablate.submit(scene, only=["lateral"]).figures())
     tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
     means = Means(tmp_path, lambda *_: None)
-    here = ablation_of(
+    here = RUN.compute(
         TabledScene(scene, tables, dynamic_scene(scene, tables), {}), Inputs(only=("lateral",)), means
     )
     assert [effect["name"] for effect in told["effects"]] == ["lateral"]
-    expected = json.loads(json.dumps(facts(here))) | {"warnings": []}
+    expected = json.loads(json.dumps(RUN.figures(here))) | {"warnings": []}
     assert without(TIMES, told) == without(TIMES, expected)
 
 

@@ -23,7 +23,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.stages import PacedFraction
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.frontier import Inputs
-from lineofaction.gearbox.studies.frontier.run import frontier_of
+from lineofaction.gearbox.studies.frontier.run import RUN
 from service.store import stored_results
 from service.worker import study_work
 from service.worker.order import WorkOrder
@@ -58,7 +58,7 @@ def worked(inputs: dict[str, Any], workspace: Path, data: Path) -> tuple[dict[st
 def test_the_ladder_of_a_case_is_that_of_python(served: Served, tmp_path: Path) -> None:
     seen: list[JobState] = []
     told = figures_alone(served.client.frontier.submit(CASE, rungs=CLOSED).figures(seen.append))
-    here = frontier_of(validated(Case, CASE), Inputs(rungs=tuple(CLOSED)), Means(tmp_path, lambda *_: None))
+    here = RUN.compute(validated(Case, CASE), Inputs(rungs=tuple(CLOSED)), Means(tmp_path, lambda *_: None))
     assert [rung["name"] for rung in told["rungs"]] == CLOSED
     assert told["rungs"][0]["mean_error"] > 1e-3 and told["reference"] == "thin_slices"
     assert all(rung["cpu_seconds"] > 0.0 for rung in told["rungs"])
@@ -87,7 +87,7 @@ def test_the_ladder_of_a_scene_is_that_of_python(served: Served, scene: SceneInp
     told = figures_alone(client.frontier.submit(scene, rungs=rungs).figures())
     tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
     means = Means(tmp_path, lambda *_: None)
-    here = frontier_of(
+    here = RUN.compute(
         TabledScene(scene, tables, dynamic_scene(scene, tables), {}), Inputs(rungs=tuple(rungs)), means
     )
     assert told == made and told["reference"] == "10_nm"

@@ -21,7 +21,7 @@ from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.modes import Inputs
-from lineofaction.gearbox.studies.modes.run import modes_of
+from lineofaction.gearbox.studies.modes.run import RUN
 from lineofaction.gearbox.subjects import scene_inputs, scene_of
 from service.store import stored_results
 
@@ -59,7 +59,7 @@ def test_modes_on_a_solid_are_those_of_the_command_line(served: Served, monkeypa
     file = client.modes.submit(scene_file(folder)).file(seen.append)
     (folder / "here.json").write_text(json.dumps(housed_scene(folder)))
     here = tabled_scene(*scene_of(folder / "here.json"), None, lambda _stage, _fraction: None)
-    expected = modes_of(here.scene, Inputs(), Means(folder, lambda _stage, _fraction: None))
+    expected = RUN.compute(here, Inputs(), Means(folder, lambda _stage, _fraction: None))
     found = ModalAnalysis.from_netcdf(file)
     np.testing.assert_array_equal(found.natural_frequency, expected.natural_frequency)
     assert "housing" in [state.stage for state in seen if state.stage]

@@ -18,7 +18,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.optimize import Inputs
-from lineofaction.gearbox.studies.optimize.run import optimization_json, optimization_of, worse_loads
+from lineofaction.gearbox.studies.optimize.run import RUN
 from service.worker.process import default_registry
 
 OPTIMISE = default_registry()["optimize"]
@@ -66,8 +66,8 @@ def test_the_optimization_is_that_of_python(served: Served, data: Path) -> None:
     answer = client.optimize.submit(CASE, STUDY).figures(seen.append)
     told = figures_alone(answer)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
-    here = optimization_of(validated(Case, CASE), validated(Inputs, STUDY), Means(data, lambda *_: None))
-    expected = json.loads(json.dumps(optimization_json(here) | {"warnings": worse_loads(here)}))
+    here = RUN.compute(validated(Case, CASE), validated(Inputs, STUDY), Means(data, lambda *_: None))
+    expected = json.loads(json.dumps(RUN.figures(here) | {"warnings": RUN.warnings(here)}))
     assert untimed(told) == untimed(expected)
     assert told["outcome"] == "improved" and told["gain_um"] > told["gain_error_um"]
     assert set(told["optimum"]["values"]) == {"pinion", "wheel"}

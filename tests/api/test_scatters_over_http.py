@@ -17,7 +17,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.scatter import Inputs
-from lineofaction.gearbox.studies.scatter.run import draw, facts
+from lineofaction.gearbox.studies.scatter.run import RUN
 from service.worker.process import default_registry
 
 SCATTER = default_registry()["scatter"]
@@ -49,8 +49,8 @@ def test_the_pairs_are_those_of_python(served: tuple[LineOfActionClient, TestCli
     answer = client.scatter.submit(CASE, **SAMPLING).figures(seen.append)
     told = figures_alone(answer)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
-    here = draw(validated(Case, CASE), Inputs(**SAMPLING), Means(data, lambda *_: None))
-    expected = json.loads(json.dumps(facts(here))) | {"warnings": []}
+    here = RUN.compute(validated(Case, CASE), Inputs(**SAMPLING), Means(data, lambda *_: None))
+    expected = json.loads(json.dumps(RUN.figures(here))) | {"warnings": []}
     assert {**told, "cost": None} == {**expected, "cost": None}
     assert len(told["peak_to_peak_um"]) == 40 and told["names"] == [
         "pinion.profile_slope_um", "wheel.profile_slope_um",

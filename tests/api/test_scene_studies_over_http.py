@@ -22,7 +22,7 @@ from dynamics.simulation import simulate
 from dynamics.study import Response, Study, responses_of
 from fe_contact.ste import SteDatabase
 from lineofaction.client import JobState, LineOfActionClient
-from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import read_model
@@ -30,7 +30,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.stages import PacedFraction
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.modes import Inputs
-from lineofaction.gearbox.studies.modes.run import facts, modes_of
+from lineofaction.gearbox.studies.modes.run import RUN
 from lineofaction.gearbox.subjects import scene_inputs
 from service.app import create_app
 from service.settings import Settings
@@ -74,9 +74,10 @@ def scene(tmp_path: Path) -> SceneInput:
     )
 
 
-def here(scene: SceneInput, tmp_path: Path) -> Any:
-    """The scene of dynamics."""
-    return dynamic_scene(scene, {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")})
+def here(scene: SceneInput, tmp_path: Path) -> TabledScene:
+    """The scene with its table."""
+    tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
+    return TabledScene(scene, tables, dynamic_scene(scene, tables))
 
 
 def none(_stage: str, _fraction: float) -> None:
@@ -90,12 +91,14 @@ def test_modes_are_those_of_python(
     seen: list[JobState] = []
     file = client.modes.submit(scene, speed_rpm=[0.0, 3000.0], orders=4).file(seen.append)
     found = ModalAnalysis.from_netcdf(file)
-    python = modes_of(here(scene, tmp_path), Inputs(speed_rpm=(0.0, 3000.0), orders=4), Means(tmp_path, none))
+    python = RUN.compute(
+        here(scene, tmp_path), Inputs(speed_rpm=(0.0, 3000.0), orders=4), Means(tmp_path, none)
+    )
     for name in ("natural_frequency", "frequency", "critical_speed", "strain_energy"):
         np.testing.assert_array_equal(getattr(found, name), getattr(python, name))
     assert [state.progress for state in seen] == sorted(state.progress for state in seen)
     answer = http.get(f"/v1/results/{client.result(seen[-1].id).key}").json()
-    assert {name: answer[name] for name in facts(found)} == facts(found)
+    assert {name: answer[name] for name in RUN.figures(found)} == RUN.figures(found)
 
 
 @pytest.mark.parametrize(
@@ -120,7 +123,7 @@ def test_the_work_of_a_study_is_served_as_figures_and_as_its_file(
 ) -> None:
     """The work itself, in this process: a child is a matter of the jobs, which the modes go through."""
     client, http = served
-    process, figures = default_registry()[name], STUDIES[name].run.facts
+    process, figures = default_registry()[name], STUDIES[name].run.figures
     data = http.app.state.context.settings.data_directory  # type: ignore[attr-defined]
     inputs = {"scene": scene.model_dump(mode="json"), **further}
     given = process.inputs.model_validate_json(json.dumps(inputs))
@@ -146,7 +149,7 @@ def test_a_study_over_http_has_the_bits_of_python_and_keeps_its_worst_run(
 ) -> None:
     client, _ = served
     made = client.study(scene, STUDY | {"keep_worst": 1})
-    alone = here(scene, tmp_path)
+    alone = here(scene, tmp_path).scene
     values = dict(zip(made.factor, made.value[made.worst[0]].tolist(), strict=True))
     mesh = replace(alone.meshes[0], damping_ratio=values["meshes.mesh.damping_ratio"])
     load = replace(alone.loads[0], torque=TimeLaw.constant(values["loads.brake.torque_n_m"]))

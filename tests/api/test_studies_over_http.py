@@ -20,9 +20,9 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.flank.run import flank_json, flanks_of
+from lineofaction.gearbox.studies.flank.run import RUN, flanks_of
 from lineofaction.gearbox.studies.root_stress import Inputs
-from lineofaction.gearbox.studies.root_stress.run import root_stress_json, root_stress_of
+from lineofaction.gearbox.studies.root_stress.run import RUN as ROOT_STRESS
 from service.worker.process import default_registry
 
 FLANK = default_registry()["flank"]
@@ -61,7 +61,7 @@ def test_flank_results_are_those_of_python(served: tuple[LineOfActionClient, Tes
     assert [state.progress for state in seen] == sorted(state.progress for state in seen)
     result = client.result(seen[-1].id)
     facts = http.get(f"/v1/results/{result.key}").json()
-    assert {name: facts[name] for name in flank_json(found)} == flank_json(found)
+    assert {name: facts[name] for name in RUN.figures(found)} == RUN.figures(found)
     assert facts["size"] == file.stat().st_size
 
 
@@ -112,7 +112,7 @@ def test_the_root_stress_is_that_of_python(served: tuple[LineOfActionClient, Tes
     found = client.root_stress.submit(PLANE, torque_n_m=30.0).figures()
     point = FlankPoint(torque_n_m=30.0)
     means = Means(data, lambda *_: None)
-    here = root_stress_json(root_stress_of(case_at(validated(Case, PLANE), point), Inputs(), means))
+    here = ROOT_STRESS.figures(ROOT_STRESS.compute(case_at(validated(Case, PLANE), point), Inputs(), means))
     costs = ("receipt", "warnings")
     assert without(costs, figures_alone(found)) == without(costs, here)
     assert found["receipt"]["cpu_seconds"] > 0.0

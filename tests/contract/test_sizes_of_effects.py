@@ -18,7 +18,7 @@ from fe_contact.ste import SteDatabase
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.studies.ablate import Inputs
-from lineofaction.gearbox.studies.ablate.run import ablation_of, facts
+from lineofaction.gearbox.studies.ablate.run import RUN
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.report.document import page_of, read_inputs, stored_figures
 from lineofaction.report.drawing.page import html
@@ -162,9 +162,9 @@ def ablated(case: Json, home: Path, monkeypatch: pytest.MonkeyPatch) -> Json:
     figures = Figures(1e-5 * one, 1e-6 * one, 1.0, np.ones((one.size, 5)), 1.0)
     monkeypatch.setattr(ablation, "_figures", lambda *_: figures)
     means = Means(home, lambda *_: None)
-    found = ablation_of(Case.model_validate_json(json.dumps(case)), Inputs(), means)
+    found = RUN.compute(Case.model_validate_json(json.dumps(case)), Inputs(), means)
     rows = {row[0]: row for row in _look(found).table(found).rows}
-    content = facts(found)
+    content = RUN.figures(found)
     for entry in content["effects"]:
         if entry["estimate"] is not None and not entry["estimate"]["trifle"]:
             assert rows[entry["name"]][3] in entry["estimate"]["words"]

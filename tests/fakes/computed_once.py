@@ -8,7 +8,6 @@ from __future__ import annotations
 import pickle
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from types import ModuleType
 from typing import Any
 
@@ -27,5 +26,5 @@ def computed_once(study: ModuleType) -> Iterator[None]:
         return known[key]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(study, "RUN", replace(study.RUN, compute=remembered))
+        patch.setattr(study.RUN, "compute", remembered)
         yield

@@ -141,7 +141,7 @@ def verb_of_study(reading: Reading) -> None:
         if ending not in further:
             write(result, reading.folder / f"result{ending}")
     _show(study, result, [], 0.0)
-    print_json(study.run.facts(result))
+    print_json(study.run.figures(result))
 
 
 READERS: tuple[Callable[[Reading], None], ...] = (

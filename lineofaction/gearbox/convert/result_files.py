@@ -75,7 +75,7 @@ def _plain(value: object) -> object:
 def figures_of(kind: str, file: Path) -> dict[str, Any]:
     """Return what a stored file of a run or a study says, its warnings included."""
     study = study_of(kind)
-    figures = run_json(file) if study is None else study.run.facts(study.run.file.read(file))
+    figures = run_json(file) if study is None else study.run.figures(study.run.file.read(file))
     return figures | {WARNINGS: stamped(file)}
 
 

@@ -13,13 +13,20 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field
 
 Json = dict[str, Any]
+REQUIRED = object()
 
 
 @dataclass(frozen=True)
 class Source:
-    """Where a figure of another name is in a result, in SI: members joined by dots, or what reads them."""
+    """Where a figure of another name is in a result, in SI: members joined by dots, or what reads them.
+
+    `missing` is the figure of results of versions that did not know it. A `document` is in the result as it
+    is shown.
+    """
 
     of: str | Callable[[Any], Any]
+    missing: Any = REQUIRED
+    document: bool = False
 
 
 class Part(BaseModel):
@@ -86,23 +93,11 @@ class RunFigures(Figures):
     variables: dict[str, RunVariable]
 
 
-# Where the bearing forces of a study of housings come from.
+class Equilibrium(Part):
+    """The loaded equilibrium that studies of a scene start from."""
 
-
-class BearingForces(Part):
-    """A linear response, or orders of a run: how its windows hold. Lists are by order, then by window."""
-
-    source: str
-    time_s: list[float] | None = None
-    window_pitches: int | None = None
-    windows_left_out: int | None = None
-    speed_change: list[float] | None = None
-    smearing: list[list[float]] | None = None
-    remainder: dict[str, list[float]] | None = None
-    other_housings: list[str] | None = None
-
-
-# Cost of work on housings, in figures.
+    status: Annotated[str, Source(lambda start: start["status"].lower())]
+    residual_n: float
 
 
 class PredictedCost(Part):
@@ -119,3 +114,25 @@ class HousingCost(Part):
     predicted_bytes: float
     cpu_seconds: Annotated[float, Source("seconds")]
     bytes: float | None
+
+
+class BearingForces(Part):
+    """A linear response, or orders of a run: how its windows hold. Lists are by order, then by window."""
+
+    source: str
+    time_s: list[float] | None = None
+    window_pitches: int | None = None
+    windows_left_out: int | None = None
+    speed_change: list[float] | None = None
+    smearing: list[list[float]] | None = None
+    remainder: dict[str, list[float]] | None = None
+    other_housings: list[str] | None = None
+
+
+LINEAR: Json = {"source": "linear response"}
+Forces = Annotated[BearingForces, Source("forces", missing=LINEAR)]
+"""Where the bearing forces of a study of housings come from."""
+Seconds = Annotated[dict[str, float], Source("seconds")]
+"""CPU time by stage."""
+ReductionCosts = Annotated[dict[str, HousingCost], Source("reduction_cost", missing={})]
+"""By housing."""

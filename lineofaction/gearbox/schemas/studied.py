@@ -10,7 +10,6 @@ from pydantic import ConfigDict, Field, model_validator
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
-    Listed,
     Spelling,
     both,
     exactly_one_of,
@@ -20,6 +19,7 @@ from lineofaction.gearbox.schemas.model import (
     stated,
 )
 from lineofaction.gearbox.schemas.result_kinds import HASH
+from lineofaction.gearbox.schemas.row import Row
 from lineofaction.gearbox.schemas.scene import SceneInput
 
 MOST_SPEEDS = 10_000
@@ -36,7 +36,7 @@ _OVER_SPEEDS = both(
 class OverSpeeds(BoundaryModel):
     """Inputs of a study over speeds, which are an axis."""
 
-    speed_rpm: tuple[float, ...]
+    speed_rpm: Row[float]
 
     @model_validator(mode="after")
     def _increasing(self) -> Self:
@@ -50,7 +50,7 @@ class OverSpeeds(BoundaryModel):
 class OverOrders(OverSpeeds):
     """Inputs of a study of mesh orders over speeds at which the shafts turn."""
 
-    speed_rpm: Listed[TurningSpeed] = Field(
+    speed_rpm: Row[TurningSpeed] = Field(
         min_length=1,
         max_length=MOST_SPEEDS,
         description="Speeds of the first driven shaft in rpm, increasing",
@@ -64,7 +64,7 @@ class OverSpeedsOrRun(OverOrders):
 
     model_config = ConfigDict(json_schema_extra=stated({"oneOf": [_OF_RUN, _OVER_SPEEDS]}))
 
-    speed_rpm: Listed[TurningSpeed] = Field(
+    speed_rpm: Row[TurningSpeed] = Field(
         default=(),
         max_length=MOST_SPEEDS,
         description="Speeds of the first driven shaft in rpm, increasing; a run has its own",
@@ -90,7 +90,7 @@ class OverSpeedsOrRun(OverOrders):
 # Ranges of what is only guessed about a scene, and whether the sound is computed over them.
 
 Factor = Annotated[float, Field(ge=0.05, le=20.0)]
-Factors = Listed[Factor]
+Factors = Row[Factor]
 RANGES = (
     "housing_damping",
     "housing_frequency",

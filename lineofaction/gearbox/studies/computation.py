@@ -1,20 +1,77 @@
-"""The interface of a study's module `run`."""
+"""The work of a study, the class that its module `run` has one of, and the netCDF files of results."""
 
 from __future__ import annotations
 
 import json
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import reduce
+from operator import or_
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Generic, TypeVar
 
+from bounds.types import Json
 from dynamics.results import RunResult
+from dynamics.results.array_file import ArrayFile
 from fe_contact.workers import InProcess, Workers
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.figures import Figures
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.studies.result_file import ResultFile
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.figures import figures_of
+from model_studies.record_file import read_record, write_record
 
-Json = dict[str, Any]
-Result = Any
+Written = TypeVar("Written")
+Subject = TypeVar("Subject")
+Inputs = TypeVar("Inputs", bound=BoundaryModel)
+Answer = TypeVar("Answer", bound=Figures)
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class ResultFile:
+    """The netCDF file of a result.
+
+    Attributes
+    ----------
+    attribute : str
+        By which such a file is known.
+    values : tuple of str
+        That it has in such files.
+    write, read : callable
+        Result and path to the file, and back; `read` raises the libraries' errors or ValueError.
+    result : type
+        What `read` returns, as an annotation: the client's types are written from it.
+    """
+
+    attribute: str
+    values: tuple[str, ...]
+    write: Callable[[Any, Path], object]
+    read: Callable[[Path], Any]
+    result: Any
+
+    def holds(self, attributes: Mapping[str, object]) -> bool:
+        """Whether a file with these attributes is one."""
+        return attributes.get(self.attribute) in self.values
+
+
+def array_file(kind: type[ArrayFile]) -> ResultFile:
+    """Return the file of a result of dynamics that has its own table of fields."""
+    return ResultFile("schema", (kind.SCHEMA,), kind.to_netcdf, kind.from_netcdf, kind)
+
+
+def record_file(*kinds: tuple[str, type]) -> ResultFile:
+    """Return the file of dataclasses, which follows from their fields: what each is, and its type."""
+    by_schema = {f"lineofaction {name}": kind for name, kind in kinds}
+
+    def write(result: object, file: Path) -> None:
+        schema = next(name for name, kind in by_schema.items() if type(result) is kind)
+        write_record(result, file, schema)
+
+    result = reduce(or_, by_schema.values())
+    return ResultFile("schema", tuple(by_schema), write, lambda file: read_record(file, by_schema), result)
 
 
 @dataclass(frozen=True)
@@ -45,66 +102,84 @@ class Means:
     run: RunResult | None = None
 
 
-def with_defaults(inputs: BoundaryModel) -> Json:
-    """Return inputs as JSON, with all defaults."""
-    return inputs.model_dump(mode="json")
-
-
-@dataclass(frozen=True)
-class Computation:
+class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
     """The work of a study.
+
+    What is studied is `Written` in its units, and for `compute` a `Subject`: a case as it is, a scene with
+    the tables of its meshes (`TabledScene`), or only with its housings (`HousedScene`).
 
     Attributes
     ----------
-    compute : callable
-        ``compute(subject, inputs, means)``: case, or scene as `tables` says, model of the inputs and `Means`
-        to the result. Raises `BadInput`, `JobFailed`.
-    facts : callable
-        Figures of a result in the units of the boundary, as they are printed and served.
+    inputs : type
+        Model of what is varied.
+    answer : type
+        Model of the figures of a result.
     file : ResultFile
         How a result is written and read back.
-    narrowed : callable
-        ``narrowed(subject, inputs)``: what of the subject the inputs choose; it is checked, hashed and
-        computed. Default: all of it.
     tables : bool
-        Whether a scene comes with the tables of its meshes, as `TabledScene`; else as `HousedScene`.
-    check : callable
-        ``check(subject, inputs)`` refuses what a schema accepts, and computes nothing; raises `BadInput`.
-        Here and below a scene is a `SceneInput`.
-    normalized : callable
-        ``normalized(subject, inputs)``: the inputs of a job as JSON, alike for equal questions; may raise
-        `BadInput`. Default: with all defaults.
-    warnings : callable
-        What a result warns of beside its case, which others assess; None for nothing.
-    joined : callable, optional
-        Results of several cases, by the names of their files, to one; for a verb that takes several.
+        Whether a scene comes with the tables of its meshes.
     interruptible : bool
         Whether it ends with the best so far when `Means.cancel` says so.
     resumed : bool
         Whether tasks that were done are kept for an attempt after one that died.
-    kept : callable
-        ``kept(result, means)``: the runs in `Means.folder`, by the hash that they are stored under.
     writers : mapping
         Further files of the verb, by their ending: called with result, what was studied, and file.
-    failure : callable
-        Says what of a result was not found; empty if nothing is missing.
     """
 
-    compute: Callable[[Any, Any, Means], Result]
-    facts: Callable[[Result], Json]
+    inputs: type[Inputs]
+    answer: type[Answer]
     file: ResultFile
-    narrowed: Callable[[Any, Any], Any] = lambda subject, _inputs: subject
-    tables: bool = True
-    check: Callable[[Any, Any], object] = lambda _subject, _inputs: None
-    normalized: Callable[[Any, Any], Json] = lambda _subject, inputs: with_defaults(inputs)
-    warnings: Callable[[Result], list[Json] | None] = lambda _found: None
-    joined: Callable[[Mapping[str, Result]], Result] | None = None
-    interruptible: bool = False
-    resumed: bool = False
-    kept: Callable[[Result, Means], Mapping[str, Path]] = lambda _result, _means: {}
-    writers: Mapping[str, Callable[[Result, Any, Path], object]] = field(default_factory=dict)
-    failure: Callable[[Result], str] = lambda _found: ""
+    tables: ClassVar[bool] = True
+    interruptible: ClassVar[bool] = False
+    resumed: ClassVar[bool] = False
+    writers: ClassVar[Mapping[str, Callable[[Any, Any, Path], object]]] = {}
 
-    def save_facts(self, result: Result, file: Path) -> None:
+    def narrowed(self, subject: Written, _inputs: Inputs) -> Written:
+        """Return what of the subject the inputs choose: it is checked, hashed and computed."""
+        return subject
+
+    def check(self, subject: Written, inputs: Inputs) -> None:
+        """Refuse what a schema accepts, and compute nothing; raises `BadInput`."""
+
+    def normalized(self, _subject: Written, inputs: Inputs) -> Json:
+        """Return the inputs of a job as JSON, alike for equal questions; may raise `BadInput`."""
+        return inputs.model_dump(mode="json")
+
+    @abstractmethod
+    def compute(self, subject: Subject, inputs: Inputs, means: Means) -> Result:
+        """Return the result; raises `BadInput`, `JobFailed`."""
+
+    def figures(self, result: Result) -> Json:
+        """Return the figures of a result in the units of the boundary, as they are printed and served."""
+        return figures_of(self.answer, result, getattr(result, "facts", {}), **self._derived(result))
+
+    def _derived(self, _result: Result) -> Json:
+        return {}
+
+    def save_figures(self, result: Result, file: Path) -> None:
         """Write the figures as JSON."""
-        file.write_text(f"{json.dumps(self.facts(result), allow_nan=False)}\n", encoding="utf-8")
+        file.write_text(f"{json.dumps(self.figures(result), allow_nan=False)}\n", encoding="utf-8")
+
+    def warnings(self, _result: Result) -> list[Json] | None:
+        """Return what a result warns of beside its case, which others assess; None for nothing."""
+        return None
+
+    def failure(self, _result: Result) -> str:
+        """Say what of a result was not found; empty if nothing is missing."""
+        return ""
+
+    def kept(self, _result: Result, _means: Means) -> Mapping[str, Path]:
+        """Return the runs in `Means.folder`, by the hash that they are stored under."""
+        return {}
+
+    def joined(self, results: Mapping[str, Result]) -> Result:
+        """Return results of several cases, by the names of their files, as one."""
+        raise NotImplementedError
+
+
+class CaseStudy(Computation[Case, Case, Inputs, Answer, Result]):
+    """The work of a study of a case."""
+
+
+class SceneStudy(Computation[SceneInput, TabledScene, Inputs, Answer, Result]):
+    """The work of a study of a scene with the tables of its meshes."""

@@ -13,7 +13,7 @@ import numpy as np
 from pydantic.fields import FieldInfo
 
 from bounds.types import Json
-from lineofaction.gearbox.schemas.figures import Figures, Part, Source
+from lineofaction.gearbox.schemas.figures import REQUIRED, Figures, Part, Source
 from lineofaction.gearbox.units import BY_SUFFIX
 
 _DIVISORS = {name: unit.factor for name, unit in BY_SUFFIX.items()} | {"_mpa": 1e6, "_mm_per_s": 1e-3}
@@ -62,7 +62,7 @@ def figures_of(model: type[Part], *sources: Any, **own: Any) -> Json:
     document = {}
     for name, (field, key, source) in _declared(model).items():
         value = _found(name, source, own, sources, required=field.is_required())
-        figure = _figure(field.annotation, *value)
+        figure = value[0] if source and source.document else _figure(field.annotation, *value)
         if field.is_required() or figure is not None:
             document[key] = figure
     return document
@@ -93,6 +93,8 @@ def _found(
             return value, _same
         if (value := _read(each, source) if source else _member(each, bare)) is not _MISSING:
             return value, convert
+    if source and source.missing is not REQUIRED:
+        return source.missing, _same
     if required:
         raise AttributeError(name)
     return None, _same

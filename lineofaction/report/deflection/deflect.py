@@ -9,8 +9,9 @@ import numpy as np
 from bounds import leftover
 from bounds.types import BoolArray, Json
 from dynamics.deflection import CAUSES, CaseDeflection, MeshAlignment
-from lineofaction.gearbox.studies.deflect.figures import facts, mesh_names
+from lineofaction.gearbox.studies.deflect.figures import mesh_names
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
+from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.units import MM, UM
 from lineofaction.report.deflection.gearbox_drawing import gearbox_drawing, largest_motion
 from lineofaction.report.drawing import palette
@@ -100,7 +101,7 @@ def _titled(case: CaseDeflection) -> str:
 
 def _bearing_table(result: GearboxDeflection) -> Table:
     cases = result.deflection.cases
-    loads = [case["bearings"] for case in facts(result)["load_cases"]]
+    loads = [case["bearings"] for case in RUN.figures(result)["load_cases"]]
     listed = [
         {"case": _titled(case), **loads[k][index]}
         for index in range(len(result.outline.bearings))
@@ -147,7 +148,7 @@ def _life_table(result: GearboxDeflection) -> Table:
     caption = (
         "Basic reference rating life over all load cases (ISO/TS 16281), and loads of equal life (ISO 281)"
     )
-    return Table.of(caption, facts(result)["bearings"], columns)
+    return Table.of(caption, RUN.figures(result)["bearings"], columns)
 
 
 COLORS = (palette.BLUE, palette.VERMILLION, palette.GREEN, palette.PURPLE, palette.MUTED, palette.INK)

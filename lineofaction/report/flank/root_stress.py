@@ -9,7 +9,7 @@ import numpy as np
 
 from bounds import engineering
 from lineofaction.gearbox.convert.effects import assumption_lines
-from lineofaction.gearbox.studies.root_stress.run import GEARS, Roots, root_stress_json
+from lineofaction.gearbox.studies.root_stress.run import GEARS, RUN, Roots
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
@@ -114,7 +114,7 @@ def _text(stresses: Json) -> Iterator[Table | str]:
 
 
 def _of_figures(shown: Callable[[Json], Any]) -> Callable[[Roots], Any]:
-    return lambda roots: shown(root_stress_json(roots))
+    return lambda roots: shown(RUN.figures(roots))
 
 
 PAGE = Presentation(

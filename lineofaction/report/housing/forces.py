@@ -11,7 +11,7 @@ from dynamics.acoustics.levels import a_weighting
 from dynamics.noise import RadiatedSound, loudest
 from dynamics.noise.sound_over_time import BLOCK
 from dynamics.types import FloatArray
-from lineofaction.gearbox.studies.bearing_forces import LINEAR
+from lineofaction.gearbox.schemas.figures import LINEAR
 from lineofaction.gearbox.units import MM, RPM
 from lineofaction.report.drawing.figure import Axis, Figure, Panel, Table, number, shaded_levels
 from lineofaction.report.drawing.tables import amount, gigabytes

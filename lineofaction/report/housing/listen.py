@@ -11,7 +11,7 @@ from bounds import engineering
 from dynamics.acoustics import sound_pressure_level, wav_file
 from dynamics.types import FloatArray
 from dynamics.vibration import vibration_level
-from lineofaction.gearbox.studies.listen.heard_run import HeardRun, rms
+from lineofaction.gearbox.studies.listen.run import HeardRun, rms
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Sound, Table, Track, number
 from lineofaction.report.drawing.page import Headline, Page, Section

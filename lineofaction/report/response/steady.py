@@ -9,7 +9,7 @@ import numpy as np
 from bounds import leftover
 from dynamics.periodic import SteadyStates
 from dynamics.periodic.steady_states import BRANCH, DOWN, UP
-from lineofaction.gearbox.studies.steady.run import KINDS, facts, status_name
+from lineofaction.gearbox.studies.steady.run import KINDS, RUN, status_name
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
@@ -204,7 +204,7 @@ def _largest(
 
 def _text(states: SteadyStates) -> Iterator[Table | str]:
     yield _steady_table(states)
-    answer = facts(states)
+    answer = RUN.figures(states)
     for jump in answer["jumps"]:
         before, behind = jump["between_rpm"]
         sense = "rising" if jump["sweep"] == "up" else "falling"

@@ -10,7 +10,7 @@ import numpy as np
 from dynamics.orders import Waterfall, frequency_waterfall, highest_valid_order, order_waterfall
 from dynamics.results import RunResult
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.studies.listen.through_housing import PRINCIPAL
+from lineofaction.gearbox.studies.listen.run import PRINCIPAL
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,

@@ -15,8 +15,7 @@ from dynamics.acoustics.recording import PASSED, SAMPLE_RATE
 from dynamics.errors import InputError
 from dynamics.results import RunResult
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.studies.listen.heard_run import KIND, SCHEMA, HeardRun
-from lineofaction.gearbox.studies.listen.sound_figures import driving_shaft
+from lineofaction.gearbox.studies.listen.run import KIND, SCHEMA, HeardRun, driving_shaft
 from lineofaction.report.drawing.figure import Axis, Sound, Track, number, unit_of
 from lineofaction.report.run.view import (
     QUANTITIES,

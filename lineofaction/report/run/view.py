@@ -15,8 +15,7 @@ from dynamics.orders import highest_valid_order, order_frequency
 from dynamics.orders.spectrum import WINDOWS
 from dynamics.results import RunResult
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.studies.listen.sound_figures import driving_shaft
-from lineofaction.gearbox.studies.listen.through_housing import DIRECTIONS, PRINCIPAL
+from lineofaction.gearbox.studies.listen.run import DIRECTIONS, PRINCIPAL, driving_shaft
 from lineofaction.report.drawing.figure import Axis, FloatArray, number
 
 MONOTONE = 0.2  # least change of speed over the run, of the highest, for a speed axis

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,11 +13,19 @@ import pytest
 
 import lineofaction as loa
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas import Case, validated
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = ROOT / "examples"
 MOST_NAMES = 60
+FUNCTIONS = {study.package: study for study in STUDIES.values()}
+
+
+def blocks(page: Path) -> list[ast.Module]:
+    """Return the Python of a page."""
+    return [
+        ast.parse(block) for block in re.findall(r"```python\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
+    ]
 
 
 def test_every_name_is_there_and_they_are_few() -> None:
@@ -67,3 +77,14 @@ def test_a_unit_without_a_scene_is_refused() -> None:
     unit = loa.Unit((), None, (), (), ())
     with pytest.raises(loa.BadInput, match="scene"):
         loa.modes(unit)
+
+
+def test_every_study_has_an_example_whose_inputs_are_accepted() -> None:
+    called = set()
+    for call in (node for block in blocks(ROOT / "docs/python.md") for node in ast.walk(block)):
+        if isinstance(call, ast.Call) and (name := ast.unparse(call.func).removeprefix("loa.")) in FUNCTIONS:
+            inputs = {k.arg: eval(ast.unparse(k.value)) for k in call.keywords if k.arg and k.arg != "run"}
+            named = {"run": "0" * 64} if any(k.arg == "run" for k in call.keywords) else {}
+            validated(FUNCTIONS[name].inputs, named | inputs)
+            called.add(name)
+    assert called == set(FUNCTIONS)

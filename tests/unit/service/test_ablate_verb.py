@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from dynamics.ablation import ablate
 from lineofaction.cli.commands import app
-from lineofaction.gearbox.studies.ablate.run import facts
+from lineofaction.gearbox.studies.ablate.run import RUN
 from lineofaction.report.drawing.image import png
 from lineofaction.report.effects.ablate import _ablation_figure, _look
 
@@ -65,7 +65,7 @@ def test_a_case_gives_table_json_and_picture(case: Path, tmp_path: Path) -> None
 
 def test_a_scene_gives_orders_of_errors_and_bearing_forces() -> None:
     made = ablate(gear_pair_scene(duration=0.03), only=["lateral", "friction"])
-    told = facts(made)
+    told = RUN.figures(made)
     assert told["of"] == "scene"
     (lateral,) = told["effects"]
     assert np.shape(lateral["order_change_um"]) == (1, 5)

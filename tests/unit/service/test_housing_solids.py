@@ -34,8 +34,7 @@ from lineofaction.gearbox.convert.scene import TabledScene, check_scene
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.study.paths import places_of
-from lineofaction.gearbox.studies.study.scenes import VariedScene
+from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of
 from lineofaction.gearbox.subjects import scene_of
 
 SOURCE = dict.fromkeys(("step_file", "material", "modes", "element_size_mm", "seats", "feet", "points"))

@@ -20,7 +20,7 @@ from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.input_file import number_list
 from lineofaction.gearbox.problems import EXIT_FAILED, BadInput
-from lineofaction.gearbox.studies.modes.run import facts
+from lineofaction.gearbox.studies.modes.run import RUN
 from lineofaction.gearbox.subjects import scene_of
 from lineofaction.report.document import write_report
 
@@ -66,7 +66,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     written = json.loads(files["json"].read_text())
     written.pop("cpu_seconds")
     assert written.pop("warnings") == []
-    assert written == {k: v for k, v in facts(found).items() if k != "cpu_seconds"}
+    assert written == {k: v for k, v in RUN.figures(found).items() if k != "cpu_seconds"}
     width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
     assert width > 1000 and height > 400
     assert "Campbell diagram: whirl modes over speed" in files["html"].read_text()

@@ -20,12 +20,12 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.studied import RANGES, NoiseRanges
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.noise.flank_figures import flank_scenes
+from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.noise import SensitivityFigures, SoundBandFigures
 from lineofaction.gearbox.studies.noise.uncertainty import (
-    band_json,
     band_of,
+    flank_scenes,
     sensitivities_of,
-    sensitivity_json,
 )
 from lineofaction.gearbox.subjects import scene_of
 
@@ -87,7 +87,7 @@ def test_flanks_and_guesses_are_ranked_by_what_they_change(
     (relief,) = (row for row in rows if row.figure.name == f"{pair}.pinion.tip_relief_um")
     assert (relief.figure.value, relief.figure.step) == (10.0, 2.0)
     assert abs(relief.change) > 0.01
-    json.dumps([sensitivity_json(row) for row in rows], allow_nan=False)
+    json.dumps([figures_of(SensitivityFigures, row) for row in rows], allow_nan=False)
 
 
 def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(
@@ -111,7 +111,7 @@ def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(
 
 def test_bands_go_to_json(subject: TabledScene, model: SoundModel, tmp_path: Path) -> None:
     band = band_of(model, SPEED, 2, NoiseRanges(), Means(tmp_path, quiet))
-    told = json.loads(json.dumps(band_json(band), allow_nan=False))
+    told = json.loads(json.dumps(figures_of(SoundBandFigures, band), allow_nan=False))
     assert len(told["total_low_db_a"]) == SPEED.size
     for level in (told["largest_total"], *(row["largest"] for row in told["orders"])):
         assert level["low_db_a"] <= level["level_db_a"] <= level["high_db_a"]

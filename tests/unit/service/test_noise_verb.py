@@ -25,7 +25,6 @@ from dynamics.acoustics import Hull, a_weighting
 from dynamics.noise import RadiatedSound, loudest
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.studies.noise import run
-from lineofaction.gearbox.studies.noise.run import facts
 from lineofaction.report.drawing import surface_view
 from lineofaction.report.housing import noise as page
 from lineofaction.report.housing.forces import model_tables
@@ -94,7 +93,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     assert f"Radiation models of case at order {point.order:g}, " in result.stdout
     written = json.loads(files["json"].read_text())
     assert written.pop("warnings") == []
-    for figures in (written, expected := facts(found)):
+    for figures in (written, expected := run.RUN.figures(found)):
         figures.pop("cpu_seconds")
     assert written == expected
     report = files["html"].read_text("utf-8")
@@ -132,7 +131,7 @@ def test_regions_and_panels_add_up_to_the_power_of_their_point(scene: Path, tmp_
     for file in (tmp_path / "noise.nc", tmp_path / "noise.vtu"):
         assert loa(scene, *SPEEDS, "-o", file).exit_code == 0
     found = RadiatedSound.from_netcdf(tmp_path / "noise.nc")
-    points = facts(found)["loudest"]
+    points = run.RUN.figures(found)["loudest"]
     for point in points:
         whole = 1e-12 * 10.0 ** (point["level_db"] / 10.0)
         assert sum(region["power_w"] for region in point["regions"]) == pytest.approx(whole, rel=1e-9)

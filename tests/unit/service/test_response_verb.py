@@ -16,7 +16,7 @@ from typer.testing import CliRunner, Result
 
 from dynamics.linearize import ForcedResponse, peaks
 from lineofaction.cli.commands import app
-from lineofaction.gearbox.studies.response.run import facts
+from lineofaction.gearbox.studies.response.run import RUN
 from lineofaction.report.document import write_report
 
 
@@ -67,7 +67,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     written = json.loads(files["json"].read_text())
     written.pop("cpu_seconds")
     assert written.pop("warnings") == []
-    assert written == {k: v for k, v in facts(found).items() if k != "cpu_seconds"}
+    assert written == {k: v for k, v in RUN.figures(found).items() if k != "cpu_seconds"}
     width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
     assert width > 1000 and height > 1000
     check_effects_shown(written["effect_ledger"], result.stdout, files["html"].read_text("utf-8"))

@@ -16,7 +16,7 @@ from lineofaction.gearbox.convert.case import case_at
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.root_stress import Inputs
-from lineofaction.gearbox.studies.root_stress.run import root_stress_json, root_stress_of
+from lineofaction.gearbox.studies.root_stress.run import RUN
 from lineofaction.report.flank.root_stress import _root_stress_figure
 
 CASE = (
@@ -69,7 +69,7 @@ def test_table_csv_json_and_picture_say_the_same(case: Path, tmp_path: Path) -> 
     assert picture.read_bytes().startswith(b"\x89PNG")
     alone = case_at(read_model(Case, case), Inputs())
     means = Means(tmp_path / "cache", lambda *_: None)
-    figure = _root_stress_figure(root_stress_json(root_stress_of(alone, Inputs(), means)))
+    figure = _root_stress_figure(RUN.figures(RUN.compute(alone, Inputs(), means)))
     for gear, panel in zip(("pinion", "wheel"), figure.content, strict=True):
         assert max(panel.lines[0].y) == pytest.approx(found[gear]["tension"]["stress_mpa"], rel=1e-9)
         assert min(panel.lines[2].y) == pytest.approx(found[gear]["compression"]["stress_mpa"], rel=1e-9)

@@ -28,8 +28,6 @@ from lineofaction.gearbox.studies.sensitivity.run import (
     RUN,
     PairStudy,
     read_studies,
-    studies_json,
-    study_case,
     write_studies,
 )
 from lineofaction.report.design.sensitivity import _page, _sensitivity_figure, _sensitivity_table
@@ -88,7 +86,7 @@ def study(name: str = "pair a", factor: float = 1.0) -> PairStudy:
 
 def computed(monkeypatch: pytest.MonkeyPatch, known: PairStudy) -> None:
     """Let every study have a known result."""
-    monkeypatch.setattr(f"{STUDY}.RUN", replace(RUN, compute=lambda *_: (known,)))
+    monkeypatch.setattr(RUN, "compute", lambda *_: (known,))
 
 
 def test_a_study_in_a_folder(small: Path, tmp_path: Path) -> None:
@@ -103,7 +101,7 @@ def test_a_study_in_a_folder(small: Path, tmp_path: Path) -> None:
     written = [Path(file).name for file in answer.pop("written")]
     assert written == [f"sensitivity.{ending}" for ending in ("nc", "json", "png", "html", "csv")]
     (stored,) = read_studies(tmp_path / "out" / "sensitivity.nc")
-    assert studies_json([stored])["pairs"] == answer["pairs"]
+    assert RUN.figures((stored,))["pairs"] == answer["pairs"]
     assert json.loads((tmp_path / "out" / "sensitivity.json").read_text()) == answer
     (found,) = answer["pairs"]
     assert (found["name"], found["normal_force_n"]) == ("small", 1000.0)
@@ -171,7 +169,7 @@ def test_a_file_by_its_ending_is_the_only_one_written(
 
 
 def test_figures_are_in_boundary_units() -> None:
-    (pair,) = studies_json([study()])["pairs"]
+    (pair,) = RUN.figures((study(),))["pairs"]
     without = pair["curves"][0]
     assert pair["center_distance_mm"] == pytest.approx(100.0)
     assert without["misalignment"]["misalignment_um"] == pytest.approx([0.0, 30.0])
@@ -237,7 +235,7 @@ def test_the_examples_run_at_every_deviation(file: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(f"{STUDY}.study_sensitivity", study_nothing)
     case = read_model(Case, file)
     varied = Inputs(misalignment_um=(0.0, 60.0), center_distance_change_percent=(-0.2, 0.0, 0.2))
-    (found,) = study_case(case, varied, MEANS)
+    (found,) = RUN.compute(case, varied, MEANS)
     assert found.normal_force in (6000.0, 13300.0)
     assert studied[0].center_distance_changes[0] == pytest.approx(-0.002 * found.center_distance)
 
@@ -246,7 +244,7 @@ def test_the_highest_torque_is_the_load(small: Path, monkeypatch: pytest.MonkeyP
     """20 teeth of module 4 mm: base radius 37.588 mm."""
     monkeypatch.setattr(f"{STUDY}.study_sensitivity", lambda *_, **__: ())
     small.write_text(SMALL.replace("normal_force_n = [500, 1000]", "torque_n_m = [10, 100]"))
-    (found,) = study_case(read_model(Case, small), Inputs(), MEANS)
+    (found,) = RUN.compute(read_model(Case, small), Inputs(), MEANS)
     assert found.normal_force == pytest.approx(100.0 / 37.5877e-3, rel=1e-5)
 
 

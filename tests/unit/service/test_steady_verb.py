@@ -18,7 +18,7 @@ from typer.testing import CliRunner, Result
 
 from dynamics.periodic import SteadyStates, find_orbit
 from lineofaction.cli.commands import app
-from lineofaction.gearbox.studies.steady.run import facts
+from lineofaction.gearbox.studies.steady.run import RUN
 from lineofaction.report.document import write_report
 
 
@@ -44,7 +44,7 @@ def test_every_kind_of_output_says_the_same(scene: Path, tmp_path: Path) -> None
     for told in (printed, written):
         told.pop("cpu_seconds")
         assert told.pop("warnings") == []
-        assert told == {k: v for k, v in facts(found).items() if k != "cpu_seconds"}
+        assert told == {k: v for k, v in RUN.figures(found).items() if k != "cpu_seconds"}
     assert [point["speed_rpm"] for point in printed["up"]] == pytest.approx([3000.0, 3200.0])
     assert [point["speed_rpm"] for point in printed["down"]] == pytest.approx([3200.0, 3000.0])
     up, down = printed["up"][0], printed["down"][1]

@@ -83,7 +83,7 @@ def test_the_client_has_the_processes_of_the_service_and_no_others() -> None:
     for name, offer in offers().items():
         subject, *_ = offer.signature.parameters
         known = set(processes[name].inputs.model_fields)
-        assert {subject} <= known or (subject == "given" and {"case", "scene"} <= known)
+        assert {subject} <= known or (subject == "subject" and {"case", "scene"} <= known)
 
 
 @EVERY

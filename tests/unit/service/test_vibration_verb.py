@@ -22,7 +22,6 @@ from typer.testing import CliRunner, Result
 from dynamics.vibration import vibration_level
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.studies.vibration import run
-from lineofaction.gearbox.studies.vibration.run import facts
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing import surface_view
 
@@ -70,7 +69,7 @@ def test_every_kind_of_output_says_the_same(scene: Path, tmp_path: Path) -> None
     check_declared("vibration", written)
     for name in ("warnings", "cpu_seconds"):
         written.pop(name)
-    assert written == {name: value for name, value in facts(found).items() if name in written}
+    assert written == {name: value for name, value in run.RUN.figures(found).items() if name in written}
     width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
     assert width > 1000 and height > 1000
     head, *rows = (line.split(",") for line in files["csv"].read_text().splitlines())

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
-from pydantic import Field, Strict
+from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
 from lineofaction.gearbox.schemas.model import BoundaryModel, Name
+from lineofaction.gearbox.schemas.row import Row
 
 
 class Inputs(BoundaryModel):
     """The effects to toggle."""
 
-    only: Annotated[tuple[Name, ...], Strict(False)] | None = Field(
+    only: Row[Name] | None = Field(
         default=None,
         min_length=1,
         max_length=64,
@@ -54,7 +55,7 @@ class EffectFigures(Part):
     bearing_order_change_n: list[list[float]] | None = None
 
 
-class AblationFigures(Figures):
+class AblateFigures(Figures):
     """All effects, each toggled by itself; of a case the loads, of a scene its meshes and bearings."""
 
     of: Literal["case", "scene"]
@@ -66,6 +67,3 @@ class AblationFigures(Figures):
     misalignment_um: float | None = None
     mesh: list[str] | None = None
     bearing: list[str] | None = None
-
-
-ANSWER = AblationFigures

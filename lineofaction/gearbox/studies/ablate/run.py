@@ -22,38 +22,52 @@ from lineofaction.gearbox.convert.case import (
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.ablate import Inputs
-from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.result_file import record_file
+from lineofaction.gearbox.studies.ablate import AblateFigures, Inputs
+from lineofaction.gearbox.studies.computation import Computation, Means, record_file
 from lineofaction.gearbox.units import in_um
 
 
-def ablation_of(subject: Case | TabledScene, inputs: Inputs, means: Means) -> Ablation | SceneAblation:
-    """Toggle the effects of a case, at its nominal center distance, or of a scene.
+class AblateStudy(
+    Computation[Case | SceneInput, Case | TabledScene, Inputs, AblateFigures, Ablation | SceneAblation]
+):
+    """All effects, each toggled by itself; of a case the loads, of a scene its meshes and bearings."""
 
-    Raises
-    ------
-    BadInput
-        No such pair or effect.
-    JobFailed
-        The case itself cannot be computed.
-    """
-    with boundary_errors():
-        if isinstance(subject, TabledScene):
-            return ablate_scene(subject.scene, inputs.only, means.report)
-        run = Run(cache=means.home / "compliance", progress=means.report)
-        axes, options = table_axes(subject), analysis_options(subject)
-        return ablate(gear_pair(subject), axes, options, run, only=inputs.only)
+    inputs, answer = Inputs, AblateFigures
+    file = record_file(("ablation of a case", Ablation), ("ablation of a scene", SceneAblation))
+
+    def check(self, subject: Case | SceneInput, inputs: Inputs) -> None:
+        """Refuse a case that cannot be, and an effect that there is not."""
+        if isinstance(subject, Case):
+            check_case(subject)
+        _requested(inputs.only, of_scene=not isinstance(subject, Case))
+
+    def normalized(self, subject: Case | SceneInput, inputs: Inputs) -> Json:
+        """Return the effects in the order of their registry."""
+        return {"only": _requested(inputs.only, of_scene=not isinstance(subject, Case))}
+
+    def compute(self, subject: Case | TabledScene, inputs: Inputs, means: Means) -> Ablation | SceneAblation:
+        """Toggle the effects of a case, at its nominal center distance, or of a scene.
+
+        Raises
+        ------
+        BadInput
+            No such pair or effect.
+        JobFailed
+            The case itself cannot be computed.
+        """
+        with boundary_errors():
+            if isinstance(subject, TabledScene):
+                return ablate_scene(subject.scene, inputs.only, means.report)
+            run = Run(cache=means.home / "compliance", progress=means.report)
+            axes, options = table_axes(subject), analysis_options(subject)
+            return ablate(gear_pair(subject), axes, options, run, only=inputs.only)
+
+    def figures(self, ablation: Ablation | SceneAblation) -> Json:
+        """Return an ablation with lengths in um."""
+        return {"of": "case" if isinstance(ablation, Ablation) else "scene", **in_um(ablation.to_json())}
 
 
-def check(subject: Case | SceneInput, inputs: Inputs) -> None:
-    """Refuse a case that cannot be, and an effect that there is not."""
-    if isinstance(subject, Case):
-        check_case(subject)
-    requested(inputs.only, of_scene=not isinstance(subject, Case))
-
-
-def requested(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:
+def _requested(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:
     """Return the effects to toggle, once each, in the order of their registry.
 
     Raises
@@ -68,20 +82,4 @@ def requested(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:
         return chosen("only", only, known, "Or leave it out: all are toggled.")
 
 
-def normalized(subject: Case | SceneInput, inputs: Inputs) -> Json:
-    """Return the effects in the order of their registry."""
-    return {"only": requested(inputs.only, of_scene=not isinstance(subject, Case))}
-
-
-def facts(ablation: Ablation | SceneAblation) -> Json:
-    """Return an ablation with lengths in um."""
-    return {"of": "case" if isinstance(ablation, Ablation) else "scene", **in_um(ablation.to_json())}
-
-
-RUN = Computation(
-    ablation_of,
-    facts,
-    record_file(("ablation of a case", Ablation), ("ablation of a scene", SceneAblation)),
-    check=check,
-    normalized=normalized,
-)
+RUN = AblateStudy()

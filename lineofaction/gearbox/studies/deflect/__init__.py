@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import ConfigDict, Field, Strict, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from dynamics.settings import load_case
 from dynamics.settings.load_case import CaseForce
@@ -12,6 +12,7 @@ from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
 from lineofaction.gearbox.schemas.loads import ACTING, Vector
 from lineofaction.gearbox.schemas.model import BoundaryModel, Name, own_or_factor, refuse, stated
+from lineofaction.gearbox.schemas.row import Row
 
 MOST_CASES = 64
 MOST_FORCES = 256
@@ -36,7 +37,7 @@ class CaseForceInput(BoundaryModel):
     )
 
 
-CaseForces = Annotated[tuple[CaseForceInput, ...], Strict(False), Field(max_length=MOST_FORCES)]
+CaseForces = Annotated[Row[CaseForceInput], Field(max_length=MOST_FORCES)]
 
 
 @with_fields(declared_in(load_case.LoadCase))
@@ -52,7 +53,7 @@ class LoadCaseInput(BoundaryModel):
     )
 
 
-LoadCases = Annotated[tuple[LoadCaseInput, ...], Strict(False), Field(min_length=1, max_length=MOST_CASES)]
+LoadCases = Annotated[Row[LoadCaseInput], Field(min_length=1, max_length=MOST_CASES)]
 
 
 class Inputs(BoundaryModel):
@@ -72,8 +73,7 @@ class Inputs(BoundaryModel):
     )
 
     @model_validator(mode="after")
-    def _differ(self) -> Self:
-        """Refuse two cases of one name."""
+    def _refuse_equal_names(self) -> Self:
         names = [case.name for case in self.load_cases]
         if len(set(names)) < len(names):
             refuse("load_cases", names, "names that differ", "Rename one of them.")
@@ -189,7 +189,7 @@ class BearingOverCases(Part):
     rating_life: RatingLife
 
 
-class DeflectionFigures(Figures):
+class DeflectFigures(Figures):
     """Misalignment by cause, flanks and bearings under every load case."""
 
     leading_shaft: Annotated[str, Source("deflection.leading_shaft")]
@@ -200,6 +200,3 @@ class DeflectionFigures(Figures):
     cpu_seconds: Annotated[float, Source("seconds")] = Field(
         description="With the tables and housings that were made for it"
     )
-
-
-ANSWER = DeflectionFigures

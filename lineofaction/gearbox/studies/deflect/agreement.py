@@ -194,7 +194,6 @@ def in_agreement(
 
 
 def _with_tables(scene: Scene, tables: Mapping[str, MeshTable]) -> Scene:
-    """Return the scene with other tables of some meshes, by name."""
     meshes = (
         replace(mesh, table=tables[mesh.name]) if mesh.name in tables else mesh for mesh in scene.meshes
     )

@@ -21,16 +21,8 @@ from dynamics.deflection import (
 )
 from dynamics.settings.load_case import COAST
 from lineofaction.gearbox.schemas.toml import toml_text
-from lineofaction.gearbox.studies.deflect import DeflectionFigures
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
-from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.units import RPM, UM
-
-# The load spectrum of every mesh as the inputs of an optimization of its flanks.
-
-
-# Figures of bearings under load cases: loads, displacements and rating life.
-
 
 HOUR = 3600.0  # s
 ROUNDING, ROUNDING_OF_ALL = 1e-9, 1e-12
@@ -109,19 +101,17 @@ def _life(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Json:
     return {"rating_life_hours": seconds / HOUR, "rating_life": status}
 
 
-def facts(result: GearboxDeflection) -> Json:
-    """Return all figures; lines of shafts and patterns are in the file."""
+def figures_by_case(result: GearboxDeflection) -> Json:
+    """Return the figures by load case, by mesh, by bearing; lines of shafts and patterns are in the file."""
     flanks = {(own.case, own.mesh): own for own in result.flanks}
     cases = result.deflection.cases
     by_case = _loads_by_case(cases)
-    weights = shares(result)
-    return figures_of(
-        DeflectionFigures,
-        result,
-        load_cases=[_case(case, flanks, loads) for case, loads in zip(cases, by_case, strict=True)],
-        meshes=[_mesh_over_cases(result, name) for name in mesh_names(result)],
-        bearings=[_over_cases(loads, weights) for loads in zip(*by_case, strict=True)],
-    )
+    weights = _shares(result)
+    return {
+        "load_cases": [_case(case, flanks, loads) for case, loads in zip(cases, by_case, strict=True)],
+        "meshes": [_mesh_over_cases(result, name) for name in mesh_names(result)],
+        "bearings": [_over_cases(loads, weights) for loads in zip(*by_case, strict=True)],
+    }
 
 
 def mesh_names(result: GearboxDeflection) -> list[str]:
@@ -129,7 +119,7 @@ def mesh_names(result: GearboxDeflection) -> list[str]:
     return [mesh.name for mesh in result.deflection.cases[0].meshes]
 
 
-def shares(result: GearboxDeflection) -> list[float]:
+def _shares(result: GearboxDeflection) -> list[float]:
     """Return the shares of the load cases, which sum to 1."""
     own = [case.share for case in result.deflection.cases]
     return [share / sum(own) for share in own]
@@ -150,7 +140,7 @@ def _mesh(mesh: MeshAlignment, flanks: MeshFlanks | None) -> tuple[MeshAlignment
 
 def _mesh_over_cases(result: GearboxDeflection, name: str) -> Json:
     """Return the means of a mesh over the load cases by their shares, and its worst case."""
-    weights, cases = shares(result), result.deflection.cases
+    weights, cases = _shares(result), result.deflection.cases
     own = [next(mesh for mesh in case.meshes if mesh.name == name) for case in cases]
     worst = int(np.argmax([abs(mesh.misalignment) for mesh in own]))
     flanks = [part for part in result.flanks if part.mesh == name]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 
 import numpy as np
 
@@ -22,46 +23,89 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.deflect import CaseForceInput, Inputs
+from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
+from lineofaction.gearbox.studies.deflect import CaseForceInput, DeflectFigures, Inputs
 from lineofaction.gearbox.studies.deflect.agreement import Agreement, MeshContact, in_agreement, mesh_contact
-from lineofaction.gearbox.studies.deflect.figures import facts, write_spectrum
+from lineofaction.gearbox.studies.deflect.figures import figures_by_case, write_spectrum
 from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks, outline_of
-from lineofaction.gearbox.studies.result_file import record_file
 
 ALONG_FACE, ALONG_PROFILE = 41, 40
 
 
-def deflection_of(tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
-    """Deflect a scene under its load cases.
+class DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
+    """Misalignment by cause, flanks and bearings under every load case."""
 
-    Raises
-    ------
-    BadInput
-        A case that the scene cannot have.
-    JobFailed
-        The contact of a mesh was not solved.
-    """
-    began, scene = cpu_seconds() - tabled.seconds, tabled.scene
-    with boundary_errors():
-        cases = load_cases(inputs)
-        first = deflect(scene, cases, inputs.positions, lambda done: means.report("deflection", done))
-        contacts = _contacts(tabled, first.cases, means)
-        across = {name: contact for name, contact in contacts.items() if contact.across_face}
-        agreed = in_agreement(scene, cases, inputs.positions, across, first)
-        flanks = tuple(_flanks(scene, agreed, contacts, means))
-    written = {name: mesh.case.model_dump(mode="json") for name, mesh in _with_case(tabled) if mesh.case}
-    return GearboxDeflection(
-        agreed.deflection,
-        flanks,
-        agreed.passes,
-        agreed.change,
-        agreed.reached,
-        outline_of(scene),
-        written,
-        cpu_seconds() - began,
-        scene_of(tabled.inputs),
-    )
+    inputs, answer, file = Inputs, DeflectFigures, record_file(("deflection", GearboxDeflection))
+    writers = MappingProxyType({".toml": write_spectrum})
+
+    def check(self, scene: SceneInput, inputs: Inputs) -> None:
+        """Refuse load cases that cannot be, or that need what the scene lacks, before tables are computed.
+
+        Raises
+        ------
+        BadInput
+            By the field of the load case.
+        """
+        with named(""):
+            cases = load_cases(inputs)
+            check_forces(cases, [force.name for force in scene.forces])
+        for index, case in enumerate(cases):
+            if case.torque is not None and not scene.loads:
+                raise BadInput.of(
+                    f"load_cases[{index}].torque_n_m",
+                    case.torque,
+                    "left out: the scene has no loads",
+                    "A load case scales them. Add [[loads]] where the torque leaves the gearbox.",
+                )
+
+    def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
+        """Deflect a scene under its load cases.
+
+        Raises
+        ------
+        BadInput
+            A case that the scene cannot have.
+        JobFailed
+            The contact of a mesh was not solved.
+        """
+        began, scene = cpu_seconds() - tabled.seconds, tabled.scene
+        with boundary_errors():
+            cases = load_cases(inputs)
+            first = deflect(scene, cases, inputs.positions, lambda done: means.report("deflection", done))
+            contacts = _contacts(tabled, first.cases, means)
+            across = {name: contact for name, contact in contacts.items() if contact.across_face}
+            agreed = in_agreement(scene, cases, inputs.positions, across, first)
+            flanks = tuple(_flanks(scene, agreed, contacts, means))
+        written = {name: mesh.case.model_dump(mode="json") for name, mesh in _with_case(tabled) if mesh.case}
+        return GearboxDeflection(
+            agreed.deflection,
+            flanks,
+            agreed.passes,
+            agreed.change,
+            agreed.reached,
+            outline_of(scene),
+            written,
+            cpu_seconds() - began,
+            scene_of(tabled.inputs),
+        )
+
+    def _derived(self, result: GearboxDeflection) -> Json:
+        return figures_by_case(result)
+
+    def failure(self, result: GearboxDeflection) -> str:
+        """Say which load cases have no equilibrium, or how far meshes and bodies disagree."""
+        lost = [case for case in result.deflection.cases if case.status != "converged"]
+        if lost:
+            names = ", ".join(f'"{case.name}" ({case.status.replace("_", " ")})' for case in lost)
+            advice = "Check that bearings hold every shaft that is loaded."
+            return f"No equilibrium under load case {names}. {advice}"
+        if not result.agreed:
+            change = leftover(result.change)
+            return (
+                f"Mesh loads and deflections disagree: misalignments still change by {change} of their size "
+                f"after {result.passes} passes."
+            )
+        return ""
 
 
 def scene_of(inputs: SceneInput) -> Json:
@@ -83,27 +127,6 @@ def load_cases(inputs: Inputs) -> tuple[LoadCase, ...]:
 def _force(index: int, force: CaseForceInput) -> CaseForce:
     with inside(f"forces[{index}]"):
         return CaseForce(**in_si(CaseForce, force))
-
-
-def _check_cases(scene: SceneInput, inputs: Inputs) -> None:
-    """Refuse load cases that cannot be, or that ask for what the scene lacks, before tables are computed.
-
-    Raises
-    ------
-    BadInput
-        By the field of the load case.
-    """
-    with named(""):
-        cases = load_cases(inputs)
-        check_forces(cases, [force.name for force in scene.forces])
-    for index, case in enumerate(cases):
-        if case.torque is not None and not scene.loads:
-            raise BadInput.of(
-                f"load_cases[{index}].torque_n_m",
-                case.torque,
-                "left out: the scene has no loads",
-                "A load case scales them. Add [[loads]] where the torque leaves the gearbox.",
-            )
 
 
 def _with_case(tabled: TabledScene) -> Iterator[tuple[str, MeshInput]]:
@@ -204,26 +227,4 @@ def _pattern(
     return rows, pattern
 
 
-def failure(result: GearboxDeflection) -> str:
-    """Say which load cases were not found, or how far meshes and bodies disagree."""
-    lost = [case for case in result.deflection.cases if case.status != "converged"]
-    if lost:
-        names = ", ".join(f'"{case.name}" ({case.status.replace("_", " ")})' for case in lost)
-        return f"No equilibrium under load case {names}. Check that bearings hold every shaft that is loaded."
-    if not result.agreed:
-        change = leftover(result.change)
-        return (
-            f"Mesh loads and deflections disagree: misalignments still change by {change} of their size "
-            f"after {result.passes} passes."
-        )
-    return ""
-
-
-RUN = Computation(
-    deflection_of,
-    facts,
-    record_file(("deflection", GearboxDeflection)),
-    check=_check_cases,
-    writers={".toml": write_spectrum},
-    failure=failure,
-)
+RUN = DeflectStudy()

@@ -32,6 +32,3 @@ class FlankFigures(Figures):
     edge_pressure_mpa: float = Field(description="At edges as if the flank went on; the true one is singular")
     effect_ledger: Annotated[list[Json] | Json, Source("metadata.effect_ledger")]
     receipt: Annotated[Json, Source("metadata.receipt")]
-
-
-ANSWER = FlankFigures

@@ -1,11 +1,11 @@
-"""Flank results of a case: from one load and one alignment to what happens on the flanks, and its JSON."""
+"""Flank results of a case: from one load and one alignment to what happens on the flanks."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
+from bounds.types import Json
 from fe_contact.analysis.flanks.flank_file import FORMAT, flank_results
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.options import Run
@@ -20,14 +20,10 @@ from lineofaction.gearbox.convert.case import (
 )
 from lineofaction.gearbox.convert.plausibility import phrased_for
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.studies.computation import Computation
-from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.flank import FlankFigures
-from lineofaction.gearbox.studies.result_file import ResultFile
+from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile
+from lineofaction.gearbox.studies.flank import FlankFigures, Inputs
 from lineofaction.gearbox.units import MM, UM, as_typed
 from model_studies import Progress, silent
-
-Json = dict[str, Any]
 
 
 def flanks_of(case: Case, cache: Path | None, progress: Progress = silent) -> LoadDistribution:
@@ -51,31 +47,46 @@ def flanks_of(case: Case, cache: Path | None, progress: Progress = silent) -> Lo
     return replace(results, metadata=replace(results.metadata, warnings=warnings))
 
 
-def flank_json(flanks: LoadDistribution) -> Json:
-    """Return the figures of flank results."""
-    scene, centroid = flanks.scene, flanks.load_centroid
-    return figures_of(
-        FlankFigures,
-        flanks,
-        torque_n_m=as_typed(scene.torque),
-        misalignment_um=as_typed(scene.misalignment, UM),
-        center_distance_change_mm=as_typed(scene.center_distance_change, MM),
-        largest_face_load_factor=flanks.face_load_factor.max(),
-        load_centroid=(centroid.min(), centroid.max()),
-        largest_line_load_n_per_mm=flanks.line_load.max() * MM,
-        largest_pressure_mpa=flanks.clear_pressure.max() * 1e-6,
-        edge_pressure_mpa=flanks.edge_pressure * 1e-6,
+class FlankStudy(CaseStudy[Inputs, FlankFigures, LoadDistribution]):
+    """Figures of the flanks over a mesh cycle, at one load and one alignment."""
+
+    inputs, answer = Inputs, FlankFigures
+    file = ResultFile(
+        "format", (FORMAT,), LoadDistribution.to_netcdf, LoadDistribution.from_netcdf, LoadDistribution
     )
 
+    def narrowed(self, case: Case, inputs: Inputs) -> Case:
+        """Return the case at one load and one alignment."""
+        return case_at(case, inputs)
 
-RUN = Computation(
-    lambda case, _inputs, means: flanks_of(case, means.home / "compliance", means.report),
-    flank_json,
-    ResultFile(
-        "format", (FORMAT,), LoadDistribution.to_netcdf, LoadDistribution.from_netcdf, LoadDistribution
-    ),
-    narrowed=case_at,
-    check=lambda case, _inputs: check_case(case, whole_table=False),
-    normalized=lambda _case, _inputs: {},
-    warnings=lambda results: results.metadata.warnings,
-)
+    def check(self, case: Case, _inputs: Inputs) -> None:
+        """Refuse a case that cannot be."""
+        check_case(case, whole_table=False)
+
+    def normalized(self, _case: Case, _inputs: Inputs) -> Json:
+        """Return nothing: the case has all of it."""
+        return {}
+
+    def compute(self, case: Case, _inputs: Inputs, means: Means) -> LoadDistribution:
+        """Return what happens on the flanks."""
+        return flanks_of(case, means.home / "compliance", means.report)
+
+    def _derived(self, flanks: LoadDistribution) -> Json:
+        scene, centroid = flanks.scene, flanks.load_centroid
+        return {
+            "torque_n_m": as_typed(scene.torque),
+            "misalignment_um": as_typed(scene.misalignment, UM),
+            "center_distance_change_mm": as_typed(scene.center_distance_change, MM),
+            "largest_face_load_factor": flanks.face_load_factor.max(),
+            "load_centroid": (centroid.min(), centroid.max()),
+            "largest_line_load_n_per_mm": flanks.line_load.max() * MM,
+            "largest_pressure_mpa": flanks.clear_pressure.max() * 1e-6,
+            "edge_pressure_mpa": flanks.edge_pressure * 1e-6,
+        }
+
+    def warnings(self, flanks: LoadDistribution) -> list[Json] | None:
+        """Return the warnings in the fields and units of the case."""
+        return flanks.metadata.warnings
+
+
+RUN = FlankStudy()

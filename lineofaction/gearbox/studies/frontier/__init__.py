@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
-from pydantic import Field, Strict
+from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
 from lineofaction.gearbox.schemas.model import BoundaryModel, Name
+from lineofaction.gearbox.schemas.row import Row
 
 MOST_FULL_CONTACT = 64
 
@@ -15,7 +16,7 @@ MOST_FULL_CONTACT = 64
 class Inputs(BoundaryModel):
     """The fidelities to run, and full contact beside those of a case."""
 
-    rungs: Annotated[tuple[Name, ...], Strict(False)] | None = Field(
+    rungs: Row[Name] | None = Field(
         default=None,
         min_length=1,
         max_length=64,
@@ -71,6 +72,3 @@ class FrontierFigures(Figures):
     orders: int | None = None
     blocks: int | None = None
     transmission_error_rms_m: list[list[float]] | None = None
-
-
-ANSWER = FrontierFigures

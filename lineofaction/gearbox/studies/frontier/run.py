@@ -21,50 +21,65 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.frontier import Inputs
-from lineofaction.gearbox.studies.result_file import record_file
+from lineofaction.gearbox.studies.computation import Computation, Means, record_file
+from lineofaction.gearbox.studies.frontier import FrontierFigures, Inputs
 
 LEAST = 2
 
 
-def frontier_of(subject: Case | TabledScene, inputs: Inputs, means: Means) -> Frontier | SceneFrontier:
-    """Study the accuracy of a case, over all pitches that differ and with the whole receipt, or of a scene.
+class FrontierStudy(
+    Computation[Case | SceneInput, Case | TabledScene, Inputs, FrontierFigures, Frontier | SceneFrontier]
+):
+    """Error against time; the reference is the finest fidelity, the knee where time buys least."""
 
-    Raises
-    ------
-    BadInput
-        No such pair or fidelity, or the run is too short.
-    JobFailed
-        Fewer than two fidelities came to their end.
-    """
-    names = requested(inputs, of_scene=not isinstance(subject, Case))
-    with boundary_errors():
-        if isinstance(subject, TabledScene):
-            return frontier_of_scene(subject.scene, fidelities=names, progress=means.report)
-        axes = replace(table_axes(subject), pitches=None)
-        return frontier(
-            gear_pair(subject),
-            axes,
-            study_options(subject),
-            fidelities=names,
-            full_contact=inputs.full_contact,
-            progress=means.report,
-        )
+    inputs, answer = Inputs, FrontierFigures
+    file = record_file(("accuracy study of a case", Frontier), ("accuracy study of a scene", SceneFrontier))
+
+    def check(self, subject: Case | SceneInput, inputs: Inputs) -> None:
+        """Refuse a case that cannot be, a fidelity that there is not, and full contact of a scene."""
+        if isinstance(subject, Case):
+            check_case(subject)
+        else:
+            for name in ("full_contact", "up_to"):
+                if (value := getattr(inputs, name)) != Inputs.model_fields[name].default:
+                    raise BadInput.of(name, value, "left out for a scene", "Give it with a case.")
+        _requested(inputs, of_scene=not isinstance(subject, Case))
+
+    def normalized(self, subject: Case | SceneInput, inputs: Inputs) -> Json:
+        """Return the fidelities in their order, and full contact if it is requested."""
+        beside = {} if inputs.full_contact is None else {"full_contact": inputs.full_contact}
+        return {"rungs": _requested(inputs, of_scene=not isinstance(subject, Case)), **beside}
+
+    def compute(self, subject: Case | TabledScene, inputs: Inputs, means: Means) -> Frontier | SceneFrontier:
+        """Study a case, over all pitches that differ and with the whole receipt, or a scene.
+
+        Raises
+        ------
+        BadInput
+            No such pair or fidelity, or the run is too short.
+        JobFailed
+            Fewer than two fidelities came to their end.
+        """
+        names = _requested(inputs, of_scene=not isinstance(subject, Case))
+        with boundary_errors():
+            if isinstance(subject, TabledScene):
+                return frontier_of_scene(subject.scene, fidelities=names, progress=means.report)
+            axes = replace(table_axes(subject), pitches=None)
+            return frontier(
+                gear_pair(subject),
+                axes,
+                study_options(subject),
+                fidelities=names,
+                full_contact=inputs.full_contact,
+                progress=means.report,
+            )
+
+    def figures(self, study: Frontier | SceneFrontier) -> Json:
+        """Return all fidelities."""
+        return study.to_json()
 
 
-def check(subject: Case | SceneInput, inputs: Inputs) -> None:
-    """Refuse a case that cannot be, a fidelity that there is not, and full contact of a scene."""
-    if isinstance(subject, Case):
-        check_case(subject)
-    else:
-        for name in ("full_contact", "up_to"):
-            if (value := getattr(inputs, name)) != Inputs.model_fields[name].default:
-                raise BadInput.of(name, value, "left out for a scene", "Give it with a case.")
-    requested(inputs, of_scene=not isinstance(subject, Case))
-
-
-def requested(inputs: Inputs, *, of_scene: bool) -> list[str]:
+def _requested(inputs: Inputs, *, of_scene: bool) -> list[str]:
     """Return the fidelities that are requested, once each, in the order of their cost.
 
     Raises
@@ -82,16 +97,4 @@ def requested(inputs: Inputs, *, of_scene: bool) -> list[str]:
     return names
 
 
-def normalized(subject: Case | SceneInput, inputs: Inputs) -> Json:
-    """Return the fidelities in their order, and full contact if it is requested."""
-    beside = {} if inputs.full_contact is None else {"full_contact": inputs.full_contact}
-    return {"rungs": requested(inputs, of_scene=not isinstance(subject, Case)), **beside}
-
-
-RUN = Computation(
-    frontier_of,
-    lambda study: study.to_json(),
-    record_file(("accuracy study of a case", Frontier), ("accuracy study of a scene", SceneFrontier)),
-    check=check,
-    normalized=normalized,
-)
+RUN = FrontierStudy()

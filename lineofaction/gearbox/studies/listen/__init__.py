@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from lineofaction.gearbox.schemas.figures import Figures, Part
-from lineofaction.gearbox.schemas.model import BoundaryModel, Point, exactly_one_of, refuse, stated
+from lineofaction.gearbox.schemas.figures import Figures, Part, Source
+from lineofaction.gearbox.schemas.model import BoundaryModel, Coordinate, exactly_one_of, refuse, stated
+from lineofaction.gearbox.schemas.row import Row
 from lineofaction.gearbox.schemas.studied import RunHash
 
+Position = Annotated[Row[Coordinate], Field(min_length=3, max_length=3)]
 _PLACES = ("microphone_mm", "point")
+_TONE = ("frequency", "tone_to_noise")
 
 
 class Inputs(BoundaryModel):
@@ -21,7 +24,7 @@ class Inputs(BoundaryModel):
     run: RunHash = Field(
         description="Run whose forces on bearings move the housings of the scene", examples=["0" * 64]
     )
-    microphone_mm: Point | None = Field(
+    microphone_mm: Position | None = Field(
         default=None,
         description="Where the sound pressure is heard, in mm in the frame of the scene: free field",
         examples=[[40.0, 60.0, 1000.0]],
@@ -56,26 +59,25 @@ class SoundPressure(Part):
     """What the ear makes of a sound pressure; loudness and sharpness need the extra `psychoacoustics`."""
 
     level_db: float
-    level_db_a: float
+    level_db_a: Annotated[float, Source("weighted_level")]
     steady: bool
-    loudness_sone: float | None
-    sharpness_acum: float | None
-    tones: list[Tone]
+    loudness_sone: Annotated[float | None, Source("loudness")]
+    sharpness_acum: Annotated[float | None, Source("sharpness")]
+    tones: Annotated[
+        list[Tone], Source(lambda sound: [dict(zip(_TONE, tone, strict=True)) for tone in sound.tones])
+    ]
 
 
-class RecordingFigures(Figures):
+class ListenFigures(Figures):
     """Figures of a run at a microphone, or at a point of a housing."""
 
     run: str
+    full_scale: float
+    remark: str
     quantity: str
     unit: str
     rms: float
     duration_s: float
     sample_rate_hz: int
-    full_scale: float
-    remark: str
-    sound: SoundPressure | None
+    sound: Annotated[SoundPressure | None, Source("figures")]
     other_housings: list[str]
-
-
-ANSWER = RecordingFigures

@@ -1,66 +1,298 @@
-"""A run through the housings of a scene: sound pressure at a microphone, or velocity of a point."""
+"""Runs as they are heard through the housings of a scene: recording, and what the ear makes of it."""
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
+import numpy as np
+
+from bounds.types import Json
+from dynamics.acoustics import Recording, loudness_over_time, sound_pressure_level, sound_quality
+from dynamics.acoustics.sound_quality import SHORTEST
+from dynamics.housings import ReducedHousing, scene_housing
+from dynamics.noise import pressure_recording, velocity_recording
+from dynamics.orders import leading_shaft
+from dynamics.results import RunResult
+from dynamics.types import FloatArray
+from host import MissingExtra
+from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.housings import HousedScene
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.listen import Inputs
-from lineofaction.gearbox.studies.listen.heard_run import (
-    HeardRun,
-    Receiver,
-    heard_run,
-    recording_facts,
-    sound_facts,
+from lineofaction.gearbox.studies.computation import Computation, Means, record_file
+from lineofaction.gearbox.studies.housings import other_housings, require_surface, silent
+from lineofaction.gearbox.studies.listen import Inputs, ListenFigures
+from lineofaction.gearbox.units import MM
+
+PRINCIPAL = "principal"
+DIRECTIONS = ("x", "y", "z", PRINCIPAL)
+KIND, SCHEMA = "recording", "lineofaction recording"
+"""Of its files: kind of the result, and attribute."""
+NO_LOUDNESS = "loudness is that of a sound pressure alone"
+FREE_FIELD = (
+    "free field: no room, floor or attached parts; the air is at rest and does not act back. Panels as "
+    "monopoles neither scatter nor shadow: at one place mostly 7 dB too low to 2 dB too high, and lower "
+    "where the housing is larger than the wavelength"
 )
-from lineofaction.gearbox.studies.listen.through_housing import SceneHousings, require_point, require_surface
-from lineofaction.gearbox.studies.result_file import record_file
+POINTS = 200
+"""Of the way along an axis."""
+STEADY = 0.01
+"""Largest change of speed of a steady sound, of the speed."""
+EXCEEDED = 5.0
+"""Percent of the time for which the loudness of a changing sound is exceeded: N5 of ISO 532-1."""
 
-Json = dict[str, Any]
+
+@dataclass(frozen=True)
+class SoundFigures:
+    """Figures of a sound pressure.
+
+    Attributes
+    ----------
+    level, weighted_level : float
+        Of the rms over the whole run, dB and dB(A) re 20 uPa.
+    steady : bool
+        Whether the speed is constant.
+    loudness : float or None
+        sone, in the free field; of a changing sound that exceeded for 5 % of the time. None: not computed.
+    sharpness : float or None
+        acum, of the mean spectrum.
+    tones : tuple of (float, float)
+        Hz and tone-to-noise ratio in dB of the prominent tones of a steady sound.
+    """
+
+    level: float
+    weighted_level: float
+    steady: bool
+    loudness: float | None = None
+    sharpness: float | None = None
+    tones: tuple[tuple[float, float], ...] = ()
 
 
-def _listen_to(subject: HousedScene, inputs: Inputs, means: Means) -> HeardRun:
-    """Return the run as it is heard.
+def sound_figures(recording: Recording, run: RunResult) -> SoundFigures:
+    """Return the figures of a sound pressure; of a very short one, or without MoSQITo, its levels alone."""
+    level, weighted = (sound_pressure_level(recording, weighted=by_ear) for by_ear in (False, True))
+    steady = _steady(run)
+    if recording.samples.size < SHORTEST * recording.sample_rate:
+        return SoundFigures(level, weighted, steady)
+    try:
+        quality = sound_quality(recording)
+        loudness = quality.loudness if steady else _exceeded(recording)
+    except MissingExtra:
+        return SoundFigures(level, weighted, steady)
+    found = zip(quality.tone_frequency.tolist(), quality.tone_to_noise.tolist(), strict=True)
+    return SoundFigures(level, weighted, steady, loudness, quality.sharpness, tuple(found) if steady else ())
+
+
+def _steady(run: RunResult) -> bool:
+    """Whether the driving gear of the first mesh turns at one speed."""
+    speed = np.abs(run.speed[run.shaft.index(driving_shaft(run, 0))])
+    return bool(np.ptp(speed) <= STEADY * speed.max())
+
+
+def _exceeded(recording: Recording) -> float:
+    """Return the loudness that is exceeded for 5 % of the time, sone."""
+    return float(np.percentile(loudness_over_time(recording)[1], 100.0 - EXCEEDED))
+
+
+def driving_shaft(run: RunResult, mesh: int) -> str:
+    """Name of the shaft that carries the driving gear; without gears of the first that is driven."""
+    if not run.mesh:
+        return leading_shaft(run)
+    driver = run.case["meshes"][mesh]["driver"]
+    return str(next(gear["shaft"] for gear in run.case["gears"] if gear["name"] == driver))
+
+
+@dataclass(frozen=True)
+class SceneHousings:
+    """The reduced housings of a scene by name, and the bearings in the order of their seats."""
+
+    housings: Mapping[str, ReducedHousing]
+    bearings: Mapping[str, tuple[str, ...]]
+
+    @classmethod
+    def of(cls, subject: HousedScene) -> SceneHousings:
+        """Return those of a scene."""
+        return cls(subject.housings, {part.name: part.bushings for part in subject.inputs.housings})
+
+    def pressure(self, run: RunResult, microphone_mm: tuple[float, ...]) -> Recording:
+        """Return the sound pressure at a microphone in the scene's frame, the sum over the housings.
+
+        Raises
+        ------
+        BadInput
+            The microphone is not in the air, the run has no forces on bearings of a housing, or no housing
+            has a surface.
+        """
+        position = np.array(microphone_mm) * MM
+        with boundary_errors():
+            heard = [
+                pressure_recording(body, run, position, self.bearings[name])
+                for name, body in self.housings.items()
+                if body.surface is not None
+            ]
+        if not heard:
+            raise silent(list(self.bearings))
+        quantity = "; ".join(dict.fromkeys(one.quantity for one in heard))
+        return replace(heard[0], samples=np.sum([one.samples for one in heard], axis=0), quantity=quantity)
+
+    def velocity(self, run: RunResult, point: str, direction: str = "") -> Recording:
+        """Return the velocity of a named point along one of `DIRECTIONS`, by default the principal one.
+
+        Raises
+        ------
+        BadInput
+            No housing or several have such a point, or there is no such direction.
+        """
+        owners = [name for name, body in self.housings.items() for one in body.points if one.name == point]
+        _require_point(point, [one.name for body in self.housings.values() for one in body.points])
+        if direction and direction not in DIRECTIONS:
+            raise BadInput.of("direction", direction, f"one of {', '.join(DIRECTIONS)}")
+        axis = None if direction in ("", PRINCIPAL) else np.eye(3)[DIRECTIONS.index(direction)]
+        with boundary_errors():
+            return velocity_recording(
+                self.housings[owners[0]], run, point, axis, bearings=self.bearings[owners[0]]
+            )
+
+    def strangers(self, run: RunResult) -> tuple[str, ...]:
+        """Return the names of housings in which a run did not move: its forces lack what they do to them."""
+        return other_housings([scene_housing(body, name) for name, body in self.housings.items()], run)
+
+
+def _require_point(point: str, names: Sequence[str]) -> None:
+    """Refuse a point that is not one of the names, or several; raises `BadInput`."""
+    if names.count(point) != 1:
+        bound = f"the name of one point; known: {', '.join(names) or 'none'}"
+        raise BadInput.of("point", point, bound, "Name points in the housing's table of the scene.")
+
+
+@dataclass(frozen=True)
+class Receiver:
+    """Where a run is heard: at a microphone (mm) in the frame of the scene, or at a point of a housing.
+
+    `direction` is one of `DIRECTIONS`; empty: in which the point moves most.
+    """
+
+    microphone_mm: tuple[float, ...] = ()
+    point: str = ""
+    direction: str = ""
+
+
+@dataclass(frozen=True)
+class HeardRun:
+    """A run through the housings of a scene.
+
+    Attributes
+    ----------
+    run : str
+        Its name, or its content hash.
+    recording : Recording
+    figures : SoundFigures or None
+        Of a sound pressure.
+    other_housings : tuple of str
+        Housings that the scene of the run did not have so.
+    time, speed : (n,) arrays
+        s; of the driving gear of the first mesh, rad/s.
+    """
+
+    run: str
+    recording: Recording
+    figures: SoundFigures | None
+    other_housings: tuple[str, ...]
+    time: FloatArray
+    speed: FloatArray
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What the recording leaves out."""
+        own = NO_LOUDNESS if self.figures is None else FREE_FIELD
+        return (own, *(warning["message"] for warning in self.warnings))
+
+    @property
+    def remark(self) -> str:
+        """The remarks as one text."""
+        return "; ".join(self.remarks)
+
+    @property
+    def warnings(self) -> list[Json]:
+        """Warnings of housings that the scene of the run did not have so."""
+        message = (
+            'run {}: it did not move in housing "{}" as the scene has it; its forces lack what that does'
+        )
+        return [
+            {"check": "other_housing", "message": message.format(self.run, name)}
+            for name in self.other_housings
+        ]
+
+
+def heard_run(name: str, run: RunResult, housings: SceneHousings, receiver: Receiver) -> HeardRun:
+    """Return a run as a receiver hears it.
 
     Raises
     ------
     BadInput
-        The microphone is not in the air, or the run has no forces on the bearings of a housing.
+        As `SceneHousings.pressure` and `velocity`.
     """
-    assert means.run is not None  # the inputs name it
-    receiver = Receiver(inputs.microphone_mm or (), inputs.point or "", inputs.direction or "")
-    heard = heard_run(inputs.run, means.run, SceneHousings.of(subject), receiver)
-    means.report("sound", 1.0)
-    return heard
-
-
-def check(scene: SceneInput, inputs: Inputs) -> None:
-    """Refuse a microphone where nothing radiates, and a point that no housing has."""
-    if inputs.point is None:
-        require_surface(scene)
+    time = np.linspace(float(run.time[0]), float(run.time[-1]), POINTS)
+    speed = np.interp(time, run.time, np.abs(run.speed[run.shaft.index(driving_shaft(run, 0))]))
+    if receiver.point:
+        recording, figures = housings.velocity(run, receiver.point, receiver.direction), None
     else:
-        require_point(inputs.point, [point.name for part in scene.housings for point in part.points])
+        recording = housings.pressure(run, receiver.microphone_mm)
+        figures = sound_figures(recording, run)
+    return HeardRun(name, recording, figures, housings.strangers(run), time - time[0], speed)
 
 
-def facts(heard: HeardRun) -> Json:
-    """Return the figures, as the verb prints them for each of its files."""
+def recording_facts(recording: Recording) -> Json:
+    """Return what a recording holds, in its unit."""
     return {
-        "run": heard.run,
-        "full_scale": heard.recording.peak,
-        "remark": heard.remark,
-        **recording_facts(heard.recording),
-        "sound": sound_facts(heard).get("sound"),
-        "other_housings": list(heard.other_housings),
+        "quantity": recording.quantity,
+        "unit": recording.unit,
+        "rms": rms(recording),
+        "duration_s": recording.samples.size / recording.sample_rate,
+        "sample_rate_hz": recording.sample_rate,
     }
 
 
-RUN = Computation(
-    _listen_to,
-    facts,
-    record_file(("recording", HeardRun)),
-    tables=False,
-    check=check,
-    warnings=lambda heard: heard.warnings,
-)
+def rms(recording: Recording) -> float:
+    """Return the root mean square of a recording."""
+    return math.sqrt(float((recording.samples**2).mean()))
+
+
+class ListenStudy(Computation[SceneInput, HousedScene, Inputs, ListenFigures, HeardRun]):
+    """Figures of a run at a microphone, or at a point of a housing."""
+
+    inputs, answer, file = Inputs, ListenFigures, record_file((KIND, HeardRun))
+    tables = False
+
+    def check(self, scene: SceneInput, inputs: Inputs) -> None:
+        """Refuse a microphone where nothing radiates, and a point that no housing has."""
+        if inputs.point is None:
+            require_surface(scene)
+        else:
+            _require_point(inputs.point, [point.name for part in scene.housings for point in part.points])
+
+    def compute(self, subject: HousedScene, inputs: Inputs, means: Means) -> HeardRun:
+        """Return the run as it is heard.
+
+        Raises
+        ------
+        BadInput
+            The microphone is not in the air, or the run has no forces on the bearings of a housing.
+        """
+        assert means.run is not None  # the inputs name it
+        receiver = Receiver(tuple(inputs.microphone_mm or ()), inputs.point or "", inputs.direction or "")
+        heard = heard_run(inputs.run, means.run, SceneHousings.of(subject), receiver)
+        means.report("sound", 1.0)
+        return heard
+
+    def _derived(self, heard: HeardRun) -> Json:
+        return {"full_scale": heard.recording.peak, **recording_facts(heard.recording)}
+
+    def warnings(self, heard: HeardRun) -> list[Json]:
+        """Return the warnings of housings that the scene of the run did not have so."""
+        return heard.warnings
+
+
+RUN = ListenStudy()

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from pydantic import Field
 
-from pydantic import Field, Strict
-
-from lineofaction.gearbox.schemas.figures import Figures, HousingCost, Json, Part, Source
+from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Json, Part, ReductionCosts, Seconds
+from lineofaction.gearbox.schemas.row import Row
 from lineofaction.gearbox.schemas.studied import MOST_SPEEDS, Orders, OverSpeeds, Speed
-from lineofaction.gearbox.studies.equilibrium import Equilibrium
 
 
 class Inputs(OverSpeeds):
     """Speeds at which modes are looked for, beside those at rest."""
 
-    speed_rpm: Annotated[tuple[Speed, ...], Strict(False)] = Field(
+    speed_rpm: Row[Speed] = Field(
         default=(),
         max_length=MOST_SPEEDS,
         description="Speeds of the first driven shaft in rpm, increasing; default: at rest only",
@@ -86,9 +84,6 @@ class ModesFigures(Figures):
     mesh_frequency_hz: dict[str, list[float]]
     modes: list[WhirlMode]
     critical_speeds: list[CriticalSpeed]
-    cpu_seconds: Annotated[dict[str, float], Source("seconds")]
-    reduction_cost: dict[str, HousingCost]
+    cpu_seconds: Seconds
+    reduction_cost: ReductionCosts
     effect_ledger: Json
-
-
-ANSWER = ModesFigures

@@ -6,48 +6,43 @@ from typing import Any
 
 import numpy as np
 
+from bounds.types import Json
 from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
-from dynamics.scene import Scene
 from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.equilibrium import equilibrium_figures
-from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.housing_costs import kept_costs, with_housing_costs
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
+from lineofaction.gearbox.studies.housings import with_reduction_costs
 from lineofaction.gearbox.studies.modes import Inputs, ModesFigures
-from lineofaction.gearbox.studies.result_file import array_file
 from lineofaction.gearbox.units import RPM
 
-Json = dict[str, Any]
 LEAST_SHARE = 1e-3
 
 
-def modes_of(scene: Scene, inputs: Inputs, means: Means) -> ModalAnalysis:
-    """Return the modal analysis of a scene."""
-    with boundary_errors():
-        return modal_analysis(
-            assemble(scene),
-            [value * RPM for value in inputs.speed_rpm],
-            inputs.orders,
-            progress=lambda fraction: means.report("modes", fraction),
-            highest_frequency=inputs.highest_frequency_hz,
-        )
+class ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
+    """Natural modes at rest, modes over speed, critical speeds."""
 
+    inputs, answer, file = Inputs, ModesFigures, array_file(ModalAnalysis)
 
-def facts(modes: ModalAnalysis) -> Json:
-    """Return all figures; shares below 0.1 % are left out."""
-    about = modes.facts
-    return figures_of(
-        ModesFigures,
-        modes,
-        about,
-        equilibrium=equilibrium_figures(about["equilibrium"]),
-        at_rest=[_at_rest(modes, mode) for mode in range(modes.natural_frequency.size)],
-        mesh_frequency=dict(zip(modes.mesh, modes.mesh_frequency, strict=True)),
-        modes=[_over_speed(modes, mode) for mode in range(modes.frequency.shape[1])],
-        critical_speeds=[_crossing(modes, index) for index in range(modes.critical_speed.size)],
-        reduction_cost=kept_costs(about),
-    )
+    def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ModalAnalysis:
+        """Return the modal analysis of a scene."""
+        with boundary_errors():
+            modes = modal_analysis(
+                assemble(subject.scene),
+                [value * RPM for value in inputs.speed_rpm],
+                inputs.orders,
+                progress=lambda fraction: means.report("modes", fraction),
+                highest_frequency=inputs.highest_frequency_hz,
+            )
+        return with_reduction_costs(modes, subject)
+
+    def _derived(self, modes: ModalAnalysis) -> Json:
+        return {
+            "at_rest": [_at_rest(modes, mode) for mode in range(modes.natural_frequency.size)],
+            "mesh_frequency": dict(zip(modes.mesh, modes.mesh_frequency, strict=True)),
+            "modes": [_over_speed(modes, mode) for mode in range(modes.frequency.shape[1])],
+            "critical_speeds": [_crossing(modes, index) for index in range(modes.critical_speed.size)],
+        }
 
 
 def _at_rest(modes: ModalAnalysis, mode: int) -> Json:
@@ -61,7 +56,6 @@ def _at_rest(modes: ModalAnalysis, mode: int) -> Json:
 
 
 def _energies(modes: ModalAnalysis, strain: Any, kinetic: Any) -> Json:
-    """Say what holds and what moves."""
     return {
         "kind": modes.kind(strain, kinetic),
         "strain_energy": {name: s for name, s in modes.held_by(strain).items() if s >= LEAST_SHARE},
@@ -92,8 +86,4 @@ def _crossing(modes: ModalAnalysis, index: int) -> Json:
     }
 
 
-RUN = Computation(
-    with_housing_costs(modes_of),
-    facts,
-    array_file(ModalAnalysis),
-)
+RUN = ModesStudy()

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import (
-    BearingForces,
+    Equilibrium,
     Figures,
+    Forces,
     HousingCost,
     Json,
     Part,
     PredictedCost,
+    ReductionCosts,
+    Seconds,
     Source,
 )
 from lineofaction.gearbox.schemas.studied import NoiseRanges, OverSpeedsOrRun
-from lineofaction.gearbox.studies.equilibrium import Equilibrium
 
 
 class Inputs(NoiseRanges, OverSpeedsOrRun):
@@ -104,7 +107,7 @@ class LoudPoint(Part):
 class LevelBandFigures(Part):
     """A level, its band, and the deviations that make it by what is guessed."""
 
-    level_db_a: float
+    level_db_a: Annotated[float, Source("nominal")]
     low_db_a: float
     high_db_a: float
     below_db: dict[str, float]
@@ -120,39 +123,45 @@ class OrderBand(Part):
     there: LevelBandFigures
 
 
+def _by_order(band: Any) -> Iterator[Iterator[tuple[str, Any]]]:
+    """Yield the members of the bands of the orders."""
+    rows = zip(band.order, band.largest, band.loudest_speed, band.there, strict=True)
+    return (zip(("order", "largest", "speed", "there"), row, strict=True) for row in rows)
+
+
 class SoundBandFigures(Part):
     """Bands of levels: the largest total, orders, and the total by speed."""
 
     largest_total: LevelBandFigures
-    orders: list[OrderBand]
-    total_low_db_a: list[float]
-    total_high_db_a: list[float]
+    orders: Annotated[list[OrderBand], Source(lambda band: [dict(each) for each in _by_order(band)])]
+    total_low_db_a: Annotated[list[float], Source(lambda band: [level.low for level in band.total])]
+    total_high_db_a: Annotated[list[float], Source(lambda band: [level.high for level in band.total])]
 
 
 class SensitivityFigures(Part):
     """What steps of a figure change of the largest level; None: without end."""
 
-    figure: str
-    unit: str
-    value: float
-    step: float
+    figure: Annotated[str, Source("figure.name")]
+    unit: Annotated[str, Source("figure.unit")]
+    value: Annotated[float, Source("figure.value")]
+    step: Annotated[float, Source("figure.step")]
     change_db: float
-    change_of_two_steps_db: float
+    change_of_two_steps_db: Annotated[float, Source("change_of_two")]
     slope_db: float
     for_one_db_less: float | None
     linear_range: float | None
     linear: bool
 
 
-class SoundOverTime(Part):
+class SoundOverTimeFigures(Part):
     """Sound power over a run, all that its bearing forces hold; third octaves by band, then by time."""
 
     time_s: list[float]
     speed_rpm: list[float]
-    third_octave_hz: list[float]
+    third_octave_hz: Annotated[list[float], Source("nominal")]
     third_octave_db: list[list[float]]
     total_level_db: list[float]
-    total_level_db_a: list[float]
+    total_level_db_a: Annotated[list[float], Source("total_weighted_level")]
     lowest_hz: float
     highest_hz: float
 
@@ -176,15 +185,12 @@ class NoiseFigures(Figures):
     housings: dict[str, HousingSound]
     natural_frequency_hz: list[float]
     parting_rpm: list[float]
-    band: SoundBandFigures | None
-    sensitivities: list[SensitivityFigures]
+    band: Annotated[SoundBandFigures | None, Source("band", document=True)]
+    sensitivities: Annotated[list[SensitivityFigures], Source("sensitivities", document=True)]
     sensitivities_left_out: dict[str, str]
     equilibrium: Equilibrium | None
-    forces: BearingForces
-    over_time: SoundOverTime | None
-    cpu_seconds: Annotated[dict[str, float], Source("seconds")]
-    reduction_cost: dict[str, HousingCost]
+    forces: Forces
+    over_time: Annotated[SoundOverTimeFigures | None, Source("over_time", missing=None, document=True)]
+    cpu_seconds: Seconds
+    reduction_cost: ReductionCosts
     effect_ledger: Json
-
-
-ANSWER = NoiseFigures

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
 
 import numpy as np
 
+from bounds.types import FloatArray, Json
 from dynamics.acoustics import (
     Air,
     BoundaryElements,
@@ -41,7 +42,6 @@ from dynamics.noise import (
 from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.noise.sound_over_time import BLOCK
 from dynamics.results import RunResult
-from dynamics.types import FloatArray
 from dynamics.vibration import BearingHarmonics
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
@@ -49,45 +49,88 @@ from lineofaction.gearbox.convert.housings import FOLDER
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.bearing_forces import LINEAR, forces_of
-from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.equilibrium import equilibrium_figures
+from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.housing_costs import kept_costs, reduction_costs
-from lineofaction.gearbox.studies.listen.through_housing import require_surface, silent
-from lineofaction.gearbox.studies.noise import Inputs, NoiseFigures
+from lineofaction.gearbox.studies.housings import bearing_forces, reduction_costs, require_surface, silent
+from lineofaction.gearbox.studies.noise import Inputs, NoiseFigures, SoundOverTimeFigures
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
-from lineofaction.gearbox.studies.result_file import array_file
-from lineofaction.gearbox.units import RPM
 
-# Figures of a radiated sound in the units of the boundary.
-
-
-Json = dict[str, Any]
+PLANE, MONOPOLES = EquivalentRadiatedPower(), ElementalRadiators()
+MODELS: dict[str, PanelModel] = {model.model_name: model for model in (PLANE, MONOPOLES)}
 
 
-def facts(sound: RadiatedSound) -> Json:
-    """Return levels (lists by order, then by speed), third octaves and the loudest points."""
-    about = sound.facts
-    center, bands = sound.orders.third_octaves()
-    start = about["equilibrium"]
-    points = zip(loudest(sound), about["regions"], strict=True)
-    return figures_of(
-        NoiseFigures,
-        sound,
-        about,
-        third_octave_hz=center,
-        third_octave_db=sound_power_level(bands),
-        radiation_efficiency=sound.efficiency.T,
-        bearings={name: _bearing(sound, index) for index, name in enumerate(sound.bearing)},
-        loudest=[(point, {"regions": regions}) for point, regions in points],
-        housings={name: _housing(about, name) for name in sound.housing},
-        parting=sound.speed[~sound.in_contact],
-        equilibrium=None if start is None else equilibrium_figures(start),
-        forces=about.get("forces", LINEAR),
-        over_time=about.get("over_time"),
-        reduction_cost=kept_costs(about),
-    )
+def _write_panels(sound: RadiatedSound, _scene: SceneInput, file: Path) -> None:
+    """Write power and intensity of the panels at the loudest point for ParaView."""
+    panels = sound.panels
+    if panels is None:
+        raise BadInput.of("output", str(file), "another ending than .vtu", "Nothing radiates.")
+    fields = {"intensity": panels.intensity, "power": panels.power}
+    write_surface(file, panels.hull.nodes, panels.hull.triangles, {}, fields)
+
+
+class NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
+    """Sound power levels by order, then by speed; third octaves; the loudest points."""
+
+    inputs, answer, file = Inputs, NoiseFigures, array_file(RadiatedSound)
+    writers = MappingProxyType({".vtu": _write_panels})
+
+    def check(self, subject: SceneInput, inputs: Inputs) -> None:
+        """Refuse a scene without a housing that has a surface, and sensitivities of a run."""
+        if inputs.run is not None and inputs.sensitivities:
+            advice = "They vary the linear response: leave out the run."
+            raise BadInput.of("sensitivities", True, "left out with a run", advice)
+        require_surface(subject)
+
+    def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSound:
+        """Return the sound power of the housings of a scene that have a surface.
+
+        Raises
+        ------
+        BadInput
+            No housing has a surface.
+        """
+        if means.run is not None:  # the band varies the linear response, and a run is what it is
+            inputs = inputs.model_copy(update={"band": False})
+        response = bearing_forces(subject, inputs, means)
+        with boundary_errors():
+            began = cpu_seconds()
+            housings = [
+                _SoundingHousing(part.name, body, part.bushings, _radiation(response, body, inputs, means))
+                for part in subject.scene.housings
+                if (body := subject.housings.get(part.name)) is not None and body.surface is not None
+            ]
+            if not housings:
+                raise silent([part.name for part in subject.inputs.housings])
+            sounds = [_sound(response, housing) for housing in housings]
+            compared = {
+                housing.name: _compared(response, housing, sound, inputs, means)
+                for housing, sound in zip(housings, sounds, strict=True)
+            }
+            whole = _with_regions(together(sounds), response, housings, MODELS[inputs.radiation])
+            radiation = {housing.name: housing.radiation for housing in housings}
+            heard = None if means.run is None else _over_time(subject, means.run, radiation)
+        about = response.facts
+        seconds = {**about["seconds"], "sound": cpu_seconds() - began}
+        own = {name: about.get(name) for name in ("leading_shaft", "equilibrium", "effect_ledger", "forces")}
+        own["over_time"] = _figures_over_time(heard)
+        own["reduction_cost"] = reduction_costs(subject)
+        known = {**whole.facts, **own, "models": compared, "seconds": seconds}
+        whole = replace(whole, facts=known)
+        return replace(whole, facts={**known, **uncertainty(subject, whole, radiation, inputs, means)})
+
+    def _derived(self, sound: RadiatedSound) -> Json:
+        about = sound.facts
+        center, bands = sound.orders.third_octaves()
+        points = zip(loudest(sound), about["regions"], strict=True)
+        return {
+            "third_octave_hz": center,
+            "third_octave_db": sound_power_level(bands),
+            "radiation_efficiency": sound.efficiency.T,
+            "bearings": {name: _bearing(sound, index) for index, name in enumerate(sound.bearing)},
+            "loudest": [(point, {"regions": regions}) for point, regions in points],
+            "housings": {name: _housing(about, name) for name in sound.housing},
+            "parting": sound.speed[~sound.in_contact],
+        }
 
 
 def _bearing(sound: RadiatedSound, bearing: int) -> Json:
@@ -114,11 +157,8 @@ def _housing(about: Json, name: str) -> tuple[Json, Json]:
     }
 
 
-# Panels and regions of the housings through which the sound leaves at the loudest points.
-
-
 @dataclass(frozen=True)
-class SoundingHousing:
+class _SoundingHousing:
     """A housing that radiates: its name, its reduction, the bearings in its seats, its radiation."""
 
     name: str
@@ -128,25 +168,25 @@ class SoundingHousing:
 
 
 def _with_regions(
-    sound: RadiatedSound, response: BearingHarmonics, housings: Sequence[SoundingHousing], model: PanelModel
+    sound: RadiatedSound, response: BearingHarmonics, housings: Sequence[_SoundingHousing], model: PanelModel
 ) -> RadiatedSound:
-    told: list[list[Json]] = []
+    by_point: list[list[Json]] = []
     for point in loudest(sound):
         at = point.speed_index, point.order_index
         panels = [_panels(response, housing, at, model) for housing in housings]
-        if not told:
+        if not by_point:
             sound = _with_panels(sound, side_by_side(panels))
         rows = [
             _region(housing.name, region, float(sound.power[at]))
             for housing, own in zip(housings, panels, strict=True)
             for region in regions(own, housing.body.points)
         ]
-        told.append(sorted(rows, key=lambda row: -row["power"]))
-    return replace(sound, facts={**sound.facts, "regions": told})
+        by_point.append(sorted(rows, key=lambda row: -row["power"]))
+    return replace(sound, facts={**sound.facts, "regions": by_point})
 
 
 def _panels(
-    response: BearingHarmonics, housing: SoundingHousing, at: tuple[int, int], model: PanelModel
+    response: BearingHarmonics, housing: _SoundingHousing, at: tuple[int, int], model: PanelModel
 ) -> PanelSound:
     return panel_sound(response, housing.body, housing.bearings, housing.radiation, at, model)
 
@@ -162,16 +202,13 @@ def _region(housing: str, region: Region, whole: float) -> Json:
     return {"housing": housing, **own, **plain, "share": region.power / whole}
 
 
-# Sound power over the time of a run, all that it holds: figures and the plot of its third octaves.
-
-
 def _run_frequencies(run: RunResult, frequency: FloatArray) -> FloatArray:
     """Return frequencies of orders (S, H) with the ends of what is heard of a run, Hz."""
     ends = [LOWEST, float(run.receipt["sampling"]["pass_frequency"])]
     return np.append(frequency.ravel(), ends)
 
 
-def over_time(
+def _over_time(
     subject: TabledScene, run: RunResult, radiation: Mapping[str, HousingRadiation]
 ) -> SoundOverTime | None:
     """Return the sound power of all housings over a run; None where it is shorter than a block."""
@@ -185,62 +222,10 @@ def over_time(
     return SoundOverTime.of_all(sounds)
 
 
-def _over_time_json(sound: SoundOverTime | None) -> Json | None:
-    """Return levels over time in the units of the boundary."""
+def _figures_over_time(sound: SoundOverTime | None) -> Json | None:
     if sound is None:
         return None
-    return {
-        "time_s": sound.time.tolist(),
-        "speed_rpm": (sound.speed / RPM).tolist(),
-        "third_octave_hz": sound.nominal.tolist(),
-        "third_octave_db": sound_power_level(sound.power.T).tolist(),
-        "total_level_db": sound.total_level.tolist(),
-        "total_level_db_a": sound.total_weighted_level.tolist(),
-        "lowest_hz": sound.lowest,
-        "highest_hz": sound.highest,
-    }
-
-
-PLANE, MONOPOLES = EquivalentRadiatedPower(), ElementalRadiators()
-MODELS: dict[str, PanelModel] = {model.model_name: model for model in (PLANE, MONOPOLES)}
-
-
-def noise_of(subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSound:
-    """Return the sound power of the housings of a scene that have a surface.
-
-    Raises
-    ------
-    BadInput
-        No housing has a surface.
-    """
-    if means.run is not None:  # the band varies the linear response, and a run is what it is
-        inputs = inputs.model_copy(update={"band": False})
-    response = forces_of(subject.scene, inputs, means)
-    with boundary_errors():
-        began = cpu_seconds()
-        housings = [
-            SoundingHousing(part.name, body, part.bushings, _radiation(response, body, inputs, means))
-            for part in subject.scene.housings
-            if (body := subject.housings.get(part.name)) is not None and body.surface is not None
-        ]
-        if not housings:
-            raise silent([part.name for part in subject.inputs.housings])
-        sounds = [_sound(response, housing) for housing in housings]
-        compared = {
-            housing.name: _compared(response, housing, sound, inputs, means)
-            for housing, sound in zip(housings, sounds, strict=True)
-        }
-        whole = _with_regions(together(sounds), response, housings, MODELS[inputs.radiation])
-        radiation = {housing.name: housing.radiation for housing in housings}
-        heard = None if means.run is None else over_time(subject, means.run, radiation)
-    about = response.facts
-    seconds = {**about["seconds"], "sound": cpu_seconds() - began}
-    own = {name: about.get(name) for name in ("leading_shaft", "equilibrium", "effect_ledger", "forces")}
-    own["over_time"] = _over_time_json(heard)
-    own["reduction_cost"] = reduction_costs(subject)
-    known = {**whole.facts, **own, "models": compared, "seconds": seconds}
-    whole = replace(whole, facts=known)
-    return replace(whole, facts={**known, **uncertainty(subject, whole, radiation, inputs, means)})
+    return figures_of(SoundOverTimeFigures, sound, third_octave=sound_power_level(sound.power.T))
 
 
 def _radiation(
@@ -251,12 +236,12 @@ def _radiation(
     return kept_radiation(body, model, hertz, cache=cache, progress=means.report)
 
 
-def _sound(response: BearingHarmonics, housing: SoundingHousing) -> RadiatedSound:
+def _sound(response: BearingHarmonics, housing: _SoundingHousing) -> RadiatedSound:
     return radiated_sound(response, housing.body, housing.bearings, housing.radiation, housing.name)
 
 
 def _compared(
-    response: BearingHarmonics, housing: SoundingHousing, sound: RadiatedSound, inputs: Inputs, means: Means
+    response: BearingHarmonics, housing: _SoundingHousing, sound: RadiatedSound, inputs: Inputs, means: Means
 ) -> Json:
     """Return what the radiation models say where a housing is loudest, nothing if it is silent.
 
@@ -293,27 +278,4 @@ def _compared(
     }
 
 
-def check(subject: SceneInput, inputs: Inputs) -> None:
-    """Refuse a scene without a housing that has a surface, and sensitivities of a run."""
-    if inputs.run is not None and inputs.sensitivities:
-        advice = "They vary the linear response: leave out the run."
-        raise BadInput.of("sensitivities", True, "left out with a run", advice)
-    require_surface(subject)
-
-
-def _write_panels(sound: RadiatedSound, _scene: Any, file: Path) -> None:
-    """Write power and intensity of the panels at the loudest point for ParaView."""
-    panels = sound.panels
-    if panels is None:
-        raise BadInput.of("output", str(file), "another ending than .vtu", "Nothing radiates.")
-    fields = {"intensity": panels.intensity, "power": panels.power}
-    write_surface(file, panels.hull.nodes, panels.hull.triangles, {}, fields)
-
-
-RUN = Computation(
-    noise_of,
-    facts,
-    array_file(RadiatedSound),
-    check=check,
-    writers={".vtu": _write_panels},
-)
+RUN = NoiseStudy()

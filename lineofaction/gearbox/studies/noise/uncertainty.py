@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 
-import numpy as np
-
-from dynamics.acoustics import LevelBand, Range
+from bounds.types import Json
+from dynamics.acoustics import Range
 from dynamics.noise import (
     DesignFigure,
     HousingRadiation,
@@ -23,13 +22,17 @@ from dynamics.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import RANGES, NoiseRanges
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.noise import Inputs
-from lineofaction.gearbox.studies.noise.flank_figures import flank_figures, flank_scenes
-from lineofaction.gearbox.units import RPM
+from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.noise import Inputs, SensitivityFigures, SoundBandFigures
+from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of
 
-Json = dict[str, Any]
+GEARS = ("pinion", "wheel")
+AMOUNTS = ("tip_relief_um", "profile_crowning_um", "helix_crowning_um")
+STEP = 2.0
+"""um; a tolerance of class 5 is about as much."""
 
 
 def uncertainty(
@@ -42,20 +45,21 @@ def uncertainty(
     """Return the facts `band`, `sensitivities`, `sensitivities_left_out` and the CPU time, as requested."""
     housings = {name: subject.housings[name] for name in radiation}
     model = SoundModel(subject.scene, housings, radiation)
-    told: Json = {"band": None, "sensitivities": [], "sensitivities_left_out": {}}
+    facts: Json = {"band": None, "sensitivities": [], "sensitivities_left_out": {}}
     began = cpu_seconds()
     with boundary_errors():
         if inputs.band:
             band = band_of(model, sound.speed, inputs.orders, inputs, means)
             missed = _between_models(sound.facts["models"])
-            told["band"] = band_json(band.with_error("radiation_model", missed, missed))
+            band = band.with_error("radiation_model", missed, missed)
+            facts["band"] = figures_of(SoundBandFigures, band)
         if inputs.sensitivities:
             rows, left_out = sensitivities_of(subject, model, sound.speed, inputs.orders, means)
-            told["sensitivities"] = [sensitivity_json(row) for row in rows]
-            told["sensitivities_left_out"] = left_out
+            facts["sensitivities"] = [figures_of(SensitivityFigures, row) for row in rows]
+            facts["sensitivities_left_out"] = left_out
     if inputs.band or inputs.sensitivities:
-        told["seconds"] = {**sound.facts["seconds"], "uncertainty": cpu_seconds() - began}
-    return told
+        facts["seconds"] = {**sound.facts["seconds"], "uncertainty": cpu_seconds() - began}
+    return facts
 
 
 def _between_models(compared: Mapping[str, Json]) -> float:
@@ -82,56 +86,23 @@ def sensitivities_of(
         varied = flank_scenes(subject, flank.name, means.home)
         return lambda value: varied.scene({flank.name: value})
 
-    flanks = flank_figures(subject.inputs)
+    flanks = _flank_figures(subject.inputs)
     return sound_sensitivities(model, speed, orders, flanks, scenes, means.report)
 
 
-def band_json(band: SoundBand) -> Json:
-    """Return bands in the units of the boundary."""
-    return {
-        "largest_total": _level_json(band.largest_total),
-        "orders": [
-            {
-                "order": float(order),
-                "largest": _level_json(largest),
-                "speed_rpm": float(speed) / RPM,
-                "there": _level_json(there),
-            }
-            for order, largest, speed, there in zip(
-                band.order, band.largest, band.loudest_speed, band.there, strict=True
-            )
-        ],
-        "total_low_db_a": [each.low for each in band.total],
-        "total_high_db_a": [each.high for each in band.total],
-    }
+def _flank_figures(scene: SceneInput) -> Iterator[DesignFigure]:
+    """Yield the figures of all meshes with a case; tip relief only where it has a length."""
+    for mesh in scene.meshes:
+        for gear in GEARS if mesh.case is not None else ():
+            assert mesh.case is not None
+            flank = getattr(mesh.case.pair, gear)
+            for amount in AMOUNTS:
+                if amount != "tip_relief_um" or flank.tip_relief_length_mm > 0.0:
+                    path = f"meshes.{mesh.name}.case.pair.{gear}.{amount}"
+                    yield DesignFigure(path, "um", float(getattr(flank, amount)), STEP)
 
 
-def _level_json(band: LevelBand) -> Json:
-    return {
-        "level_db_a": band.nominal,
-        "low_db_a": band.low,
-        "high_db_a": band.high,
-        "below_db": dict(band.below),
-        "above_db": dict(band.above),
-    }
-
-
-def sensitivity_json(row: Sensitivity) -> Json:
-    """Return a sensitivity; what is without end is None."""
-    return {
-        "figure": row.figure.name,
-        "unit": row.figure.unit,
-        "value": row.figure.value,
-        "step": row.figure.step,
-        "change_db": row.change,
-        "change_of_two_steps_db": row.change_of_two,
-        "slope_db": row.slope,
-        "for_one_db_less": _finite(row.for_one_db_less),
-        "linear_range": _finite(row.linear_range),
-        "linear": row.linear,
-    }
-
-
-def _finite(value: float) -> float | None:
-    """Return a number, None for none."""
-    return value if np.isfinite(value) else None
+def flank_scenes(subject: TabledScene, path: str, home: Path) -> VariedScene:
+    """Return the scene by a figure of its flanks: its table is solved again on the same compliance."""
+    places = {path: places_of(subject.inputs, "sensitivities", path)}
+    return VariedScene(subject.inputs.model_dump_json(), subject.databases, places, str(home))

@@ -11,7 +11,7 @@ from bounds import DEPTHS, Kind
 from fe_contact.flank.modification import FlankModification
 from lineofaction.gearbox.schemas.case import Load
 from lineofaction.gearbox.schemas.declared import Figure, figures, with_fields
-from lineofaction.gearbox.schemas.figures import Figures, Json, Part
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 from lineofaction.gearbox.schemas.query import MANY, ONE, ONE_OR_MANY
 
@@ -264,10 +264,10 @@ class HarrisMapFigures(Part):
 
     torque_n_m: list[float]
     position: list[float]
-    ste_um: list[Any]
-    nominal_peak_to_peak_um: list[float]
+    ste_um: Annotated[list[Any], Source("ste.T")]
+    nominal_peak_to_peak_um: Annotated[list[float], Source("nominal")]
     nominal_error_um: list[float]
-    expected_peak_to_peak_um: list[float]
+    expected_peak_to_peak_um: Annotated[list[float], Source("expected")]
     expected_error_um: list[float]
     peak_to_peak_um: list[Any]
     error_um: list[Any]
@@ -277,41 +277,41 @@ class DesignFigures(Part):
     """One design as analyzed in full: its values by gear and field of a case file."""
 
     values: dict[str, dict[str, float]]
-    objective_um: float
-    objective_error_um: float
+    objective_um: Annotated[float, Source("objective.value")]
+    objective_error_um: Annotated[float, Source("objective.error")]
     scatter_error_um: float
     violation: float
-    peak_to_peak_um: list[Any]
-    max_pressure_mpa: list[float]
-    face_load_factor: list[float]
-    edge_load_share: list[float]
+    peak_to_peak_um: Annotated[list[Any], Source("figures.peak_to_peak")]
+    face_load_factor: Annotated[list[float], Source(lambda own: own.figures.face_load_factor.max(axis=0))]
+    edge_load_share: Annotated[list[float], Source(lambda own: own.figures.edge_load_share.max(axis=0))]
     harris_map: HarrisMapFigures
+    max_pressure_mpa: Annotated[list[float], Source(lambda own: own.figures.pressure.max(axis=0))]
 
 
 class SearchFigures(Part):
     """The result of one start of the search."""
 
-    objective_um: float
-    violation: float
+    objective_um: Annotated[float, Source("assessed.objective")]
+    violation: Annotated[float, Source("assessed.violation")]
     evaluations: int
     explored: int
     converged: bool
-    ended: str
+    ended: Annotated[str, Source("ended.value")]
     spread_um: float
     cpu_seconds: float
 
 
-class OptimizationFigures(Figures):
+class OptimizeFigures(Figures):
     """The start and the optimum, what was free, and how the search ended."""
 
-    outcome: str
+    outcome: Annotated[str, Source("outcome.value")]
     reason: str
     variables: list[VariableFigures]
     torque_n_m: list[float]
     misalignment_um: list[float]
     nodes: NodeFigures
-    gain_um: float
-    gain_error_um: float
+    gain_um: Annotated[float, Source("gain.value")]
+    gain_error_um: Annotated[float, Source("gain.error")]
     start: DesignFigures
     optimum: DesignFigures
     evaluations: int
@@ -321,6 +321,3 @@ class OptimizationFigures(Figures):
     not_tried: list[str]
     cost: Json
     asked: Json
-
-
-ANSWER = OptimizationFigures

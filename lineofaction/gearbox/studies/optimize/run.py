@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from bounds import engineering
+from bounds.types import Json
 from fe_contact.microgeometry.confirmation import ConfirmedDesign, HarrisMap
 from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest
@@ -28,44 +30,90 @@ from lineofaction.gearbox.convert.case import analysis_options, boundary_errors,
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.toml import toml_text
-from lineofaction.gearbox.studies.computation import Computation, Means, with_defaults
+from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
 from lineofaction.gearbox.studies.optimize import (
     GearScatterInput,
     GearVariablesInput,
     Inputs,
+    OptimizeFigures,
     ScatterInput,
     SearchInput,
 )
-from lineofaction.gearbox.studies.result_file import record_file
 from lineofaction.gearbox.units import UM, factor, in_um
 
-Json = dict[str, Any]
 MPA = 1e6
 
 
-def optimization_of(case: Case, study: Inputs, means: Means) -> Optimization:
-    """Optimize the modifications of a case; when it is cancelled, end with the best so far.
-
-    Designs are remembered: another attempt, or another deadline, goes on from them.
-
-    Raises
-    ------
-    BadInput
-        No such pair, or something that cannot be varied so.
-    JobFailed
-        The case cannot be computed.
-    """
-    with boundary_errors():
-        run = Run(means.workers, means.home / "compliance", means.report)
-        return optimize(
-            _request(case, study), run, cancel=means.cancel or never, memory=means.home / "searches"
-        )
+def _write_case(result: Optimization, case: Case, target: Path) -> None:
+    """Write the case with the best design as a case file: what was given of the case, and the best flanks."""
+    content = case.model_dump(mode="json", exclude_unset=True)
+    for gear, fields in _at_boundary(result.optimum.values).items():
+        content["pair"][gear] |= {name: float(f"{value:.6g}") for name, value in fields.items()}
+    target.write_text(f"# {result.reason}\n\n{toml_text(content)}", encoding="utf-8")
 
 
-def check(case: Case, study: Inputs) -> None:
-    """Raise `BadInput` for what `optimization_of` would, without computing anything."""
-    with boundary_errors():
-        _request(case, study).check()
+class OptimizeStudy(CaseStudy[Inputs, OptimizeFigures, Optimization]):
+    """The start and the optimum, what was free, and how the search ended."""
+
+    inputs, answer, file = Inputs, OptimizeFigures, record_file(("optimization", Optimization))
+    interruptible = True
+    writers = MappingProxyType({".toml": _write_case})
+
+    def check(self, case: Case, study: Inputs) -> None:
+        """Raise `BadInput` for what `compute` would, without computing anything."""
+        with boundary_errors():
+            _library_request(case, study).check()
+
+    def normalized(self, case: Case, study: Inputs) -> Json:
+        """Return all inputs, with the usual variables if none are named."""
+        return super().normalized(case, _with_variables(case, study))
+
+    def compute(self, case: Case, study: Inputs, means: Means) -> Optimization:
+        """Optimize the modifications of a case; when it is cancelled, end with the best so far.
+
+        Designs are remembered: another attempt, or another deadline, goes on from them.
+
+        Raises
+        ------
+        BadInput
+            No such pair, or something that cannot be varied so.
+        JobFailed
+            The case cannot be computed.
+        """
+        with boundary_errors():
+            run = Run(means.workers, means.home / "compliance", means.report)
+            return optimize(
+                _library_request(case, study),
+                run,
+                cancel=means.cancel or never,
+                memory=means.home / "searches",
+            )
+
+    def _derived(self, result: Optimization) -> Json:
+        requested = {"scatter": _scattering(result), "limits": _limits_kept(result)}
+        return {
+            "variables": [
+                {"name": boundary_name(var.name), "bounds": _range(var.name, var.low, var.high)}
+                for var in result.variables
+            ],
+            "nodes": _nodes(result),
+            "start": _design(result.start),
+            "optimum": _design(result.optimum),
+            "sensitivity": [
+                {
+                    "name": boundary_name(step.name),
+                    "values": _range(step.name, step.low, step.high),
+                    "change": (step.change_low, step.change_high),
+                }
+                for step in result.sensitivity
+            ],
+            "asked": in_um(result.asked) | requested,
+        }
+
+    def warnings(self, result: Optimization) -> list[Json]:
+        """Return the torques at which the best design ripples more than the start."""
+        before, after = result.start.harris_map, result.optimum.harris_map
+        return [_worse_load_warning(before, after, int(index)) for index in result.rising]
 
 
 def _with_variables(case: Case, study: Inputs) -> Inputs:
@@ -84,8 +132,7 @@ def _with_variables(case: Case, study: Inputs) -> Inputs:
     return study.model_copy(update={"variables": variables.model_copy(update=gears)})
 
 
-def _request(case: Case, study: Inputs) -> OptimizationRequest:
-    """Return what is requested of the library, in SI."""
+def _library_request(case: Case, study: Inputs) -> OptimizationRequest:
     pair, study = gear_pair(case), _with_variables(case, study)
     torques = study.torque_n_m or case.load.torque_n_m
     if torques is None:
@@ -94,7 +141,7 @@ def _request(case: Case, study: Inputs) -> OptimizationRequest:
     return OptimizationRequest(
         pair,
         list(torques),
-        tuple(_variables(study)),
+        tuple(_design_variables(study)),
         _scatter_of(study.scatter, study.search.seed),
         np.asarray(study.misalignment_um) * UM,
         objective,
@@ -104,13 +151,12 @@ def _request(case: Case, study: Inputs) -> OptimizationRequest:
     )
 
 
-def _variables(study: Inputs) -> list[DesignVariable]:
-    """Return the design variables of both gears, in SI."""
+def _design_variables(study: Inputs) -> list[DesignVariable]:
     gears = {"pinion": study.variables.pinion, "wheel": study.variables.wheel}
     return [
         DesignVariable(name, *(end * unit for end in ends))
         for gear, fields in gears.items()
-        for name, ends, unit in _given(gear, fields)
+        for name, ends, unit in _stated_fields(gear, fields)
     ]
 
 
@@ -119,12 +165,14 @@ def _scatter_of(scatter: ScatterInput, seed: int) -> Scatter:
     rule = GaussHermite(scatter.points) if hermite else SobolSample(scatter.log2_size, seed)
     gears = {"pinion": scatter.pinion, "wheel": scatter.wheel}
     deviations = {
-        name: value * unit for gear, fields in gears.items() for name, value, unit in _given(gear, fields)
+        name: value * unit
+        for gear, fields in gears.items()
+        for name, value, unit in _stated_fields(gear, fields)
     }
     return Scatter(scatter.misalignment_um * UM, deviations, rule)
 
 
-def _given(gear: str, inputs: GearVariablesInput | GearScatterInput) -> list[tuple[str, Any, float]]:
+def _stated_fields(gear: str, inputs: GearVariablesInput | GearScatterInput) -> list[tuple[str, Any, float]]:
     """Return name in the library, value and unit of the fields that are given."""
     return [
         (f"{gear}.{field.rpartition('_')[0]}", value, factor(field))
@@ -152,28 +200,7 @@ def _search(search: SearchInput) -> Search:
     return Search(methods[search.method], search.seed, *counts)
 
 
-def optimization_json(result: Optimization) -> Json:
-    """Return an optimization in the units of a case file, other lengths in um."""
-    plain = result.to_json()
-    variables = [
-        {"name": boundary_name(var.name), "bounds": [_typed(var.name, var.low), _typed(var.name, var.high)]}
-        for var in result.variables
-    ]
-    steps = [
-        {
-            "name": boundary_name(step.name),
-            "values": [_typed(step.name, step.low), _typed(step.name, step.high)],
-            "change_um": [step.change_low / UM, step.change_high / UM],
-        }
-        for step in result.sensitivity
-    ]
-    designs = {name: _design_json(getattr(result, name)) for name in ("start", "optimum")}
-    converted: Json = in_um(plain)
-    converted["asked"] |= {"scatter": _scatter_json(result), "limits": _limits_json(result)}
-    return converted | designs | {"variables": variables, "sensitivity": steps, "nodes": _nodes_json(result)}
-
-
-def _scatter_json(result: Optimization) -> Json:
+def _scattering(result: Optimization) -> Json:
     """Return what scatters, by the fields of a case file."""
     scatter = result.asked["scatter"]
     rule = {name: value for name, value in scatter.items() if not name.endswith("_m")}
@@ -184,13 +211,13 @@ def _scatter_json(result: Optimization) -> Json:
     return {**spread, **rule}
 
 
-def _limits_json(result: Optimization) -> Json:
+def _limits_kept(result: Optimization) -> Json:
     limits = dict(result.asked["limits"])
     pressure = limits.pop("max_pressure_pa")
     return {"max_pressure_mpa": None if pressure is None else pressure / MPA, **limits}
 
 
-def _nodes_json(result: Optimization) -> Json:
+def _nodes(result: Optimization) -> Json:
     names = result.nodes.names
     return {
         "names": [boundary_name(name) for name in names],
@@ -198,16 +225,16 @@ def _nodes_json(result: Optimization) -> Json:
             [_typed(name, float(x)) for name, x in zip(names, row, strict=True)]
             for row in result.nodes.deviation
         ],
-        "weight": result.nodes.weight.tolist(),
+        "weight": result.nodes.weight,
     }
 
 
-def _design_json(design: ConfirmedDesign) -> Json:
-    """Return one design: its values by the fields of a case file."""
-    plain: Json = in_um(design.to_json())
-    pressure = [value / MPA for value in plain.pop("max_pressure_pa")]
-    plain.pop("values_um")
-    return {"values": _at_boundary(design.values), **plain, "max_pressure_mpa": pressure}
+def _design(design: ConfirmedDesign) -> tuple[ConfirmedDesign, Json]:
+    return design, {"values": _at_boundary(design.values)}
+
+
+def _range(name: str, low: float, high: float) -> list[float]:
+    return [_typed(name, low), _typed(name, high)]
 
 
 def _at_boundary(values: Mapping[str, float]) -> dict[str, dict[str, float]]:
@@ -224,14 +251,7 @@ def _typed(name: str, value: float) -> float:
     return float(f"{value / factor(boundary_name(name)):.12g}")
 
 
-def worse_loads(result: Optimization) -> list[Json]:
-    """Return the torques at which the best design ripples more than the start, as warnings."""
-    before, after = result.start.harris_map, result.optimum.harris_map
-    return [_worse(before, after, int(index)) for index in result.rising]
-
-
-def _worse(before: HarrisMap, after: HarrisMap, index: int) -> Json:
-    """Return the warning of one torque."""
+def _worse_load_warning(before: HarrisMap, after: HarrisMap, index: int) -> Json:
     first, second = (float(design.expected[index]) / UM for design in (before, after))
     error = float(before.expected_error[index] + after.expected_error[index]) / UM
     torque, reason = (
@@ -253,21 +273,4 @@ def _worse(before: HarrisMap, after: HarrisMap, index: int) -> Json:
     }
 
 
-def _write_case(result: Optimization, case: Case, target: Path) -> None:
-    """Write the case with the best design as a case file: what was given of the case, and the best flanks."""
-    content = case.model_dump(mode="json", exclude_unset=True)
-    for gear, fields in _at_boundary(result.optimum.values).items():
-        content["pair"][gear] |= {name: float(f"{value:.6g}") for name, value in fields.items()}
-    target.write_text(f"# {result.reason}\n\n{toml_text(content)}", encoding="utf-8")
-
-
-RUN = Computation(
-    optimization_of,
-    optimization_json,
-    record_file(("optimization", Optimization)),
-    check=check,
-    normalized=lambda case, study: with_defaults(_with_variables(case, study)),
-    warnings=worse_loads,
-    interruptible=True,
-    writers={".toml": _write_case},
-)
+RUN = OptimizeStudy()

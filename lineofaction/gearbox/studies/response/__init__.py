@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from lineofaction.gearbox.schemas.figures import Figures, HousingCost, Json, Part, Source
+from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Json, Part, ReductionCosts, Seconds
 from lineofaction.gearbox.schemas.studied import OverOrders
-from lineofaction.gearbox.studies.equilibrium import Equilibrium
 
 
 class Inputs(OverOrders):
@@ -74,9 +71,6 @@ class ResponseFigures(Figures):
     power: Power
     residual: float
     equilibrium: Equilibrium
-    cpu_seconds: Annotated[dict[str, float], Source("seconds")]
-    reduction_cost: dict[str, HousingCost]
+    cpu_seconds: Seconds
+    reduction_cost: ReductionCosts
     effect_ledger: Json
-
-
-ANSWER = ResponseFigures

@@ -6,51 +6,36 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.assembly.assemble import assemble
-from dynamics.linearize import ForcedResponse, PowerBalance, forced_response, peaks
-from dynamics.scene import Scene
-from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.schemas.studied import OverOrders
-from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.equilibrium import equilibrium_figures
-from lineofaction.gearbox.studies.figures import Row, figures_of, rows
-from lineofaction.gearbox.studies.housing_costs import kept_costs, with_housing_costs
-from lineofaction.gearbox.studies.response import ResponseFigures
-from lineofaction.gearbox.studies.result_file import array_file
-from lineofaction.gearbox.units import RPM
-
-Json = dict[str, Any]
+from bounds.types import Json
+from dynamics.linearize import ForcedResponse, PowerBalance, peaks
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
+from lineofaction.gearbox.studies.figures import Row, rows
+from lineofaction.gearbox.studies.housings import response_of, with_reduction_costs
+from lineofaction.gearbox.studies.response import Inputs, ResponseFigures
 
 
-def response_of(scene: Scene, inputs: OverOrders, means: Means) -> ForcedResponse:
-    """Return the forced response of a scene."""
-    with boundary_errors():
-        return forced_response(
-            assemble(scene),
-            [value * RPM for value in inputs.speed_rpm],
-            inputs.orders,
-            progress=lambda fraction: means.report("response", fraction),
-        )
+class ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
+    """Amplitudes of meshes and bearings, peaks, and the speeds at which flanks would part."""
 
+    inputs, answer, file = Inputs, ResponseFigures, array_file(ForcedResponse)
 
-def facts(response: ForcedResponse) -> Json:
-    """Return all amplitudes (lists by order, then by speed) and the peaks."""
-    about, force = response.facts, response.bearing_force
-    return figures_of(
-        ResponseFigures,
-        response,
-        about,
-        meshes={name: _mesh(row) for name, row in rows(response, response.mesh).items()},
-        bearings={
-            name: {"force": np.sqrt(np.sum(np.abs(force[b, :3]) ** 2, axis=0)).T}
-            for b, name in enumerate(response.bearing)
-        },
-        peaks=peaks(response),
-        parting=response.speed[~response.in_contact],
-        power=_power(response.power),
-        equilibrium=equilibrium_figures(about["equilibrium"]),
-        reduction_cost=kept_costs(about),
-    )
+    def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ForcedResponse:
+        """Return the forced response of a scene."""
+        return with_reduction_costs(response_of(subject.scene, inputs, means), subject)
+
+    def _derived(self, response: ForcedResponse) -> Json:
+        force = response.bearing_force
+        return {
+            "meshes": {name: _mesh(row) for name, row in rows(response, response.mesh).items()},
+            "bearings": {
+                name: {"force": np.sqrt(np.sum(np.abs(force[b, :3]) ** 2, axis=0)).T}
+                for b, name in enumerate(response.bearing)
+            },
+            "peaks": peaks(response),
+            "parting": response.speed[~response.in_contact],
+            "power": _power_balance(response.power),
+        }
 
 
 def _mesh(row: Row) -> tuple[Any, ...]:
@@ -62,8 +47,7 @@ def _mesh(row: Row) -> tuple[Any, ...]:
     }
 
 
-def _power(power: PowerBalance) -> Json:
-    """Return where the power comes from and goes to."""
+def _power_balance(power: PowerBalance) -> Json:
     sinks = zip(power.sink, power.kind, power.loss, strict=True)
     return {
         "input": {name: own.T for name, own in zip(power.source, power.input, strict=True)},
@@ -72,8 +56,4 @@ def _power(power: PowerBalance) -> Json:
     }
 
 
-RUN = Computation(
-    with_housing_costs(response_of),
-    facts,
-    array_file(ForcedResponse),
-)
+RUN = ResponseStudy()

@@ -53,6 +53,3 @@ class RootStressFigures(Figures):
     pinion: GearRootFigures
     wheel: GearRootFigures
     receipt: Json
-
-
-ANSWER = RootStressFigures

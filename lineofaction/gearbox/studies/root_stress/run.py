@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
+from bounds.types import Json
 from fe_contact.analysis.flanks.root_stress import (
     ROOTS,
     RootPassage,
@@ -24,13 +24,10 @@ from lineofaction.gearbox.convert.case import (
 )
 from lineofaction.gearbox.convert.plausibility import phrased_for
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.result_file import record_file
+from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
 from lineofaction.gearbox.studies.root_stress import Inputs, RootStressFigures
 from model_studies import in_unit
 
-Json = dict[str, Any]
 GEARS = ("pinion", "wheel")
 MPA = 1e6
 
@@ -75,30 +72,56 @@ class Roots:
     warnings: list[Json]
 
 
-def root_stress_of(case: Case, _inputs: Inputs, means: Means) -> Roots:
-    """Return the peaks over a mesh cycle, what one tooth of each gear meets, the receipt and the warnings.
+class RootStressStudy(CaseStudy[Inputs, RootStressFigures, Roots]):
+    """The roots of both gears at one load and one alignment."""
 
-    Raises
-    ------
-    BadInput
-        No such pair, or a request that no plan can meet.
-    JobFailed
-        No mesh, or positions without a solution.
-    """
-    run, pair = Run(cache=means.home / "compliance", progress=means.report), gear_pair(case)
-    with boundary_errors():
-        stress = root_stress(pair, operating_point(case), analysis_options(case), run)
-    nominal = (None, None) if pair.pinion.helix_angle else nominal_root_stresses(pair, stress.normal_force)
-    return Roots(
-        _roots(stress.pinion, nominal[0]),
-        _roots(stress.wheel, nominal[1]),
-        stress.torque,
-        stress.normal_force,
-        stress.misalignment,
-        stress.center_distance_change,
-        stress.receipt,
-        phrased_for(case, stress.warnings),
-    )
+    inputs, answer, file = Inputs, RootStressFigures, record_file(("tooth-root stress", Roots))
+
+    def narrowed(self, case: Case, inputs: Inputs) -> Case:
+        """Return the case at one load and one alignment."""
+        return case_at(case, inputs)
+
+    def check(self, case: Case, _inputs: Inputs) -> None:
+        """Refuse a case that cannot be."""
+        check_case(case)
+
+    def normalized(self, _case: Case, _inputs: Inputs) -> Json:
+        """Return nothing: the case has all of it."""
+        return {}
+
+    def compute(self, case: Case, _inputs: Inputs, means: Means) -> Roots:
+        """Return the peaks over a mesh cycle, the passage of a tooth of each gear, receipt and warnings.
+
+        Raises
+        ------
+        BadInput
+            No such pair, or a request that no plan can meet.
+        JobFailed
+            No mesh, or positions without a solution.
+        """
+        run, pair = Run(cache=means.home / "compliance", progress=means.report), gear_pair(case)
+        with boundary_errors():
+            stress = root_stress(pair, operating_point(case), analysis_options(case), run)
+        helical = bool(pair.pinion.helix_angle)
+        nominal = (None, None) if helical else nominal_root_stresses(pair, stress.normal_force)
+        return Roots(
+            _roots(stress.pinion, nominal[0]),
+            _roots(stress.wheel, nominal[1]),
+            stress.torque,
+            stress.normal_force,
+            stress.misalignment,
+            stress.center_distance_change,
+            stress.receipt,
+            phrased_for(case, stress.warnings),
+        )
+
+    def figures(self, roots: Roots) -> Json:
+        """Return the figures and the warnings of the result."""
+        return super().figures(roots) | {"warnings": roots.warnings}
+
+    def warnings(self, roots: Roots) -> list[Json]:
+        """Return the warnings in the fields and units of the case."""
+        return roots.warnings
 
 
 def _roots(history: RootStressHistory, nominal: float | None) -> GearRoots:
@@ -106,17 +129,4 @@ def _roots(history: RootStressHistory, nominal: float | None) -> GearRoots:
     return GearRoots(tension, compression, history.critical_coordinate, history.passage(), nominal)
 
 
-def root_stress_json(roots: Roots) -> Json:
-    """Return the figures; the position of a peak is that of the tooth's own pair."""
-    return figures_of(RootStressFigures, roots) | {"warnings": roots.warnings}
-
-
-RUN = Computation(
-    root_stress_of,
-    root_stress_json,
-    record_file(("tooth-root stress", Roots)),
-    narrowed=case_at,
-    check=lambda case, _inputs: check_case(case),
-    normalized=lambda _case, _inputs: {},
-    warnings=lambda roots: roots.warnings,
-)
+RUN = RootStressStudy()

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lineofaction.gearbox.schemas.figures import Figures, Json, Part
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, Spelling
 
 
@@ -56,19 +57,21 @@ class QuantileFigures(Part):
 
     fraction: float
     value_um: list[float]
-    low_um: list[float] | None
-    high_um: list[float] | None
+    low_um: Annotated[list[float] | None, Source(lambda own: own.low if own.low.any() else None)]
+    high_um: Annotated[
+        list[float] | None, Source(lambda own: own.high if all(map(math.isfinite, own.high)) else None)
+    ]
 
 
 class ScatterFigures(Figures):
     """Peak-to-peak STE of the sampled pairs (rows) by torque, and by what they deviate (`names`)."""
 
     torque_n_m: list[float]
-    samples: int
+    samples: Annotated[int, Source(lambda study: len(study.peak_to_peak))]
     nominal_um: list[float]
     error_um: list[float]
     mean_um: list[float]
-    mean_standard_error_um: list[float]
+    mean_standard_error_um: Annotated[list[float], Source("mean_error")]
     confidence: float
     quantiles: list[QuantileFigures]
     names: list[str]
@@ -78,6 +81,3 @@ class ScatterFigures(Figures):
     first_order_um: list[list[float]]
     cost: Json
     asked: Json
-
-
-ANSWER = ScatterFigures

@@ -5,10 +5,11 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Annotated, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import Field, model_validator
 
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
+from lineofaction.gearbox.schemas.row import Row
 
 Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
 Percent = Annotated[float, Field(ge=-10.0, le=10.0)]
@@ -17,7 +18,7 @@ Percent = Annotated[float, Field(ge=-10.0, le=10.0)]
 class Inputs(BoundaryModel):
     """Misalignments and changes of the center distance, varied one at a time; zero is always added."""
 
-    misalignment_um: Annotated[tuple[Misalignment, ...], Strict(False)] = Field(
+    misalignment_um: Row[Misalignment] = Field(
         default=(0.0, 15.0, 30.0, 45.0, 60.0),
         title="Misalignments, µm",
         min_length=1,
@@ -25,7 +26,7 @@ class Inputs(BoundaryModel):
         description="Misalignments in um, increasing",
         examples=[[0.0, 30.0]],
     )
-    center_distance_change_percent: Annotated[tuple[Percent, ...], Strict(False)] = Field(
+    center_distance_change_percent: Row[Percent] = Field(
         default=(-0.2, -0.1, 0.0, 0.1, 0.2),
         title="Changes of the center distance, %",
         min_length=1,
@@ -85,6 +86,3 @@ class SensitivityFigures(Figures):
     """The pairs of a study."""
 
     pairs: list[PairFigures]
-
-
-ANSWER = SensitivityFigures

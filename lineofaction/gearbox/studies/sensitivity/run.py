@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds.types import Json
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity, study_sensitivity
 from fe_contact.geometry import ParallelAxes
@@ -18,9 +19,7 @@ from fe_contact.ste.netcdf import FileFormat, digest, json_attribute
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, study_options
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.stages import TableFraction
-from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.result_file import ResultFile
+from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile
 from lineofaction.gearbox.studies.sensitivity import Inputs, SensitivityFigures
 from lineofaction.gearbox.units import UM
 from model_studies import Progress
@@ -73,7 +72,7 @@ class PairStudy:
 
 def write_studies(studies: Sequence[PairStudy], path: Path) -> None:
     """Write studies of the same numbers of deviations: into a temporary file beside `path`, then renamed."""
-    arrays = _arrays(studies)
+    arrays = _stacked_curves(studies)
     variables = {
         name: Variable(dimensions, arrays[name], {"units": units, "long_name": text})
         for name, (dimensions, units, text) in STORED.items()
@@ -99,11 +98,10 @@ def read_studies(path: Path) -> tuple[PairStudy, ...]:
     """
     content, attributes = FILES.read(path)
     names = json_attribute(path, attributes, "names")
-    return tuple(_study(str(name), content, index) for index, name in enumerate(names))
+    return tuple(_pair_study(str(name), content, index) for index, name in enumerate(names))
 
 
-def _arrays(studies: Sequence[PairStudy]) -> dict[str, Any]:
-    """Stack the curves of all pairs."""
+def _stacked_curves(studies: Sequence[PairStudy]) -> dict[str, Any]:
     models = studies[0].curves
     arrays: dict[str, Any] = {
         "normal_force": np.array([study.normal_force for study in studies]),
@@ -119,8 +117,7 @@ def _arrays(studies: Sequence[PairStudy]) -> dict[str, Any]:
     return {name: arrays[name] for name in STORED}
 
 
-def _study(name: str, content: dict[str, Any], pair: int) -> PairStudy:
-    """Build one study again."""
+def _pair_study(name: str, content: dict[str, Any], pair: int) -> PairStudy:
     curves = tuple(
         Sensitivity(bool(corners), *(_curve(content, axis, pair, model) for axis in _AXES))
         for model, corners in enumerate(content["corner_contact"])
@@ -134,30 +131,62 @@ def _curve(content: dict[str, Any], axis: str, pair: int, model: int) -> RippleC
     return RippleCurve(content[axis][pair], *sizes)
 
 
-Json = dict[str, Any]
 Studies = tuple[PairStudy, ...]
 TABLES = 4
 """Of a pair: over each deviation, without and with corner contact."""
 
 
-def study_case(case: Case, inputs: Inputs, means: Means) -> Studies:
-    """Study a case at its highest load; its own misalignments and center distances are left aside.
+class SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
+    """The pairs of a study, at their highest load."""
 
-    Raises
-    ------
-    BadInput
-        No such pair, or a deviation at which it cannot run.
-    JobFailed
-        No mesh, or points without a solution.
-    """
-    pair = gear_pair(case)
-    tables = _TableByTable(means.report)
-    run = Run(means.workers, means.home / "compliance", tables.progress, tables.plan)
-    with boundary_errors():
-        axes = _axes(case, pair, inputs)
-        curves = study_sensitivity(pair, axes, study_options(case), run)
-    name = f"{case.pair.pinion.teeth}/{case.pair.wheel.teeth}"
-    return (PairStudy(name, float(axes.load(pair)[0]), pair.center_distance, curves),)
+    inputs, answer = Inputs, SensitivityFigures
+    file = ResultFile("format", (FORMAT,), write_studies, read_studies, tuple[PairStudy, ...])
+    resumed = True
+
+    def narrowed(self, case: Case, _inputs: Inputs) -> Case:
+        """Return a case in three dimensions: no model of the plane knows a misalignment."""
+        if case.accuracy.model not in ("plane_strain", "plane_stress"):
+            return case
+        return case.model_copy(update={"accuracy": case.accuracy.model_copy(update={"model": "3d"})})
+
+    def check(self, case: Case, inputs: Inputs) -> None:
+        """Refuse what a study cannot compute, without computing anything.
+
+        Raises
+        ------
+        BadInput
+            No such pair, or a deviation at which it cannot run.
+        """
+        pair, options = gear_pair(case), study_options(case)
+        model = "3d" if options.model == "auto" else options.model
+        with boundary_errors():
+            check_request(pair, _axes(case, pair, inputs), replace(options, model=model))
+
+    def compute(self, case: Case, inputs: Inputs, means: Means) -> Studies:
+        """Study a case at its highest load; its own misalignments and center distances are left aside.
+
+        Raises
+        ------
+        BadInput
+            No such pair, or a deviation at which it cannot run.
+        JobFailed
+            No mesh, or points without a solution.
+        """
+        pair = gear_pair(case)
+        tables = _TableByTable(means.report)
+        run = Run(means.workers, means.home / "compliance", tables.progress, tables.plan)
+        with boundary_errors():
+            axes = _axes(case, pair, inputs)
+            curves = study_sensitivity(pair, axes, study_options(case), run)
+        name = f"{case.pair.pinion.teeth}/{case.pair.wheel.teeth}"
+        return (PairStudy(name, float(axes.load(pair)[0]), pair.center_distance, curves),)
+
+    def joined(self, studies: Mapping[str, Studies]) -> Studies:
+        """Return the studies of several cases as one, under the names of their files."""
+        return tuple(replace(study, name=name) for name, group in studies.items() for study in group)
+
+    def _derived(self, studies: Studies) -> Json:
+        return {"pairs": [(study, {"curves": _curves(study)}) for study in studies]}
 
 
 class _TableByTable:
@@ -177,32 +206,6 @@ class _TableByTable:
         self._report("tables", min(done / TABLES, 1.0))
 
 
-def across_face(case: Case, _inputs: Inputs) -> Case:
-    """Return a case in three dimensions: no model of the plane knows a misalignment."""
-    if case.accuracy.model not in ("plane_strain", "plane_stress"):
-        return case
-    return case.model_copy(update={"accuracy": case.accuracy.model_copy(update={"model": "3d"})})
-
-
-def _check_study(case: Case, inputs: Inputs) -> None:
-    """Refuse what a study cannot compute, without computing anything.
-
-    Raises
-    ------
-    BadInput
-        No such pair, or a deviation at which it cannot run.
-    """
-    pair, options = gear_pair(case), study_options(case)
-    model = "3d" if options.model == "auto" else options.model
-    with boundary_errors():
-        check_request(pair, _axes(case, pair, inputs), replace(options, model=model))
-
-
-def joined(studies: Mapping[str, Studies]) -> Studies:
-    """Return the studies of several cases as one, under the names of their files."""
-    return tuple(replace(study, name=name) for name, group in studies.items() for study in group)
-
-
 def _highest_force(case: Case, pair: ParallelAxes) -> float:
     torques, forces = case.load.torque_n_m, case.load.normal_force_n
     return float(pair.normal_force(torques[-1])) if torques else float((forces or ())[-1])
@@ -216,11 +219,6 @@ def _axes(case: Case, pair: ParallelAxes, inputs: Inputs) -> TableAxes:
         misalignments=[value * UM for value in inputs.misalignment_um],
         center_distance_changes=[0.01 * value * pair.center_distance for value in percent],
     )
-
-
-def studies_json(studies: Sequence[PairStudy]) -> Json:
-    """Return the figures of all pairs."""
-    return figures_of(SensitivityFigures, pairs=[(study, {"curves": _curves(study)}) for study in studies])
 
 
 def _curves(study: PairStudy) -> list[tuple[Any, ...]]:
@@ -237,12 +235,4 @@ def _curves(study: PairStudy) -> list[tuple[Any, ...]]:
     ]
 
 
-RUN = Computation(
-    study_case,
-    studies_json,
-    ResultFile("format", (FORMAT,), write_studies, read_studies, tuple[PairStudy, ...]),
-    narrowed=across_face,
-    check=_check_study,
-    joined=joined,
-    resumed=True,
-)
+RUN = SensitivityStudy()

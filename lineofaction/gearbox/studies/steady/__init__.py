@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, Strict
+from pydantic import Field
 
-from lineofaction.gearbox.schemas.figures import Figures, HousingCost, Json, Part, Source
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part, ReductionCosts, Seconds
+from lineofaction.gearbox.schemas.row import Row
 from lineofaction.gearbox.schemas.studied import MOST_SPEEDS, OverSpeeds, TurningSpeed
 
 
 class Inputs(OverSpeeds):
     """Speeds at which steady states are looked for."""
 
-    speed_rpm: Annotated[tuple[TurningSpeed, ...], Strict(False)] = Field(
+    speed_rpm: Row[TurningSpeed] = Field(
         min_length=1,
         max_length=MOST_SPEEDS,
         description="Speeds of the first driven shaft in rpm, increasing",
@@ -97,9 +98,6 @@ class SteadyFigures(Figures):
     bifurcations: list[Bifurcation]
     jumps: list[Jump]
     steps_per_period: int
-    cpu_seconds: Annotated[dict[str, float], Source("seconds")]
-    reduction_cost: dict[str, HousingCost]
+    cpu_seconds: Seconds
+    reduction_cost: ReductionCosts
     effect_ledger: Json
-
-
-ANSWER = SteadyFigures

@@ -6,58 +6,71 @@ from typing import Any
 
 import numpy as np
 
+from bounds.types import Json
 from dynamics.assembly.assemble import assemble
 from dynamics.periodic import OrbitStatus, SteadyStates, steady_states
 from dynamics.periodic.steady_states import BRANCH, CURVES, UP
-from dynamics.scene import Scene
 from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.figures import Row, figures_of, rows
-from lineofaction.gearbox.studies.housing_costs import kept_costs, with_housing_costs
-from lineofaction.gearbox.studies.result_file import array_file
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
+from lineofaction.gearbox.studies.figures import Row, rows
+from lineofaction.gearbox.studies.housings import with_reduction_costs
 from lineofaction.gearbox.studies.steady import Inputs, SteadyFigures
 from lineofaction.gearbox.units import RPM
 
-Json = dict[str, Any]
 KINDS = ("stable", "fold", "period doubling", "Neimark-Sacker")
 
 
-def _steady_of(scene: Scene, inputs: Inputs, means: Means) -> SteadyStates:
-    with boundary_errors():
-        return steady_states(
-            assemble(scene),
-            [value * RPM for value in inputs.speed_rpm],
-            branch=inputs.branch,
-            repeat=inputs.repeat,
-            periods=inputs.settling_periods,
-            progress=means.report,
+class SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
+    """Motions of both sweeps and of the branch, jumps and bifurcations."""
+
+    inputs, answer, file = Inputs, SteadyFigures, array_file(SteadyStates)
+
+    def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> SteadyStates:
+        """Return the periodic steady states of a scene."""
+        with boundary_errors():
+            states = steady_states(
+                assemble(subject.scene),
+                [value * RPM for value in inputs.speed_rpm],
+                branch=inputs.branch,
+                repeat=inputs.repeat,
+                periods=inputs.settling_periods,
+                progress=means.report,
+            )
+        return with_reduction_costs(states, subject)
+
+    def _derived(self, states: SteadyStates) -> Json:
+        points: dict[str, list[Any]] = {
+            name: [_motion(states, int(index)) for index in np.flatnonzero(states.curve == curve)]
+            for curve, name in enumerate(CURVES)
+        }
+        ended = states.facts["branch"].lower().replace("_", " ")
+        changes = zip(states.bifurcation_kind, states.bifurcation_speed, strict=True)
+        jumps = zip(states.jump_curve, states.jump_speed, strict=True)
+        return {
+            "up": points["up"],
+            "down": points["down"],
+            "branch": {"status": ended, "points": points[CURVES[BRANCH]]},
+            "bifurcations": [{"kind": KINDS[int(kind)], "speed": speed} for kind, speed in changes],
+            "jumps": [{"sweep": "up" if curve == UP else "down", "between": ends} for curve, ends in jumps],
+        }
+
+    def failure(self, states: SteadyStates) -> str:
+        """Say at how many speeds a sweep found no motion."""
+        missing = (states.status != 0) & (states.curve != BRANCH)
+        if not missing.any():
+            return ""
+        speeds = sorted({f"{speed / RPM:.6g}" for speed in states.speed[missing]})
+        shown = ", ".join(speeds[:5]) + (" ..." if len(speeds) > 5 else "")
+        return (
+            f"{int(missing.sum())} of {int((states.curve != BRANCH).sum())} motions were not found, at "
+            f"{shown} rpm. They may repeat after more periods (--repeat 2), or never."
         )
 
 
 def status_name(status: int) -> str:
     """Name how a search ended."""
     return OrbitStatus(status).name.lower().replace("_", " ")
-
-
-def facts(states: SteadyStates) -> Json:
-    """Return the motions of both sweeps and of the branch, jumps and bifurcations."""
-    about = states.facts
-    points: dict[str, list[Any]] = {
-        name: [_motion(states, int(index)) for index in np.flatnonzero(states.curve == curve)]
-        for curve, name in enumerate(CURVES)
-    }
-    changes = zip(states.bifurcation_kind, states.bifurcation_speed, strict=True)
-    jumps = zip(states.jump_curve, states.jump_speed, strict=True)
-    return figures_of(
-        SteadyFigures,
-        about,
-        up=points["up"],
-        down=points["down"],
-        branch={"status": about["branch"].lower().replace("_", " "), "points": points[CURVES[BRANCH]]},
-        bifurcations=[{"kind": KINDS[int(kind)], "speed": speed} for kind, speed in changes],
-        jumps=[{"sweep": "up" if curve == UP else "down", "between": ends} for curve, ends in jumps],
-        reduction_cost=kept_costs(about),
-    )
 
 
 def _motion(states: SteadyStates, index: int) -> tuple[Any, ...]:
@@ -78,22 +91,4 @@ def _motion(states: SteadyStates, index: int) -> tuple[Any, ...]:
     return point, own
 
 
-def _not_found(states: SteadyStates) -> str:
-    """Say at how many speeds a sweep found no motion."""
-    missing = (states.status != 0) & (states.curve != BRANCH)
-    if not missing.any():
-        return ""
-    speeds = sorted({f"{speed / RPM:.6g}" for speed in states.speed[missing]})
-    shown = ", ".join(speeds[:5]) + (" ..." if len(speeds) > 5 else "")
-    return (
-        f"{int(missing.sum())} of {int((states.curve != BRANCH).sum())} motions were not found, at {shown} "
-        "rpm. They may repeat after more periods (--repeat 2), or never."
-    )
-
-
-RUN = Computation(
-    with_housing_costs(_steady_of),
-    facts,
-    array_file(SteadyStates),
-    failure=_not_found,
-)
+RUN = SteadyStudy()

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import ConfigDict, Field, Strict, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
 from lineofaction.gearbox.schemas.model import BoundaryModel, Name, exactly_one_of, refuse, stated
+from lineofaction.gearbox.schemas.row import Row
 
 Value = Annotated[float, Field(ge=-1e20, le=1e20)]
-Values = Annotated[tuple[Value, ...], Strict(False)]
+Values = Row[Value]
 Path = Annotated[str, Field(min_length=1, max_length=500)]
 
 QuantityName = Literal[
@@ -127,13 +128,13 @@ class ResponseInput(BoundaryModel):
 class Inputs(BoundaryModel):
     """A study of a scene: what is varied, and what is taken from every run."""
 
-    factors: Annotated[tuple[FactorInput, ...], Strict(False)] = Field(
+    factors: Row[FactorInput] = Field(
         min_length=1,
         max_length=100,
         description="Factors to vary: a table [[factors]] for each",
         examples=[[{"path": "loads.brake.torque_n_m", "levels": [50.0, 100.0]}]],
     )
-    responses: Annotated[tuple[ResponseInput, ...], Strict(False)] = Field(
+    responses: Row[ResponseInput] = Field(
         min_length=1,
         max_length=100,
         description="Responses of every run: a table [[responses]] for each",
@@ -265,6 +266,3 @@ class StudyFigures(Figures):
     neglected: Any
     design: Json
     runs: dict[str, str]
-
-
-ANSWER = StudyFigures

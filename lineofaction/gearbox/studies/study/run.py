@@ -7,10 +7,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from bounds.types import Json
 from dynamics.scene import Scene
 from dynamics.study import (
     Design,
@@ -31,32 +31,81 @@ from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.computation import Computation, Means, with_defaults
-from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.result_file import array_file
+from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.study import MOST_POINTS, FactorInput, Inputs, StudyFigures
-from lineofaction.gearbox.studies.study.paths import Place, check_flank, mesh_of_case, places_of, with_value
-from lineofaction.gearbox.studies.study.scenes import VariedScene, scene_of_json
+from lineofaction.gearbox.studies.study.scenes import (
+    Place,
+    VariedScene,
+    check_flank,
+    mesh_of_case,
+    places_of,
+    scene_of_json,
+    with_value,
+)
 from lineofaction.gearbox.units import UM
 
-Json = dict[str, Any]
 
+class ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
+    """Factors, statistics of all responses, worst and failed points."""
 
-def facts(result: Study) -> Json:
-    """Return factors, statistics of all responses, worst and failed points in the units of the boundary."""
-    wall = np.nanmean(result.seconds[:, 1]) if result.usable else None
-    failed = [(k, reason) for k, reason in enumerate(result.reason) if reason]
-    return figures_of(
-        StudyFigures,
-        result,
-        result.facts,
-        points=len(result.reason),
-        factors=[{"path": name, "kind": kind} for name, kind in zip(result.factor, result.kind, strict=True)],
-        responses=[_response(result, k) for k in range(len(result.response))],
-        worst=[_point(result, int(k)) for k in result.worst],
-        failed=[{"point": k, "values": _values(result, k), "reason": reason} for k, reason in failed],
-        cpu_seconds={"mean": float(np.mean(result.seconds[:, 0])), "integration_wall_mean": wall},
-    )
+    inputs, answer, file = Inputs, StudyFigures, array_file(Study)
+    resumed = True
+
+    def check(self, scene: SceneInput, inputs: Inputs) -> None:
+        """Refuse a path that names no number, a value that its field does not accept, too many points."""
+        factor_places(scene, inputs)
+
+    def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> Study:
+        """Run a study of a scene.
+
+        Raises
+        ------
+        BadInput
+            A factor, a response or a design that there is not.
+        """
+        places = factor_places(tabled.inputs, inputs)
+        with boundary_errors():
+            design = design_of(tabled.inputs, inputs, places)
+            responses = _responses_of(tabled.scene, inputs)
+            written = tabled.inputs.model_dump_json()
+            scenes = VariedScene(written, tabled.databases, places, str(means.home))
+            task = StudyTask(scenes, design.names, responses, inputs.start_s, inputs.receipt)
+            result = study(
+                task,
+                design,
+                means.workers,
+                means.report,
+                confidence=inputs.confidence,
+                keep_worst=inputs.keep_worst,
+            )
+            if means.folder is not None and result.worst.size:
+                keep_runs(task, result, means.folder, means.report)
+        runs = {str(k): content_digest((task, tuple(map(float, result.value[k])))) for k in result.worst}
+        return replace(result, facts={**result.facts, "design": inputs.model_dump(mode="json"), "runs": runs})
+
+    def _derived(self, result: Study) -> Json:
+        wall = np.nanmean(result.seconds[:, 1]) if result.usable else None
+        failed = [(k, reason) for k, reason in enumerate(result.reason) if reason]
+        kinds = zip(result.factor, result.kind, strict=True)
+        return {
+            "points": len(result.reason),
+            "factors": [{"path": name, "kind": kind} for name, kind in kinds],
+            "responses": [_response_statistics(result, k) for k in range(len(result.response))],
+            "worst": [_responses_at(result, int(k)) for k in result.worst],
+            "failed": [{"point": k, "values": _values(result, k), "reason": reason} for k, reason in failed],
+            "cpu_seconds": {"mean": float(np.mean(result.seconds[:, 0])), "integration_wall_mean": wall},
+        }
+
+    def kept(self, result: Study, means: Means) -> Mapping[str, Path]:
+        """Return the files of the runs that were kept, by the hash that they are stored under."""
+        if means.folder is None:
+            return {}
+        files = {key: means.folder / f"point_{point}.nc" for point, key in result.facts["runs"].items()}
+        return {key: file for key, file in files.items() if file.is_file()}
+
+    def failure(self, result: Study) -> str:
+        """Say that no run has figures."""
+        return "" if result.usable else f"No run has figures. The first: {result.reason[0]}"
 
 
 def in_boundary_units(result: Study, response: int) -> tuple[str, float]:
@@ -65,8 +114,7 @@ def in_boundary_units(result: Study, response: int) -> tuple[str, float]:
     return ("um", UM) if unit == "m" else (unit, 1.0)
 
 
-def _response(result: Study, response: int) -> Json:
-    """Return the statistics of a response by combination of grid and list."""
+def _response_statistics(result: Study, response: int) -> Json:
     unit, one = in_boundary_units(result, response)
     spread, correlation = result.spread(response), result.correlation(response)
     sampled = [k for k, kind in enumerate(result.kind) if kind not in ("grid", "list")]
@@ -87,8 +135,7 @@ def _response(result: Study, response: int) -> Json:
     }
 
 
-def _point(result: Study, point: int) -> Json:
-    """Return one point with its responses and their stated errors."""
+def _responses_at(result: Study, point: int) -> Json:
     figures = {}
     for k, name in enumerate(result.response):
         unit, one = in_boundary_units(result, k)
@@ -110,7 +157,7 @@ def design_of(scene: SceneInput, inputs: Inputs, places: Mapping[str, tuple[Plac
     return Design(factors, inputs.samples, inputs.seed)
 
 
-def responses_of(scene: Scene, inputs: Inputs) -> tuple[Response, ...]:
+def _responses_of(scene: Scene, inputs: Inputs) -> tuple[Response, ...]:
     """Return the responses; raises `BadInput` for a part that the scene has not."""
     responses = tuple(
         Response(r.quantity, r.part or "", r.order or 0, r.mesh or "") for r in inputs.responses
@@ -121,9 +168,9 @@ def responses_of(scene: Scene, inputs: Inputs) -> tuple[Response, ...]:
 
 def _factor(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Place, ...]) -> Factor:
     if factor.levels is not None:
-        return Levels(factor.levels)
+        return Levels(tuple(factor.levels))
     if factor.values is not None:
-        return Listed(factor.values)
+        return Listed(tuple(factor.values))
     if factor.uniform is not None:
         return Uniform(factor.uniform.low, factor.uniform.high)
     if factor.normal is not None:
@@ -168,7 +215,7 @@ def _check_parts(scene: Scene, responses: tuple[Response, ...]) -> None:
 # Checks of a study at the request: paths, values, numbers of points.
 
 
-def check(scene: SceneInput, inputs: Inputs) -> Mapping[str, tuple[Place, ...]]:
+def factor_places(scene: SceneInput, inputs: Inputs) -> Mapping[str, tuple[Place, ...]]:
     """Return where every factor stands in the scene.
 
     Raises
@@ -233,54 +280,4 @@ def _ends(factor: FactorInput) -> tuple[float, ...]:
     return (factor.normal.mean,) if factor.normal is not None else ()
 
 
-def _study_of(tabled: TabledScene, inputs: Inputs, means: Means) -> Study:
-    """Run a study of a scene.
-
-    Raises
-    ------
-    BadInput
-        A factor, a response or a design that there is not.
-    """
-    places = check(tabled.inputs, inputs)
-    with boundary_errors():
-        design = design_of(tabled.inputs, inputs, places)
-        responses = responses_of(tabled.scene, inputs)
-        written = tabled.inputs.model_dump_json()
-        scenes = VariedScene(written, tabled.databases, places, str(means.home))
-        task = StudyTask(scenes, design.names, responses, inputs.start_s, inputs.receipt)
-        result = study(
-            task,
-            design,
-            means.workers,
-            means.report,
-            confidence=inputs.confidence,
-            keep_worst=inputs.keep_worst,
-        )
-        if means.folder is not None and result.worst.size:
-            keep_runs(task, result, means.folder, means.report)
-    runs = {str(k): content_digest((task, tuple(map(float, result.value[k])))) for k in result.worst}
-    return replace(result, facts={**result.facts, "design": with_defaults(inputs), "runs": runs})
-
-
-def kept(result: Study, means: Means) -> Mapping[str, Path]:
-    """Return the files of the runs that were kept, by the hash that they are stored under."""
-    if means.folder is None:
-        return {}
-    files = {key: means.folder / f"point_{point}.nc" for point, key in result.facts["runs"].items()}
-    return {key: file for key, file in files.items() if file.is_file()}
-
-
-def missing(result: Study) -> str:
-    """Say that no run has figures."""
-    return "" if result.usable else f"No run has figures. The first: {result.reason[0]}"
-
-
-RUN = Computation(
-    _study_of,
-    facts,
-    array_file(Study),
-    check=check,
-    resumed=True,
-    kept=kept,
-    failure=missing,
-)
+RUN = ScenesStudy()

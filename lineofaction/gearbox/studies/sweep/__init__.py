@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, Strict
+from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
 from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.row import Row
 
 Axis = Annotated[str, Field(min_length=1, max_length=1000)]
 Shown = Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"]
@@ -17,7 +18,7 @@ Shown = Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_p
 class Inputs(BoundaryModel):
     """What is swept, and what is shown of it."""
 
-    over: Annotated[tuple[Axis, ...], Strict(False)] = Field(
+    over: Row[Axis] = Field(
         default=("torque", "tip_relief"),
         title="Over",
         min_length=1,
@@ -27,7 +28,7 @@ class Inputs(BoundaryModel):
         "of both",
         examples=[["torque", "pinion.profile_crowning=0:10:2"]],
     )
-    show: Annotated[tuple[Shown, ...], Strict(False)] = Field(
+    show: Row[Shown] = Field(
         default=(
             "peak_to_peak",
             "harmonic_1",
@@ -68,6 +69,3 @@ class SweepFigures(Figures):
     least: dict[str, dict[str, float]]
     failed: list[dict[str, float | str]]
     cost: Json
-
-
-ANSWER = SweepFigures

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from bounds import Kind
+from bounds.types import Json
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.sweep import (
@@ -37,9 +38,8 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.declared import Figure, figures
 from lineofaction.gearbox.schemas.gear import FlankPoint
-from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.studies.result_file import record_file
-from lineofaction.gearbox.studies.sweep import Inputs
+from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
+from lineofaction.gearbox.studies.sweep import Inputs, SweepFigures
 from lineofaction.gearbox.units import UM, factor, unit_name
 from model_studies import Record
 
@@ -178,9 +178,6 @@ def _evenly(first: float, last: float) -> list[float]:
     return [float(f"{value:.6g}") for value in np.linspace(first, last, STEPS)]
 
 
-Json = dict[str, Any]
-
-
 @dataclass(frozen=True)
 class Shown:
     """A quantity at the boundary.
@@ -269,26 +266,56 @@ class SweepResult(Record):
         return np.unique(self.sweep.point[:, axis]) / self.axes[axis].factor
 
 
-def _sweep_of(case: Case, inputs: Inputs, means: Means) -> SweepResult:
-    """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero.
+class SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
+    """Points of a map with the figures and their errors."""
 
-    Raises
-    ------
-    BadInput
-        No such pair or axis, or values that the pair does not take.
-    JobFailed
-        The case cannot be computed.
-    """
-    with boundary_errors():
-        result = sweep(_request(case, inputs), Run(means.workers, means.home / "compliance", means.report))
-    known = {quantity.name for quantity in result.quantities}
-    return SweepResult(result, tuple(name for name in inputs.show if name in known))
+    inputs, answer, file = Inputs, SweepFigures, record_file(("sweep", SweepResult))
+    resumed = True
 
+    def check(self, case: Case, inputs: Inputs) -> None:
+        """Raise `BadInput` for what `compute` would, without computing anything."""
+        with boundary_errors():
+            _request(case, inputs).check()
 
-def check(case: Case, inputs: Inputs) -> None:
-    """Raise `BadInput` for what `_sweep_of` would, without computing anything."""
-    with boundary_errors():
-        _request(case, inputs).check()
+    def compute(self, case: Case, inputs: Inputs, means: Means) -> SweepResult:
+        """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero.
+
+        Raises
+        ------
+        BadInput
+            No such pair or axis, or values that the pair does not take.
+        JobFailed
+            The case cannot be computed.
+        """
+        with boundary_errors():
+            run = Run(means.workers, means.home / "compliance", means.report)
+            result = sweep(_request(case, inputs), run)
+        known = {quantity.name for quantity in result.quantities}
+        return SweepResult(result, tuple(name for name in inputs.show if name in known))
+
+    def figures(self, result: SweepResult) -> Json:
+        """Return axes, points with values and errors, and points without, in the units of the boundary."""
+        swept, axes = result.sweep, result.axes
+        return {
+            "over": [
+                {"path": axis.path, "unit": axis.unit, "values": result.levels(k).tolist()}
+                for k, axis in enumerate(axes)
+            ],
+            "held": dict(_not_swept(swept)),
+            "shown": list(result.shown),
+            "points": [_at(result, k) | _figures(swept, k) for k, why in enumerate(swept.reason) if not why],
+            "least": {
+                QUANTITIES[quantity.name].field.format(""): _least(result, quantity)
+                for quantity in swept.quantities
+                if swept.usable
+            },
+            "failed": [_at(result, k) | {"reason": why} for k, why in enumerate(swept.reason) if why],
+            "cost": swept.cost,
+        }
+
+    def failure(self, result: SweepResult) -> str:
+        """Say that no point has figures."""
+        return "" if result.sweep.usable else f"No point has figures: {result.sweep.reason[0]}."
 
 
 def _request(case: Case, inputs: Inputs) -> SweepRequest:
@@ -297,29 +324,7 @@ def _request(case: Case, inputs: Inputs) -> SweepRequest:
     return SweepRequest(gear_pair(case), axes, point, analysis_options(case))
 
 
-def facts(result: SweepResult) -> Json:
-    """Return axes, points with values and errors, and points without, in the units of the boundary."""
-    swept, axes = result.sweep, result.axes
-    return {
-        "over": [
-            {"path": axis.path, "unit": axis.unit, "values": result.levels(k).tolist()}
-            for k, axis in enumerate(axes)
-        ],
-        "held": dict(_held(swept)),
-        "shown": list(result.shown),
-        "points": [_at(result, k) | _figures(swept, k) for k, why in enumerate(swept.reason) if not why],
-        "least": {
-            QUANTITIES[quantity.name].field.format(""): _least(result, quantity)
-            for quantity in swept.quantities
-            if swept.usable
-        },
-        "failed": [_at(result, k) | {"reason": why} for k, why in enumerate(swept.reason) if why],
-        "cost": swept.cost,
-    }
-
-
-def _held(swept: Sweep) -> Iterator[tuple[str, float]]:
-    """Yield what is not swept."""
+def _not_swept(swept: Sweep) -> Iterator[tuple[str, float]]:
     for name, value in swept.held.items():
         axis = SWEEPABLE[name]
         yield axis.path.rpartition(".")[2], value / axis.factor
@@ -346,16 +351,4 @@ def _least(result: SweepResult, quantity: SweptQuantity) -> Json:
     return _at(result, quantity.least) | {"points_within_error": int(quantity.like_least.sum())}
 
 
-def missing(result: SweepResult) -> str:
-    """Say that no point has figures."""
-    return "" if result.sweep.usable else f"No point has figures: {result.sweep.reason[0]}."
-
-
-RUN = Computation(
-    _sweep_of,
-    facts,
-    record_file(("sweep", SweepResult)),
-    check=check,
-    resumed=True,
-    failure=missing,
-)
+RUN = SweepStudy()

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 from pydantic import Field
 
-from lineofaction.gearbox.schemas.figures import BearingForces, Figures, HousingCost, Json, Part, Source
+from lineofaction.gearbox.schemas.figures import Figures, Forces, Json, Part, ReductionCosts, Seconds
 from lineofaction.gearbox.schemas.studied import OverSpeedsOrRun
 
 
@@ -78,10 +76,7 @@ class VibrationFigures(Figures):
     points: dict[str, PointVelocity]
     surface_mm_per_s: list[list[float]] | None
     contributions: Contributions
-    forces: BearingForces
-    cpu_seconds: Annotated[dict[str, float], Source("seconds")]
-    reduction_cost: dict[str, HousingCost]
+    forces: Forces
+    cpu_seconds: Seconds
+    reduction_cost: ReductionCosts
     effect_ledger: Json
-
-
-ANSWER = VibrationFigures

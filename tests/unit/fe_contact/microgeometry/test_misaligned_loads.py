@@ -25,6 +25,7 @@ from fe_contact.microgeometry.search import NelderMead, Search, search_from
 from fe_contact.microgeometry.variables import DesignVariable, modified
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.stage_clock import StageClock
+from lineofaction.gearbox.studies.optimize.run import RUN
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 
@@ -109,7 +110,7 @@ def optimized(
 def test_equal_misalignments_give_the_bits_of_one_for_all(pair: GearPair, compliances: Path) -> None:
     torques, further = [150.0, 300.0], {"map_torques": [200.0], "evaluations": 2}
     one, listed = (
-        optimized(pair, compliances, torques, skew, **further).to_json() for skew in (8e-6, [8e-6, 8e-6])
+        RUN.figures(optimized(pair, compliances, torques, skew, **further)) for skew in (8e-6, [8e-6, 8e-6])
     )
     for result in (one, listed):
         del result["cost"]

@@ -14,6 +14,8 @@ from fe_contact.errors import InputError
 from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, ToleranceStudy, _quantile, scatter
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, Run
+from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.scatter import QuantileFigures
 from model_studies.spread import rank_correlation
 
 TORQUES = [100.0, 200.0]
@@ -100,7 +102,7 @@ def test_bounds_cover_the_true_quantile_as_often_as_they_say() -> None:
 
 def test_a_sample_too_small_has_no_bound() -> None:
     small = _quantile(np.arange(1.0, 6.0)[:, None], 0.95, 0.95)
-    assert np.isinf(small.high).all() and small.to_json()["high_m"] is None
+    assert np.isinf(small.high).all() and figures_of(QuantileFigures, small)["high_um"] is None
 
 
 def test_influence_sees_both_signs_and_sizes() -> None:

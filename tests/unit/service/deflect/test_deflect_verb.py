@@ -21,7 +21,7 @@ from dynamics.settings.load_case import LoadCase
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.studies.deflect.figures import optimization_inputs, write_spectrum
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, outline_of
-from lineofaction.gearbox.studies.deflect.run import RUN, failure
+from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
 from lineofaction.report.deflection.deflect import (
     _bearing_table,
@@ -98,7 +98,7 @@ def test_the_file_gives_back_the_result_bit_by_bit(result: GearboxDeflection, tm
     file = tmp_path / "deflection.nc"
     RUN.file.write(result, file)
     back = RUN.file.read(file)
-    assert RUN.facts(back) == RUN.facts(result)
+    assert RUN.figures(back) == RUN.figures(result)
     assert np.array_equal(back.flanks[3].pattern, result.flanks[3].pattern)
     assert np.array_equal(back.deflection.cases[1].shafts.motion, result.deflection.cases[1].shafts.motion)
     write_report([file], tmp_path / "page.html")
@@ -186,11 +186,11 @@ def test_files_of_an_optimization_stand_beside_the_list_of_calls(
 
 
 def test_what_was_not_found_is_said(result: GearboxDeflection) -> None:
-    assert failure(result) == ""
-    assert "after 3 passes" in failure(replace(result, agreed=False, change=0.1))
+    assert RUN.failure(result) == ""
+    assert "after 3 passes" in RUN.failure(replace(result, agreed=False, change=0.1))
     lost = replace(result.deflection.cases[0], status="unbalanced")
     broken = replace(result, deflection=replace(result.deflection, cases=(lost,)))
-    assert '"climb" (unbalanced)' in failure(broken) and "climb" in _page(broken).alarms[0]
+    assert '"climb" (unbalanced)' in RUN.failure(broken) and "climb" in _page(broken).alarms[0]
 
 
 def test_deflections_are_drawn_a_round_number_of_times_enlarged(result: GearboxDeflection) -> None:
@@ -213,7 +213,7 @@ def with_bearings(result: GearboxDeflection, change: Callable[[BearingLoad], Bea
 
 def test_lives_are_in_hours_and_damage_adds_over_the_cases(result: GearboxDeflection) -> None:
     known = with_bearings(result, lambda load: replace(load, rating_life=1e12 / load.radial**3))
-    figures = RUN.facts(known)
+    figures = RUN.figures(known)
     check_declared("deflection", figures)
     damage = np.zeros(len(result.outline.bearings))
     for case in figures["load_cases"]:
@@ -231,7 +231,7 @@ def test_no_life_is_said_with_its_reason(result: GearboxDeflection) -> None:
     assert {row[2] for row in _life_table(result).rows} == {"none: no capacity"}
     idle = with_bearings(result, lambda load: replace(load, rating_life=float("inf")))
     assert {row[-1] for row in _bearing_table(idle).rows} == {"unlimited"}
-    part = RUN.facts(idle)["bearings"][0]
+    part = RUN.figures(idle)["bearings"][0]
     assert (part["rating_life_hours"], part["rating_life"]) == (None, "unlimited")
 
 
@@ -259,6 +259,6 @@ def test_displacements_within_rounding_are_zero(result: GearboxDeflection) -> No
 
 def test_a_long_life_has_three_digits(result: GearboxDeflection) -> None:
     long = with_bearings(result, lambda load: replace(load, rating_life=1.23456e10))
-    hours = RUN.facts(long)["bearings"][0]["rating_life_hours"]
+    hours = RUN.figures(long)["bearings"][0]["rating_life_hours"]
     assert hours > 1e5
     assert len(_life_table(long).rows[0][2].rstrip("0")) == 3

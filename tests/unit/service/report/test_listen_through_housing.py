@@ -23,7 +23,7 @@ from dynamics.noise import pressure_recording, sound_limit, velocity_recording
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
 from lineofaction.cli.commands import app
-from lineofaction.gearbox.studies.listen.through_housing import other_housings
+from lineofaction.gearbox.studies.housings import other_housings
 
 MICROPHONE = ("--microphone", "600,800,-200")
 

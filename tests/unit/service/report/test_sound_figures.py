@@ -10,7 +10,7 @@ import pytest
 
 from dynamics.acoustics import Recording, loudness_over_time
 from dynamics.results import RunResult
-from lineofaction.gearbox.studies.listen.sound_figures import sound_figures
+from lineofaction.gearbox.studies.listen.run import sound_figures
 
 RATE = 48_000
 TIME = np.arange(RATE // 2) / RATE

@@ -126,7 +126,7 @@ def test_an_optimization_of_one_misalignment_for_all_torques_still_opens(
     opened = study.run.file.read(tmp_path / "before.nc")
     assert opened.misalignment.tolist() == [5e-6, 5e-6]
     assert opened.optimum.objective == result.optimum.objective
-    assert study.run.facts(opened)["misalignment_um"] == pytest.approx([5.0, 5.0], rel=1e-12)
+    assert study.run.figures(opened)["misalignment_um"] == pytest.approx([5.0, 5.0], rel=1e-12)
     assert {row[1] for row in _ripple_table(opened).rows} == {"5.00"}
 
 
@@ -137,8 +137,8 @@ def test_its_file_says_and_draws_what_the_fresh_one_does(
     study, result = studies[name]
     file = tmp_path / "study.nc"
     study.run.file.write(result, file)
-    fresh = json.dumps(study.run.facts(result), allow_nan=False)
-    assert json.dumps(study.run.facts(study.run.file.read(file)), allow_nan=False) == fresh
+    fresh = json.dumps(study.run.figures(result), allow_nan=False)
+    assert json.dumps(study.run.figures(study.run.file.read(file)), allow_nan=False) == fresh
     told = stored_figures({"kind": study.kind, "file": str(file)})
     assert told == page_json(presentation_of(study).page(result))
     assert all(f["alternative"] and f["plot"]["data"] for s in told["sections"] for f in s["figures"])
@@ -150,7 +150,7 @@ def test_both_harris_maps_are_drawn_to_one_scale(
 ) -> None:
     """A curve's height is its ripple, and the torques stand apart by the same on both."""
     study, result = studies["optimization"]
-    content = study.run.facts(result)
+    content = study.run.figures(result)
     (figure,) = (
         f for s in presentation_of(study).page(result).sections for f in s.figures if f.key == "harris_map"
     )
@@ -219,7 +219,7 @@ def test_json_and_a_damaged_file_are_refused_with_a_reason(
 ) -> None:
     study, result = studies["tolerances"]
     old, file = tmp_path / "scatter.json", tmp_path / "scatter.nc"
-    study.run.save_facts(result, old)
+    study.run.save_figures(result, old)
     with pytest.raises(BadInput, match=r"JSON is for programs.*-o FILE\.nc"):
         read_inputs([old])
     study.run.file.write(result, file)

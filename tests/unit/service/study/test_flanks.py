@@ -14,9 +14,8 @@ from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import Inputs
-from lineofaction.gearbox.studies.study.paths import places_of
-from lineofaction.gearbox.studies.study.run import check, design_of
-from lineofaction.gearbox.studies.study.scenes import VariedScene
+from lineofaction.gearbox.studies.study.run import design_of, factor_places
+from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of
 from lineofaction.gearbox.subjects import portable_scene, scene_of
 
 CASE = (
@@ -88,7 +87,7 @@ def test_a_class_of_iso_1328_is_a_band_about_the_design(written: SceneInput) -> 
     inputs = Inputs.model_validate(
         {"factors": [factor], "responses": [{"quantity": "dte_rms"}], "samples": 500}
     )
-    points = design_of(written, inputs, check(written, inputs)).points[:, 0]
+    points = design_of(written, inputs, factor_places(written, inputs)).points[:, 0]
     # (0.4 m_n + 0.001 d + 4) um of class 5, m_n = 4, d = 80; two classes coarser: twice; above 10: whole
     assert np.abs(points).max() <= 11.0
     assert points.std() == pytest.approx(11.0 / 3.0, rel=0.1)
@@ -102,4 +101,4 @@ def test_deviations_of_a_case_with_axes_are_refused(written: SceneInput) -> None
         {"factors": [{"path": PATH, "levels": [1.0]}], "responses": [{"quantity": "dte_rms"}]}
     )
     with pytest.raises(BadInput, match="one misalignment"):
-        check(several, inputs)
+        factor_places(several, inputs)

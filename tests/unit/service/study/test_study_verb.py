@@ -27,8 +27,8 @@ from lineofaction.cli.commands import app
 from lineofaction.gearbox.schemas import read_model
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import Inputs, QuantityName
-from lineofaction.gearbox.studies.study.paths import part_name, places_of, with_value
-from lineofaction.gearbox.studies.study.run import facts
+from lineofaction.gearbox.studies.study.run import RUN
+from lineofaction.gearbox.studies.study.scenes import part_name, places_of, with_value
 from lineofaction.report.document import write_report
 
 STUDY = """
@@ -90,7 +90,7 @@ def test_figures_are_those_of_loa_simulate(studied: Studied, tmp_path: Path) -> 
     answer = json.loads(studied.printed)
     check_declared("study", answer)
     made = Study.from_netcdf(studied.out / "study.nc")
-    figures = facts(made)
+    figures = RUN.figures(made)
     assert figures == {name: answer[name] for name in figures}
     point = int(made.worst[0])
     torque, stiffness = made.value[point].tolist()
@@ -208,7 +208,7 @@ def test_a_value_that_the_scene_refuses_is_a_failed_point(scene: Path, tmp_path:
     text = STUDY.replace("levels = [50.0, 100.0]", "levels = [50.0, 1e5]")  # beyond what the table holds
     assert loa("study", scene, study_file(tmp_path, text), "-o", tmp_path / "out").exit_code == 0
     made = Study.from_netcdf(tmp_path / "out" / "study.nc")
-    failed = facts(made)["failed"]
+    failed = RUN.figures(made)["failed"]
     assert [row["point"] for row in failed] == [3, 4, 5] and all(row["reason"] for row in failed)
     assert np.isnan(made.figure[3:]).all() and np.isfinite(made.figure[:3]).all()
 

@@ -1,0 +1,122 @@
+"""What studies of housings start from: surfaces, the bearing forces of the response or of a run, costs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict, replace
+from typing import Any, TypeVar
+
+import numpy as np
+
+from bounds.types import FloatArray, Json
+from dynamics.assembly.assemble import assemble
+from dynamics.joints import Housing
+from dynamics.linearize import ForcedResponse, forced_response
+from dynamics.orders import BearingOrders, bearing_orders
+from dynamics.results import RunResult
+from dynamics.scene import Scene
+from dynamics.vibration import ReportedHarmonics
+from host import cpu_seconds
+from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.figures import LINEAR
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.studied import OverOrders
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.units import RPM
+
+Result = TypeVar("Result")
+ADVICE = (
+    "Give a housing by step_file, mesh_file or modes_file: matrices alone do not say what the air touches."
+)
+SAME = 1e-6
+"""Largest difference between matrices of the same housing, of their largest entry."""
+
+
+def with_reduction_costs(result: Result, subject: TabledScene) -> Result:
+    """Return a result with what the housings cost beside what was predicted, as its fact `reduction_cost`."""
+    changed: Any = result
+    costed: Result = replace(changed, facts={**changed.facts, "reduction_cost": reduction_costs(subject)})
+    return costed
+
+
+def reduction_costs(subject: TabledScene) -> Json:
+    """Return the fields of the `WorkCost` of reductions by housing; a file of modes may be without them."""
+    return {name: asdict(body.cost) for name, body in subject.housings.items() if body.cost is not None}
+
+
+def bearing_forces(subject: TabledScene, inputs: OverOrders, means: Means) -> ReportedHarmonics:
+    """Return the orders of the bearing forces in the run, without one in the linear response.
+
+    The facts of both have `forces`: where they come from, and of a run how its windows hold.
+    """
+    if means.run is None:
+        response = response_of(subject.scene, inputs, means)
+        return replace(response, facts=response.facts | {"forces": LINEAR})
+    began = cpu_seconds()
+    with boundary_errors():
+        orders = bearing_orders(means.run, inputs.orders)
+    seconds = {"orders": cpu_seconds() - began}
+    forces = _run_forces(orders) | {"other_housings": list(other_housings(subject.scene.housings, means.run))}
+    return replace(orders, facts=orders.facts | {"forces": forces, "seconds": seconds})
+
+
+def _run_forces(orders: BearingOrders) -> Json:
+    """Return how the windows of a run hold, by order, then by window."""
+    known = bool(np.all(np.isfinite(orders.smearing)))
+    return {
+        "source": "run",
+        "time_s": orders.time.tolist(),
+        "window_pitches": orders.facts["pitches"],
+        "windows_left_out": orders.facts["windows_left_out"],
+        "speed_change": orders.sweep.tolist(),
+        "smearing": orders.smearing.T.tolist() if known else None,
+        "remainder": dict(zip(orders.bearing, orders.remainder.tolist(), strict=True)),
+    }
+
+
+def response_of(scene: Scene, inputs: OverOrders, means: Means) -> ForcedResponse:
+    """Return the forced response of a scene."""
+    with boundary_errors():
+        return forced_response(
+            assemble(scene),
+            [value * RPM for value in inputs.speed_rpm],
+            inputs.orders,
+            progress=lambda fraction: means.report("response", fraction),
+        )
+
+
+def silent(housings: list[str]) -> BadInput:
+    """Return the error of housings of which none has a surface, by their names."""
+    return BadInput.of("housings", housings, "at least one with a surface", ADVICE)
+
+
+def require_surface(scene: SceneInput) -> None:
+    """Refuse a scene of whose housings none can have a surface; raises `BadInput`."""
+    if not any(part.is_solid or part.modes_file is not None for part in scene.housings):
+        raise silent([part.name for part in scene.housings])
+
+
+def other_housings(housings: Iterable[Housing], run: RunResult) -> tuple[str, ...]:
+    """Return the names of housings with mass in which a run did not move."""
+    moved = {part["name"]: part for part in run.case.get("housings", ())}
+    massive = (housing for housing in housings if housing.mass is not None)
+    return tuple(housing.name for housing in massive if not _same(housing, moved.get(housing.name)))
+
+
+def _same(housing: Housing, part: Json | None) -> bool:
+    """Whether a part of a stored scene has a housing's matrices at the seats: signs of modes are free."""
+    if part is None or part["mass"] is None:
+        return False
+    seats = slice(len(housing.stiffness) - housing.modal_coordinates)
+    for name in ("stiffness", "mass", "damping"):
+        mine, other = (_matrix(of[name])[seats, seats] for of in (vars(housing), part))
+        if mine.shape != other.shape or np.any(np.abs(mine - other) > SAME * np.abs(mine).max(initial=0.0)):
+            return False
+    return True
+
+
+def _matrix(values: Any) -> FloatArray:
+    """Return a matrix as an array, (0, 0) without one."""
+    return np.zeros((0, 0)) if values is None else np.array(values, dtype=float)
