@@ -22,9 +22,9 @@ from fe_contact.analysis.pairs.pair_contact import (
     operating_points,
     pair_contact,
 )
-from fe_contact.analysis.pairs.solved_run import SolvedRun
 from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.request.request import Checked, Request
+from fe_contact.analysis.request.solved_run import SolvedRun
 from fe_contact.compliance.remote_condensation import condense_remotely, condensing
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution, at_edges, contact_pressure
 from fe_contact.geometry import ParallelAxes

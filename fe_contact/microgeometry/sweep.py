@@ -12,9 +12,9 @@ import numpy as np
 
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condense
-from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
+from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.contact import at_edges, contact_pressure
 from fe_contact.errors import InputError, increasing
 from fe_contact.geometry import ParallelAxes

@@ -12,9 +12,9 @@ from bounds import engineering
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.pairs.contact_lines import assemble_remotely
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
-from fe_contact.analysis.pairs.solved_run import SolvedRun
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.analysis.request.solved_run import SolvedRun
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution
 from fe_contact.effects.effect import across_face

@@ -13,8 +13,8 @@ from fe_contact.analysis.flanks.solved_operating_point import (
     checked_positions,
     solve_operating_point,
 )
-from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint
 from fe_contact.analysis.request.request_check import check_point
+from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance.deformation_3d import deformed_solids
 from fe_contact.compliance.deformed_gear import DeformedGear, deformed_sections
 from fe_contact.contact import face_flank_forces, plane_flank_forces

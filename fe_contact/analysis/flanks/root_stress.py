@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from bounds import Finding, warn_of
 from fe_contact.analysis.flanks.solved_operating_point import solved_point
-from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint
+from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance import PlaneHypothesis, UnitRootStress, unit_root_stresses, unit_root_stresses_3d
 from fe_contact.contact import face_flank_forces, plane_flank_forces
 from fe_contact.contact.patch import Patches

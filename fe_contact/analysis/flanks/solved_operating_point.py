@@ -13,9 +13,9 @@ from fe_contact.analysis.pairs.pair_contact import (
     operating_points,
     pair_contact,
 )
-from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_point
+from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.contact import ContactSolution
 from fe_contact.errors import InputError, SolveError, finite
 from fe_contact.geometry import ParallelAxes

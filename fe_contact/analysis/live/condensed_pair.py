@@ -29,9 +29,9 @@ from fe_contact.analysis.estimates.assessed_table import (
 from fe_contact.analysis.estimates.position_errors import errors_by_halves
 from fe_contact.analysis.live.condensed_contacts import CondensedContacts
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact, operating_points
-from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint, SolvedRun
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.analysis.request.solved_run import SolvedOperatingPoint, SolvedRun
 from fe_contact.analysis.tables import PositionNodes, assembled_table, unmeasured_nodes
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, ParallelAxes

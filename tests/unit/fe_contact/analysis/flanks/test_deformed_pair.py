@@ -15,8 +15,8 @@ from analysis_requests import table_request
 from fe_contact import Gear, GearPair, deformed_pairs
 from fe_contact.analysis.flanks.deformed_pair import mesh_angles
 from fe_contact.analysis.flanks.solved_operating_point import solve_operating_point
-from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint
 from fe_contact.analysis.request.request_check import check_request
+from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.contact import (
     contact_problem,
     face_contact_problem,

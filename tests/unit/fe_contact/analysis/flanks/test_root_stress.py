@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike
 from fe_contact import Gear, GearPair, RootStress, root_stress
 from fe_contact.analysis.flanks.root_stress import _crest_values, _finer_root, _pair_histories
 from fe_contact.analysis.flanks.solved_operating_point import solve_operating_point
-from fe_contact.analysis.pairs.solved_run import SolvedOperatingPoint
 from fe_contact.analysis.request.request_check import check_request
+from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance import unit_root_stress, unit_root_stress_3d
 from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, RingGear
