@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate
 
 from lineofaction.client.offers import offers
-from lineofaction.client.process import Offered
+from lineofaction.client.process import F, Offered, P, T
 from lineofaction.client.surface import Surface
 
 if TYPE_CHECKING:
     from dynamics.results import RunResult
     from fe_contact.ste import SteDatabase
-    from lineofaction.gearbox.schemas.figures import Figures, RunFigures, TableFigures
+    from lineofaction.gearbox.schemas.figures import RunFigures, TableFigures
     from lineofaction.gearbox.studies.ablate.run import RUN as ABLATE
     from lineofaction.gearbox.studies.computation import Computation
     from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
@@ -32,24 +32,21 @@ if TYPE_CHECKING:
     from lineofaction.gearbox.studies.vibration.run import RUN as VIBRATION
     from lineofaction.gearbox.subjects import CaseLike, SceneLike, StudyLike
 
-    P = ParamSpec("P")
-    Answer = TypeVar("Answer", bound=Figures)
-    Result = TypeVar("Result")
-    Work = Computation[Any, Any, Any, Answer, Result]
+    Work = Computation[Any, Any, Any, F, T]
 
-    def _as(study: Work[Answer, Result], call: Callable[P, object]) -> Offered[P, Result, Answer]: ...
+    def _as(study: Work[F, T], call: Callable[P, object]) -> Offered[P, T, F]: ...
 
     def _of_case(
-        study: Work[Answer, Result], inputs: Callable[P, object]
-    ) -> Offered[Concatenate[CaseLike, P], Result, Answer]: ...
+        study: Work[F, T], inputs: Callable[P, object]
+    ) -> Offered[Concatenate[CaseLike, P], T, F]: ...
 
     def _of_scene(
-        study: Work[Answer, Result], inputs: Callable[P, object]
-    ) -> Offered[Concatenate[SceneLike, P], Result, Answer]: ...
+        study: Work[F, T], inputs: Callable[P, object]
+    ) -> Offered[Concatenate[SceneLike, P], T, F]: ...
 
     def _of_either(
-        study: Work[Answer, Result], inputs: Callable[P, object]
-    ) -> Offered[Concatenate[CaseLike | SceneLike, P], Result, Answer]: ...
+        study: Work[F, T], inputs: Callable[P, object]
+    ) -> Offered[Concatenate[CaseLike | SceneLike, P], T, F]: ...
 
     def _case_and_file(case: CaseLike, study: StudyLike) -> None: ...
 
@@ -59,10 +56,7 @@ if TYPE_CHECKING:
 
 
 class Processes(Surface):
-    """The processes of a service: call one for its result, `submit` for a job, `map` for many.
-
-    Their types are those of the studies: what is varied, the result, its figures.
-    """
+    """The processes of a service: call one for its result, `submit` for a job, `map` for many."""
 
     if TYPE_CHECKING:
         analyze: Offered[[CaseLike], SteDatabase, TableFigures]
