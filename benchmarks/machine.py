@@ -7,7 +7,7 @@ import platform
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "gmsh", "pymetis", "pypardiso", "lineofaction")
+LIBRARIES = ("numpy", "scipy", "numba", "scikit-fem", "gmsh", "pymetis", "lineofaction")
 
 
 def describe() -> dict[str, str]:

@@ -13,7 +13,6 @@ from fe_contact.compliance.flank_compliance_2d import flank_compliance, flank_co
 from fe_contact.compliance.plane_elasticity import PlaneHypothesis
 from fe_contact.compliance.remote_condensation import free_ends_kept, section_kept, solid_kept
 from fe_contact.compliance.root_stress import RootStressChecks, UnitRootStress
-from fe_contact.compliance.solvers import Pardiso, Solver, SuperLuColamd, SuperLuMetis
 from fe_contact.compliance.unit_root_stress import (
     unit_root_stress,
     unit_root_stress_3d,
@@ -27,13 +26,9 @@ __all__ = [
     "FiniteWidthCompliance",
     "FlankCompliance",
     "FlankCompliance3D",
-    "Pardiso",
     "PlaneHypothesis",
     "PredictedCost",
     "RootStressChecks",
-    "Solver",
-    "SuperLuColamd",
-    "SuperLuMetis",
     "UnitRootStress",
     "default_cache_directory",
     "finite_width_compliances",

@@ -7,6 +7,7 @@ import json
 import os
 import tempfile
 import zipfile
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import asdict, fields
 from functools import lru_cache
@@ -25,6 +26,7 @@ KEPT_KEYS = 64
 """Hashes of what was requested last, kept in memory."""
 NOT_ARRAYS = ("facts", "checksum")
 Kept = TypeVar("Kept", FlankCompliance, FlankCompliance3D, UnitRootStress)
+Result = TypeVar("Result")
 
 
 @lru_cache(maxsize=1)
@@ -36,6 +38,25 @@ def mesher_version() -> str:
 def content_hash(content: Json) -> str:
     """Return the SHA-256 of plain JSON, hexadecimal, independent of the order of keys."""
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def kept_or_computed(directory: Path | None, key: str, kind: type[Kept], compute: Callable[[], Kept]) -> Kept:
+    """Return the result kept under `key`, or compute it and keep it; without a directory just compute."""
+    result = read_compliance(directory, key, kind) if directory is not None else None
+    if result is None:
+        result = compute()
+        if directory is not None:
+            write_compliance(directory, key, result)
+    return result
+
+
+def once_each(keys: Sequence[str], compute: Callable[[int], Result]) -> tuple[Result, ...]:
+    """Return a result for each key, computed with the number of its first place: equal keys share one."""
+    results: dict[str, Result] = {}
+    for number, key in enumerate(keys):
+        if key not in results:
+            results[key] = compute(number)
+    return tuple(results[key] for key in keys)
 
 
 def read_compliance(directory: Path, key: str, kind: type[Kept]) -> Kept | None:

@@ -45,7 +45,7 @@ class CondensedGear:
     held : HeldSector
         The sector on its cuts.
     ring : RingSolution
-        The gear under the loads `probe_loads`.
+        The gear under the loads `_probe_loads`.
     """
 
     sector: SweptSector
@@ -68,7 +68,7 @@ class CondensedGear:
         return self.held.cuts @ self.cuts(tooth)
 
 
-def pressure_forces(s: FloatArray, z: FloatArray, index: IntArray, loaded: FloatArray) -> FloatArray:
+def _pressure_forces(s: FloatArray, z: FloatArray, index: IntArray, loaded: FloatArray) -> FloatArray:
     """Return the consistent forces (nf,) of a pressure of `loaded` (L, elements) per unit of s and z."""
     forces = np.zeros(index.max() + 1)
     areas = loaded * np.diff(z)[:, None] * (s[2::2] - s[:-2:2])
@@ -81,7 +81,7 @@ def pressure_forces(s: FloatArray, z: FloatArray, index: IntArray, loaded: Float
     return forces
 
 
-def probe_loads(s: FloatArray, z: FloatArray, index: IntArray, s_form: float) -> FloatArray:
+def _probe_loads(s: FloatArray, z: FloatArray, index: IntArray, s_form: float) -> FloatArray:
     """Return two loads (nf, 2): unit pressure on the whole involute, and on its uppermost layer.
 
     Elements that begin below `s_form` carry nothing, since their normals miss the base circle.
@@ -89,7 +89,7 @@ def probe_loads(s: FloatArray, z: FloatArray, index: IntArray, s_form: float) ->
     on = np.broadcast_to(s[:-2:2] >= s_form, (len(z) - 1, len(s) // 2)).astype(float)
     end = np.zeros_like(on)
     end[-1] = on[-1]
-    return np.stack([pressure_forces(s, z, index, part) for part in (on, end)], axis=1)
+    return np.stack([_pressure_forces(s, z, index, part) for part in (on, end)], axis=1)
 
 
 def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radius: float) -> ComplianceChecks:
@@ -98,7 +98,7 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     Parameters
     ----------
     gear : CondensedGear
-        Solved for the probe loads `loads` (nf, 2), `probe_loads`.
+        Solved for the probe loads `loads` (nf, 2), `_probe_loads`.
     lever : float
         Moment about the axis per unit force along the involute's inward normal, r_b cos(beta_b), m.
     bore_radius : float
@@ -116,14 +116,14 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     inside = float(np.sum(field[gear.sector.element_freedoms] * forces * (gear.sector.element_freedoms >= 0)))
     works = [inside + sum(moved), float(load[:, 0] @ values[: len(load), 0])]
     works.append(float(load[:, 0] @ gear.ring.blocks[0] @ load[:, 0]))
-    moment = bore_moment(gear, loads, bore_radius)
+    moment = _bore_moment(gear, loads, bore_radius)
     left = left_by_rounding(_stiffness_alone(gear.sector, gear.stiffness), field, load, works[0])
     return ComplianceChecks(
         residual=residual(gear, forces, load[:, 0]),
-        reciprocity=reciprocity(gear, loads),
+        reciprocity=_reciprocity(gear, loads),
         bore_moment=abs(moment / (lever * float(load.sum())) - 1.0),
         energy=float(np.ptp(works) / works[0]),
-        least_eigenvalue=least_eigenvalue(gear.ring.blocks[0]),
+        least_eigenvalue=_least_eigenvalue(gear.ring.blocks[0]),
         residual_rounding=left[0],
         energy_rounding=left[1],
     )
@@ -166,7 +166,7 @@ def residual(gear: CondensedGear, forces: FloatArray, load: FloatArray) -> float
     return float(np.linalg.norm(out) / np.linalg.norm(load))
 
 
-def bore_moment(gear: CondensedGear, loads: FloatArray, bore_radius: float) -> float:
+def _bore_moment(gear: CondensedGear, loads: FloatArray, bore_radius: float) -> float:
     """Return the moment about the axis that the bore takes up under the first probe load, N m.
 
     The load is along the outward normal of the right flank, which turns the gear clockwise; so the reactions
@@ -185,7 +185,7 @@ def bore_moment(gear: CondensedGear, loads: FloatArray, bore_radius: float) -> f
     return bore_radius * float(forces[on_bore][:, 1].sum())
 
 
-def reciprocity(gear: CondensedGear, loads: FloatArray) -> float:
+def _reciprocity(gear: CondensedGear, loads: FloatArray) -> float:
     """Return how far the work of one probe load on the other's displacement, tooth to tooth, is not mutual.
 
     Also the asymmetry of S_0 over its largest entry.
@@ -198,7 +198,7 @@ def reciprocity(gear: CondensedGear, loads: FloatArray) -> float:
     return max(mutual, float(np.abs(own - own.T).max() / np.abs(own).max()))
 
 
-def least_eigenvalue(matrix: FloatArray) -> float:
+def _least_eigenvalue(matrix: FloatArray) -> float:
     """Return the least eigenvalue of a symmetric matrix by inverse iteration, minus its norm if none."""
     try:
         factor = cho_factor(matrix, lower=True)
@@ -241,7 +241,7 @@ def condensed_gear(
     clock : StageClock
         Gets the stages ``assembly``, ``condensation``, ``ring`` and their progress.
     probes : (nf, p) array, optional
-        Loads on tooth 0 for which all cuts are wanted, N; default `probe_loads`.
+        Loads on tooth 0 for which all cuts are wanted, N; default `_probe_loads`.
 
     Returns
     -------
@@ -284,7 +284,7 @@ def condensed_tooth(
     held = hold_sector(condensation.matrix, len(sector.loaded))
     s_form = tooth_profile(gear).s_form
     loads = np.zeros((len(sector.loaded), 2))
-    loads[: len(sector.flank)] = probe_loads(section.s, sector.layers.ends, sector.flank_index, s_form)
+    loads[: len(sector.flank)] = _probe_loads(section.s, sector.layers.ends, sector.flank_index, s_form)
     return CondensedTooth(sector, stiffness, condensation, held), loads
 
 

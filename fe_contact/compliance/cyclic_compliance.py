@@ -15,10 +15,10 @@ from scipy.linalg import blas
 from fe_contact.compliance.cache import (
     KEPT_KEYS,
     content_hash,
+    kept_or_computed,
     kept_size,
     mesher_version,
-    read_compliance,
-    write_compliance,
+    once_each,
 )
 from fe_contact.compliance.elimination_tree import EliminationTree, sector_tree
 from fe_contact.compliance.flank import FlankCompliance3D, refuse_broken_laws
@@ -127,7 +127,7 @@ def predict_cost(
         "key": 2.0 * answers * sizes.flank,
     }
     keyed = int(NUMBER * (5.0 * answers + gear.teeth * sizes.flank * key))
-    rate = kept_speed(cache, "dense_rate", dense_rate, _RATES)
+    rate = kept_speed(cache, "dense_rate", _dense_rate, _RATES)
     seconds = {part: count / rate for part, count in operations.items()}
     return PredictedCost({"mesh": MESH_SECONDS} | seconds, _working_bytes(tree, sizes) + keyed)
 
@@ -164,7 +164,7 @@ def _working_bytes(tree: EliminationTree, sizes: _SectorSizes) -> int:
 
 
 @lru_cache(maxsize=1)
-def dense_rate() -> float:
+def _dense_rate() -> float:
     """Return multiplications with addition per CPU second of a symmetric update."""
     count, depth = 600, 300
     panel = np.asfortranarray(np.sin(np.arange(count * depth, dtype=float)).reshape(count, depth))
@@ -220,11 +220,13 @@ def flank_compliance_3d(
     recipe, support = recipe or SectorRecipe.standard(gear), support or bore_support(gear.right_handed())
     reach = usual_reach(gear) if reach is None else integer("reach", reach, 0, gear.teeth // 2)
     key = compliance_key_3d(gear, recipe, reach, support)
-    result = read_compliance(cache, key, FlankCompliance3D) if cache is not None else None
-    if result is None:
-        result = compute_flank_compliance_3d(gear.right_handed(), recipe, reach, support, report=report)
-        if cache is not None:
-            write_compliance(cache, key, result)
+    right = gear.right_handed()
+    result = kept_or_computed(
+        cache,
+        key,
+        FlankCompliance3D,
+        lambda: compute_flank_compliance_3d(right, recipe, reach, support, report=report),
+    )
     return result.mirrored() if gear.helix_angle < 0.0 else result
 
 
@@ -246,15 +248,16 @@ def flank_compliances_3d(
         for gear, recipe in zip(gears, recipes, strict=True)
     ]
     progress = by_cost(report, _costs(keys, gears, recipes, cache))
-    compliances: dict[str, FlankCompliance3D] = {}
-    results = []
-    for key, gear, recipe in zip(keys, gears, recipes, strict=True):
-        if key not in compliances:
-            own = partial(progress, key)
-            compliances[key] = flank_compliance_3d(gear, recipe, support=support, cache=cache, report=own)
-        alike = compliances[key].base_helix_angle * gear.helix_angle >= 0.0
-        results.append(compliances[key] if alike else compliances[key].mirrored())
-    return tuple(results)
+    compliances = once_each(
+        keys,
+        lambda i: flank_compliance_3d(
+            gears[i], recipes[i], support=support, cache=cache, report=partial(progress, keys[i])
+        ),
+    )
+    return tuple(
+        each if each.base_helix_angle * gear.helix_angle >= 0.0 else each.mirrored()
+        for gear, each in zip(gears, compliances, strict=True)
+    )
 
 
 def _costs(

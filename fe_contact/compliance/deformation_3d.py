@@ -63,7 +63,7 @@ class _Part:
 
 
 @dataclass(frozen=True)
-class SectorElements:
+class _SectorElements:
     """The elements of one sector, in the frame of mid-face, tooth on +y.
 
     Attributes
@@ -120,7 +120,7 @@ def _trilinear(at: FloatArray) -> FloatArray:
 _EXTRAPOLATION = _trilinear(REFERENCE) @ np.linalg.inv(_trilinear(INNER))
 
 
-def sector_elements(gear: Toothing, section: QuadSector, sector: SweptSector) -> SectorElements:
+def _sector_elements(gear: Toothing, section: QuadSector, sector: SweptSector) -> _SectorElements:
     """Place the elements of a sector.
 
     Parameters
@@ -158,7 +158,7 @@ def sector_elements(gear: Toothing, section: QuadSector, sector: SweptSector) ->
     quality = {"scaled_jacobian": jacobian, "corner_angle_deg": np.empty(count)}
     for batch in sector.batches:
         quality["corner_angle_deg"][batch.elements] = np.degrees(angle[batch.quads])
-    return SectorElements(
+    return _SectorElements(
         nodes, numbers, points, quality, sector, lame_parameters(gear.material), tuple(parts)
     )
 
@@ -228,7 +228,7 @@ def deformed_solids(
     sources = [(case, tooth) for case, load in enumerate(loads) for tooth in load]
     columns = np.stack([_mirrored_back(loads[case][tooth], mirror) for case, tooth in sources], axis=1)
     solved, _ = condensed_gear(right, section, recipe, 0, support, StageClock(), columns)
-    elements = sector_elements(right, section, solved.sector)
+    elements = _sector_elements(right, section, solved.sector)
     deformed = []
     for case in range(len(loads)):
         own = [i for i, (number, _) in enumerate(sources) if number == case]
@@ -279,7 +279,7 @@ def _fields(gear: CondensedGear, loaded: _Loaded, shown: IntArray) -> tuple[Floa
 def _deformed(
     teeth: int,
     gear: CondensedGear,
-    elements: SectorElements,
+    elements: _SectorElements,
     loaded: _Loaded,
     beside: int,
     mirror: IntArray | None,
@@ -317,7 +317,7 @@ def _deformed(
     )
 
 
-def _numbers(sector: SweptSector, elements: SectorElements, count: int, closed: bool) -> IntArray:
+def _numbers(sector: SweptSector, elements: _SectorElements, count: int, closed: bool) -> IntArray:
     """Return the point of every element node, (T, e, 20); a left cut is the next sector's right cut."""
     each = elements.points
     numbers = np.arange(count * each).reshape(count, each)

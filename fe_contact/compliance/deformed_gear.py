@@ -10,7 +10,6 @@ import numpy as np
 from fe_contact.compliance.flank_compliance_2d import Field, condensed_ring, field_under
 from fe_contact.compliance.plane_elasticity import PlaneHypothesis
 from fe_contact.compliance.ring_2d import Ring
-from fe_contact.compliance.solvers import Solver, SuperLuMetis
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
 from fe_contact.mesh.export import cell_teeth
@@ -117,20 +116,19 @@ def deformed_sections(
     recipe: MeshRecipe,
     hypothesis: PlaneHypothesis,
     loads: Sequence[Mapping[int, FloatArray]],
-    solver: Solver | None = None,
 ) -> tuple[DeformedGear, ...]:
     """Solve the whole section for each set of loads; mesh and factors are made once.
 
     Parameters
     ----------
     gear : Gear or RingGear
-    recipe, hypothesis, solver
+    recipe, hypothesis
         As for `flank_compliance`.
     loads : sequence of mapping
         Tooth number to inward nodal forces along the flank normal (k,), N/m.
     """
     mesh = mesh_gear(gear, recipe)
-    ring = condensed_ring(gear, mesh, hypothesis, solver or SuperLuMetis())
+    ring = condensed_ring(gear, mesh, hypothesis)
     lame = hypothesis.lame_parameters(gear.material)
     out_of_plane = lame[0] if hypothesis is PlaneHypothesis.PLANE_STRAIN else 0.0
     return tuple(_deformed(ring, _field(ring, load), lame, out_of_plane) for load in loads)
@@ -153,7 +151,7 @@ def _deformed(ring: Ring, field: Field, lame: tuple[float, float], out_of_plane:
     out = field.load - field.internal
     out[mesh.bore_nodes] = 0.0
     quality = mesh_quality(mesh.points, mesh.triangles)
-    stress = element_stress(mesh, field.displacement, lame, out_of_plane)
+    stress = _element_stress(mesh, field.displacement, lame, out_of_plane)
     inward = {
         flank.tooth: -np.sum(field.displacement[flank.nodes] * flank.normals, axis=1) for flank in mesh.flanks
     }
@@ -173,7 +171,7 @@ def _deformed(ring: Ring, field: Field, lame: tuple[float, float], out_of_plane:
     )
 
 
-def element_stress(
+def _element_stress(
     mesh: GearMesh, displacement: FloatArray, lame: tuple[float, float], out_of_plane: float
 ) -> FloatArray:
     """Return the stresses (m, 6, 3, 3) of every element at its nodes, Pa.

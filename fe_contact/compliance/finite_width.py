@@ -23,6 +23,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fe_contact.compliance.cache import once_each
 from fe_contact.compliance.cyclic_compliance import compliance_key_3d, flank_compliance_3d
 from fe_contact.compliance.flank import FlankCompliance, FlankCompliance3D
 from fe_contact.errors import InputError
@@ -62,7 +63,7 @@ class FiniteWidthCompliance:
 
     def added_to(self, flank: FlankCompliance) -> FlankCompliance:
         """Return the compliance of a transverse section in plane strain, corrected for the finite width."""
-        shape = shape_functions(self.s, flank.s)
+        shape = _shape_functions(self.s, flank.s)
         count = flank.teeth.size
         added = {m: shape @ self.block(m) @ shape.T for m in range(1 - count, count)}
         rows = [np.concatenate([added[i - j] for j in range(count)], axis=1) for i in range(count)]
@@ -92,34 +93,33 @@ def finite_width_compliances(
     MeshError, SolveError
         No acceptable mesh, a singular stiffness or a broken law.
     """
-    compliances: dict[str, FiniteWidthCompliance] = {}
-    keys = []
-    for gear, recipe in zip(gears, recipes, strict=True):
+    for gear in gears:
         if gear.helix_angle != 0.0:
             raise InputError("gear.helix_angle", gear.helix_angle, "0", "Use the 3-D model for it.")
-        keys.append(compliance_key_3d(gear, recipe, 0, ClampedBore()))
-        if keys[-1] not in compliances:
-            compliances[keys[-1]] = _beyond_plane_strain(gear, recipe, min(teeth - 1, gear.teeth // 2), cache)
-    return tuple(compliances[key] for key in keys)
+    keys = [
+        compliance_key_3d(gear, recipe, 0, ClampedBore()) for gear, recipe in zip(gears, recipes, strict=True)
+    ]
+    return once_each(keys, lambda i: _beyond_plane_strain(gears[i], recipes[i], teeth, cache))
 
 
 def _beyond_plane_strain(
-    gear: Toothing, recipe: SectorRecipe, reach: int, cache: Path | None
+    gear: Toothing, recipe: SectorRecipe, teeth: int, cache: Path | None
 ) -> FiniteWidthCompliance:
     """Solve the solid, and the same mesh held along the axis: the same functions, but for the axial ones."""
+    reach = min(teeth - 1, gear.teeth // 2)
     solid = flank_compliance_3d(gear, recipe, reach=reach, cache=cache)
     section = flank_compliance_3d(gear, recipe, reach=reach, support=PlaneStrain(), cache=cache)
-    return FiniteWidthCompliance(solid.s, under_even_load(solid) - under_even_load(section), gear.teeth)
+    return FiniteWidthCompliance(solid.s, _under_even_load(solid) - _under_even_load(section), gear.teeth)
 
 
-def under_even_load(compliance: FlankCompliance3D) -> FloatArray:
+def _under_even_load(compliance: FlankCompliance3D) -> FloatArray:
     """Return b E' S_m E (reach + 1, k, k): mean displacements per even force and unit face width."""
-    even = even_load(compliance.z, compliance.index)
+    even = _even_load(compliance.z, compliance.index)
     width = float(compliance.z[-1] - compliance.z[0])
     return np.asarray(width * (even.T @ compliance.blocks @ even))
 
 
-def even_load(z: FloatArray, index: IntArray) -> FloatArray:
+def _even_load(z: FloatArray, index: IntArray) -> FloatArray:
     """Return the forces (nf, k) of loads that are even across the face, per total force at a profile node.
 
     The mean of an eight-node face over its width is quadratic along the profile, so that it has values at
@@ -140,7 +140,7 @@ def even_load(z: FloatArray, index: IntArray) -> FloatArray:
     return forces
 
 
-def shape_functions(nodes: FloatArray, at: FloatArray) -> FloatArray:
+def _shape_functions(nodes: FloatArray, at: FloatArray) -> FloatArray:
     """Return the quadratic shape functions (n, k) of flank `nodes` (k,) at the coordinates `at` (n,).
 
     Below the first node its value holds.

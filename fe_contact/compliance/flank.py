@@ -48,7 +48,7 @@ def left_by_rounding(
     return EPSILON * float(residual), EPSILON * float(energy)
 
 
-def disc_rounding(slenderness: float, helix_angle: float, layers: int, material: Material) -> float:
+def _disc_rounding(slenderness: float, helix_angle: float, layers: int, material: Material) -> float:
     """Return about what rounding leaves of the energy of a solid disc, to a factor of 3.
 
     Parameters
@@ -73,7 +73,7 @@ def least_face_width(gear: Toothing, layers: int) -> float:
 
     def beyond(power: float) -> float:
         return math.log(
-            disc_rounding(10.0**power, gear.helix_angle, layers, gear.material) / LARGEST_ROUNDING
+            _disc_rounding(10.0**power, gear.helix_angle, layers, gear.material) / LARGEST_ROUNDING
         )
 
     return abs(gear.root_radius - gear.held_radius) / float(10.0 ** brentq(beyond, -3.0, 9.0))

@@ -14,9 +14,9 @@ from scipy.linalg import eigh
 from fe_contact.compliance.cache import (
     KEPT_KEYS,
     content_hash,
+    kept_or_computed,
     mesher_version,
-    read_compliance,
-    write_compliance,
+    once_each,
 )
 from fe_contact.compliance.flank import (
     ComplianceChecks,
@@ -25,8 +25,14 @@ from fe_contact.compliance.flank import (
     refuse_broken_laws,
 )
 from fe_contact.compliance.plane_elasticity import PlaneHypothesis
-from fe_contact.compliance.ring_2d import Ring, assemble_ring, condense_sector, flank_matrix, rotation
-from fe_contact.compliance.solvers import Solver, SuperLuMetis
+from fe_contact.compliance.ring_2d import (
+    FACTORIZATION,
+    Ring,
+    assemble_ring,
+    condense_sector,
+    flank_matrix,
+    rotation,
+)
 from fe_contact.errors import InputError, integer
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
@@ -54,7 +60,7 @@ class Field:
 
 
 @dataclass(frozen=True)
-class FlankLoad:
+class _FlankLoad:
     """Inward normal forces on the involute of one tooth.
 
     Attributes
@@ -75,7 +81,7 @@ class FlankLoad:
         return float(self.forces @ matrix[start : start + k, start : start + k] @ self.forces)
 
 
-def uniform_pressure(s: FloatArray, s_form: float, base_radius: float) -> FlankLoad:
+def uniform_pressure(s: FloatArray, s_form: float, base_radius: float) -> _FlankLoad:
     """Return the load of unit pressure on the involute.
 
     `s` (k,) are the flank's nodes; elements that begin below `s_form` carry nothing, since their normals
@@ -86,7 +92,7 @@ def uniform_pressure(s: FloatArray, s_form: float, base_radius: float) -> FlankL
     forces[:-2:2] += lengths / 6.0
     forces[1::2] = 4.0 * lengths / 6.0
     forces[2::2] += lengths / 6.0
-    return FlankLoad(forces, base_radius * float(forces.sum()))
+    return _FlankLoad(forces, base_radius * float(forces.sum()))
 
 
 def field_under(ring: Ring, tooth_index: int, forces: FloatArray) -> Field:
@@ -141,7 +147,7 @@ def _recovered(ring: Ring, u: FloatArray, load: FloatArray) -> FloatArray:
     return local
 
 
-def _ring_checks(ring: Ring, tooth_index: int, load: FlankLoad, matrix: FloatArray) -> ComplianceChecks:
+def _ring_checks(ring: Ring, tooth_index: int, load: _FlankLoad, matrix: FloatArray) -> ComplianceChecks:
     """Check the compliance of a ring.
 
     Parameters
@@ -187,7 +193,6 @@ def flank_compliance(
     hypothesis: PlaneHypothesis = PlaneHypothesis.PLANE_STRAIN,
     *,
     teeth: int | None = None,
-    solver: Solver | None = None,
     cache: Path | None = None,
 ) -> FlankCompliance:
     """Return the compliance of the right flanks of a gear, transverse section, per unit face width.
@@ -204,8 +209,6 @@ def flank_compliance(
     teeth : int, optional
         Number of condensed teeth, odd, centered on tooth 0, at most the real ones; default 5, or as many as
         there are.
-    solver : Solver, optional
-        Default `SuperLuMetis()`.
     cache : Path, optional
         Directory of kept results (see `default_cache_directory`); None: neither read nor written.
 
@@ -218,16 +221,12 @@ def flank_compliance(
     SolveError
         The matrix is singular, or the result breaks a law.
     """
-    recipe, solver = recipe or MeshRecipe.standard(gear), solver or SuperLuMetis()
+    recipe = recipe or MeshRecipe.standard(gear)
     count = condensed_teeth(gear, recipe, teeth)
-    key = compliance_key(gear, recipe, hypothesis, count, solver)
-    kept = read_compliance(cache, key, FlankCompliance) if cache is not None else None
-    if kept is not None:
-        return kept
-    result = compute_flank_compliance(gear, recipe, hypothesis, count, solver)
-    if cache is not None:
-        write_compliance(cache, key, result)
-    return result
+    key = compliance_key(gear, recipe, hypothesis, count)
+    return kept_or_computed(
+        cache, key, FlankCompliance, lambda: compute_flank_compliance(gear, recipe, hypothesis, count)
+    )
 
 
 def flank_compliances(
@@ -236,7 +235,6 @@ def flank_compliances(
     hypothesis: PlaneHypothesis = PlaneHypothesis.PLANE_STRAIN,
     *,
     teeth: int | None = None,
-    solver: Solver | None = None,
     cache: Path | None = None,
 ) -> tuple[FlankCompliance, ...]:
     """Return the compliance of each gear; gears of the same section, material and recipe share one object.
@@ -244,17 +242,20 @@ def flank_compliances(
     Parameters are those of `flank_compliance`, with one recipe per gear.
     """
     recipes = recipes or [MeshRecipe.standard(gear) for gear in gears]
-    solver = solver or SuperLuMetis()
-    compliances: dict[str, FlankCompliance] = {}
-    keys = []
-    for gear, recipe in zip(gears, recipes, strict=True):
-        count = condensed_teeth(gear, recipe, teeth)
-        keys.append(compliance_key(gear, recipe, hypothesis, count, solver))
-        if keys[-1] not in compliances:
-            compliances[keys[-1]] = flank_compliance(
-                gear, recipe, hypothesis, teeth=count, solver=solver, cache=cache
-            )
-    return tuple(compliances[key] for key in keys)
+    keys = section_keys(gears, recipes, hypothesis, teeth)
+    return once_each(
+        keys, lambda i: flank_compliance(gears[i], recipes[i], hypothesis, teeth=teeth, cache=cache)
+    )
+
+
+def section_keys(
+    gears: Sequence[Toothing], recipes: Sequence[MeshRecipe], hypothesis: PlaneHypothesis, teeth: int | None
+) -> list[str]:
+    """Return the `compliance_key` of each gear."""
+    return [
+        compliance_key(gear, recipe, hypothesis, condensed_teeth(gear, recipe, teeth))
+        for gear, recipe in zip(gears, recipes, strict=True)
+    ]
 
 
 def condensed_teeth(gear: Toothing, recipe: MeshRecipe, teeth: int | None) -> int:
@@ -269,17 +270,13 @@ def condensed_teeth(gear: Toothing, recipe: MeshRecipe, teeth: int | None) -> in
     return count
 
 
-def compliance_key(
-    gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: Solver
-) -> str:
+def compliance_key(gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int) -> str:
     """Return the hash of all that decides a compliance of the transverse section."""
-    return _key(gear, recipe, hypothesis, teeth, solver.name, MODEL_VERSION)
+    return _key(gear, recipe, hypothesis, teeth, MODEL_VERSION)
 
 
 @lru_cache(maxsize=KEPT_KEYS)
-def _key(
-    gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: str, version: int
-) -> str:
+def _key(gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, version: int) -> str:
     """Hash them once: predictions ask for the same few keys again and again."""
     section = gear.macro_geometry()
     if gear.web is None:
@@ -292,19 +289,19 @@ def _key(
         "recipe": recipe.content(),
         "hypothesis": hypothesis.value,
         "teeth": teeth,
-        "solver": solver,
+        "solver": FACTORIZATION,
     }
     return content_hash(content)
 
 
 def compute_flank_compliance(
-    gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: Solver
+    gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int
 ) -> FlankCompliance:
     """Mesh, assemble, condense and check; no cache."""
     clock = StageClock()
     mesh = mesh_gear(gear, recipe)
     clock.finish("mesh")
-    ring = condensed_ring(gear, mesh, hypothesis, solver)
+    ring = condensed_ring(gear, mesh, hypothesis)
     clock.finish("factorisation")
     index = tooth_indices(mesh, teeth)
     matrix = flank_matrix(ring, index)
@@ -324,24 +321,23 @@ def compute_flank_compliance(
         unknowns=2 * (len(mesh.points) - len(mesh.bore_nodes)),
         condensed_unknowns=ring.matrix.shape[0],
         seconds=clock.seconds,
-        solver=solver.name,
+        solver=FACTORIZATION,
     )
     return refuse_broken_laws(result)
 
 
-def condensed_ring(gear: Toothing, mesh: GearMesh, hypothesis: PlaneHypothesis, solver: Solver) -> Ring:
+def condensed_ring(gear: Toothing, mesh: GearMesh, hypothesis: PlaneHypothesis) -> Ring:
     """Assemble sector and hub, condense the sector, assemble and factorise the ring."""
     from fe_contact.compliance.plane_elasticity import stiffness_matrix  # noqa: PLC0415 - a cached result needs no skfem
 
     lame = hypothesis.lame_parameters(gear.material)
     normals = tooth_profile(gear).normal(mesh.sector.s)
-    sector = condense_sector(
-        mesh, stiffness_matrix(mesh.sector.points, mesh.sector.triangles, lame), normals, solver
-    )
+    stiffness = stiffness_matrix(mesh.sector.points, mesh.sector.triangles, lame)
+    sector = condense_sector(mesh, stiffness, normals)
     hub = None
     if mesh.hub is not None:
         hub = stiffness_matrix(mesh.hub.points, mesh.hub.triangles, lame, mesh.hub.thickness)
-    return assemble_ring(mesh, sector, hub, solver)
+    return assemble_ring(mesh, sector, hub)
 
 
 def tooth_indices(mesh: GearMesh, teeth: int) -> IntArray:

@@ -44,7 +44,7 @@ class _KeyUpdate(NamedTuple):
     core: FloatArray
 
 
-class KeyPoints(NamedTuple):
+class _KeyPoints(NamedTuple):
     """Gauss points on the key: sector, number and share of each of the 8 freedoms, all (g, 8)."""
 
     sector: IntArray
@@ -66,7 +66,7 @@ def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -
     span : int
         Teeth on either side of tooth 0.
     """
-    points = key_points(gear, solved.sector, twist)
+    points = _key_points(gear, solved.sector, twist)
     held, flank = solved.held, len(solved.sector.flank)
     sectors, number, foundation = _modes(points, len(solved.sector.key_bore) + len(solved.sector.key_cut))
     teeth, under = np.arange(-span, span + 1), np.unique(sectors)
@@ -99,7 +99,7 @@ def _moved(solved: CondensedGear, apart: IntArray) -> FloatArray:
     return np.concatenate([inside, both[:, sector.key_cut]], axis=1)
 
 
-def key_points(gear: Toothing, sector: SweptSector, twist: float) -> KeyPoints:
+def _key_points(gear: Toothing, sector: SweptSector, twist: float) -> _KeyPoints:
     """Place Gauss points on the bore under the key; shares hold the root of modulus times area."""
     key, modulus = gear.seat.key, gear.seat.key_modulus
     assert key is not None
@@ -119,7 +119,7 @@ def key_points(gear: Toothing, sector: SweptSector, twist: float) -> KeyPoints:
             shares = face_functions(np.array([x]), np.array([y]))[0]
             scale = math.sqrt(modulus * weight)
             points.append(((number[nodes, 0] + s) % gear.teeth, number[nodes, 1], scale * shares))
-    return KeyPoints(*(np.array(part) for part in zip(*points, strict=True)))
+    return _KeyPoints(*(np.array(part) for part in zip(*points, strict=True)))
 
 
 def _covered(
@@ -170,7 +170,7 @@ def _node_positions(sector: SweptSector) -> FloatArray:
     return z
 
 
-def _modes(points: KeyPoints, count: int) -> tuple[IntArray, IntArray, FloatArray]:
+def _modes(points: _KeyPoints, count: int) -> tuple[IntArray, IntArray, FloatArray]:
     """Return sector and number of the freedoms under the key (n,), and U (n, r)."""
     used, column = np.unique(points.sector * count + points.number, return_inverse=True)
     shares = np.zeros((len(points.shares), len(used)))

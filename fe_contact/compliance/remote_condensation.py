@@ -15,7 +15,6 @@ from fe_contact.compliance.cyclic_compliance import (
 from fe_contact.compliance.flank import FlankCompliance3D
 from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_teeth
 from fe_contact.compliance.plane_elasticity import PlaneHypothesis
-from fe_contact.compliance.solvers import SuperLuMetis
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.mesh.sector_grid import BoreSupport, PlaneStrain, bore_support
@@ -52,7 +51,7 @@ def section_kept(
     if cache is None:
         return 0
     count = condensed_teeth(gear, recipe, teeth)
-    return kept_size(cache, compliance_key(gear, recipe, hypothesis, count, SuperLuMetis()))
+    return kept_size(cache, compliance_key(gear, recipe, hypothesis, count))
 
 
 FEWEST = 2

@@ -2,20 +2,65 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.linalg import splu
 
-from fe_contact.compliance.solvers import Solve, Solver
+from fe_contact.errors import SolveError
 from fe_contact.mesh.gear_mesh import GearMesh
 from fe_contact.types import FloatArray, IntArray
+
+Solve = Callable[[FloatArray], FloatArray]
+FACTORIZATION = "SuperLU on a METIS ordering"
+"""Name of the method, for receipts and cache keys."""
+
+
+def factorise(matrix: sp.csc_array, block: int) -> Solve:
+    """Factorise a symmetric positive definite matrix once, for many right-hand sides.
+
+    SciPy's SuperLU without pivoting, on METIS' nested dissection of the graph of the nodes, which hold
+    `block` consecutive freedoms. Returns x(b) for b (n, m), dense.
+
+    Raises
+    ------
+    SolveError
+        The matrix is singular.
+    """
+    order = _nested_dissection(matrix, block)
+    permuted = sp.csc_array(matrix[order][:, order])
+    try:
+        factor = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    except RuntimeError as error:
+        raise SolveError(f"{FACTORIZATION}: {error}") from error
+
+    def solve(right: FloatArray) -> FloatArray:
+        x = np.empty_like(right)
+        x[order] = factor.solve(right[order])
+        return x
+
+    return solve
+
+
+def _nested_dissection(matrix: sp.csc_array, block: int) -> IntArray:
+    """Return METIS' fill-reducing order of the freedoms, from the graph of their nodes."""
+    import pymetis  # noqa: PLC0415 - a cached result needs no ordering
+
+    graph = sp.csr_array(matrix[::block, ::block])
+    graph.setdiag(0.0)
+    graph.eliminate_zeros()
+    adjacency = pymetis.CSRAdjacency(graph.indptr, graph.indices)
+    order, _ = pymetis.nested_dissection(adjacency)
+    return (block * np.asarray(order, dtype=np.int64)[:, None] + np.arange(block)).ravel()
+
 
 # Static condensation of one tooth sector onto the boundary it shares with the rest of the gear.
 
 
 @dataclass(frozen=True)
-class CondensedSector:
+class _CondensedSector:
     """One tooth sector seen from its boundary, in the tooth frame, per unit face width.
 
     Attributes
@@ -54,16 +99,14 @@ def freedoms(nodes: IntArray) -> IntArray:
     return (2 * nodes[..., None] + np.arange(2)).reshape(*nodes.shape[:-1], -1)
 
 
-def inward_loads(size: int, nodes: IntArray, normals: FloatArray) -> sp.csc_array:
+def _inward_loads(size: int, nodes: IntArray, normals: FloatArray) -> sp.csc_array:
     """Return unit forces against the outward `normals` at `nodes`, (2 size, k)."""
     rows = freedoms(nodes)
     columns = np.repeat(np.arange(len(nodes)), 2)
     return sp.csc_array((-normals.ravel(), (rows, columns)), shape=(2 * size, len(nodes)))
 
 
-def condense_sector(
-    mesh: GearMesh, matrix: sp.csc_array, normals: FloatArray, solver: Solver
-) -> CondensedSector:
+def condense_sector(mesh: GearMesh, matrix: sp.csc_array, normals: FloatArray) -> _CondensedSector:
     """Condense the sector of `mesh`.
 
     Parameters
@@ -74,20 +117,18 @@ def condense_sector(
         Stiffness of the sector, N/m per m.
     normals : (k, 2) array
         Outward normals at the flank nodes in the tooth frame.
-    solver : Solver
-        Factorises K_ii.
     """
     sector, size = mesh.sector, len(mesh.sector.points)
     shared = np.unique(np.concatenate([sector.right_side, sector.left_side, sector.bottom]))
     boundary = shared if mesh.hub is not None else np.setdiff1d(shared, sector.bottom)
     b, i = freedoms(boundary), freedoms(np.setdiff1d(np.arange(size), shared))
-    loads = inward_loads(size, sector.flank, normals)
+    loads = _inward_loads(size, sector.flank, normals)
     k_ib = matrix[i][:, b].toarray()
     n_i = loads[i].toarray()
-    solve = solver.factorise(sp.csc_array(matrix[i][:, i]), block=2)
+    solve = factorise(sp.csc_array(matrix[i][:, i]), block=2)
     solved = solve(np.concatenate([n_i, k_ib], axis=1))
     by_load, by_boundary = solved[:, : n_i.shape[1]], solved[:, n_i.shape[1] :]
-    return CondensedSector(
+    return _CondensedSector(
         boundary=boundary,
         stiffness=matrix[b][:, b].toarray() - k_ib.T @ by_boundary,
         transmitted=-k_ib.T @ by_load,
@@ -120,7 +161,7 @@ class Ring:
     """
 
     mesh: GearMesh
-    sector: CondensedSector
+    sector: _CondensedSector
     hub_matrix: sp.csc_array | None
     matrix: sp.csc_array
     position: IntArray
@@ -143,9 +184,7 @@ def rotation(angle: float) -> FloatArray:
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
-def assemble_ring(
-    mesh: GearMesh, sector: CondensedSector, hub_matrix: sp.csc_array | None, solver: Solver
-) -> Ring:
+def assemble_ring(mesh: GearMesh, sector: _CondensedSector, hub_matrix: sp.csc_array | None) -> Ring:
     """Add up the condensed sectors and the hub, clamp the bore, factorise."""
     kept = np.unique(np.concatenate([mesh.sector_nodes[:, sector.boundary].ravel(), mesh.hub_nodes]))
     kept = np.setdiff1d(kept, mesh.bore_nodes)
@@ -167,7 +206,7 @@ def assemble_ring(
         values.append(coo.data[free])
     entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
     matrix = sp.csc_array(sp.coo_array(entries, shape=(2 * len(kept), 2 * len(kept))))
-    return Ring(mesh, sector, hub_matrix, matrix, position, solver.factorise(matrix, block=2))
+    return Ring(mesh, sector, hub_matrix, matrix, position, factorise(matrix, block=2))
 
 
 def _turned_matrix(matrix: FloatArray, angle: float) -> FloatArray:

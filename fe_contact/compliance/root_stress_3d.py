@@ -22,6 +22,7 @@ from fe_contact.compliance.condensed_gear import (
     element_forces,
     residual,
 )
+from fe_contact.compliance.cyclic_compliance import SOLVER
 from fe_contact.compliance.cyclic_ring import LeftCuts, RingSolution, left_cuts, row_space
 from fe_contact.compliance.root_stress import (
     RootStressChecks,
@@ -54,7 +55,7 @@ ROWS_AT_ONCE = 256  # stresses passed up the tree together: bounds the memory
 
 
 def compute_root_stress_3d(
-    gear: Toothing, recipe: SectorRecipe, reach: int, support: BoreSupport, solver: str
+    gear: Toothing, recipe: SectorRecipe, reach: int, support: BoreSupport
 ) -> UnitRootStress:
     """Mesh, condense, close the ring, solve for the stresses and check; no cache.
 
@@ -68,8 +69,6 @@ def compute_root_stress_3d(
         Largest distance in teeth that is kept.
     support : BoreSupport
         How the bore is held.
-    solver : str
-        Name of the method, for the receipt.
     """
     clock = StageClock()
     profile = tooth_profile(gear)
@@ -81,7 +80,7 @@ def compute_root_stress_3d(
     right = tooth.held.transmitted @ np.concatenate([modes, loads], axis=1)
     cuts = left_cuts(tooth.held, right, gear.teeth, reach, modes.shape[1])
     clock.finish("ring")
-    functionals = root_functionals(gear, section, tooth.sector, root)
+    functionals = _root_functionals(gear, section, tooth.sector, root)
     stress = _unit_load_stress(tooth, functionals, modes, cuts, reach)
     clock.finish("stress")
     checks = _checks(tooth, functionals, loads, cuts, stress[reach])
@@ -103,12 +102,12 @@ def compute_root_stress_3d(
             checks=checks,
             unknowns=gear.teeth * (tooth.sector.size - tooth.held.cut_size),
             seconds=clock.seconds,
-            solver=solver,
+            solver=SOLVER,
         )
     )
 
 
-def root_functionals(
+def _root_functionals(
     gear: Toothing, section: QuadSector, sector: SweptSector, root: RootSurface
 ) -> sp.csr_array:
     """Return the rows that make root stresses of the freedoms of a sector, (2 * 3 * 2 L * p, n).

@@ -58,7 +58,7 @@ def above(points: FloatArray, level: FloatArray, thickness: float, turn: float) 
     return np.stack([c * x - s * y, s * x + c * y, np.broadcast_to(thickness * level, x.shape)], axis=-1)
 
 
-def stiffness_of(nodes: FloatArray, lame: tuple[float, float]) -> FloatArray:
+def _stiffness_of(nodes: FloatArray, lame: tuple[float, float]) -> FloatArray:
     """Return the stiffness of isoparametric hexahedra.
 
     Parameters
@@ -91,7 +91,7 @@ def stiffness_of(nodes: FloatArray, lame: tuple[float, float]) -> FloatArray:
     return np.asarray(local.reshape(count, 60, 60))
 
 
-def in_frames(stiffness: FloatArray, frames: FloatArray) -> FloatArray:
+def _in_frames(stiffness: FloatArray, frames: FloatArray) -> FloatArray:
     """Return Q' K Q for matrices (m, 60, 60) and node frames Q (m, 20, 3, 3), the new axes in columns."""
     count = len(stiffness)
     blocks = stiffness.reshape(count, 20, 3, 20, 3).transpose(0, 1, 3, 2, 4)
@@ -216,7 +216,7 @@ def face_functions(x: FloatArray, y: FloatArray) -> FloatArray:
 # Stiffness of an elastic seat under the bore: a foundation in cylindrical components.
 
 
-def face_mass() -> FloatArray:
+def _face_mass() -> FloatArray:
     """Return the products of the eight functions of a face integrated over -1 .. 1 squared, (8, 8)."""
     t, weight = np.polynomial.legendre.leggauss(3)
     x, y = (part.ravel() for part in np.meshgrid(t, t))
@@ -243,7 +243,7 @@ def _seat_stiffness(gear: Toothing, grid: SectorGrid, thickness: float, seat: Bo
         Only its finite stiffnesses count; freedoms in rigid directions are held.
     """
     area = gear.held_radius * 2.0 * math.pi / gear.teeth / grid.columns * thickness
-    mass = 0.25 * area * face_mass()
+    mass = 0.25 * area * _face_mass()
     matrix, nodes = np.zeros((20, 3, 20, 3)), np.array(LOWER_FACE)
     for c, stiffness in enumerate(seat.stiffness):
         if math.isfinite(stiffness):
@@ -337,7 +337,7 @@ def _batch_stiffness(
     frames = cylindrical_frames(nodes) @ axes[quads[:, SECTION]]
     lame = lame_parameters(material)
     if not batch.half:
-        return in_frames(stiffness_of(nodes, lame), frames)
+        return _in_frames(_stiffness_of(nodes, lame), frames)
     face = coarse_face(points, batch.thickness, turn, batch.half)
     transform = face.transform(frames)
-    return np.asarray(transform.transpose(0, 2, 1) @ stiffness_of(face.attach(nodes), lame) @ transform)
+    return np.asarray(transform.transpose(0, 2, 1) @ _stiffness_of(face.attach(nodes), lame) @ transform)

@@ -16,7 +16,7 @@ from model_studies.progress import Report, unreported
 
 
 @dataclass(frozen=True)
-class FrontFactor:
+class _FrontFactor:
     """The factors that recover the freedoms a front eliminated: u_inner = -L^-T coupling' u_border."""
 
     front: Front
@@ -41,7 +41,7 @@ class Condensation:
     """
 
     matrix: FloatArray
-    factors: tuple[FrontFactor, ...]
+    factors: tuple[_FrontFactor, ...]
     kept: IntArray
     size: int
 
@@ -76,7 +76,7 @@ def condense(
     SolveError
         The stiffness is not positive definite.
     """
-    factors: list[FrontFactor] = []
+    factors: list[_FrontFactor] = []
     done, whole = 0.0, tree.operations
 
     def run(front: Front) -> FloatArray:
@@ -86,7 +86,7 @@ def condense(
         if not len(front.inner):
             return gathered
         factor, coupling, rest = _eliminated(gathered, len(front.inner))
-        factors.append(FrontFactor(front, factor, coupling))
+        factors.append(_FrontFactor(front, factor, coupling))
         done += front.operations
         report(done / whole)
         return rest

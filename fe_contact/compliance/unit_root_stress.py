@@ -1,6 +1,14 @@
 """From a gear to the unit-load stress of its tooth roots, in the plane or over the face, with its cache.
 
 The mesh and the hypotheses are those of the flank compliances; only who asks for a stress pays for it.
+
+In the plane, with the sector's stiffness split as in `ring_2d` and R the rows that make stresses of
+displacements,
+
+    sigma = R_i u_i + R_b u_b = (N' X)' q + (R_b - X' K_ib) u_b,    X = K_ii^-1 R_i',
+
+so a stress costs one right-hand side, however many forces it is wanted for. Over the face see
+`root_stress_3d`.
 """
 
 from __future__ import annotations
@@ -8,16 +16,36 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from fe_contact.compliance.cache import content_hash, read_compliance, write_compliance
-from fe_contact.compliance.cyclic_compliance import SOLVER, compliance_key_3d, usual_reach
-from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_teeth
+import numpy as np
+import scipy.sparse as sp
+
+from fe_contact.compliance.cache import content_hash, kept_or_computed, once_each
+from fe_contact.compliance.cyclic_compliance import compliance_key_3d, usual_reach
+from fe_contact.compliance.flank_compliance_2d import (
+    compliance_key,
+    condensed_ring,
+    condensed_teeth,
+    field_under,
+    section_keys,
+    tooth_indices,
+    uniform_pressure,
+)
 from fe_contact.compliance.plane_elasticity import PlaneHypothesis
-from fe_contact.compliance.root_stress import UnitRootStress
-from fe_contact.compliance.solvers import Solver, SuperLuMetis
-from fe_contact.geometry import Toothing
+from fe_contact.compliance.ring_2d import FACTORIZATION, Ring, freedoms
+from fe_contact.compliance.root_stress import (
+    RootStressChecks,
+    UnitRootStress,
+    refuse_broken_stress,
+    relative_difference,
+)
+from fe_contact.compliance.surface_stress import COMPONENTS, between_nodes, edge_stress, triangle_root
+from fe_contact.geometry import Toothing, tooth_profile
+from fe_contact.geometry.flank_profile import tangent_angle
 from fe_contact.geometry.gear import refuse_key
-from fe_contact.mesh import MeshRecipe, SectorRecipe
+from fe_contact.mesh import MeshRecipe, SectorRecipe, mesh_gear
 from fe_contact.mesh.sector_grid import BoreSupport, bore_support
+from fe_contact.stage_clock import StageClock
+from fe_contact.types import FloatArray, IntArray
 
 MODEL_VERSION = 1  # raise it whenever the same input gives another result: old cache files are then not found
 
@@ -28,7 +56,6 @@ def unit_root_stress(
     hypothesis: PlaneHypothesis = PlaneHypothesis.PLANE_STRAIN,
     *,
     teeth: int | None = None,
-    solver: Solver | None = None,
     cache: Path | None = None,
 ) -> UnitRootStress:
     """Return the unit-load root stress of the transverse section; parameters are those of `flank_compliance`.
@@ -42,16 +69,10 @@ def unit_root_stress(
     SolveError
         The matrix is singular, or the result breaks a law.
     """
-    recipe, solver = recipe or MeshRecipe.standard(gear), solver or SuperLuMetis()
+    recipe = recipe or MeshRecipe.standard(gear)
     count = condensed_teeth(gear, recipe, teeth)
-
-    def compute() -> UnitRootStress:
-        # A cached result needs no skfem.
-        from fe_contact.compliance.root_stress_2d import compute_root_stress  # noqa: PLC0415
-
-        return compute_root_stress(gear, recipe, hypothesis, count, solver)
-
-    return _kept(compliance_key(gear, recipe, hypothesis, count, solver), compute, cache)
+    key = compliance_key(gear, recipe, hypothesis, count)
+    return _kept(key, lambda: _compute_in_plane(gear, recipe, hypothesis, count), cache)
 
 
 def unit_root_stress_3d(
@@ -78,11 +99,10 @@ def unit_root_stress_3d(
     refuse_key(gear, "root stress")
 
     def compute() -> UnitRootStress:
-        # A cached result needs neither skfem nor numba.
+        # A cached result needs no numba.
         from fe_contact.compliance.root_stress_3d import compute_root_stress_3d  # noqa: PLC0415
 
-        right_hand = gear.right_handed()
-        return compute_root_stress_3d(right_hand, recipe, distance, support, SOLVER)
+        return compute_root_stress_3d(gear.right_handed(), recipe, distance, support)
 
     stress = _kept(compliance_key_3d(gear, recipe, distance, support), compute, cache)
     return stress.mirrored() if gear.helix_angle < 0.0 else stress
@@ -97,37 +117,98 @@ def unit_root_stresses(
     cache: Path | None = None,
 ) -> tuple[UnitRootStress, ...]:
     """Return the root stress of each gear; gears of one section, material and recipe are computed once."""
-    stresses: dict[str, UnitRootStress] = {}
-    keys = []
-    for gear, recipe in zip(gears, recipes, strict=True):
-        count = condensed_teeth(gear, recipe, teeth)
-        keys.append(compliance_key(gear, recipe, hypothesis, count, SuperLuMetis()))
-        if keys[-1] not in stresses:
-            stresses[keys[-1]] = unit_root_stress(gear, recipe, hypothesis, teeth=count, cache=cache)
-    return tuple(stresses[key] for key in keys)
+    return once_each(
+        section_keys(gears, recipes, hypothesis, teeth),
+        lambda i: unit_root_stress(gears[i], recipes[i], hypothesis, teeth=teeth, cache=cache),
+    )
 
 
 def unit_root_stresses_3d(
     gears: Sequence[Toothing], recipes: Sequence[SectorRecipe], *, cache: Path | None = None
 ) -> tuple[UnitRootStress, ...]:
     """Return the root stress of each gear; gears alike, or alike but for the hand, are computed once."""
-    stresses: dict[str, UnitRootStress] = {}
-    results = []
-    for gear, recipe in zip(gears, recipes, strict=True):
-        key = compliance_key_3d(gear, recipe, usual_reach(gear), bore_support(gear.right_handed()))
-        if key not in stresses:
-            right_hand = gear.right_handed()
-            stresses[key] = unit_root_stress_3d(right_hand, recipe, cache=cache)
-        results.append(stresses[key].mirrored() if gear.helix_angle < 0.0 else stresses[key])
-    return tuple(results)
+    right_hand = [gear.right_handed() for gear in gears]
+    keys = [
+        compliance_key_3d(gear, recipe, usual_reach(gear), bore_support(gear))
+        for gear, recipe in zip(right_hand, recipes, strict=True)
+    ]
+    stresses = once_each(keys, lambda i: unit_root_stress_3d(right_hand[i], recipes[i], cache=cache))
+    return tuple(
+        stress.mirrored() if gear.helix_angle < 0.0 else stress
+        for gear, stress in zip(gears, stresses, strict=True)
+    )
 
 
 def _kept(compliance: str, compute: Callable[[], UnitRootStress], cache: Path | None) -> UnitRootStress:
     """Return the kept result that belongs to the `compliance` of a key, or compute and keep it."""
     key = content_hash({"root stress": MODEL_VERSION, "compliance": compliance})
-    stress = read_compliance(cache, key, UnitRootStress) if cache is not None else None
-    if stress is None:
-        stress = compute()
-        if cache is not None:
-            write_compliance(cache, key, stress)
+    return kept_or_computed(cache, key, UnitRootStress, compute)
+
+
+def _compute_in_plane(
+    gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int
+) -> UnitRootStress:
+    clock = StageClock()
+    mesh, profile = mesh_gear(gear, recipe), tooth_profile(gear)
+    root = triangle_root(mesh.sector, profile)
+    clock.finish("mesh")
+    ring = condensed_ring(gear, mesh, hypothesis)
+    clock.finish("factorisation")
+    rows = [edge_stress(mesh.sector.points, chain, gear.material, hypothesis) for chain in root.nodes]
+    functionals = sp.csr_array(sp.vstack(rows))
+    own, index = tooth_indices(mesh, 1), tooth_indices(mesh, teeth)
+    stress = _unit_load_stress(ring, functionals, int(own[0]), index)
+    clock.finish("stress")
+    forces = uniform_pressure(mesh.sector.s, profile.s_form, gear.base_radius).forces
+    checks = _checks_in_plane(ring, functionals, int(own[0]), forces, stress[teeth // 2])
+    clock.finish("checks")
+    stations = between_nodes(root.s)
+    count = mesh.sector.s.size
+    return refuse_broken_stress(
+        UnitRootStress(
+            distance=np.arange(teeth) - teeth // 2,
+            stress=stress.reshape(teeth, 2, COMPONENTS, stations.size, 1, count),
+            station_s=stations,
+            station_z=np.zeros(1),
+            tangent_angle=tangent_angle(profile, stations),
+            s=mesh.sector.s,
+            z=np.empty(0),
+            index=np.arange(count)[None],
+            checks=checks,
+            unknowns=2 * (len(mesh.points) - len(mesh.bore_nodes)),
+            seconds=clock.seconds,
+            solver=FACTORIZATION,
+        )
+    )
+
+
+def _unit_load_stress(ring: Ring, functionals: sp.csr_array, own: int, index: IntArray) -> FloatArray:
+    """Return the stresses (t, r, k) of tooth `own` by how far it is ahead of the loaded ones of `index`."""
+    sector = ring.sector
+    inner, border = sector.interior, freedoms(sector.boundary)
+    by_row = sector.solve(functionals[:, inner].T.toarray())
+    local = np.asarray((sector.loads[inner].T @ by_row).T)
+    on_border = functionals[:, border].toarray() - (sector.matrix[border][:, inner] @ by_row).T
+    right = np.zeros((ring.matrix.shape[0], len(on_border)))
+    right[ring.rows(own)] = ring.turned(own, on_border.T)
+    shared = ring.solve(right)
+    # Tooth `own` is n ahead of tooth own - n.
+    loaded = 2 * own - index
+    stress = np.stack([shared[ring.rows(int(i))].T @ ring.turned(int(i), sector.transmitted) for i in loaded])
+    stress[len(index) // 2] += local
     return stress
+
+
+def _checks_in_plane(
+    ring: Ring, functionals: sp.csr_array, own: int, forces: FloatArray, stress: FloatArray
+) -> RootStressChecks:
+    """Compare with the displacement of the whole mesh under `forces` (k,) on tooth `own`."""
+    mesh = ring.mesh
+    field = field_under(ring, own, forces)
+    out_of_balance = field.load - field.internal
+    out_of_balance[mesh.bore_nodes] = 0.0
+    direct = functionals @ field.displacement[mesh.sector_nodes[own]].ravel()
+    return RootStressChecks(
+        residual=float(np.linalg.norm(out_of_balance) / np.linalg.norm(field.load)),
+        recovery=relative_difference(stress @ forces, direct),
+    )

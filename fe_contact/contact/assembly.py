@@ -119,7 +119,7 @@ def face_contact_problem(
         grid = FaceGrid(flank.s, flank.z, flank.index)
         low, high = along - 0.5 * slices.slice_width, along + 0.5 * slices.slice_width
         bounds = (np.maximum(low, flank.z[0]), np.minimum(high, flank.z[-1]))
-        key = KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
+        key = _KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
         _face_assembly_add_gear(grid, reach, key, patches, lever, teeth, bounds, slices.present, compliance)
     first, second = (flank.contact_modulus for flank in compliances)
     contact_modulus = 1.0 / (1.0 / first + 1.0 / second)
@@ -128,7 +128,7 @@ def face_contact_problem(
     )
 
 
-class KeyedFlanks(NamedTuple):
+class _KeyedFlanks(NamedTuple):
     """Contribution of a keyed bore: rows (2 s + 1, q, f) by tooth from -s to s, core (q, q)."""
 
     rows: FloatArray
@@ -150,7 +150,7 @@ class KeyedFlanks(NamedTuple):
 def _face_assembly_add_gear(
     grid: FaceGrid,
     blocks: FloatArray,
-    key: KeyedFlanks,
+    key: _KeyedFlanks,
     patches: Patches,
     lever: FloatArray,
     teeth: IntArray,

@@ -191,8 +191,8 @@ def _loaded_slices(
         patch_2=replace(patch_2, count=slices.points),
         slice_width=slices.width,
         base_helix_angle=pair.base_helix_angle,
-        corner_1=corner_softness(pair.pinion),
-        corner_2=corner_softness(pair.wheel),
+        corner_1=_corner_softness(pair.pinion),
+        corner_2=_corner_softness(pair.wheel),
         law_length=max(rule.half_width, min(LAW_LENGTH * width, LONGEST_LAW * module)),
     )
 
@@ -211,7 +211,7 @@ def _patches(
     return tip_patches(s + shift, offset, tip, rule.half_width, rule.lengths(offset, radius))
 
 
-def corner_softness(gear: Toothing) -> float:
+def _corner_softness(gear: Toothing) -> float:
     """Return what the corner at a gear's tip edge yields over a half plane; see `wedge_softness`.
 
     Flank and tip circle meet at a right angle and the pressure angle at the tip.

@@ -97,7 +97,7 @@ ByTooth = dict[int, FloatArray]
 Side: TypeAlias = tuple[Patches, FloatArray, int]
 
 
-class ProfileNodes(Protocol):
+class _ProfileNodes(Protocol):
     """The nodes of a flank in the plane, as a compliance or a unit-load stress has them."""
 
     @property
@@ -105,7 +105,7 @@ class ProfileNodes(Protocol):
         """Flank coordinates (k,), m."""
 
 
-class FaceNodes(ProfileNodes, Protocol):
+class _FaceNodes(_ProfileNodes, Protocol):
     """The nodes of a flank over the face width."""
 
     @property
@@ -121,7 +121,7 @@ def plane_flank_forces(
     candidates: Candidates,
     force: FloatArray,
     position: int,
-    flanks: tuple[ProfileNodes, ProfileNodes],
+    flanks: tuple[_ProfileNodes, _ProfileNodes],
 ) -> tuple[ByTooth, ByTooth]:
     """Return the forces on the loaded teeth of both gears of a plane model.
 
@@ -159,7 +159,7 @@ def face_flank_forces(
     candidates: Candidates,
     force: FloatArray,
     position: int,
-    flanks: tuple[FaceNodes, FaceNodes],
+    flanks: tuple[_FaceNodes, _FaceNodes],
     axial_offset: float = 0.0,
 ) -> tuple[ByTooth, ByTooth]:
     """Return the forces on the loaded teeth of both gears over their face width.

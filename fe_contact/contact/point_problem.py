@@ -23,7 +23,7 @@ _TOLERANCE = 1e-9
 _STEPS = 100
 
 
-class LocalLaw(NamedTuple):
+class _LocalLaw(NamedTuple):
     """The law of n contacts at one position.
 
     Attributes
@@ -33,7 +33,7 @@ class LocalLaw(NamedTuple):
     gap : Gap
         About the touching points.
     free : ndarray, shape (n,)
-        Half strip in m up to which that is a parabola alone; see `free_strips`.
+        Half strip in m up to which that is a parabola alone; see `_free_strips`.
     length : float
         Reference length, m.
     modulus : ndarray, shape (n,)
@@ -48,7 +48,7 @@ class LocalLaw(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
+def approach(law: _LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     """Local approach of contact `i` under `force` in N.
 
     Returns
@@ -73,7 +73,7 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
 
 
 @njit(cache=True, error_model="numpy")
-def carrying_strip(law: LocalLaw, i: int, force: float) -> tuple[float, float]:
+def carrying_strip(law: _LocalLaw, i: int, force: float) -> tuple[float, float]:
     """Return middle and half length in m of the strip over which contact `i` carries `force` in N, > 0."""
     _, least, most = _limits(law, i)
     half, _ = half_strip(law.gap, i, force / law.width[i], law.modulus[i])
@@ -82,16 +82,16 @@ def carrying_strip(law: LocalLaw, i: int, force: float) -> tuple[float, float]:
 
 
 @njit(cache=True, error_model="numpy")
-def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
+def _force_at(law: _LocalLaw, i: int, value: float) -> tuple[float, float]:
     """Force of contact `i` in N at a local approach in m, and its derivative in N/m; zero where flanks part.
 
     The inverse of `approach`.
     """
     if value <= 0.0:
         return 0.0, 0.0
-    half = plain_strip(law.gap.curvature[i], law.length, value)
+    half = _plain_strip(law.gap.curvature[i], law.length, value)
     if half <= law.free[i]:
-        load, slope = plain_load(law.gap.curvature[i], law.length, law.modulus[i], half, value)
+        load, slope = _plain_load(law.gap.curvature[i], law.length, law.modulus[i], half, value)
     else:
         _, least, _ = _limits(law, i)
         half = _strip_at(law, i, value, max(half, least))
@@ -117,13 +117,13 @@ def _load_on(
 
 
 @njit(cache=True, error_model="numpy")
-def _limits(law: LocalLaw, i: int) -> tuple[float, float, float]:
+def _limits(law: _LocalLaw, i: int) -> tuple[float, float, float]:
     """Return k = 2/(pi E*) in 1/Pa, and the least and the largest half strip that the formulas take, m."""
     return 2.0 / (math.pi * law.modulus[i]), SMALLEST_STRIP * law.length, LARGEST_STRIP * law.length
 
 
 @njit(cache=True, error_model="numpy")
-def plain_strip(curvature: float, length: float, value: float) -> float:
+def _plain_strip(curvature: float, length: float, value: float) -> float:
     """Half strip in m of a parabola at an approach in m: y (1/4 - ln(y)/2) = 2 approach/(q l^2), y = (h/l)^2.
 
     Not above `LARGEST_STRIP` reference lengths.
@@ -143,7 +143,7 @@ def plain_strip(curvature: float, length: float, value: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def plain_load(
+def _plain_load(
     curvature: float, length: float, modulus: float, half: float, value: float
 ) -> tuple[float, float]:
     """Line load in N/m of a parabola at an approach in m, its derivative in N/m^2; `half` is its strip."""
@@ -153,13 +153,13 @@ def plain_load(
 
 
 @njit(cache=True, error_model="numpy")
-def free_strips(gap: Gap) -> FloatArray:
+def _free_strips(gap: Gap) -> FloatArray:
     """Half strips (n,) in m up to which gaps are parabolas."""
     return np.array([free_strip(gap, i) for i in range(gap.slope.size)])
 
 
 @njit(cache=True, error_model="numpy")
-def _strip_at(law: LocalLaw, i: int, value: float, half: float) -> float:
+def _strip_at(law: _LocalLaw, i: int, value: float, half: float) -> float:
     """Half strip in m at an approach in m, from a guess on; at the limits where it would be beyond them."""
     k, low, high = _limits(law, i)
     high = min(high, 0.5 * (law.gap.high[i] - law.gap.low[i]))
@@ -321,7 +321,7 @@ class PointProblem(NamedTuple):
     gap: FloatArray
     motion_arm: FloatArray
     torque_arm: FloatArray
-    law: LocalLaw
+    law: _LocalLaw
 
 
 @njit(cache=True, error_model="numpy")
@@ -335,7 +335,7 @@ def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
     at = np.flatnonzero(np.repeat(there[::count], points))
     inner = np.ascontiguousarray(every.bodies[row][slices][:, slices])
     gaps = gap_at(gap_at(every.about, p), at)
-    law = LocalLaw(every.width[p][at], gaps, free_strips(gaps), every.length, every.modulus[row][at])
+    law = _LocalLaw(every.width[p][at], gaps, _free_strips(gaps), every.length, every.modulus[row][at])
     slot = pairs[here // points] * points + here % points
     arms = every.motion_arm[p][here], every.torque_arm[p][here]
     return PointProblem(inner, every.blend, slot, every.gap[p][here], *arms, law), here
@@ -379,12 +379,12 @@ def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: Stat
             closer -= blend[row, a] * moved[first + a]
         if closer <= 0.0:
             continue
-        half = plain_strip(curvature[i], length, closer)
+        half = _plain_strip(curvature[i], length, closer)
         if half <= free[i]:
-            line_load, stiffness = plain_load(curvature[i], length, modulus[i], half, closer)
+            line_load, stiffness = _plain_load(curvature[i], length, modulus[i], half, closer)
             state.force[q], state.slope[q] = width[i] * line_load, width[i] * stiffness
         else:
-            state.force[q], state.slope[q] = force_at(problem.law, i, closer)
+            state.force[q], state.slope[q] = _force_at(problem.law, i, closer)
     press(problem, state.force, state.pressed)
 
 

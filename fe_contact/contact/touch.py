@@ -37,7 +37,7 @@ def _rounded(gap: Gap, least: FloatArray) -> Gap:
 
 
 @njit(cache=True, error_model="numpy")
-def touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
+def _touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
     """Return where gaps that grow to both sides are least between `low` and `high` (n,), m."""
     touching = np.empty(gap.slope.size)
     for i in range(touching.size):
@@ -97,7 +97,7 @@ def _curvature(gap: Gap, i: int, x: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
+def _moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
     """Return the gap (n,) in m at `shift` (n,) in m, and that about there."""
     n, breaks = gap.place.shape
     least, slope, curvature = np.empty(n), np.empty(n), np.empty(n)
@@ -285,11 +285,11 @@ def _moved(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTe
     shift = flanks.lowest_sample()
     for _ in range(_CUT_TIP_PASSES if flanks.cut_tips else _PASSES):
         about = flanks.about(shift)
-        step = touching_places(about, flanks.first - shift, flanks.last - shift)
+        step = _touching_places(about, flanks.first - shift, flanks.last - shift)
         # bumps of a measured flank are no parabolas: the step must lead down, unless it is next to nothing
         down = (flanks.gap(shift + step) <= flanks.gap(shift)) | (np.abs(step) < 1e-3 * flanks.step)
         step = np.where(down, step, 0.0)
-        least, there = moved_gap(about, step)
+        least, there = _moved_gap(about, step)
         gap, shift = flanks.gap(shift) + least, shift + step
     moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift, "gap": here.gap + gap, **there._asdict()}
     result = {}

@@ -54,7 +54,7 @@ class _Hub:
 
 
 @dataclass(frozen=True)
-class InnerRing:
+class _InnerRing:
     """A region between a boundary and the next circle, and its thickness over the face width."""
 
     circle: Outline
@@ -89,7 +89,7 @@ def _plain_rim(side: Piece, missing: int, pitch: float, inside: float, recipe: M
     return piece("plain rim", lambda turned: circle(angle - turned), divide(0.0, length, size))
 
 
-def _inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tuple[InnerRing, ...]:
+def _inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tuple[_InnerRing, ...]:
     """Return what lies below the sectors from there on: one ring, or the rim's rest, web and hub."""
     held, web = gear.held_radius, gear.web
     radii, thickness = [bottom_radius, held], [1.0]
@@ -100,7 +100,7 @@ def _inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tu
             radii, thickness = [*radii, held], [*thickness, 1.0]
     depths = [*(abs(a - b) for a, b in pairwise(radii)), np.inf]
     return tuple(
-        InnerRing(circle(r, min(near), abs(bottom_radius - r), recipe), part)
+        _InnerRing(circle(r, min(near), abs(bottom_radius - r), recipe), part)
         for r, near, part in zip(radii[1:], pairwise(depths), thickness, strict=True)
     )
 
@@ -256,7 +256,7 @@ def real_teeth(teeth: int, modeled: int | None) -> IntArray:
     return np.arange(count) - (count - 1) // 2
 
 
-def assemble(
+def _assemble(
     sector: ToothSector, hub: _Hub | None, teeth: IntArray, pitch_angle: float, normals: FloatArray
 ) -> GearMesh:
     """Join the sectors of `teeth` and the hub.
@@ -358,7 +358,7 @@ def mesh_gear(
     sector = _mesh_sector(profile, bottom_radius, recipe, filling)
     rest = None if bottom_radius == gear.held_radius else _mesh_hub(gear, sector, teeth, recipe, filling)
     # Copies of the sector are as good as the sector, which is checked.
-    return assemble(sector, rest, teeth, profile.pitch_angle, profile.normal(sector.s))
+    return _assemble(sector, rest, teeth, profile.pitch_angle, profile.normal(sector.s))
 
 
 def _sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> float:

@@ -34,7 +34,7 @@ FRONTAL_DELAUNAY = 6
 QUADRILATERAL = 3
 
 
-def start_gmsh() -> Any:
+def _start_gmsh() -> Any:
     """Import and start gmsh: one thread, silent, no user files, signal handlers left as they were."""
     sys.modules["numpy"] = None  # type: ignore[assignment] # gmsh's documented fallback; saves 0.2 CPU s of start-up
     import gmsh  # noqa: PLC0415
@@ -144,13 +144,13 @@ def _rows_above(bottom: list[int], quads: list[list[int]]) -> list[list[int]]:
         for a, b in zip(rows[-1], rows[-1][1:], strict=False):
             (number,) = set(beside[frozenset((a, b))]) - used
             used.add(number)
-            row += [neighbor(quads[number], a, b)] if not row else []
-            row.append(neighbor(quads[number], b, a))
+            row += [_neighbor(quads[number], a, b)] if not row else []
+            row.append(_neighbor(quads[number], b, a))
         rows.append(row)
     return rows
 
 
-def neighbor(quad: list[int], node: int, other: int) -> int:
+def _neighbor(quad: list[int], node: int, other: int) -> int:
     """Return the neighbor of a corner that is not `other`."""
     i = quad.index(node)
     return quad[i - 1] if quad[i - 1] != other else quad[(i + 1) % 4]
@@ -163,7 +163,7 @@ def main() -> None:
     request = json.load(sys.stdin)
     end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
     try:
-        gmsh = start_gmsh()
+        gmsh = _start_gmsh()
         answer: dict[str, Any] = {
             "regions": [_triangulate(gmsh, loops, request["growth"]) for loops in request.get("regions", [])],
             "blocks": [_fill_block(gmsh, sides) for sides in request.get("blocks", [])],

@@ -30,7 +30,7 @@ TAPER = 0.5  # largest height of body elements, in parts of the radius of their 
 
 
 @dataclass(frozen=True)
-class SectorOutline:
+class _SectorOutline:
     """Divisions of one tooth sector; every other entry is a mid-side node, at the middle parameter.
 
     Attributes
@@ -125,13 +125,13 @@ class SectorOutline:
         return np.asarray(radius[:, None] * np.array([np.sin(angle), np.cos(angle)]))
 
 
-def sector_outline(profile: ToothProfile, recipe: SectorRecipe) -> SectorOutline:
+def sector_outline(profile: ToothProfile, recipe: SectorRecipe) -> _SectorOutline:
     """Divide the outline of one tooth sector."""
     gear = profile.gear
     split = _split_point(profile, recipe)
     half_width = profile.flank(np.array([0.5 * (profile.s_form + profile.s_tip)]))[0, 0]
     depth, web_rows = _body_divisions(gear, recipe)
-    return SectorOutline(
+    return _SectorOutline(
         profile=profile,
         s=_with_middles(_flank_divisions(profile, split, recipe)),
         land=_with_middles(np.linspace(profile.s_space, split, recipe.land_elements + 1)),
@@ -218,7 +218,7 @@ def _body_divisions(gear: Toothing, recipe: SectorRecipe) -> tuple[FloatArray, t
 
 
 @dataclass(frozen=True)
-class Block:
+class _Block:
     """Sides of a block, each (n, 2) in m, divided alike on opposite sides.
 
     `bottom` and `top` run from left to right, `left` and `right` from bottom to top; ends are shared.
@@ -235,8 +235,8 @@ class Block:
         return [(side / scale).tolist() for side in sides]
 
 
-def fill_blocks(
-    blocks: Sequence[Block], scale: float, seconds: float = 60.0, command: Sequence[str] | None = None
+def _fill_blocks(
+    blocks: Sequence[_Block], scale: float, seconds: float = 60.0, command: Sequence[str] | None = None
 ) -> list[FloatArray]:
     """Fill each block with quadrilaterals.
 
@@ -270,7 +270,7 @@ def fill_blocks(
         raise MeshError("gmsh worker: unusable answer") from error
 
 
-def _received(block: Block, points: FloatArray) -> FloatArray:
+def _received(block: _Block, points: FloatArray) -> FloatArray:
     """Return one answer with the points of the sides as they were given."""
     if points.shape != (len(block.left), len(block.bottom), 2):
         raise ValueError(f"block of shape {points.shape}")
@@ -331,9 +331,9 @@ def quad_sector(
     return QuadSector(points, grid, outline.s, outline.profile.normal(outline.s))
 
 
-def _sector_points(outline: SectorOutline, grid: SectorGrid, seconds: float) -> FloatArray:
+def _sector_points(outline: _SectorOutline, grid: SectorGrid, seconds: float) -> FloatArray:
     """Place all nodes: corners by gmsh, middles of inner sides between them, the rest on exact curves."""
-    tooth, *body = fill_blocks(_blocks(outline), outline.profile.gear.normal_module, seconds)
+    tooth, *body = _fill_blocks(_blocks(outline), outline.profile.gear.normal_module, seconds)
     points, number, low = np.empty((grid.nodes, 2)), grid.number, 2 * grid.body_rows
     # The blocks run from the bore up and from the right cut to the left one, as the grid does.
     points[number[: low + 1 : 2, ::2]] = np.concatenate([*(part[:-1] for part in body), body[-1][-1:]])
@@ -352,7 +352,7 @@ def _sector_points(outline: SectorOutline, grid: SectorGrid, seconds: float) -> 
     return points
 
 
-def _blocks(outline: SectorOutline) -> list[Block]:
+def _blocks(outline: _SectorOutline) -> list[_Block]:
     """Return the tooth, and the body from the bore up, by corner points.
 
     Their left is the loaded side, as in the grid. The body of a gear with a web is parted at its circles.
@@ -362,8 +362,8 @@ def _blocks(outline: SectorOutline) -> list[Block]:
     rows = len(cut) - 1
     levels = {0: outline.bore} | {rows + row: c for row, c in sorted(outline.circles.items())}
     levels[rows] = outline.body_top
-    blocks = [Block(outline.base[::2], flank * mirror, outline.tip[::2], flank)]
+    blocks = [_Block(outline.base[::2], flank * mirror, outline.tip[::2], flank)]
     for (low, bottom), (high, top) in pairwise(levels.items()):
         side = cut[low : high + 1]
-        blocks.append(Block(bottom[::2], side * mirror, top[::2], side))
+        blocks.append(_Block(bottom[::2], side * mirror, top[::2], side))
     return blocks

@@ -109,7 +109,7 @@ HELICAL_BODY_LAYERS = 6
 _SIZES = ("flank_size", "tip_size", "depth_size", "depth_limit", "body_size", "body_limit")
 
 
-class HasFace(Protocol):
+class _HasFace(Protocol):
     """Anything that knows its normal module, face width and helix."""
 
     @property
@@ -204,7 +204,7 @@ class SectorRecipe:
         return int(2 ** len(self.merge_rows))
 
     @classmethod
-    def draft(cls, gear: HasFace) -> SectorRecipe:
+    def draft(cls, gear: _HasFace) -> SectorRecipe:
         """Return the quickest useful recipe: flank elements of 0.2 modules, 8 layers or more."""
         m = gear.normal_module
         layers = _layers(gear, least=8, thickest=1.5, most=16)
@@ -222,7 +222,7 @@ class SectorRecipe:
         )
 
     @classmethod
-    def standard(cls, gear: HasFace) -> SectorRecipe:
+    def standard(cls, gear: _HasFace) -> SectorRecipe:
         """Return the recipe of everyday use: flank elements of 0.15 modules, 12 or (helical) 16 layers."""
         m = gear.normal_module
         return cls(
@@ -236,7 +236,7 @@ class SectorRecipe:
         )
 
     @classmethod
-    def fine(cls, gear: HasFace) -> SectorRecipe:
+    def fine(cls, gear: _HasFace) -> SectorRecipe:
         """Return the recipe of reference solutions: flank elements of 0.1 modules, 18 layers or more."""
         m = gear.normal_module
         return cls(
@@ -253,7 +253,7 @@ class SectorRecipe:
         )
 
     @classmethod
-    def even_load(cls, gear: HasFace) -> SectorRecipe:
+    def even_load(cls, gear: _HasFace) -> SectorRecipe:
         """Return the recipe of a spur gear's response to even loads: flank elements of 0.4 modules, 3 layers.
 
         For the difference to plane strain, which is smooth: within 1.5 % of a fine mesh's up to a face of 20
@@ -289,7 +289,7 @@ class SectorRecipe:
         return hashlib.sha256(json.dumps(self.content(), sort_keys=True).encode()).hexdigest()
 
 
-def _layers(gear: HasFace, least: int, thickest: float, most: int) -> int:
+def _layers(gear: _HasFace, least: int, thickest: float, most: int) -> int:
     """Return an even number of layers no thicker than `thickest` modules, within its bounds."""
     needed = gear.face_width / (thickest * gear.normal_module)
     return 2 * math.ceil(min(max(least, needed), most) / 2)

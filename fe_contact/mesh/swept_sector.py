@@ -49,7 +49,9 @@ class Layers:
     thickness: FloatArray
 
 
-def layers_to_mid_face(width: float, count: int, growth: float = 1.0, breaks: Sequence[float] = ()) -> Layers:
+def _layers_to_mid_face(
+    width: float, count: int, growth: float = 1.0, breaks: Sequence[float] = ()
+) -> Layers:
     """Divide the upper half of a face into layers that thicken from its end towards mid-face.
 
     Parameters
@@ -76,7 +78,7 @@ def layers_to_mid_face(width: float, count: int, growth: float = 1.0, breaks: Se
     return Layers(ends, kind, thickness)
 
 
-def layers_across(
+def _layers_across(
     width: float, count: int, group: int = 1, growth: float = 1.0, breaks: Sequence[float] = ()
 ) -> Layers:
     """Divide `width` into `count` layers.
@@ -398,13 +400,13 @@ def _layers(face_width: float, recipe: SectorRecipe, web: Web | None, seat: Bore
         if abs(sum(faces)) > ROUNDING * face_width:
             bound = "False for a web or a seat off the middle"
             raise InputError("half_face", True, bound, "Sweep the whole face.")
-        above = inner_breaks([z for z in faces if z > 0.0], face_width)
-        return layers_to_mid_face(face_width, recipe.layers, recipe.layer_growth, above)
-    breaks = inner_breaks(faces, face_width)
-    return layers_across(face_width, recipe.layers, recipe.layer_group, recipe.layer_growth, breaks)
+        above = _inner_breaks([z for z in faces if z > 0.0], face_width)
+        return _layers_to_mid_face(face_width, recipe.layers, recipe.layer_growth, above)
+    breaks = _inner_breaks(faces, face_width)
+    return _layers_across(face_width, recipe.layers, recipe.layer_group, recipe.layer_growth, breaks)
 
 
-def inner_breaks(positions: Sequence[float], face_width: float) -> tuple[float, ...]:
+def _inner_breaks(positions: Sequence[float], face_width: float) -> tuple[float, ...]:
     """Return the different axial positions inside the face, increasing."""
     close, breaks = ROUNDING * face_width, [-0.5 * face_width]
     for z in sorted(positions):

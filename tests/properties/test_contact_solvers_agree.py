@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fe_contact.contact.newton import CONVERGED, solve_point
-from fe_contact.contact.point_problem import LocalLaw, PointProblem, free_strips
+from fe_contact.contact.point_problem import PointProblem, _free_strips, _LocalLaw
 from fe_contact.contact.strip import Gap
 from lineofaction.hardcases.contact.interior_point import GapAbout, Problem, solve
 
@@ -93,7 +93,7 @@ class Solved:
     def __init__(self, problem: Problem, load: float, force: np.ndarray | None = None) -> None:
         p, n = problem, problem.gap.size
         gap = Gap(*vars(p.gap_about).values())
-        law = LocalLaw(p.width, gap, free_strips(gap), p.length, p.modulus)
+        law = _LocalLaw(p.width, gap, _free_strips(gap), p.length, p.modulus)
         there = np.flatnonzero(np.isfinite(p.gap))
         point = PointProblem(
             p.compliance, np.eye(n), there, p.gap[there], p.motion_arm[there], p.torque_arm[there], law
@@ -162,7 +162,7 @@ def test_contacts_that_press_on_few_slices(seed, kind, arms, load, slices):
     bodies = compliance(np.random.default_rng(seed + 1), "body", slices)
     whole = replace(problem, compliance=blend @ bodies @ blend.T)
     gap = Gap(*vars(problem.gap_about).values())
-    law = LocalLaw(problem.width, gap, free_strips(gap), problem.length, problem.modulus)
+    law = _LocalLaw(problem.width, gap, _free_strips(gap), problem.length, problem.modulus)
     point = PointProblem(
         bodies, blend, np.arange(12), problem.gap, problem.motion_arm, problem.torque_arm, law
     )

@@ -69,7 +69,7 @@ WEIGHTS = 0.5 * np.repeat([0.223381589678011, 0.109951743655322], 3)
 """Six points of order 4 (Dunavant 1985): exact on straight sides, enough on curved ones."""
 
 
-def plane_strain_stiffness(points: FloatArray, triangles: IntArray, material: Material) -> sp.csc_array:
+def _plane_strain_stiffness(points: FloatArray, triangles: IntArray, material: Material) -> sp.csc_array:
     """Assemble the stiffness of linear elasticity.
 
     Parameters
@@ -124,7 +124,7 @@ def _element_stiffness(nodes: FloatArray, elasticity: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class CondensedBody:
+class _CondensedBody:
     """One gear seen from the nodes of its strips, per unit face width.
 
     Attributes
@@ -160,7 +160,7 @@ class CondensedBody:
         return self.body.points[self.nodes]
 
 
-def condensed_body(body: PlacedBody, material: Material) -> CondensedBody:
+def _condensed_body(body: PlacedBody, material: Material) -> _CondensedBody:
     """Assemble, factorise, condense.
 
     Raises
@@ -168,7 +168,7 @@ def condensed_body(body: PlacedBody, material: Material) -> CondensedBody:
     SolveError
         The stiffness is singular.
     """
-    matrix = plane_strain_stiffness(body.points, body.triangles, material)
+    matrix = _plane_strain_stiffness(body.points, body.triangles, material)
     nodes = np.unique(np.concatenate([strip.nodes for strip in body.strips.values()]))
     columns = {ahead: np.searchsorted(nodes, strip.nodes) for ahead, strip in body.strips.items()}
     inner = np.setdiff1d(np.arange(len(body.points)), np.concatenate([nodes, body.held]))
@@ -187,7 +187,7 @@ def condensed_body(body: PlacedBody, material: Material) -> CondensedBody:
 
     schur = _trailing_product(factor, 2 * len(nodes))
     compliance = cho_solve(cho_factor(schur), np.eye(len(schur)))
-    return CondensedBody(body, nodes, columns, 0.5 * (compliance + compliance.T), matrix, solve)
+    return _CondensedBody(body, nodes, columns, 0.5 * (compliance + compliance.T), matrix, solve)
 
 
 def freedoms(nodes: IntArray) -> IntArray:
@@ -213,7 +213,7 @@ def _trailing_product(factor: SuperLU, count: int) -> FloatArray:
 # Laws that a solution must keep, checked on the displacements of all nodes: reactions and energy.
 
 
-Bodies = tuple[CondensedBody, CondensedBody]
+Bodies = tuple[_CondensedBody, _CondensedBody]
 
 
 def _bore_checks(bodies: Bodies, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
@@ -247,14 +247,14 @@ def _of_body(bodies: Bodies, number: int, solutions: Sequence[Solution]) -> tupl
     return moments, np.sum(moved * forces, axis=0)
 
 
-def _moment(body: CondensedBody, forces: FloatArray) -> float:
+def _moment(body: _CondensedBody, forces: FloatArray) -> float:
     """Return the moment of forces (2 k,) on the strips' nodes about the gear's center, counter-clockwise."""
     arms = body.points - body.body.center
     return float(arms[:, 0] @ forces[1::2] - arms[:, 1] @ forces[0::2])
 
 
 @dataclass(frozen=True)
-class PairGeometry:
+class _PairGeometry:
     """Two condensed bodies that may touch at sites.
 
     Attributes
@@ -266,7 +266,7 @@ class PairGeometry:
 
     pair: ParallelAxes
     sites: tuple[ContactSite, ...]
-    bodies: tuple[CondensedBody, CondensedBody]
+    bodies: tuple[_CondensedBody, _CondensedBody]
 
     @property
     def undeformed(self) -> Configuration:
@@ -340,7 +340,7 @@ class PairGeometry:
         return np.concatenate(blocks, axis=1)
 
 
-def _full_weights(geometry: PairGeometry, site: ContactSite) -> FloatArray:
+def _full_weights(geometry: _PairGeometry, site: ContactSite) -> FloatArray:
     """Return the lengths of the hats of a site's slave, m."""
     body = geometry.bodies[site.slave]
     nodes = body.points[body.columns[site.ahead]]
@@ -348,7 +348,7 @@ def _full_weights(geometry: PairGeometry, site: ContactSite) -> FloatArray:
     return np.asarray(0.5 * (np.append(lengths, 0.0) + np.insert(lengths, 0, 0.0)))
 
 
-def _at_end(geometry: PairGeometry, site: ContactSite) -> BoolArray:
+def _at_end(geometry: _PairGeometry, site: ContactSite) -> BoolArray:
     """Say which hats of a site are at an end of its strip that is no tip edge."""
     s = geometry.bodies[site.slave].body.strips[site.ahead].s
     gear = (geometry.pair.pinion, geometry.pair.wheel)[site.slave]
@@ -407,9 +407,9 @@ class PlaneStrain:
     ) -> tuple[tuple[ContactGeometry, ...], int]:
         """Condense both gears in the plane."""
         materials = (pair.pinion.material, pair.wheel.material)
-        first, second = (condensed_body(m, material) for m, material in zip(meshes, materials, strict=True))
+        first, second = (_condensed_body(m, material) for m, material in zip(meshes, materials, strict=True))
         unknowns = 2 * sum(len(mesh.points) for mesh in meshes)
-        return (PairGeometry(pair, sites, (first, second)),), unknowns
+        return (_PairGeometry(pair, sites, (first, second)),), unknowns
 
 
 def softness(pair: ParallelAxes) -> float:

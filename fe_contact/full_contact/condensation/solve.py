@@ -135,20 +135,20 @@ Loads = tuple[FullContactPoint, ...]
 
 
 @dataclass(frozen=True)
-class SolvedPosition:
+class _SolvedPosition:
     """Points of each contact of the model under all torques, and the unknowns of both bodies."""
 
     contacts: tuple[Loads, ...]
     unknowns: int
 
 
-def solve_position(
+def _solve_position(
     model: ContactModel,
     pair: ParallelAxes,
     torques: Sequence[float],
     position: float,
     resolution: Resolution,
-) -> SolvedPosition:
+) -> _SolvedPosition:
     """Solve one position.
 
     Parameters
@@ -174,7 +174,7 @@ def solve_position(
         lost = tuple(
             FullContactPoint.failed(Status.NOT_COMPUTED, reason, torque=torque) for torque in torques
         )
-        return SolvedPosition((lost,) * model.count, 0)
+        return _SolvedPosition((lost,) * model.count, 0)
 
 
 def _solved(
@@ -183,7 +183,7 @@ def _solved(
     torques: Sequence[float],
     position: float,
     resolution: Resolution,
-) -> SolvedPosition:
+) -> _SolvedPosition:
     """Mesh and solve; again with more pairs or longer strips where those do not hold the contact."""
     phase = position - round(position)
     least, most = (float(pair.normal_force(torque)) for torque in (min(torques), max(torques)))
@@ -202,7 +202,7 @@ def _solved(
         if lag < least_gap_left_out(pair, phase, sites) and not cut_off:
             break
         held = Range(loads, max(held.lag, 1.3 * lag), held.longer * (WIDER if cut_off else 1.0))
-    return SolvedPosition(solved, unknowns)
+    return _SolvedPosition(solved, unknowns)
 
 
 COARSER = 1.5
@@ -268,14 +268,14 @@ def contact_tables(
     The first mesh is that of the result; its difference from a second one is stated as error.
     """
     _check(torques, positions)
-    solved: list[SolvedPosition] = []
+    solved: list[_SolvedPosition] = []
     seconds = []
     for count, position in enumerate(positions):
         if report is not None:
             report(count / len(positions))
         clock = StageClock()
         with clock.stage("position"):
-            solutions = [solve_position(model, pair, torques, position, mesh) for mesh in meshes]
+            solutions = [_solve_position(model, pair, torques, position, mesh) for mesh in meshes]
         solved.append(_with_error(solutions[0], solutions[1]) if len(solutions) > 1 else solutions[0])
         seconds.append(clock.seconds["position"])
     return tuple(
@@ -306,7 +306,7 @@ def _check(torques: Sequence[float], positions: Sequence[float]) -> None:
         finite("positions", position, "By the driving gear, in base pitches.")
 
 
-def _with_error(fine: SolvedPosition, coarse: SolvedPosition) -> SolvedPosition:
+def _with_error(fine: _SolvedPosition, coarse: _SolvedPosition) -> _SolvedPosition:
     contacts = zip(fine.contacts, coarse.contacts, strict=True)
     return replace(fine, contacts=tuple(_apart(own, other) for own, other in contacts))
 

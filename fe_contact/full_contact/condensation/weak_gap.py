@@ -26,7 +26,7 @@ from fe_contact.types import FloatArray, IntArray
 _STEPS = 12
 
 
-class CurvePoints(NamedTuple):
+class _CurvePoints(NamedTuple):
     """Points of a curve: places (q, 2) and derivatives (q, 2), m; node numbers and weights (q, 3)."""
 
     at: FloatArray
@@ -56,7 +56,7 @@ class FlankCurve:
         """Number of pieces."""
         return len(self.nodes) // 2
 
-    def points(self, t: FloatArray) -> CurvePoints:
+    def points(self, t: FloatArray) -> _CurvePoints:
         """Evaluate at parameters (q,); beyond the ends the last piece goes on."""
         first = np.clip(np.floor(t).astype(np.int64), 0, self.pieces - 1)
         x = t - first
@@ -64,7 +64,7 @@ class FlankCurve:
         slopes = np.stack([4.0 * x - 3.0, 4.0 - 8.0 * x, 4.0 * x - 1.0], axis=-1)
         nodes = 2 * first[:, None] + np.arange(3)
         at = np.einsum("qa,qax->qx", weights, self.nodes[nodes])
-        return CurvePoints(at, np.einsum("qa,qax->qx", slopes, self.nodes[nodes]), nodes, weights)
+        return _CurvePoints(at, np.einsum("qa,qax->qx", slopes, self.nodes[nodes]), nodes, weights)
 
     def met_along(self, origins: FloatArray, tangents: FloatArray) -> FloatArray:
         """Return the parameters at which this curve meets the normals of another one.
@@ -136,8 +136,8 @@ class WeakGap:
 class _Facing(NamedTuple):
     """Quadrature points of the slave (q,) and what they face; normals (q, 2), hats (q, h), lengths (q,)."""
 
-    slave: CurvePoints
-    master: CurvePoints
+    slave: _CurvePoints
+    master: _CurvePoints
     normals: FloatArray
     hats: FloatArray
     lengths: FloatArray
@@ -196,7 +196,7 @@ def _facing(slave: FlankCurve, master: FlankCurve, reference: FlankCurve) -> _Fa
     return _Facing(points, master.points(met[hit]), undeformed.normals, hats, lengths)
 
 
-def _nodal(points: CurvePoints, direction: FloatArray, weighted: FloatArray, count: int) -> FloatArray:
+def _nodal(points: _CurvePoints, direction: FloatArray, weighted: FloatArray, count: int) -> FloatArray:
     """Return the consistent nodal forces (2 count, h) of unit pressures along a direction."""
     shape = np.zeros((len(points.at), count))
     np.put_along_axis(shape, points.nodes, points.weights, axis=1)

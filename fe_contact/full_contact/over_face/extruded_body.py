@@ -45,7 +45,7 @@ class _Front:
 
 
 @dataclass(frozen=True)
-class ColumnMatrix:
+class _ColumnMatrix:
     """Symmetric matrix of columns of unknowns on n nodes, in the order of elimination.
 
     Attributes
@@ -67,7 +67,7 @@ class ColumnMatrix:
         return np.concatenate([np.arange(self.starts[n], self.starts[n + 1]) for n in nodes.tolist()])
 
 
-def schur_complement(matrix: ColumnMatrix, kept: int) -> FloatArray:
+def _schur_complement(matrix: _ColumnMatrix, kept: int) -> FloatArray:
     """Eliminate all nodes but the last `kept`.
 
     Raises
@@ -94,7 +94,7 @@ def schur_complement(matrix: ColumnMatrix, kept: int) -> FloatArray:
 
 
 def _assembled(
-    matrix: ColumnMatrix, front: _Front, children: list[tuple[IntArray, FloatArray]], row: IntArray
+    matrix: _ColumnMatrix, front: _Front, children: list[tuple[IntArray, FloatArray]], row: IntArray
 ) -> tuple[FloatArray, IntArray, int]:
     """Return the lower triangle of a front, its unknowns, and how many of them are eliminated."""
     own = matrix.unknowns(front.nodes)
@@ -235,8 +235,8 @@ def _half(
     order = np.concatenate([dissected(graph, inner), nodes])
     free, starts = _columns(stiffness, order, len(body.points), odd=odd)
     lower = _bordered(stiffness.matrix, free, _turned_circle(stiffness, body))
-    matrix = ColumnMatrix(lower, np.append(starts, starts[-1] + 1), _with_circle(graph, order, body.held))
-    complement = schur_complement(matrix, len(nodes) + 1)
+    matrix = _ColumnMatrix(lower, np.append(starts, starts[-1] + 1), _with_circle(graph, order, body.held))
+    complement = _schur_complement(matrix, len(nodes) + 1)
     kept = free[starts[len(inner)] :]
     in_plane = stiffness.component[kept] != Z
     inverse = cho_solve(cho_factor(complement[:-1, :-1]), np.eye(len(kept)))

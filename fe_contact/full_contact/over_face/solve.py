@@ -49,7 +49,7 @@ Section = Callable[[float], tuple[WeakGap, float]]
 
 
 @dataclass(frozen=True)
-class FaceGap:
+class _FaceGap:
     """Weak gap of one pair; h = i j hats, i along the profile times j = 2 p - 1 over the face.
 
     Attributes
@@ -69,7 +69,7 @@ class FaceGap:
     forces: tuple[FloatArray, FloatArray]
 
 
-def face_gap(section: Section, layers: Layers) -> FaceGap:
+def _face_gap(section: Section, layers: Layers) -> _FaceGap:
     """Integrate the sections over the face, three in each layer of either half."""
     z, weights = layers.quadrature
     hats, functions = layers.hats(z), layers.functions(z)
@@ -89,7 +89,7 @@ def face_gap(section: Section, layers: Layers) -> FaceGap:
         forces.append([_over_functions(own, products, functions.shape[1]) for own in (first, second)])
     gap, weight, closing = (scalars[0] + scalars[1]).reshape(3, -1)
     on_first, on_second = (np.stack(pair) for pair in zip(*forces, strict=True))
-    return FaceGap(gap, weight, closing, (on_first, on_second))
+    return _FaceGap(gap, weight, closing, (on_first, on_second))
 
 
 def _over_functions(sections: FloatArray, products: FloatArray, functions: int) -> FloatArray:
@@ -133,7 +133,7 @@ class _FaceGeometry:
         sections = _Sections(self, at)
         layers = self.bodies[0].layers
         gaps = [
-            face_gap(lambda z, site=site: sections.gap(site, z), layers)  # type: ignore[misc]
+            _face_gap(lambda z, site=site: sections.gap(site, z), layers)  # type: ignore[misc]
             for site in self.sites
         ]
         return self._gathered(gaps, at)
@@ -154,7 +154,7 @@ class _FaceGeometry:
             checks.append((breach, abs(applied[1]) / torque))
         return checks
 
-    def _gathered(self, gaps: Sequence[FaceGap], at: Configuration) -> LinearizedContact:
+    def _gathered(self, gaps: Sequence[_FaceGap], at: Configuration) -> LinearizedContact:
         """Join the pairs, without hats that hardly face their mate."""
         full = [self._full_weights(site) for site in self.sites]
         kept = np.concatenate(
@@ -186,7 +186,7 @@ class _FaceGeometry:
         at_end = np.concatenate([np.repeat(self._at_end(site), over) for site in self.sites])
         return LinearizedContact(system, forces, moved, site, line[kept], at_end[kept])
 
-    def _forces(self, gaps: Sequence[FaceGap], number: int) -> FloatArray:
+    def _forces(self, gaps: Sequence[_FaceGap], number: int) -> FloatArray:
         """Return the forces (2 2 k f, h) of all pairs on one gear."""
         body = self.bodies[number]
         blocks = []
@@ -268,7 +268,7 @@ _ACROSS = 201
 
 
 @dataclass(frozen=True)
-class WholeFace:
+class _WholeFace:
     """A contact for each misalignment.
 
     Attributes
@@ -386,5 +386,5 @@ def solve_full_contact_over_face(
     for misalignment in misalignments:
         finite("misalignments", misalignment, "In m: 30 um is 30e-6.")
     meshes = resolutions(resolution, estimate_error=estimate_error)
-    model = WholeFace(tuple(float(misalignment) for misalignment in misalignments))
+    model = _WholeFace(tuple(float(misalignment) for misalignment in misalignments))
     return contact_tables(model, pair, torques, positions, meshes, report)

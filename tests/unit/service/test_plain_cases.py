@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from bounds import PlausibilityWarning
-from fe_contact.compliance.flank import LARGEST_ROUNDING, disc_rounding
+from fe_contact.compliance.flank import LARGEST_ROUNDING, _disc_rounding
 from fe_contact.material import Material
 from lineofaction.gearbox.convert.case import THICK, check_case, check_plain_case
 from lineofaction.gearbox.problems import BadInput
@@ -57,7 +57,7 @@ def test_a_disc_that_is_not_looked_at_is_far_from_the_limit(helix: float) -> Non
     """For every material up to a Poisson's ratio of 0.49."""
     soft = Material(210e9, 0.49)
     left = [
-        disc_rounding(THICK * share, math.radians(helix), MOST_LAYERS, soft) for share in (0.01, 0.1, 1.0)
+        _disc_rounding(THICK * share, math.radians(helix), MOST_LAYERS, soft) for share in (0.01, 0.1, 1.0)
     ]
     assert max(left) < 0.1 * LARGEST_ROUNDING
 

@@ -12,8 +12,8 @@ from compliance_gears import HELICAL, SPUR, coarse
 
 import fe_contact.compliance.cyclic_compliance as flow
 from fe_contact.compliance import FlankCompliance3D, flank_compliance_3d
-from fe_contact.compliance.condensed_gear import probe_loads
-from fe_contact.compliance.sector_stiffness import face_mass
+from fe_contact.compliance.condensed_gear import _probe_loads
+from fe_contact.compliance.sector_stiffness import _face_mass
 from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.geometry import BoreSeat, Gear, seat_compliance
 from fe_contact.mesh import ClampedBore, bore_support, swept_sector
@@ -26,7 +26,7 @@ def solved(gear: Gear, reach: int | None = None) -> FlankCompliance3D:
 
 def moved(compliance: FlankCompliance3D, tooth: int = 0) -> float:
     """Mean displacement of the flank of a tooth under an even pressure of unit force on tooth 0, m/N."""
-    loads = probe_loads(compliance.s, compliance.z, compliance.index, compliance.s_form)[:, 0]
+    loads = _probe_loads(compliance.s, compliance.z, compliance.index, compliance.s_form)[:, 0]
     return float(loads @ compliance.block(tooth, 0) @ loads / loads.sum() ** 2)
 
 
@@ -126,7 +126,7 @@ def test_a_seat_holds_the_planes_between_its_ends() -> None:
 
 
 def test_face_functions_share_the_area_and_keep_its_moments() -> None:
-    mass = face_mass()
+    mass = _face_mass()
     assert mass.sum() == pytest.approx(4.0, rel=1e-14)
     x = np.array([-1.0, 1.0, -1.0, 1.0, 0.0, 0.0, -1.0, 1.0])
     assert x @ mass @ x == pytest.approx(4.0 / 3.0, rel=1e-14)

@@ -11,8 +11,8 @@ import pytest
 from compliance_gears import HELICAL, SPUR, coarse
 
 from fe_contact.compliance import PlaneHypothesis, flank_compliance, flank_compliance_3d
-from fe_contact.compliance.deformation_3d import SectorElements, deformed_solids, sector_elements
-from fe_contact.compliance.deformed_gear import DeformedGear, deformed_sections, element_stress, stress_of
+from fe_contact.compliance.deformation_3d import _sector_elements, _SectorElements, deformed_solids
+from fe_contact.compliance.deformed_gear import DeformedGear, _element_stress, deformed_sections, stress_of
 from fe_contact.compliance.sector_stiffness import REFERENCE, gradients_at, lame_parameters
 from fe_contact.errors import InputError
 from fe_contact.geometry import BoreSeat, Gear, GearBlank, Key, RingGear, Toothing, tooth_profile
@@ -86,11 +86,11 @@ def test_linear_displacement_gives_its_constant_stress(gear: Toothing) -> None:
     assert np.abs(elements.stress(moved) - expected).max() < 1e-9 * np.abs(expected).max()
 
 
-def sector_of(gear: Toothing) -> SectorElements:
+def sector_of(gear: Toothing) -> _SectorElements:
     right = gear.right_handed()
     recipe = coarse(gear)
     section = quad_sector(right, recipe)
-    return sector_elements(
+    return _sector_elements(
         right, section, swept_sector(section.grid, right.face_width, recipe, None, right.web)
     )
 
@@ -115,7 +115,7 @@ def test_linear_displacement_gives_its_constant_plane_stress(
     mesh = mesh_gear(gear, coarse(gear))
     lame = hypothesis.lame_parameters(gear.material)
     strain = hypothesis is PlaneHypothesis.PLANE_STRAIN
-    found = element_stress(mesh, mesh.points @ GRADIENT[:2, :2].T, lame, lame[0] if strain else 0.0)
+    found = _element_stress(mesh, mesh.points @ GRADIENT[:2, :2].T, lame, lame[0] if strain else 0.0)
     E, nu = gear.material.youngs_modulus, gear.material.poissons_ratio
     x, y, xy = GRADIENT[0, 0], GRADIENT[1, 1], GRADIENT[0, 1] + GRADIENT[1, 0]
     if strain:

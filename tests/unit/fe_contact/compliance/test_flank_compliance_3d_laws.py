@@ -15,12 +15,12 @@ import fe_contact.compliance.condensed_gear as gear_module
 import fe_contact.compliance.cyclic_compliance as flow
 import fe_contact.compliance.sector_stiffness as stiffness_module
 from fe_contact.compliance import (
-    SuperLuMetis,
     flank_compliance_3d,
     flank_compliances_3d,
 )
-from fe_contact.compliance.condensed_gear import least_eigenvalue, pressure_forces
+from fe_contact.compliance.condensed_gear import _least_eigenvalue, _pressure_forces
 from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
+from fe_contact.compliance.ring_2d import factorise
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import Gear, RingGear, Toothing
@@ -72,7 +72,7 @@ def global_compliance(gear: Toothing, recipe: SectorRecipe) -> np.ndarray:
     matrix = sp.csc_array(sp.coo_array(coo))
     loads = np.zeros((matrix.shape[0], len(sector.flank)))
     loads[number[0, sector.flank], np.arange(len(sector.flank))] = 1.0
-    found = SuperLuMetis().factorise(matrix, block=1)(loads)
+    found = factorise(matrix, block=1)(loads)
     return found[number[:, sector.flank]]
 
 
@@ -162,7 +162,7 @@ def test_a_right_hand_tooth_leans_counter_clockwise() -> None:
     for layer in (0, -1):
         loaded = np.zeros(elements)
         loaded[layer] = 1.0
-        ends.append(pressure_forces(found.s, found.z, found.index, loaded))
+        ends.append(_pressure_forces(found.s, found.z, found.index, loaded))
     low, high = ends
     assert low @ found.block(1, 0) @ high > 1.05 * (high @ found.block(1, 0) @ low) > 0.0
 
@@ -238,9 +238,9 @@ def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_least_eigenvalue_of_known_matrices() -> None:
     basis, _ = np.linalg.qr(np.random.default_rng(3).normal(size=(30, 30)))
     values = np.linspace(0.5, 4.0, 30)
-    assert least_eigenvalue(basis * values @ basis.T) == pytest.approx(0.5, rel=0.02)
+    assert _least_eigenvalue(basis * values @ basis.T) == pytest.approx(0.5, rel=0.02)
     values[3] = -1e-3
-    assert least_eigenvalue(basis * values @ basis.T) < 0.0
+    assert _least_eigenvalue(basis * values @ basis.T) < 0.0
 
 
 def test_pressure_is_shared_consistently() -> None:
@@ -251,7 +251,7 @@ def test_pressure_is_shared_consistently() -> None:
     exists = (np.arange(5)[:, None] % 2 == 0) | (np.arange(5) % 2 == 0)
     index[exists] = np.arange(exists.sum())
     loaded = np.array([[1.0, 0.0], [0.0, 2.0]])
-    forces = pressure_forces(s, z, index, loaded)
+    forces = _pressure_forces(s, z, index, loaded)
     grid_s, grid_z = np.broadcast_arrays(s, planes[:, None])
     for p, q in ((0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)):
 

@@ -11,12 +11,12 @@ from skfem.models.elasticity import linear_elasticity
 
 from fe_contact.compliance.sector_stiffness import (
     REFERENCE,
+    _in_frames,
+    _stiffness_of,
     cylindrical_frames,
     flank_frames,
-    in_frames,
     layer_nodes,
     sector_stiffness,
-    stiffness_of,
     twist,
 )
 from fe_contact.errors import MeshError
@@ -73,14 +73,14 @@ def test_equals_the_assembly_of_scikit_fem(nodes: np.ndarray) -> None:
     matrix = linear_elasticity(*LAME).assemble(basis).toarray()
     here = [int(np.abs(ElementHexS2.doflocs - 0.5 * (x + 1)).sum(axis=1).argmin()) for x in REFERENCE]
     order = (3 * np.array(here)[:, None] + np.arange(3)).ravel()
-    found = stiffness_of(some, LAME)
+    found = _stiffness_of(some, LAME)
     for e in range(count):
         dofs = basis.element_dofs[order, e]
         assert found[e] == pytest.approx(matrix[np.ix_(dofs, dofs)], abs=1e-12 * np.abs(found[e]).max())
 
 
 def test_only_the_six_rigid_motions_are_free(nodes: np.ndarray) -> None:
-    for stiffness in stiffness_of(nodes[::20], LAME):
+    for stiffness in _stiffness_of(nodes[::20], LAME):
         assert (
             np.array_equal(stiffness, stiffness.T)
             or np.abs(stiffness - stiffness.T).max() < 1e-13 * np.abs(stiffness).max()
@@ -96,8 +96,8 @@ def test_frames_turn_components(nodes: np.ndarray) -> None:
     inside = np.einsum("mnac,mna->mnc", frames, motion)
     assert inside[..., 1] == pytest.approx(np.hypot(nodes[..., 0], nodes[..., 1]))
     assert np.abs(inside[..., [0, 2]]).max() < 1e-15
-    cartesian = stiffness_of(nodes[:3], LAME)
-    turned = in_frames(cartesian, frames[:3])
+    cartesian = _stiffness_of(nodes[:3], LAME)
+    turned = _in_frames(cartesian, frames[:3])
     energy = np.einsum("mi,mij,mj->m", inside[:3].reshape(3, 60), turned, inside[:3].reshape(3, 60))
     assert np.abs(energy).max() < 1e-12 * np.abs(cartesian).max() * 0.05**2
 
@@ -106,7 +106,7 @@ def test_a_folded_element_is_named(section: QuadSector) -> None:
     squares = section.points[section.grid.quads]
     squares[2] = squares[2][[1, 0, 3, 2, 4, 7, 6, 5]]  # clockwise
     with pytest.raises(MeshError, match=r"element 2 at .* is folded"):
-        stiffness_of(layer_nodes(squares, 1e-3, 0.1), LAME)
+        _stiffness_of(layer_nodes(squares, 1e-3, 0.1), LAME)
 
 
 def node_positions(section: QuadSector, sector: SweptSector) -> np.ndarray:

@@ -11,13 +11,14 @@ import pytest
 import scipy.sparse as sp
 from compliance_gears import HELICAL, SPUR, coarse
 
-from fe_contact.compliance import FlankCompliance3D, SuperLuMetis, flank_compliance_3d
-from fe_contact.compliance.condensed_gear import probe_loads
+from fe_contact.compliance import FlankCompliance3D, flank_compliance_3d
+from fe_contact.compliance.condensed_gear import _probe_loads
 from fe_contact.compliance.deformation_3d import deformed_solids
-from fe_contact.compliance.keyed_bore import key_points
+from fe_contact.compliance.keyed_bore import _key_points
+from fe_contact.compliance.ring_2d import factorise
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
-from fe_contact.contact.assembly import KeyedFlanks
+from fe_contact.contact.assembly import _KeyedFlanks
 from fe_contact.contact.face_patch import FaceGrid, add_compliance, face_loads
 from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.geometry import BoreSeat, Gear, Key
@@ -38,7 +39,7 @@ def solved(gear: Gear, reach: int = 2) -> FlankCompliance3D:
 
 def moved(compliance: FlankCompliance3D, tooth: int = 0) -> float:
     """Mean displacement of the flank of a tooth under an even pressure of unit force on it, m/N."""
-    loads = probe_loads(compliance.s, compliance.z, compliance.index, compliance.s_form)[:, 0]
+    loads = _probe_loads(compliance.s, compliance.z, compliance.index, compliance.s_form)[:, 0]
     return float(loads @ compliance.block(tooth, tooth) @ loads / loads.sum() ** 2)
 
 
@@ -70,7 +71,7 @@ def test_equals_the_solution_of_the_whole_gear(gear: Gear) -> None:
         free = (i >= 0) & (k >= 0)
         rows, columns = [*rows, i[free]], [*columns, k[free]]
         entries.append(values[free])
-    points = key_points(held, sector, twist(held))
+    points = _key_points(held, sector, twist(held))
     local = np.concatenate([sector.key_bore, sector.left[sector.key_cut]])
     at = number[points.sector, local[points.number]]
     rows.append(np.repeat(at, 8, axis=1).ravel())
@@ -82,7 +83,7 @@ def test_equals_the_solution_of_the_whole_gear(gear: Gear) -> None:
     for other in (0, 1):
         loads = np.zeros((matrix.shape[0], len(sector.flank)))
         loads[number[other, sector.flank], np.arange(len(sector.flank))] = 1.0
-        direct = SuperLuMetis().factorise(matrix, block=1)(loads)
+        direct = factorise(matrix, block=1)(loads)
         for tooth in (-1, 0, 2):
             expected = direct[number[tooth, sector.flank]]
             assert np.abs(found.block(tooth, other) - expected).max() < 1e-8 * np.abs(expected).max()
@@ -124,7 +125,7 @@ def test_the_key_has_its_area_and_its_place(gear: Gear, angle: float) -> None:
     )
     section = quad_sector(held, coarse(held))
     sector = swept_sector(section.grid, held.face_width, coarse(held), bore_support(held))
-    points = key_points(held, sector, twist(held))
+    points = _key_points(held, sector, twist(held))
     weight = points.shares.sum(axis=1) ** 2 / MODULUS
     assert weight.sum() == pytest.approx(4e-3 * 10e-3, rel=1e-12)
     nodes = np.zeros((sector.size, 3))
@@ -156,10 +157,10 @@ def test_contact_sees_the_key_as_the_blocks_do() -> None:
     out = np.zeros((4, 4))
     wide = np.concatenate([found.blocks, np.zeros((1, *found.blocks[0].shape))])
     add_compliance(wide, tooth, loads, np.ones(4), out)
-    out += KeyedFlanks(found.key_rows, found.key_core, True).compliance(tooth, loads)
+    out += _KeyedFlanks(found.key_rows, found.key_core, True).compliance(tooth, loads)
     for i, j in ((0, 0), (1, 2), (0, 1), (3, 1)):
         assert out[i, j] == pytest.approx(forces[i] @ found.block(tooth[i], tooth[j]) @ forces[j], rel=1e-10)
-    alone = KeyedFlanks(found.key_rows, found.key_core, False).compliance(tooth, loads)
+    alone = _KeyedFlanks(found.key_rows, found.key_core, False).compliance(tooth, loads)
     assert np.array_equal(alone != 0.0, tooth[:, None] == tooth)
 
 

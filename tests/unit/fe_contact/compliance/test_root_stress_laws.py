@@ -16,12 +16,12 @@ from scipy.sparse.linalg import splu
 import fe_contact.compliance.condensed_gear as gear_module
 import fe_contact.compliance.root_stress_3d as face_module
 import fe_contact.compliance.sector_stiffness as stiffness_module
-from fe_contact.compliance import PlaneHypothesis, SuperLuMetis
-from fe_contact.compliance.condensed_gear import pressure_forces
+from fe_contact.compliance import PlaneHypothesis
+from fe_contact.compliance.condensed_gear import _pressure_forces
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
-from fe_contact.compliance.ring_2d import freedoms, inward_loads
+from fe_contact.compliance.ring_2d import _inward_loads, factorise, freedoms
 from fe_contact.compliance.root_stress import UnitRootStress, refuse_broken_stress
-from fe_contact.compliance.root_stress_3d import compute_root_stress_3d, root_functionals
+from fe_contact.compliance.root_stress_3d import _root_functionals, compute_root_stress_3d
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.compliance.surface_stress import edge_stress, quad_root, triangle_root
 from fe_contact.compliance.unit_root_stress import (
@@ -77,7 +77,7 @@ def on_flank(found: UnitRootStress) -> np.ndarray:
     """Forces of a pressure on the upper part of the flank, all of the face."""
     upper = found.s[:-2:2] > 0.4 * found.s[0] + 0.6 * found.s[-1]
     if found.across_face:
-        return pressure_forces(
+        return _pressure_forces(
             found.s, found.z, found.index, np.tile(upper, (len(found.z) - 1, 1)).astype(float)
         )
     forces, lengths = np.zeros(len(found.s)), np.where(upper, np.diff(found.s[::2]), 0.0)
@@ -113,7 +113,7 @@ def agrees_with_the_whole_mesh(gear: Toothing, recipe: MeshRecipe) -> None:
     for n, ahead in enumerate(found.distance):
         flank = mesh.flanks[own - ahead]
         moved = np.zeros((2 * len(mesh.points), 3))
-        loads = inward_loads(len(mesh.points), flank.nodes, flank.normals) @ forces
+        loads = _inward_loads(len(mesh.points), flank.nodes, flank.normals) @ forces
         moved[free] = solve(loads[free])
         for side, chain in enumerate(chains):
             expected = edge_stress(mesh.points, chain, gear.material, STRAIN) @ moved
@@ -138,8 +138,8 @@ def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
     matrix = sp.csc_array(sp.coo_array((values, (i[free], k[free]))))
     loads = np.zeros((matrix.shape[0], 3))
     loads[number[0, sector.flank]] = -some_forces(len(sector.flank))  # inwards
-    moved = SuperLuMetis().factorise(matrix, block=1)(loads)
-    rows = root_functionals(gear, section, sector, quad_root(section, tooth_profile(gear)))
+    moved = factorise(matrix, block=1)(loads)
+    rows = _root_functionals(gear, section, sector, quad_root(section, tooth_profile(gear)))
     return np.stack([rows @ moved[number[j]] for j in range(gear.teeth)])
 
 
@@ -223,7 +223,7 @@ def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.Monk
     mirrored = over_face(left, two_on_land(left), reach=1)
     for module in (stiffness_module, gear_module, face_module):
         monkeypatch.setattr(module, "twist", lambda gear: math.tan(gear.helix_angle) / gear.reference_radius)
-    swept = compute_root_stress_3d(left, two_on_land(left), 1, ClampedBore(), "")
+    swept = compute_root_stress_3d(left, two_on_land(left), 1, ClampedBore())
     # single nodal forces hold what the cuts tell apart to 1e-6 only
     assert relative(swept.stress, mirrored.stress) < 2e-6
 

@@ -13,7 +13,7 @@ from fe_contact.compliance import flank_compliance_3d
 from fe_contact.compliance.flank import (
     EPSILON,
     LARGEST_ROUNDING,
-    disc_rounding,
+    _disc_rounding,
     least_face_width,
     left_by_rounding,
 )
@@ -64,14 +64,14 @@ def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(
     quotient = found[1].energy_rounding / found[0].energy_rounding
     assert math.log2(quotient) == pytest.approx(power, abs=0.3)
     layers = SectorRecipe.draft(thin).layers
-    predicted = disc_rounding(slenderness(thin), helix, layers, STEEL)
+    predicted = _disc_rounding(slenderness(thin), helix, layers, STEEL)
     assert 1.0 / 3.0 < predicted / found[1].energy_rounding < 3.0
 
 
 def test_a_disc_as_thin_as_allowed_is_computed_and_a_thinner_one_refused() -> None:
     layers = SectorRecipe.draft(disc(1.0)).layers
     least = least_face_width(disc(1.0), layers) / 4e-3
-    assert disc_rounding(slenderness(disc(least)), 0.3, layers, STEEL) == pytest.approx(LARGEST_ROUNDING)
+    assert _disc_rounding(slenderness(disc(least)), 0.3, layers, STEEL) == pytest.approx(LARGEST_ROUNDING)
     allowed, thinner = disc(1.001 * least), disc(0.999 * least)
     check_request(
         GearPair(allowed, mate_of(allowed)),

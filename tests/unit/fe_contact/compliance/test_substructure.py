@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
-from fe_contact.compliance.elimination_tree import EliminationTree, elimination_tree
+from fe_contact.compliance.elimination_tree import EliminationTree, _elimination_tree
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.compliance.substructure import condense
 from fe_contact.errors import SolveError
@@ -37,7 +37,7 @@ def dense(freedoms: np.ndarray, stiffness: ElementStiffness) -> np.ndarray:
 @pytest.mark.parametrize("leaf", [1, 3, 100])
 def test_condensation_is_the_schur_complement(leaf: int) -> None:
     nodes, freedoms, place, stiffness = sheet()
-    tree = elimination_tree(nodes, freedoms, place, KEPT, leaf)
+    tree = _elimination_tree(nodes, freedoms, place, KEPT, leaf)
     found = condense(tree, freedoms, stiffness)
     matrix = dense(freedoms, stiffness)
     others = np.setdiff1d(np.arange(len(matrix)), KEPT)
@@ -55,12 +55,12 @@ def test_condensation_is_the_schur_complement(leaf: int) -> None:
 
 def test_every_freedom_is_eliminated_once_and_counted() -> None:
     nodes, freedoms, place, _ = sheet()
-    tree: EliminationTree = elimination_tree(nodes, freedoms, place, KEPT, 3)
+    tree: EliminationTree = _elimination_tree(nodes, freedoms, place, KEPT, 3)
     inner = np.concatenate([front.inner for front in tree.root.fronts()])
     assert sorted(np.concatenate([inner, KEPT])) == list(range(len(tree.order)))
     assert np.array_equal(np.argsort(tree.order)[: len(inner)], inner)
     assert sorted(np.concatenate([f.elements for f in tree.root.fronts()])) == list(range(COLUMNS * ROWS))
-    alone = elimination_tree(nodes, freedoms, place, KEPT, 100)
+    alone = _elimination_tree(nodes, freedoms, place, KEPT, 100)
     n, k = len(inner), len(KEPT)
     assert alone.operations == pytest.approx(n**3 / 6 + n * n * k / 2 + n * k * k / 2)
     assert (alone.factor_entries, alone.front_entries, alone.front_count) == (n * (n + k), (n + k) ** 2, 1)
@@ -72,7 +72,7 @@ def test_every_freedom_is_eliminated_once_and_counted() -> None:
 def test_an_indefinite_structure_is_a_solve_error() -> None:
     nodes, freedoms, place, stiffness = sheet(floor=-50.0)
     with pytest.raises(SolveError, match="not positive definite"):
-        condense(elimination_tree(nodes, freedoms, place, KEPT, 3), freedoms, stiffness)
+        condense(_elimination_tree(nodes, freedoms, place, KEPT, 3), freedoms, stiffness)
 
 
 FLANK, CUT = 9, 4

@@ -11,12 +11,12 @@ from hertz_laws import edge_contact_length, edge_half_width, line_load_at_half_w
 from fe_contact.contact.point_problem import (
     LARGEST_STRIP,
     SMALLEST_STRIP,
-    LocalLaw,
+    _force_at,
+    _free_strips,
+    _LocalLaw,
+    _plain_load,
+    _plain_strip,
     approach,
-    force_at,
-    free_strips,
-    plain_load,
-    plain_strip,
 )
 from fe_contact.contact.strip import Gap, strip_load
 from fe_contact.hertz import contact_modulus, half_width
@@ -29,17 +29,19 @@ SLOPES = [math.nan, 0.1, 0.01, 0.0, -1e-3, -0.01, -0.1]
 LINE_LOADS = np.geomspace(1e1, 8e4, 25)
 
 
-def law_of(slope: float, first: Material = STEEL, second: Material = STEEL, scale: float = 1.0) -> LocalLaw:
+def law_of(slope: float, first: Material = STEEL, second: Material = STEEL, scale: float = 1.0) -> _LocalLaw:
     gap, width = gap_of(slope, scale * RADIUS), np.array([scale * WIDTH])
-    return LocalLaw(width, gap, free_strips(gap), scale * LENGTH, np.array([contact_modulus(first, second)]))
+    return _LocalLaw(
+        width, gap, _free_strips(gap), scale * LENGTH, np.array([contact_modulus(first, second)])
+    )
 
 
-def low(law: LocalLaw) -> float:
+def low(law: _LocalLaw) -> float:
     """Line load up to which the law is its secant."""
     return strip_load(law.gap, 0, SMALLEST_STRIP * law.length, law.modulus[0])[0]
 
 
-def high(law: LocalLaw) -> float:
+def high(law: _LocalLaw) -> float:
     """Line load above which the law goes on straight."""
     return strip_load(law.gap, 0, LARGEST_STRIP * law.length, law.modulus[0])[0]
 
@@ -64,7 +66,7 @@ def hertz_room(p: float, slope: float, first: Material, second: Material) -> flo
     return rigid + sum(float(local_approach(p, LENGTH, width, m)) for m in (first, second))
 
 
-def value(law: LocalLaw, p: float) -> float:
+def value(law: _LocalLaw, p: float) -> float:
     return approach(law, 0, p * WIDTH)[0]
 
 
@@ -153,10 +155,10 @@ def test_the_force_at_an_approach_is_its_inverse(slope):
     law = law_of(slope)
     for p in np.geomspace(1e-3 * low(law), 1e2 * high(law), 200):
         value, stiffness, _ = approach(law, 0, p * WIDTH)
-        force, per_approach = force_at(law, 0, value)
+        force, per_approach = _force_at(law, 0, value)
         assert force == pytest.approx(p * WIDTH, rel=1e-11, abs=0.0)
         assert per_approach * stiffness == pytest.approx(1.0, rel=1e-6, abs=0.0)
-    assert force_at(law, 0, -1e-9) == (0.0, 0.0)
+    assert _force_at(law, 0, -1e-9) == (0.0, 0.0)
 
 
 def test_a_parabola_needs_no_search():
@@ -165,14 +167,14 @@ def test_a_parabola_needs_no_search():
     curvature, gap = 1.0 / RADIUS, law.gap
     for p in np.geomspace(1e-3 * low(law), 1e2 * high(law), 200):
         value = approach(law, 0, p * WIDTH)[0]
-        half = plain_strip(curvature, LENGTH, value)
-        load, stiffness = plain_load(curvature, LENGTH, law.modulus[0], half, value)
-        assert (WIDTH * load, WIDTH * stiffness) == pytest.approx(force_at(law, 0, value), rel=1e-12)
-    assert free_strips(gap)[0] == math.inf
-    assert free_strips(gap._replace(slope=np.array([0.01])))[0] == 0.0
-    assert free_strips(gap._replace(low=np.array([-2e-4]), high=np.array([1e-4])))[0] == 1e-4
+        half = _plain_strip(curvature, LENGTH, value)
+        load, stiffness = _plain_load(curvature, LENGTH, law.modulus[0], half, value)
+        assert (WIDTH * load, WIDTH * stiffness) == pytest.approx(_force_at(law, 0, value), rel=1e-12)
+    assert _free_strips(gap)[0] == math.inf
+    assert _free_strips(gap._replace(slope=np.array([0.01])))[0] == 0.0
+    assert _free_strips(gap._replace(low=np.array([-2e-4]), high=np.array([1e-4])))[0] == 1e-4
     broken = gap._replace(place=np.array([[-5e-5, 3e-4]]), jump=np.ones((1, 2)), bend=np.ones((1, 2)))
-    assert free_strips(broken)[0] == 5e-5
+    assert _free_strips(broken)[0] == 5e-5
 
 
 def test_equal_patches_far_from_the_edge_give_hertz():
@@ -197,7 +199,7 @@ def test_blunt_wedge_keeps_its_digits():
     # phi R is far beyond the strip; c = 4 p/(pi E* phi) there and b_eff = c exp(-1/2)/2
     modulus, wedge, radius, patch = contact_modulus(STEEL, STEEL), 0.3, 2e4, 3e-4
     k, gap = 1.0 / (math.pi * modulus), gap_of(wedge, radius)
-    law = LocalLaw(np.array([WIDTH]), gap, free_strips(gap), patch, np.array([modulus]))
+    law = _LocalLaw(np.array([WIDTH]), gap, _free_strips(gap), patch, np.array([modulus]))
     p = 1.5 * low(law)
     half_width_at_edge = 2.0 * p / (math.pi * modulus * wedge) * math.exp(-0.5)
     expected = 2.0 * k * p * (math.log(patch / half_width_at_edge) + 0.25)

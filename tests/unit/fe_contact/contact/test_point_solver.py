@@ -12,7 +12,7 @@ import pytest
 from fe_contact.contact import ContactProblem, LoadedSlices, solve_contact
 from fe_contact.contact.newton import _residuals, solve_point
 from fe_contact.contact.patch import Patches
-from fe_contact.contact.point_problem import LocalLaw, PointProblem, State, approach, eliminate, free_strips
+from fe_contact.contact.point_problem import PointProblem, State, _free_strips, _LocalLaw, approach, eliminate
 from fe_contact.contact.strip import Gap
 from fe_contact.types import Status
 
@@ -26,7 +26,7 @@ def point(compliance, gap, motion_arm=None, torque_arm=None, edge_slope=math.nan
     n = len(gap)
     ones = np.ones(n)
     gap_about = beside_an_edge(edge_slope, n)
-    law = LocalLaw(WIDTH * ones, gap_about, free_strips(gap_about), LENGTH, MODULUS * ones)
+    law = _LocalLaw(WIDTH * ones, gap_about, _free_strips(gap_about), LENGTH, MODULUS * ones)
     motion = ones if motion_arm is None else np.asarray(motion_arm)
     torque = motion if torque_arm is None else np.asarray(torque_arm)
     there = np.flatnonzero(np.asarray(gap) != math.inf)

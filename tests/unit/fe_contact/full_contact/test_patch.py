@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from contact_blocks import DEPTH, WIDTH, block
 
-from fe_contact.full_contact.condensation.contact_model import CondensedBody, condensed_body
+from fe_contact.full_contact.condensation.contact_model import _condensed_body, _CondensedBody
 from fe_contact.full_contact.condensation.linearized_contact import ContactSystem, solve_active_set
 from fe_contact.full_contact.condensation.weak_gap import FlankCurve, WeakGap, weak_gap
 from fe_contact.material import Material
@@ -19,9 +19,9 @@ SOFT, STIFF = Material(70e9, 0.0), Material(210e9, 0.0)
 
 
 @cache
-def blocks() -> tuple[CondensedBody, CondensedBody]:
+def blocks() -> tuple[_CondensedBody, _CondensedBody]:
     """Left of x = 0 and right of it."""
-    return condensed_body(block(0), SOFT), condensed_body(block(1), STIFF)
+    return _condensed_body(block(0), SOFT), _condensed_body(block(1), STIFF)
 
 
 def pressed(slave: int) -> tuple[WeakGap, ContactSystem]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.full_contact.condensation.contact_model import plane_strain_stiffness
+from fe_contact.full_contact.condensation.contact_model import _plane_strain_stiffness
 from fe_contact.material import Material
 
 STEEL = Material(210e9, 0.3)
@@ -28,7 +28,7 @@ def area() -> float:
 
 
 def test_rigid_motion_takes_no_force() -> None:
-    matrix = plane_strain_stiffness(POINTS, TRIANGLES, STEEL).toarray()
+    matrix = _plane_strain_stiffness(POINTS, TRIANGLES, STEEL).toarray()
     np.testing.assert_allclose(matrix, matrix.T, rtol=0.0, atol=1e-15 * matrix.max())
     turned = np.stack([-POINTS[:, 1], POINTS[:, 0]], axis=-1) / 1e-3
     for motion in (np.tile([1.0, 0.0], 9), np.tile([0.0, 1.0], 9), turned.ravel()):
@@ -37,7 +37,7 @@ def test_rigid_motion_takes_no_force() -> None:
 
 
 def test_even_strain_stores_the_energy_of_plane_strain() -> None:
-    matrix = plane_strain_stiffness(POINTS, TRIANGLES, STEEL)
+    matrix = _plane_strain_stiffness(POINTS, TRIANGLES, STEEL)
     e, nu = STEEL.youngs_modulus, STEEL.poissons_ratio
     lam, mu = e * nu / ((1 + nu) * (1 - 2 * nu)), e / (2 * (1 + nu))
     for strain in ([[1.0, 0.0], [0.0, 0.0]], [[0.3, 0.4], [0.4, -0.2]]):

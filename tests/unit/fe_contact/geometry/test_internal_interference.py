@@ -11,16 +11,15 @@ import pytest
 
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.flank.involute import involute_function
-from fe_contact.geometry import Gear
-from fe_contact.geometry import gear_pair as internal_gear_pair
+from fe_contact.geometry import Gear, gear_pair
 from fe_contact.geometry.flank_profile import ToothProfile, tooth_profile
-from fe_contact.geometry.gear_pair import (
-    InternalGearPair,
-    flank_angle,
-    pinion_edge_path,
-    ring_edge_path,
-    tip_interference,
-    trochoidal_interference,
+from fe_contact.geometry.gear_pair import InternalGearPair
+from fe_contact.geometry.pair_feasibility import (
+    _flank_angle,
+    _pinion_edge_path,
+    _ring_edge_path,
+    _tip_interference,
+    _trochoidal_interference,
 )
 from fe_contact.geometry.ring_gear import RingGear, radial_clearance
 from fe_contact.types import FloatArray
@@ -45,7 +44,7 @@ def make_pair(
 @pytest.fixture
 def unchecked(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let pairs be made that cannot run."""
-    monkeypatch.setattr(internal_gear_pair, "refuse_infeasible_internal_pair", lambda pair: None)
+    monkeypatch.setattr(gear_pair, "refuse_infeasible_pair", lambda pair: None)
 
 
 @lru_cache
@@ -131,7 +130,7 @@ def test_feasible_pair_touches_and_never_overlaps(
 @pytest.mark.parametrize("difference", [7, 6, 5])
 def test_tip_interference_is_the_overlap_of_the_turning_outlines(difference: int) -> None:
     pair = make_pair((80 - difference, 80), {}, {})
-    depth = tip_interference(pair)
+    depth = _tip_interference(pair)
     assert depth > 1e-5
     assert worst(pair) == pytest.approx(depth, rel=0.05, abs=0.0)
 
@@ -140,12 +139,12 @@ def test_tip_interference_is_the_overlap_of_the_turning_outlines(difference: int
 def test_trochoidal_interference_is_the_overlap_of_the_turning_outlines() -> None:
     # the ring's tip reaches the pinion's fillet, cut by a rack with a large rounding
     pair = make_pair((30, 80), {"dedendum_coefficient": 1.1}, {"addendum_coefficient": 1.02})
-    depth = trochoidal_interference(pair)
+    depth = _trochoidal_interference(pair)
     assert depth > 1e-5
     assert worst(pair) == pytest.approx(depth, rel=0.05, abs=0.0)
     # the pinion's tip reaches the ring's fillet
     pair = make_pair((60, 80), {"addendum_coefficient": 1.2}, {"root_radius_coefficient": 0.3})
-    depth = trochoidal_interference(pair)
+    depth = _trochoidal_interference(pair)
     assert depth > 1e-5
     assert worst(pair) == pytest.approx(depth, rel=0.05, abs=0.0)
 
@@ -188,10 +187,10 @@ def test_a_tip_that_clears_the_form_circle_but_cuts_the_fillet_is_refused(
     with pytest.raises(InfeasibleGeometry) as caught:
         make_pair(teeth, pinion, wheel)
     assert caught.value.name == "trochoidal interference"
-    monkeypatch.setattr(internal_gear_pair, "refuse_infeasible_internal_pair", lambda pair: None)
+    monkeypatch.setattr(gear_pair, "refuse_infeasible_pair", lambda pair: None)
     pair = make_pair(teeth, pinion, wheel)
-    assert tip_interference(pair) < SLACK
-    assert worst(pair) == pytest.approx(trochoidal_interference(pair), rel=0.1, abs=0.0)
+    assert _tip_interference(pair) < SLACK
+    assert worst(pair) == pytest.approx(_trochoidal_interference(pair), rel=0.1, abs=0.0)
 
 
 @pytest.mark.usefixtures("unchecked")
@@ -205,10 +204,10 @@ def test_ends_of_the_edges_paths_are_the_handbooks_angle_criterion(teeth: tuple[
     theta_1 = math.acos((r_2**2 - r_1**2 - a**2) / (2.0 * a * r_1)) + inv_1 - working
     theta_2 = math.acos((a**2 + r_2**2 - r_1**2) / (2.0 * a * r_2))
     left_over = theta_1 * teeth[0] / teeth[1] + working - inv_2 - theta_2  # SDP/SI D785, eq. 5-6: >= 0
-    path = pinion_edge_path(pair)
+    path = _pinion_edge_path(pair)
     assert path.radius[-1] == pytest.approx(r_2, rel=1e-12)
     assert path.depth[-1] == pytest.approx(-r_2 * left_over, rel=1e-9, abs=0.0)
-    mate = ring_edge_path(pair)
+    mate = _ring_edge_path(pair)
     assert mate.radius[-1] == pytest.approx(r_1, rel=1e-12)
     # the same meeting of the two edges, seen from the pinion
     assert mate.depth[-1] == pytest.approx(-r_1 * left_over * teeth[1] / teeth[0], rel=1e-6, abs=0.0)
@@ -217,8 +216,8 @@ def test_ends_of_the_edges_paths_are_the_handbooks_angle_criterion(teeth: tuple[
 def test_edges_touch_the_mating_flank_at_the_ends_of_the_path_of_contact() -> None:
     pair = make_pair((40, 80), {}, {})
     for path, mate, roll in (
-        (pinion_edge_path(pair), pair.wheel, pair.common_tangent + pair.path_of_contact.end),
-        (ring_edge_path(pair), pair.pinion, pair.path_of_contact.start),
+        (_pinion_edge_path(pair), pair.wheel, pair.common_tangent + pair.path_of_contact.end),
+        (_ring_edge_path(pair), pair.pinion, pair.path_of_contact.start),
     ):
         on_involute = mate.sign * (path.radius - mate.form_radius) > 0.0
         at_contact = np.argmax(np.where(on_involute, path.depth, -np.inf))
@@ -231,7 +230,7 @@ def test_flank_angle_is_the_profiles() -> None:
     for profile in (tooth_profile(pair.pinion), tooth_profile(pair.wheel)):
         s = np.linspace(profile.s_root, profile.s_tip, 97)[3:]
         x, y = profile.flank(s).T
-        assert flank_angle(profile.gear, np.hypot(x, y)) == pytest.approx(np.arctan2(x, y), abs=1e-6)
+        assert _flank_angle(profile.gear, np.hypot(x, y)) == pytest.approx(np.arctan2(x, y), abs=1e-6)
 
 
 def radially_blocked(pair: InternalGearPair) -> bool:

@@ -11,7 +11,7 @@ from fe_contact.errors import InputError
 from fe_contact.geometry import Gear
 from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe, swept_sector
 from fe_contact.mesh.sector_grid import SectorGrid
-from fe_contact.mesh.swept_sector import layers_across, layers_to_mid_face
+from fe_contact.mesh.swept_sector import _layers_across, _layers_to_mid_face
 
 SPUR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 GRID = SectorGrid(body_rows=4, tooth_rows=3, land=1, across=2)
@@ -22,7 +22,7 @@ DRAFT = SectorRecipe.draft(SPUR)
     ("count", "group", "growth"), [(1, 1, 1.5), (2, 2, 1.5), (8, 2, 1.5), (18, 2, 1.5), (12, 4, 2.0)]
 )
 def test_layers_fill_the_face_symmetrically(count: int, group: int, growth: float) -> None:
-    layers = layers_across(25e-3, count, group, growth)
+    layers = _layers_across(25e-3, count, group, growth)
     assert (layers.ends[0], layers.ends[-1]) == (-12.5e-3, 12.5e-3)
     assert np.array_equal(layers.ends, -layers.ends[::-1])
     assert np.diff(layers.ends) == pytest.approx(layers.thickness[layers.kind], rel=1e-12)
@@ -34,7 +34,7 @@ def test_layers_fill_the_face_symmetrically(count: int, group: int, growth: floa
 
 
 def test_half_a_face_is_finest_at_its_end() -> None:
-    layers = layers_to_mid_face(25e-3, 3, 8.0)
+    layers = _layers_to_mid_face(25e-3, 3, 8.0)
     assert (layers.ends[0], layers.ends[-1]) == (0.0, 12.5e-3)
     thickness = np.diff(layers.ends)
     assert thickness == pytest.approx(layers.thickness[layers.kind], rel=1e-12)

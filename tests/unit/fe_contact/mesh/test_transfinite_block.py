@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import MeshError
-from fe_contact.mesh.quad_sector import Block, fill_blocks
+from fe_contact.mesh.quad_sector import _Block, _fill_blocks
 
 U, V = np.linspace(0.0, 1.0, 6) ** 1.3, np.linspace(0.0, 1.0, 4)
 
@@ -17,8 +17,8 @@ def bent(u: np.ndarray, v: np.ndarray) -> np.ndarray:
     return np.stack([u + 0.2 * v**2, v + 0.3 * u * (1.0 - u)], axis=-1)
 
 
-BENT = Block(bent(U, 0.0 * U), bent(1.0 + 0.0 * V, V), bent(U, 1.0 + 0.0 * U), bent(0.0 * V, V))
-SQUARE = Block(
+BENT = _Block(bent(U, 0.0 * U), bent(1.0 + 0.0 * V, V), bent(U, 1.0 + 0.0 * U), bent(0.0 * V, V))
+SQUARE = _Block(
     *(
         np.array(side, float)
         for side in ([[0, 0], [1, 0]], [[1, 0], [1, 1]], [[0, 1], [1, 1]], [[0, 0], [0, 1]])
@@ -32,7 +32,7 @@ def arc_share(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def test_is_the_transfinite_interpolation_of_the_sides() -> None:
-    (found,) = fill_blocks([BENT], 1.0)
+    (found,) = _fill_blocks([BENT], 1.0)
     u = arc_share(BENT.bottom, BENT.top)[None, :, None]
     v = arc_share(BENT.left, BENT.right)[:, None, None]
     low = (1 - u) * BENT.bottom[0] + u * BENT.bottom[-1]
@@ -45,7 +45,7 @@ def test_is_the_transfinite_interpolation_of_the_sides() -> None:
 
 
 def test_keeps_the_given_sides_bit_for_bit() -> None:
-    found, small = fill_blocks([BENT, SQUARE], 0.7)
+    found, small = _fill_blocks([BENT, SQUARE], 0.7)
     assert np.array_equal(found[0], BENT.bottom)
     assert np.array_equal(found[-1], BENT.top)
     assert np.array_equal(found[:, 0], BENT.left)
@@ -54,8 +54,8 @@ def test_keeps_the_given_sides_bit_for_bit() -> None:
 
 
 def test_orientation_plays_no_part() -> None:
-    turned = Block(BENT.bottom[::-1], BENT.left, BENT.top[::-1], BENT.right)
-    one, other = fill_blocks([BENT, turned], 1.0)
+    turned = _Block(BENT.bottom[::-1], BENT.left, BENT.top[::-1], BENT.right)
+    one, other = _fill_blocks([BENT, turned], 1.0)
     assert other == pytest.approx(one[:, ::-1], abs=1e-14)
 
 
@@ -70,10 +70,10 @@ def test_orientation_plays_no_part() -> None:
 )
 def test_a_useless_answer_is_a_mesh_error(answer: str, cause: str) -> None:
     with pytest.raises(MeshError, match=cause):
-        fill_blocks([SQUARE], 1.0, command=(sys.executable, "-c", f"print('{answer}')"))
+        _fill_blocks([SQUARE], 1.0, command=(sys.executable, "-c", f"print('{answer}')"))
 
 
 def test_sides_divided_unlike_are_a_mesh_error() -> None:
-    uneven = Block(BENT.bottom, BENT.right, BENT.top[[0, -1]], BENT.left)
+    uneven = _Block(BENT.bottom, BENT.right, BENT.top[[0, -1]], BENT.left)
     with pytest.raises(MeshError):
-        fill_blocks([uneven], 1.0)
+        _fill_blocks([uneven], 1.0)

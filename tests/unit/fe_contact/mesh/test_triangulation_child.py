@@ -125,7 +125,7 @@ def test_the_worker_leaves_signal_handlers_as_they_were() -> None:
         "names = ('SIGTERM', 'SIGHUP', 'SIGPIPE', 'SIGINT')\n"
         "for name in names: signal.signal(getattr(signal, name), mine)\n"
         f"worker = runpy.run_path({str(WORKER)!r})\n"
-        "worker['start_gmsh']()\n"
+        "worker['_start_gmsh']()\n"
         "import ctypes\n"
         "action = ctypes.create_string_buffer(1024)\n"
         "libc = ctypes.CDLL(None)\n"

@@ -12,7 +12,7 @@ import pytest
 from fe_contact.errors import InputError
 from fe_contact.geometry import Gear, GearBlank
 from fe_contact.mesh import MeshRecipe, SectorRecipe, mesh_gear, quad_sector, swept_sector
-from fe_contact.mesh.swept_sector import SweptSector, inner_breaks, layers_across
+from fe_contact.mesh.swept_sector import SweptSector, _inner_breaks, _layers_across
 
 SOLID = Gear(teeth=30, normal_module=4e-3, face_width=40e-3, bore_diameter=30e-3)
 BLANK = GearBlank(rim_thickness=10e-3, web_thickness=9e-3, hub_diameter=50e-3, web_offset=4e-3)
@@ -23,21 +23,21 @@ DRAFT = SectorRecipe.draft(SOLID)
 @pytest.mark.parametrize("breaks", [(-3e-3,), (-10e-3, 10e-3), (3e-3, 4e-3), (-19.9e-3, 1e-3)])
 @pytest.mark.parametrize("group", [1, 2])
 def test_groups_of_layers_end_at_the_breaks(breaks: tuple[float, ...], group: int) -> None:
-    layers = layers_across(40e-3, 8, group, 1.5, breaks)
+    layers = _layers_across(40e-3, 8, group, 1.5, breaks)
     assert (layers.ends[0], layers.ends[-1]) == (-20e-3, 20e-3)
     assert np.diff(layers.ends) == pytest.approx(layers.thickness[layers.kind], rel=1e-9)
     for z in breaks:
         assert np.abs(layers.ends[::group] - z).min() < 1e-15
     assert (layers.kind.reshape(-1, group) == layers.kind[::group, None]).all()
-    mirrored = layers_across(40e-3, 8, group, 1.5, [-z for z in breaks[::-1]])
+    mirrored = _layers_across(40e-3, 8, group, 1.5, [-z for z in breaks[::-1]])
     assert mirrored.ends == pytest.approx(-layers.ends[::-1], abs=1e-15)
     # Nowhere coarser than without breaks.
-    assert np.diff(layers.ends).max() < 1.3 * np.diff(layers_across(40e-3, 8, group, 1.5).ends).max()
+    assert np.diff(layers.ends).max() < 1.3 * np.diff(_layers_across(40e-3, 8, group, 1.5).ends).max()
 
 
 def test_breaks_at_the_ends_and_twice_the_same_are_none() -> None:
-    assert inner_breaks((-20e-3, 5e-3, 5e-3 + 1e-6, 20e-3 - 1e-6), 40e-3) == (5e-3,)
-    assert inner_breaks((-20e-3, 20e-3), 40e-3) == ()
+    assert _inner_breaks((-20e-3, 5e-3, 5e-3 + 1e-6, 20e-3 - 1e-6), 40e-3) == (5e-3,)
+    assert _inner_breaks((-20e-3, 20e-3), 40e-3) == ()
 
 
 def test_half_a_face_is_half_of_the_web() -> None:

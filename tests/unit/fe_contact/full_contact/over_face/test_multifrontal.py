@@ -8,13 +8,13 @@ import scipy.sparse as sp
 
 from fe_contact.errors import SolveError
 from fe_contact.full_contact.condensation.contact_model import dissected
-from fe_contact.full_contact.over_face.extruded_body import ColumnMatrix, schur_complement
+from fe_contact.full_contact.over_face.extruded_body import _ColumnMatrix, _schur_complement
 from fe_contact.types import FloatArray
 
 SIDE, KEPT = 9, 7
 
 
-def columns(shift: float = 0.0) -> tuple[ColumnMatrix, FloatArray]:
+def columns(shift: float = 0.0) -> tuple[_ColumnMatrix, FloatArray]:
     """A grid of nodes with 1 to 4 unknowns each, its last nodes kept; the matrix dense too."""
     rng = np.random.default_rng(2)
     nodes = np.arange(SIDE * SIDE).reshape(SIDE, SIDE)
@@ -30,7 +30,7 @@ def columns(shift: float = 0.0) -> tuple[ColumnMatrix, FloatArray]:
     dense = rng.normal(size=(starts[-1], starts[-1])) * (graph.toarray()[np.ix_(owner, owner)] > 0.0)
     dense = dense + dense.T
     dense += (np.abs(dense).sum(axis=1).max() - shift) * np.eye(len(dense))
-    return ColumnMatrix(sp.csc_array(np.tril(dense)), starts, graph), dense
+    return _ColumnMatrix(sp.csc_array(np.tril(dense)), starts, graph), dense
 
 
 def test_it_is_that_of_dense_algebra() -> None:
@@ -38,7 +38,7 @@ def test_it_is_that_of_dense_algebra() -> None:
     first = matrix.starts[-1 - KEPT]
     inner, across, outer = dense[:first, :first], dense[:first, first:], dense[first:, first:]
     expected = outer - across.T @ np.linalg.solve(inner, across)
-    found = schur_complement(matrix, KEPT)
+    found = _schur_complement(matrix, KEPT)
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
     assert np.array_equal(found, found.T)
 
@@ -46,4 +46,4 @@ def test_it_is_that_of_dense_algebra() -> None:
 def test_what_is_not_positive_definite_is_refused() -> None:
     matrix, _ = columns(shift=100.0)
     with pytest.raises(SolveError, match="over the face"):
-        schur_complement(matrix, KEPT)
+        _schur_complement(matrix, KEPT)

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from contact_blocks import DEPTH, WIDTH, block
 from scipy.sparse.linalg import spsolve
 
-from fe_contact.full_contact.condensation.contact_model import condensed_body, freedoms
+from fe_contact.full_contact.condensation.contact_model import _condensed_body, freedoms
 from fe_contact.full_contact.condensation.linearized_contact import ContactSystem, solve_active_set
 from fe_contact.full_contact.condensation.weak_gap import FlankCurve, WeakGap, weak_gap
 from fe_contact.full_contact.over_face.extruded_body import ExtrudedBody, extruded_body
@@ -21,7 +21,7 @@ from fe_contact.full_contact.over_face.extruded_stiffness import (
     extruded_stiffness,
     graded_layers,
 )
-from fe_contact.full_contact.over_face.solve import FaceGap, face_gap
+from fe_contact.full_contact.over_face.solve import _face_gap, _FaceGap
 from fe_contact.material import Material
 from fe_contact.types import FloatArray
 
@@ -47,7 +47,7 @@ def towards(points: FloatArray) -> FloatArray:
     return np.tile([-1.0, 0.0], (len(points), 1))
 
 
-def pressed(slave: int, layers: int = 3, skew: float = 0.0) -> tuple[FaceGap, ContactSystem]:
+def pressed(slave: int, layers: int = 3, skew: float = 0.0) -> tuple[_FaceGap, ContactSystem]:
     """The right block moves towards the left one, which is hollow by `skew` at one end of the face."""
     bodies = blocks(layers)
     curves = [FlankCurve(body.points[body.columns[0]]) for body in bodies]
@@ -57,7 +57,7 @@ def pressed(slave: int, layers: int = 3, skew: float = 0.0) -> tuple[FaceGap, Co
         away = FlankCurve(curves[1].nodes + np.array([skew * (z / FACE + 0.5) ** 2, 0.0]))
         return weak_gap((curves[0], away), (curves[0], away)[slave], slave, towards), 0.0
 
-    gap = face_gap(section, bodies[0].layers)
+    gap = _face_gap(section, bodies[0].layers)
     compliance = np.zeros((len(gap.gap),) * 2)
     for body, forces in zip(bodies, gap.forces, strict=True):
         count, functions = len(body.nodes), 2 * body.layers.count + 1
@@ -159,7 +159,7 @@ def test_more_layers_converge() -> None:
 
 def test_a_wide_block_is_in_plane_strain_in_its_middle() -> None:
     wide = Layers(np.array([0.0, 4.0, 8.0, 10.0, 11.0, 11.5, 12.0]) * DEPTH)
-    body, plane = extruded_body(block(0), wide, STEEL), condensed_body(block(0), STEEL)
+    body, plane = extruded_body(block(0), wide, STEEL), _condensed_body(block(0), STEEL)
     line = np.zeros(2 * len(plane.nodes))
     line[freedoms(plane.columns[0])[::2]] = -1.0
     mass, _, _ = wide.integrals()

@@ -19,7 +19,7 @@ from fe_contact.full_contact import (
 )
 from fe_contact.full_contact.condensation.contact_model import softness
 from fe_contact.full_contact.over_face.extruded_stiffness import graded_layers
-from fe_contact.full_contact.over_face.solve import WholeFace
+from fe_contact.full_contact.over_face.solve import _WholeFace
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 PAIR = GearPair(GEAR, GEAR, center_distance=80e-3)
@@ -92,7 +92,7 @@ def test_the_load_of_springs_side_by_side_sizes_the_mesh() -> None:
     mean = 1e5
     deflection = mean * softness(PAIR)
     for opened, factor in ((1.0, 1.5), (2.0, 2.0), (8.0, 4.0)):
-        model = WholeFace((opened * deflection,))
+        model = _WholeFace((opened * deflection,))
         assert model.largest_line_load(PAIR, mean * 25e-3) == pytest.approx(factor * mean, rel=0.01)
         assert model.closer(PAIR) == pytest.approx(0.5 * opened * deflection)
 
