@@ -130,15 +130,17 @@ class Checks:
             self.one_of(field, name, known, suggestion)
         return [name for name in known if names is None or name in names]
 
-    def declared_fields(self, thing: Any) -> None:
-        """Check the declared fields of a dataclass, whatever the others are; what is left out passes."""
+    def declared_fields(self, thing: Any, beyond: Collection[str] = ()) -> None:
+        """Check declared fields, each alone; what is left out passes, what is in `beyond` if it is finite."""
         defaults = {entry.name: entry.default for entry in fields(thing)}
         for field, fact in declarations(type(thing)).items():
             value, advice = getattr(thing, field), SiNote(f"In {fact.unit}, for example {fact.example}.")
             if value is None and defaults[field] is None:
                 continue
             limits = fact.limits
-            if isinstance(limits, Choice):
+            if field in beyond:
+                self.finite(field, value)
+            elif isinstance(limits, Choice):
                 self.one_of(field, value, limits.names)
             elif limits is not None and limits.integer:
                 self.integer(field, value, int(limits.low or 0), int(limits.high or 0))

@@ -79,7 +79,7 @@ class Declared:
     bound : Interval, Choice or None
         What is accepted whatever the other fields are, in SI; None is left to the value itself.
     description : str
-        What it is. Its unit is added, before the first semicolon, by who writes it out.
+        What it is. Whoever writes it out puts its unit in place of {unit}, else before the first semicolon.
     example : object
         A usual value, in SI.
     along : Direction
@@ -140,16 +140,16 @@ def written(thing: Any) -> Any:
 
 def described(kind: type[Thing]) -> type[Thing]:
     """Append to the docstring of a dataclass what its declared fields are; a decorator."""
-    entries = (f"{name} : {_unit(fact)}\n    {fact.description}" for name, fact in declarations(kind).items())
+    entries = (_entry(name, fact) for name, fact in declarations(kind).items())
     text = inspect.cleandoc(kind.__doc__ or "")
     kind.__doc__ = "\n".join((text, "", "Attributes", "----------", *entries, ""))
     return kind
 
 
-def _unit(declaration: Declared) -> str:
-    if declaration.part is not None:
-        return declaration.part.__name__
-    return declaration.unit or ("name" if isinstance(declaration.bound, Choice) else "1")
+def _entry(name: str, fact: Declared) -> str:
+    plain = fact.unit or ("name" if isinstance(fact.bound, Choice) else "1")
+    kind = fact.part.__name__ if fact.part else plain
+    return f"{name} : {kind}\n    {fact.description.replace('{unit}', fact.unit)}"
 
 
 def declarations(kind: type[Any]) -> Mapping[str, Declared]:

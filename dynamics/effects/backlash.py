@@ -14,10 +14,10 @@ from dynamics.errors import InputError
 from dynamics.mechanism.additions import COAST_FLANKS
 from dynamics.mechanism.flanks import Flanks, mesh_mobility, with_technique
 from dynamics.meshes.flank_force import FlankLaws
-from dynamics.meshes.gear_mesh import GearMesh, mirrored
+from dynamics.meshes.gear_mesh import GearMesh
 from dynamics.meshes.packed_tables import pack_tables
 from dynamics.meshes.table_lookup import table_deflection
-from dynamics.meshes.technique import PlainTable, table_at
+from dynamics.meshes.technique import PlainTable, mirrored, table_at
 
 
 class Backlash(MeshEffect):

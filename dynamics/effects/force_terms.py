@@ -9,8 +9,8 @@ import numpy as np
 from dynamics.errors import InputError
 from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.meshes.gear_mesh import mirrored
 from dynamics.meshes.mesh_table import MeshTable
+from dynamics.meshes.technique import mirrored
 from dynamics.types import FloatArray
 
 MISALIGNMENT, CENTER_DISTANCE, SLIDING = range(3)

@@ -10,56 +10,49 @@ from dynamics.checks import declared_fields, finite
 from dynamics.loads.load_course import CONSTANT, Course, SpeedCurve
 from dynamics.loads.time_law import TimeLaw
 
+_ON_SHAFT = Declared(
+    Kind.LENGTH,
+    "m",
+    between(-1000.0, 1000.0),
+    "Where along a flexible shaft it acts, in {unit} from its left end",
+    0.0,
+)
 
+
+@described
 @dataclass(frozen=True)
 class LoadTorque:
-    """A resisting torque, independent of the speed.
+    """A resisting torque on a `shaft`, independent of the speed, its `name` unique among the loads.
 
-    Attributes
-    ----------
-    name : str
-        Unique among the loads.
-    shaft : str
-        The loaded shaft.
-    torque : TimeLaw
-        N m, > 0 against the sense in which the drive turns this shaft. The run starts in static
-        equilibrium with its value at t = 0, so a constant load excites nothing.
-    position : float
-        Where along a flexible shaft it acts, m from its left end.
+    `torque`, N m, is > 0 against the sense in which the drive turns this shaft. The run starts in static
+    equilibrium with its value at t = 0, so a constant load excites nothing.
     """
 
     name: str
     shaft: str
     torque: TimeLaw
-    position: float = 0.0
+    position: float = declared(0.0, _ON_SHAFT)
 
     def __post_init__(self) -> None:
-        finite("position", self.position)
+        declared_fields(self)
 
 
+@described
 @dataclass(frozen=True)
 class SpeedTorque:
-    """A torque by speed: a fan that resists, a motor that drives.
+    """A torque on a `shaft` by its speed: a fan that resists, a motor that drives.
 
-    Attributes
-    ----------
-    name : str
-        Unique among the speed torques.
-    shaft : str
-        The shaft it acts on.
-    curve : SpeedCurve
-        Torque against the sense of the shaft's kinematic motion, N m, at the speed in that sense, rad/s.
-    position : float
-        Where along a flexible shaft it acts, m from its left end.
+    Its `name` is unique among the speed torques. `curve` is the torque against the sense of the shaft's
+    kinematic motion, N m, at the speed in that sense, rad/s.
     """
 
     name: str
     shaft: str
     curve: SpeedCurve
-    position: float = 0.0
+    position: float = declared(0.0, _ON_SHAFT)
 
     def __post_init__(self) -> None:
-        finite("position", self.position)
+        declared_fields(self)
 
 
 Vector = tuple[float, float, float]

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from dynamics.checks import finite, not_negative, one_of, positive
-from dynamics.meshes.mesh_table import DERIVATIVES, LEVERS, MeshTable, check_table
-from dynamics.meshes.technique import PlainTable
-from dynamics.types import FloatArray
+from bounds import Declared, Kind, between, declared, described, one_of, up_to
+from dynamics.checks import declared_fields, finite, not_negative
+from dynamics.meshes.mesh_table import MeshTable, check_table
 
 # The coast flank: the other side of the teeth, which touches when backlash is used up.
 #
@@ -48,101 +45,61 @@ class CoastFlank:
             check_table("table", self.table)
 
 
-def mirrored(table: MeshTable, thickness: float) -> PlainTable:
-    """Return `table` with its positions x replaced by thickness - x, at the same forces and deflections."""
-    position = np.mod(thickness - table.position, float(table.period))
-    position[position >= table.period] = 0.0  # a tiny negative one rounds up to a whole period
-    order = np.argsort(position)
-
-    def turned(values: FloatArray) -> FloatArray:
-        return np.ascontiguousarray(np.take(values, order, axis=-2))
-
-    return PlainTable(
-        position[order],
-        table.level,
-        table.misalignment,
-        table.center_distance_change,
-        turned(table.deflection),
-        -turned(table.deflection_slope),
-        turned(table.stiffness),
-        -turned(table.stiffness_slope),
-        table.period,
-        **{name: turned(values) for name in LEVERS if (values := getattr(table, name, None)) is not None},
-        **{
-            name: np.array([1.0, -1.0]).reshape(2, 1, 1, 1, 1) * turned(values)
-            for name in DERIVATIVES
-            if (values := getattr(table, name, None)) is not None
-        },
-    )
-
-
 # The mesh.
 
 
 DEFAULT_DAMPING_RATIO = 0.05
 TECHNIQUES = ("constant_torque", "variable_torque")
 
+_TECHNIQUE = Declared(Kind.CHOICE, "", one_of(TECHNIQUES), "Technique of the mesh force", "variable_torque")
+_DAMPING = Declared(
+    Kind.DAMPING, "N s/m", between(0.0, 1e12), "Mesh damping in {unit}; left out: from damping_ratio", 1e3
+)
+_DAMPING_RATIO = Declared(Kind.RATIO, "", between(0.0, 10.0), "Damping ratio of the mesh", 0.05)
+_NOMINAL = "Nominal transverse mesh force in {unit}; left out: from the loads"
+_NOMINAL_FORCE = Declared(Kind.LOAD, "N", up_to(1e9), _NOMINAL, 2660.0)
+_OFFSET = Declared(Kind.RATIO, "", between(-1e6, 1e6), "Position in base pitches at the start", 0.0)
+_MISALIGNMENT = Declared(Kind.LENGTH, "m", between(-0.01, 0.01), "Misalignment in {unit}", 0.0, written="um")
+_CHANGE = Declared(Kind.LENGTH, "m", between(-0.1, 0.1), "Change of the center distance in {unit}", 0.0)
+_SLIDING = "Coefficient of sliding friction of the teeth; left out: none"
+_FRICTION = Declared(Kind.RATIO, "", up_to(1.0), _SLIDING, 0.05)
 
+
+@described
 @dataclass(frozen=True)
 class GearMesh:
     """The force between two gears, from a mesh-force table.
 
-    Attributes
-    ----------
-    name : str
-        Unique among the meshes.
-    driver, driven : str
-        The gears. The force of `driver` acts in the sense in which its shaft turns.
-    table : MeshTable
-        Position counted by the driver's angle.
-    technique : str
-        ``"variable_torque"``: force F(position, DTE) from the table. ``"constant_torque"``:
-        F = k(position) DTE with k = nominal force / STE(position), the secant stiffness at that force.
-    damping : float or None
-        N s/m along the line of action, in contact only and never in tension. None: ``2 damping_ratio sqrt(k
-        m)`` with k the mean tangent stiffness at the nominal force and 1/m the sum of base_radius^2 / (polar
-        inertia) over the shafts that are free to turn.
-    damping_ratio : float
-        Used where `damping` is None.
-    nominal_force : float or None
-        Transverse mesh force F_bt in N for the secant, the damping and the static reference curve. None: the
-        force that carries the load at t = 0.
-    position_offset : float
-        Position in base pitches at t = 0.
-    misalignment, center_distance_change : float
-        m; where the table has such axes, the constant operating point at which it is used.
-    coast : CoastFlank or None
-        The coast flank, for the effect ``"backlash"``. None: only the driving flank carries force.
-    friction : float or None
-        Coefficient of sliding friction, for the effect ``"friction"``. None: none.
-    bent_shafts : bool
-        Whether the table includes the bending of the gears' shafts; they are then rigid here.
+    Its `name` is unique among the meshes. The force of `driver` acts in the sense in which its shaft turns;
+    positions in `table` are counted by the driver's angle. The technique ``"variable_torque"`` takes the
+    force F(position, DTE) from the table, ``"constant_torque"`` F = k(position) DTE with
+    k = nominal force / STE(position), the secant stiffness at that force.
+
+    Damping acts along the line of action, in contact only and never in tension. Left out it is
+    ``2 damping_ratio sqrt(k m)`` with k the mean tangent stiffness at the nominal force and 1/m the sum of
+    base_radius^2 / (polar inertia) over the shafts that are free to turn. The nominal force F_bt is that of
+    the secant, the damping and the static reference curve; left out, the one that carries the load at t = 0.
+    Where the table has axes of misalignment and change of center distance, these are the constant operating
+    point at which it is used. Without `coast`, for the effect ``"backlash"``, only the driving flank carries
+    force; `friction` is for the effect of that name. With `bent_shafts` the table includes the bending of the
+    gears' shafts; they are then rigid here.
     """
 
     name: str
     driver: str
     driven: str
     table: MeshTable
-    technique: str = "variable_torque"
-    damping: float | None = None
-    damping_ratio: float = DEFAULT_DAMPING_RATIO
-    nominal_force: float | None = None
-    position_offset: float = 0.0
-    misalignment: float = 0.0
-    center_distance_change: float = 0.0
+    technique: str = declared("variable_torque", _TECHNIQUE)
+    damping: float | None = declared(None, _DAMPING)
+    damping_ratio: float = declared(DEFAULT_DAMPING_RATIO, _DAMPING_RATIO)
+    nominal_force: float | None = declared(None, _NOMINAL_FORCE)
+    position_offset: float = declared(0.0, _OFFSET)
+    misalignment: float = declared(0.0, _MISALIGNMENT)
+    center_distance_change: float = declared(0.0, _CHANGE)
     coast: CoastFlank | None = None
-    friction: float | None = None
+    friction: float | None = declared(None, _FRICTION)
     bent_shafts: bool = False
 
     def __post_init__(self) -> None:
         check_table("table", self.table)
-        one_of("technique", self.technique, TECHNIQUES)
-        if self.damping is not None:
-            not_negative("damping", self.damping)
-        if self.nominal_force is not None:
-            positive("nominal_force", self.nominal_force)
-        not_negative("damping_ratio", self.damping_ratio)
-        if self.friction is not None:
-            positive("friction", self.friction)
-        for name in ("position_offset", "misalignment", "center_distance_change"):
-            finite(name, getattr(self, name))
+        declared_fields(self, beyond=("position_offset",))  # copies of a planet add to it

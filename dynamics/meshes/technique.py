@@ -9,7 +9,7 @@ import numpy as np
 from bounds import from_to
 from dynamics.errors import InputError
 from dynamics.identity_cache import identity_cached
-from dynamics.meshes.mesh_table import LEVERS, MeshTable
+from dynamics.meshes.mesh_table import DERIVATIVES, LEVERS, MeshTable
 from dynamics.meshes.packed_tables import pack_tables
 from dynamics.meshes.table_lookup import deflection_slope, table_deflection
 from dynamics.types import FloatArray
@@ -165,3 +165,31 @@ def _hermite_weights(knots: FloatArray, at: float) -> FloatArray:
     weight[:, left] = (1.0 + 2.0 * u) * s * s, width * u * s * s
     weight[:, left + 1] = u * u * (3.0 - 2.0 * u), -width * u * u * s
     return weight
+
+
+def mirrored(table: MeshTable, thickness: float) -> PlainTable:
+    """Return `table` with its positions x replaced by thickness - x, at the same forces and deflections."""
+    position = np.mod(thickness - table.position, float(table.period))
+    position[position >= table.period] = 0.0  # a tiny negative one rounds up to a whole period
+    order = np.argsort(position)
+
+    def turned(values: FloatArray) -> FloatArray:
+        return np.ascontiguousarray(np.take(values, order, axis=-2))
+
+    return PlainTable(
+        position[order],
+        table.level,
+        table.misalignment,
+        table.center_distance_change,
+        turned(table.deflection),
+        -turned(table.deflection_slope),
+        turned(table.stiffness),
+        -turned(table.stiffness_slope),
+        table.period,
+        **{name: turned(values) for name in LEVERS if (values := getattr(table, name, None)) is not None},
+        **{
+            name: np.array([1.0, -1.0]).reshape(2, 1, 1, 1, 1) * turned(values)
+            for name in DERIVATIVES
+            if (values := getattr(table, name, None)) is not None
+        },
+    )

@@ -14,7 +14,9 @@ from bounds import RefusedValue
 from dynamics.bearings import Bushing
 from dynamics.forces import RollingContact
 from dynamics.joints import Coupling
-from dynamics.meshes import CoastFlank
+from dynamics.loads import LoadTorque, TimeLaw
+from dynamics.meshes import CoastFlank, GearMesh
+from dynamics.meshes.stiffness_table import straight_table
 from dynamics.scene import Integration, Outputs
 from dynamics.shafts import BeamSection, GearBody, Inertia, hollow_cylinder
 from dynamics.shafts import Shaft as TurningShaft
@@ -46,6 +48,8 @@ OBJECTS: dict[str, Any] = {
     "bushing": Bushing("left", "input", 0.0, 1e8, 1e8, 1e3, 1e3),
     "rolling contact": RollingContact("left", 5e8, 1.5, 2e-5, 500.0),
     "coast flank": CoastFlank(8e-5, 0.49),
+    "mesh": GearMesh("mesh", "a", "b", straight_table(1e8), damping=1e3, nominal_force=2e3, friction=0.05),
+    "load": LoadTorque("brake", "output", TimeLaw.constant(100.0)),
     "coupling": Coupling("joint", "a", "b", 5e4, 5.0),
     "outputs": Outputs(2e4),
     "integration": Integration(fixed_step=1e-5),

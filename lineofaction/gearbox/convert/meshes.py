@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from dynamics.mechanism.base_pitches import PRINTED
-from dynamics.meshes import MeshTable, PeriodicCurve, stiffness_table
+from dynamics.meshes import MeshTable
+from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.errors import named

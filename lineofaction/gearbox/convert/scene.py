@@ -18,7 +18,8 @@ from dynamics.loads import AngleLaw, AppliedForce, BySpeed, LoadTorque, Orders, 
 from dynamics.loads.load_course import CONSTANT, Course
 from dynamics.mechanism import with_planets
 from dynamics.mechanism.kinematics import check_motion
-from dynamics.meshes import CoastFlank, GearMesh, MeshTable, straight_table
+from dynamics.meshes import CoastFlank, GearMesh, MeshTable
+from dynamics.meshes.stiffness_table import straight_table
 from dynamics.scene import Integration, Outputs, Scene
 from dynamics.shafts import BeamSection, DiscBody, GearBody, Inertia, Shaft, hollow_cylinder
 from fe_contact.ste import PairFacts, SteDatabase

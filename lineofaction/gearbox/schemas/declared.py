@@ -28,11 +28,14 @@ class Figure:
     what : Declared
     default : object
         In SI; `MISSING` where one has to be given, None where it may be left out.
+    marked : bool
+        Whether its schema says kind and direction.
     """
 
     name: str
     what: Declared
     default: Any
+    marked: bool = True
 
     @property
     def field(self) -> str:
@@ -77,9 +80,11 @@ class Figure:
         return as_typed(value, self.unit.factor) if isinstance(value, float) else value
 
     def with_unit(self, text: str) -> str:
-        """Return words with the unit before the first semicolon."""
-        head, semicolon, rest = text.partition(";")
+        """Return words with the unit where they place it, else before the first semicolon."""
         unit = self.unit.name or self.what.unit
+        if "{unit}" in text:
+            return text.replace("{unit}", unit)
+        head, semicolon, rest = text.partition(";")
         return f"{head}, in {unit}{semicolon}{rest}" if unit else text
 
     def as_field(self) -> tuple[Any, Any]:
@@ -89,7 +94,7 @@ class Figure:
             default=... if self.default is MISSING else self.own(self.default),
             description=self.with_unit(self.what.description),
             examples=[self.own(self.what.example)],
-            json_schema_extra=extra,
+            json_schema_extra=extra if self.marked else None,
             exclude_if=self._unsaid if self.what.later else None,
         )
         return self.accepted, field
@@ -108,9 +113,10 @@ def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
     )
 
 
-def declared_in(kind: type[Any], *, all_given: bool = False) -> Fields:
+def declared_in(kind: type[Any], *, all_given: bool = False, marked: bool = True) -> Fields:
     """Return the declared fields of a dataclass as those of a model; `all_given`: numbers have no default."""
-    own = (replace(each, default=MISSING) if all_given else each for each in figures(kind))
+    own = (replace(each, marked=marked) for each in figures(kind))
+    own = (replace(each, default=MISSING) if all_given else each for each in own)
     return {**as_fields(own), **parts_in(parts_of(kind))}
 
 

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, Strict, model_validator
 
 from dynamics.joints.rotations import FreeRotation, ImposedRotation
-from dynamics.loads.applied_force import AppliedForce, Unbalance
+from dynamics.loads.applied_force import AppliedForce, LoadTorque, SpeedTorque, Unbalance
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
-    Coordinate,
     Course,
     Name,
     Number,
@@ -24,12 +23,6 @@ from lineofaction.gearbox.schemas.model import (
     refuse,
     stated,
 )
-
-
-def _place_of(subject: str) -> Any:
-    """Return the field of a place along a flexible shaft."""
-    text = f"Where along a flexible shaft {subject}, in mm from its left end"
-    return Field(default=0.0, description=text, examples=[0.0])
 
 
 @with_fields(declared_in(ImposedRotation))
@@ -79,12 +72,13 @@ class FreeRotationInput(BoundaryModel):
     shaft: Name = Field(description="Any one shaft of the train", examples=["input"])
 
 
+@with_fields(declared_in(LoadTorque, marked=False))
 class LoadTorqueInput(BoundaryModel):
     """A torque that resists a shaft's rotation, or drives it where it is negative."""
 
     name: Name = Field(description="Name of the load", examples=["brake"])
     shaft: Name = Field(description="The loaded shaft", examples=["output"])
-    position_mm: Coordinate = _place_of("it acts")
+    position_mm: float
     time_s: Times = Field(
         default=(0.0,), min_length=1, max_length=100_000, description="Times in s", examples=[[0.0]]
     )
@@ -102,12 +96,13 @@ class LoadTorqueInput(BoundaryModel):
         return self
 
 
+@with_fields(declared_in(SpeedTorque, marked=False))
 class SpeedTorqueInput(BoundaryModel):
     """A torque that depends on the shaft's speed."""
 
     name: Name = Field(description="Name of the torque", examples=["fan"])
     shaft: Name = Field(description="The shaft it acts on", examples=["output"])
-    position_mm: Coordinate = _place_of("it acts")
+    position_mm: float
     kind: Literal["table", "quadratic", "constant"] = Field(
         description="Law: a table, the square of the speed, or a constant against either sense of rotation",
         examples=["table"],

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, Strict, model_validator
 
+from dynamics.meshes.gear_mesh import GearMesh
 from lineofaction.gearbox.schemas.case import Case
+from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
     Listed,
@@ -138,10 +140,9 @@ class CoastFlankInput(BoundaryModel):
     )
 
 
-class MeshInput(BoundaryModel):
-    """Two gears in mesh and the source of their force: an STE database or a closed form."""
-
-    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*_SOURCES)))
+@with_fields(declared_in(GearMesh, marked=False))
+class _TabledMesh(BoundaryModel):
+    """Two gears in mesh but for their coast flank."""
 
     name: Name = Field(description="Name of the mesh", examples=["mesh"])
     driver: Name = Field(
@@ -171,42 +172,13 @@ class MeshInput(BoundaryModel):
     stiffness: StiffnessMeshInput | None = Field(
         default=None, description="The mesh in closed form: stiffness and transmission error by the position"
     )
-    technique: Literal["constant_torque", "variable_torque"] = Field(
-        default="variable_torque", description="Technique of the mesh force", examples=["variable_torque"]
-    )
-    damping_n_s_per_m: float | None = Field(
-        default=None,
-        ge=0.0,
-        le=1e12,
-        description="Mesh damping in N s/m; left out: from damping_ratio",
-        examples=[1e3],
-    )
-    damping_ratio: float = Field(
-        default=0.05, ge=0.0, le=10.0, description="Damping ratio of the mesh", examples=[0.05]
-    )
-    nominal_force_n: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=1e9,
-        description="Nominal transverse mesh force in N; left out: from the loads",
-        examples=[2660.0],
-    )
-    position_offset: float = Field(
-        default=0.0, ge=-1e6, le=1e6, description="Position in base pitches at the start", examples=[0.0]
-    )
-    misalignment_um: float = Field(
-        default=0.0, ge=-1e4, le=1e4, description="Misalignment in um", examples=[0.0]
-    )
-    center_distance_change_mm: float = Field(
-        default=0.0, ge=-100.0, le=100.0, description="Change of the center distance in mm", examples=[0.0]
-    )
-    friction: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=1.0,
-        description="Coefficient of sliding friction of the teeth; left out: none",
-        examples=[0.05],
-    )
+
+
+class MeshInput(_TabledMesh):
+    """Two gears in mesh and the source of their force: an STE database or a closed form."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*_SOURCES)))
+
     coast_flank: CoastFlankInput | None = Field(
         default=None,
         description="The coast flank; left out: only the driving flank carries force",

@@ -13,7 +13,7 @@ from benchmarks.dynamic_influence_estimates import STUDY, assess, markdown
 from dynamics.ablation import ablate
 from dynamics.assembly.assemble import assemble
 from dynamics.effects import EFFECTS
-from dynamics.meshes import straight_table
+from dynamics.meshes.stiffness_table import straight_table
 
 
 def test_counts_and_tables_are_those_of_the_ablations() -> None:

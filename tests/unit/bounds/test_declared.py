@@ -104,3 +104,28 @@ def test_what_may_be_left_out_passes_and_what_is_required_does_not() -> None:
         with pytest.raises(RefusedValue) as caught:
             CHECKS.declared_fields(given)
         assert caught.value.field == field
+
+
+WHERE = Declared(Kind.LENGTH, "m", between(-1.0, 1.0), "Place in {unit} from the left; left out: there", 0.5)
+
+
+@described
+@dataclass(frozen=True)
+class Mark:
+    """Copies of it go on beyond its range."""
+
+    place: float = declared(0.0, WHERE)
+
+    def __post_init__(self) -> None:
+        CHECKS.declared_fields(self, beyond=("place",))
+
+
+def test_a_description_can_say_where_its_unit_stands() -> None:
+    assert "Place in m from the left; left out: there" in (Mark.__doc__ or "")
+
+
+def test_fields_beyond_their_range_are_finite() -> None:
+    assert Mark(7.0).place == 7.0
+    with pytest.raises(RefusedValue) as caught:
+        Mark(math.inf)
+    assert (caught.value.field, str(caught.value.bound)) == ("place", "a finite number")

@@ -24,10 +24,9 @@ from dynamics.integrators import static_equilibrium
 from dynamics.loads import TimeLaw
 from dynamics.mechanism.bodies import build_rotor
 from dynamics.meshes import CoastFlank
-from dynamics.meshes.gear_mesh import mirrored
 from dynamics.meshes.packed_tables import pack_tables
 from dynamics.meshes.table_lookup import table_force
-from dynamics.meshes.technique import table_at
+from dynamics.meshes.technique import mirrored, table_at
 from dynamics.simulation import simulate
 from dynamics.types import StaticStatus
 

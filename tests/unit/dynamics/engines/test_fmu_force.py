@@ -14,9 +14,9 @@ from dynamics.engines.fmu import export_fmu
 from dynamics.errors import InputError
 from dynamics.loads import TimeLaw
 from dynamics.meshes.flank_force import FlankLaws, flank_force
-from dynamics.meshes.gear_mesh import CoastFlank, mirrored
+from dynamics.meshes.gear_mesh import CoastFlank
 from dynamics.meshes.packed_tables import pack_tables
-from dynamics.meshes.technique import table_at
+from dynamics.meshes.technique import mirrored, table_at
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from dynamics.errors import InputError
-from dynamics.meshes import PeriodicCurve, stiffness_table, straight_table
 from dynamics.meshes.mesh_table import check_table
 from dynamics.meshes.packed_tables import pack_tables
+from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
 from dynamics.meshes.table_lookup import table_force
 
 POSITIONS = np.concatenate([[0.0, 0.999999], np.random.default_rng(3).uniform(-2.0, 3.0, 60)])
