@@ -8,6 +8,8 @@ version = release = installed("lineofaction")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 source_suffix = {".md": "markdown"}
+# In the source tree alone: decisions, and what scripts write: measurements, hard cases, licenses.
+exclude_patterns = ["decisions/*", "lab/*", "licenses.md"]
 myst_enable_extensions = ["deflist"]
 myst_heading_anchors = 4
 

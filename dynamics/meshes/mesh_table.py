@@ -19,7 +19,7 @@ LARGEST_PERIOD = 1_000_000
 
 @runtime_checkable
 class MeshTable(Protocol):
-    """Mesh force against position and deflection, as plain arrays (docs/architecture.md).
+    """Mesh force against position and deflection, as plain arrays (docs/reference/contracts.md).
 
     Attributes
     ----------

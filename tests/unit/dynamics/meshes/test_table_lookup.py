@@ -50,7 +50,7 @@ def hunting_table(period):
 
 
 def reference_force(table, x, d):
-    """The rule of docs/architecture.md by SciPy: levels over position, then force over deflection."""
+    """The rule of docs/reference/contracts.md by SciPy: levels over position, then force over deflection."""
     knots = np.append(table.position, table.position[0] + table.period)
     phase = (x - knots[0]) % table.period + knots[0]
 
