@@ -20,7 +20,7 @@ from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds
-from model_studies import Figures, LeftOut, Progress, called, in_unit, run_variants, silent
+from model_studies import Figures, LeftOut, Progress, in_unit, run_variants, silent
 
 __all__ = ["Ablation", "EffectAblation", "RunFigures", "ablate"]
 
@@ -102,7 +102,7 @@ class EffectAblation(model_studies.EffectAblation[RunFigures, Influence]):
         Largest static displacement that the ledger states, m.
     """
 
-    influence: float = field(metadata=called("worth_m"))
+    influence: float = field(metadata=in_unit("m"))
 
     @property
     def order_change(self) -> FloatArray:
@@ -184,7 +184,7 @@ def _toggled(
     choice = "off" if on else "on"
     other = _run_figures(*_timed(replace(scene, effects={**scene.effects, name: choice})))
     first = next((part for part in able if part["on"] == on), able[0])
-    influence = float(np.max([part["worth"] for part in able]))
+    influence = float(np.max([part["influence_m"] for part in able]))
     states = (nominal, other) if on else (other, nominal)
     return EffectAblation(name, on, first["reason"], *states, estimate, influence)
 

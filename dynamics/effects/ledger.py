@@ -87,14 +87,14 @@ class LedgerEntry:
         return self.cost if self.on else f"{1e6 * self.influence:.3g} um of static displacement neglected"
 
     def to_json(self) -> Json:
-        """Return plain JSON; the influence has the key ``worth``."""
+        """Return plain JSON."""
         return {
             "effect": self.effect,
             "part": self.part,
             "choice": self.choice,
             "on": self.on,
             "reason": self.reason,
-            "worth": self.influence,
+            "influence_m": self.influence,
             "called_for": self.called_for,
             "possible": self.possible,
             "cost": self.cost,

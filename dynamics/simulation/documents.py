@@ -75,7 +75,7 @@ def _effect_ledger(
     return {
         **whole,
         "entries": entries,
-        "worths": {name: influence.to_json() for name, influence in influences.items()},
+        "influences": {name: influence.to_json() for name, influence in influences.items()},
         "checks": [check.to_json() for check in checks],
     }
 
@@ -101,7 +101,7 @@ def _ledger_entry(
     name = entry["effect"]
     own = [check for check in checks if (check.effect, check.part) == (entry["effect"], entry["part"])]
     assessed = {
-        "worth_relative": entry["worth"] / deflection if deflection > 0.0 else None,
+        "relative_influence": entry["influence_m"] / deflection if deflection > 0.0 else None,
         "checked": "; ".join(check.reason for check in own) or NOT_CHECKED,
         "holds": all(check.holds for check in own) if own else None,
     }
@@ -338,7 +338,7 @@ def documents(
     automatic = {**decided.automatic, **before.reasons}
     began = cpu_seconds()
     influences = _known_influences(decided, system, end)
-    seconds = {**seconds, "worth_estimates": cpu_seconds() - began + decided.seconds}
+    seconds = {**seconds, "influence_estimates": cpu_seconds() - began + decided.seconds}
     audit = None
     if system.scene.outputs.energy_audit:
         audit = EnergyAudit.from_arrays(end.work, end.stored, end.fallen)

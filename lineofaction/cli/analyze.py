@@ -26,7 +26,7 @@ from lineofaction.cli.output import (
 from lineofaction.gearbox.convert.answers import draft_line, summary_json
 from lineofaction.gearbox.convert.case import case_at
 from lineofaction.gearbox.convert.effects import assumption_lines, ledger_lines
-from lineofaction.gearbox.convert.live import plan_of
+from lineofaction.gearbox.convert.live import plan_json, plan_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import JobFailed
@@ -249,7 +249,7 @@ def run_plan(file: InputFile, time_budget_s: float | None, *, as_json: bool) -> 
     """Plan, print."""
     plan = plan_of(assessed_case(file), time_budget_s, cache_home() / "compliance")
     if as_json:
-        print_json(plan.to_json())
+        print_json(plan_json(plan))
     else:
         _show_plan(plan)
 
@@ -257,7 +257,7 @@ def run_plan(file: InputFile, time_budget_s: float | None, *, as_json: bool) -> 
 def _show_plan(plan: RunPlan) -> None:
     """Print the plan for people."""
     out = console()
-    for line in ledger_lines(plan.to_json()["effect_ledger"]):
+    for line in ledger_lines(plan_json(plan)["effect_ledger"]):
         out.print(line, highlight=False)
     head = ["mesh", "CPU s", *STAGES, "memory MiB", "error %", "of which model %", "mean um", "p-p um", ""]
     rows = [

@@ -131,6 +131,7 @@ STUDIES: dict[str, Study] = {
             "examples/palermo_spur_20_20.toml --torque 100 -o flank.nc",
             kind="flanks",
             stages=(("compliance", 0.9), ("contact", 0.1)),
+            version="3",
         ),
         Study(
             "ablate",
@@ -141,7 +142,7 @@ STUDIES: dict[str, Study] = {
             "examples/palermo_spur_20_20.toml -o ablation.png",
             kind="ablation",
             stages=(("analysis", 0.1), ("ablation", 0.9)),
-            version="3",
+            version="4",
         ),
         Study(
             "frontier",
@@ -152,7 +153,7 @@ STUDIES: dict[str, Study] = {
             "examples/palermo_spur_20_20.toml -o frontier",
             kind="frontier",
             stages=(("analysis", 0.1), ("ladder", 0.9)),
-            version="3",
+            version="4",
             folder="frontier",
         ),
         Study(
@@ -233,6 +234,7 @@ STUDIES: dict[str, Study] = {
             "examples/palermo_scene.toml --speed-rpm 0:15000:250 -o modes.png",
             kind="modes",
             stages=(("analysis", 0.9), ("modes", 0.1)),
+            version="3",
         ),
         Study(
             "response",
@@ -244,6 +246,7 @@ STUDIES: dict[str, Study] = {
             "examples/palermo_scene.toml --speed-rpm 100:6000:25 -o response.png",
             kind="response",
             stages=(("analysis", 0.9), ("response", 0.1)),
+            version="3",
         ),
         Study(
             "noise",
@@ -262,7 +265,7 @@ STUDIES: dict[str, Study] = {
                 ("band", 0.2),
                 ("sensitivities", 0.2),
             ),
-            version="4",
+            version="5",
             further=(".vtu",),
             housed=True,
         ),
@@ -276,7 +279,7 @@ STUDIES: dict[str, Study] = {
             "scene.toml --speed-rpm 500:3000:25 -o deflection.png",
             kind="vibration",
             stages=(("analysis", 0.9), ("response", 0.1)),
-            version="2",
+            version="3",
             further=(".csv", ".vtu"),
             housed=True,
         ),
@@ -303,6 +306,7 @@ STUDIES: dict[str, Study] = {
             "scene.toml --speed-rpm 11000:13500:100 -o steady.png",
             kind="steady",
             stages=(("analysis", 0.4), ("up", 0.2), ("down", 0.2), ("branch", 0.2)),
+            version="3",
         ),
         Study(
             "deflect",

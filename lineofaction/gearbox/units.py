@@ -100,6 +100,26 @@ def boundary_text(value: float) -> str:
     return f"{value:.7g}"
 
 
+_RENAMED = {"worth": "influence_m", "worth_relative": "relative_influence", "worths": "influences"}
+"""Keys of effect ledgers in the files of runs and studies of former versions, and today's."""
+
+
+def boundary_ledger(ledger: Any) -> Any:
+    """Return the effect ledger of a table, a plan, a run or a study with its lengths in um.
+
+    Libraries and files have them in m, as ``influence_m`` and ``mean_m``.
+    """
+    return in_um(_renamed(ledger))
+
+
+def _renamed(plain: Any) -> Any:
+    if isinstance(plain, list):
+        return [_renamed(entry) for entry in plain]
+    if not isinstance(plain, dict):
+        return plain
+    return {_RENAMED.get(name, name): _renamed(entry) for name, entry in plain.items()}
+
+
 def in_um(plain: Any, *, own: bool = False) -> Any:
     """Turn every field of plain JSON that ends in _m (and no torque) into one that ends in _um.
 

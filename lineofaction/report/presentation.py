@@ -11,6 +11,7 @@ from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.effects import model_lines, run_lines
 from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.registry import Study
+from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.tables import cost_tables, ledger_section
@@ -72,7 +73,7 @@ def dynamics_presentation(
 def model_text(facts: Mapping[str, Any]) -> Iterator[Table | str]:
     """Yield the cost of the housings of a scene, and what its model neglects."""
     yield from cost_tables(facts)
-    yield from model_lines(facts)
+    yield from model_lines({**facts, "effect_ledger": boundary_ledger(facts["effect_ledger"])})
 
 
 def dynamics_page(
@@ -82,7 +83,7 @@ def dynamics_page(
 
     `facts` hold `effect_ledger`.
     """
-    sections = [Section(title, figures=figures), ledger_section(facts["effect_ledger"])]
+    sections = [Section(title, figures=figures), ledger_section(boundary_ledger(facts["effect_ledger"]))]
     if tables := cost_tables(facts):
         sections.append(Section("Cost", tables=tables, part=Part.RECEIPT))
     return Page("Dynamics of geared shafts", "", headlines, tuple(sections), tuple(run_lines(facts)))

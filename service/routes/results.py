@@ -72,6 +72,8 @@ async def _kept_answer(
     return Response(body, media_type=media_type, headers=headers)
 
 
+_FIGURES = "-json-2"
+"""Ends the tag of figures: another one where their keys are others, as `version` of studies."""
 _IMMUTABLE = "public, max-age=31536000, immutable"
 
 Key = Annotated[str, Path(pattern=HASH, description="Content hash of the input")]
@@ -200,7 +202,7 @@ def file_response(
 
 
 def _metadata(stored: StoredResult, request: Request, facts: dict[str, Any]) -> Response:
-    headers = _headers(stored, "-json")
+    headers = _headers(stored, _FIGURES)
     if _known(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
     answer = JSONResponse(

@@ -275,8 +275,8 @@ _COST = {
 }
 _ERROR = {
     **{"mesh": 0.004, "slices": 0.0, "model": 0.0, "positions": 0.002, "method": 0.003, "total": 0.006},
-    "mean_m": 6e-8,
-    "peak_to_peak_m": 2e-8,
+    "mean_um": 0.06,
+    "peak_to_peak_um": 0.02,
 }
 _EFFECT: Json = {
     "name": "tooth_coupling",

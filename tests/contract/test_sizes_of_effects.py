@@ -151,7 +151,7 @@ def test_five_outputs_tell_one_number(name: str, tmp_path: Path, monkeypatch: py
         assert lines.get(entry["name"], words) == words
         assert words in text
         assert entry["name"] in lines or not (entry["on"] or entry["called_for"])
-        for key, unit in (("mean_m", 1e6), ("relative_mean", 100.0), ("peak_to_peak_m", 1e6)):
+        for key, unit in (("mean_um", 1.0), ("relative_mean", 100.0), ("peak_to_peak_um", 1.0)):
             assert any(np.isclose(unit * influence[key], value, rtol=0.06) for value in numbers(words))
     assert sized >= 2
 
@@ -172,10 +172,10 @@ def ablated(case: Json, home: Path, monkeypatch: pytest.MonkeyPatch) -> Json:
 
 
 def check_ablation(estimate: Json, influence: Json) -> None:
-    """The same numbers, with lengths in um."""
+    """The same numbers."""
     for key, value in influence.items():
-        if key.endswith("_m") and key != "torque_n_m":
-            assert estimate[f"{key.removesuffix('_m')}_um"] == pytest.approx(1e6 * value, rel=1e-12)
+        if key.endswith("_um"):
+            assert estimate[key] == pytest.approx(value, rel=1e-12)
         else:
             assert estimate[key] == value
 

@@ -12,7 +12,7 @@ from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.problems import JobFailed
-from lineofaction.gearbox.units import MM, UM, as_typed
+from lineofaction.gearbox.units import MM, UM, as_typed, boundary_ledger
 
 Json = dict[str, Any]
 
@@ -112,7 +112,7 @@ def summary_json(database: SteDatabase) -> Json:
             {"torque_n_m": as_typed(curve.torque), "normal_force_n": curve.point.force, **_figures(curve)}
             for curve in curves
         ],
-        "effect_ledger": database.metadata.effect_ledger,
+        "effect_ledger": boundary_ledger(database.metadata.effect_ledger),
         "receipt": database.metadata.receipt,
         "warnings": database.metadata.warnings,
     }
@@ -124,7 +124,7 @@ def metadata_json(database: SteDatabase) -> Json:
         "schema_version": database.metadata.schema_version,
         "content_hash": database.metadata.content_hash,
         "case": database.metadata.case,
-        "effect_ledger": database.metadata.effect_ledger,
+        "effect_ledger": boundary_ledger(database.metadata.effect_ledger),
         "receipt": database.metadata.receipt,
         "warnings": database.metadata.warnings,
         "software_versions": database.metadata.software_versions,

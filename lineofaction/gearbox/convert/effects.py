@@ -7,7 +7,7 @@ from typing import Any
 
 from bounds import engineering
 from fe_contact.effects.influence.estimate import TRIFLE
-from lineofaction.gearbox.units import UM, boundary_text
+from lineofaction.gearbox.units import boundary_text
 
 # The influence of effects as a ledger tells it: which have a line, at which load, in which words.
 
@@ -38,7 +38,7 @@ def influence_place(ledger: Iterable[Entry]) -> str:
     """Say at which load and misalignment the influences of a ledger are; empty if it has none."""
     for entry in ledger:
         if influence := entry.get("influence"):
-            skew = boundary_text(influence["misalignment_m"] / UM)
+            skew = boundary_text(influence["misalignment_um"])
             return f"at {boundary_text(influence['torque_n_m'])} N m, misalignment {skew} um"
     return ""
 
@@ -97,7 +97,7 @@ def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
 # The effect ledger of a scene in lines for people.
 
 Json = Mapping[str, Any]
-LEAST = 1e-9  # m, of the static displacement of an effect whose influence is not estimated
+LEAST = 1e-3  # um, of the static displacement of an effect whose influence is not estimated
 _RELATIVE = ("relative_mean", "relative_peak_to_peak", "relative_bearing_force")
 
 
@@ -113,11 +113,11 @@ def model_lines(attributes: Json) -> Iterator[str]:
 def effect_lines(ledger: Json) -> Iterator[str]:
     """Yield the decision about every effect, part by part where they differ, its influence and its price.
 
-    `ledger` is that of a run or a study: influence is the static displacement along the line of action, in m;
-    that of a run also estimates what leaving the effect out in all its parts changes. Effects that are off
+    `ledger` is that of a run or a study; an influence is a static displacement along the line of action. That
+    of a run also estimates what leaving the effect out in all its parts changes. Effects that are off
     and change next to nothing share the last line.
     """
-    estimates = ledger.get("worths", {})
+    estimates = ledger.get("influences", {})
     trifles = []
     for name, entries in _by_effect(ledger).items():
         if _is_trifle(entries, estimates.get(name)):
@@ -150,7 +150,7 @@ def _is_trifle(entries: list[Json], estimate: Json | None) -> bool:
         return False
     if estimate is not None:
         return all(abs(estimate[name]) < TRIFLE for name in _RELATIVE)
-    return all(entry["worth"] < LEAST for entry in entries)
+    return all(entry["influence_um"] < LEAST for entry in entries)
 
 
 def _decisions(name: str, entries: list[Json]) -> Iterator[str]:
@@ -160,6 +160,6 @@ def _decisions(name: str, entries: list[Json]) -> Iterator[str]:
         shared.setdefault((entry["on"], entry["reason"]), []).append(entry)
     for (on, reason), same in shared.items():
         parts = ", ".join(entry["part"] for entry in same)
-        largest = max(entry["worth"] for entry in same)
-        moved = f"; {engineering(1e6 * largest, 3)} um along the line of action" if largest >= LEAST else ""
+        largest = max(entry["influence_um"] for entry in same)
+        moved = f"; {engineering(largest, 3)} um along the line of action" if largest >= LEAST else ""
         yield f"effect {name}: {'on' if on else 'off'} ({parts}); {reason}{moved}"

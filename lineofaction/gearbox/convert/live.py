@@ -27,7 +27,7 @@ from lineofaction.gearbox.problems import BadInput, Fault, NotAnalyzed, NotFound
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.live import LiveInput
 from lineofaction.gearbox.schemas.reading import validated
-from lineofaction.gearbox.units import DEGREE, MM, UM, factor
+from lineofaction.gearbox.units import DEGREE, MM, UM, factor, in_um
 
 
 def plan_of(case: Case, time_budget_s: float | None, cache: Path | None) -> RunPlan:
@@ -42,6 +42,12 @@ def plan_of(case: Case, time_budget_s: float | None, cache: Path | None) -> RunP
     axes, options = table_axes(case), analysis_options(case)
     with boundary_errors():
         return plan_run(pair, axes, options, time_budget=time_budget_s, cache=cache)
+
+
+def plan_json(plan: RunPlan) -> Json:
+    """Return a plan as it is printed and served: errors and influences of effects in um."""
+    plain: Json = in_um(plan.to_json())
+    return plain
 
 
 # Live questions at the boundary: from a stored table and a change of its flanks to curves.

@@ -11,10 +11,11 @@ import h5netcdf
 import numpy as np
 
 from lineofaction.gearbox.registry import study_of
+from lineofaction.gearbox.units import boundary_ledger
 from model_studies.netcdf import opened, opened_netcdf
 
 Json = dict[str, Any]
-WARNINGS = "warnings"
+LEDGER, WARNINGS = "effect_ledger", "warnings"
 
 
 def stamp(file: Path, warnings: Sequence[Json]) -> None:
@@ -46,8 +47,11 @@ def staged(report: Callable[[str, float], None]) -> Callable[[float, str], None]
 def run_json(file: Path) -> dict[str, Any]:
     """Return attributes, dimensions and variables (with units) of a run, without its data."""
     with opened_netcdf(file) as run:
+        attributes = {name: _plain(value) for name, value in run.attrs.items()}
+        if LEDGER in attributes:
+            attributes[LEDGER] = boundary_ledger(attributes[LEDGER])
         return {
-            "attributes": {name: _plain(value) for name, value in run.attrs.items()},
+            "attributes": attributes,
             "dimensions": {name: int(each.size) for name, each in run.dimensions.items()},
             "variables": {
                 name: {"dimensions": list(variable.dimensions), "units": variable.attrs.get("units", "")}

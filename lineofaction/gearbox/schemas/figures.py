@@ -12,6 +12,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from lineofaction.gearbox.units import boundary_ledger
+
 Json = dict[str, Any]
 REQUIRED = object()
 
@@ -21,12 +23,13 @@ class Source:
     """Where a figure of another name is in a result, in SI: members joined by dots, or what reads them.
 
     `missing` is the figure of results of versions that did not know it. A `document` is in the result as it
-    is shown.
+    is shown, or as `turned` makes it.
     """
 
     of: str | Callable[[Any], Any]
     missing: Any = REQUIRED
     document: bool = False
+    turned: Callable[[Any], Any] = lambda document: document
 
 
 class Part(BaseModel):
@@ -132,6 +135,8 @@ class BearingForces(Part):
 LINEAR: Json = {"source": "linear response"}
 Forces = Annotated[BearingForces, Source("forces", missing=LINEAR)]
 """Where the bearing forces of a study of housings come from."""
+Ledger = Annotated[Json, Source("effect_ledger", document=True, turned=boundary_ledger)]
+"""The effect ledger of a scene."""
 Seconds = Annotated[dict[str, float], Source("seconds")]
 """CPU time by stage."""
 ReductionCosts = Annotated[dict[str, HousingCost], Source("reduction_cost", missing={})]

@@ -46,11 +46,11 @@ class EffectInfluence(BaseModel):
     """The change by an effect, estimated before the run."""
 
     torque_n_m: float = Field(description="Torque of the estimate")
-    misalignment_m: float = Field(description="Misalignment of the estimate")
-    mean_m: float | None = Field(description="Change of the mean transmission error")
-    peak_to_peak_m: float | None = Field(description="Change of its peak-to-peak")
-    whole_mean_m: float | None = Field(description="The mean with the effect")
-    whole_peak_to_peak_m: float | None = Field(description="Peak-to-peak with the effect")
+    misalignment_um: float = Field(description="Misalignment of the estimate")
+    mean_um: float | None = Field(description="Change of the mean transmission error")
+    peak_to_peak_um: float | None = Field(description="Change of its peak-to-peak")
+    whole_mean_um: float | None = Field(description="The mean with the effect")
+    whole_peak_to_peak_um: float | None = Field(description="Peak-to-peak with the effect")
     relative_mean: float | None
     relative_peak_to_peak: float | None
     trifle: bool = Field(description="Whether it is below what any tolerance asks for")
@@ -97,8 +97,8 @@ class PlannedError(BaseModel):
     positions: float
     method: float
     total: float
-    mean_m: float | None = Field(description="Null where no size is known before the run")
-    peak_to_peak_m: float | None = Field(description="Null where no size is known before the run")
+    mean_um: float | None = Field(description="Null where no size is known before the run")
+    peak_to_peak_um: float | None = Field(description="Null where no size is known before the run")
 
 
 class PlannedMesh(BaseModel):

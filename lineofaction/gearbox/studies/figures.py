@@ -62,7 +62,7 @@ def figures_of(model: type[Part], *sources: Any, **own: Any) -> Json:
     document = {}
     for name, (field, key, source) in _declared(model).items():
         value = _found(name, source, own, sources, required=field.is_required())
-        figure = value[0] if source and source.document else _figure(field.annotation, *value)
+        figure = source.turned(value[0]) if source and source.document else _figure(field.annotation, *value)
         if field.is_required() or figure is not None:
             document[key] = figure
     return document

@@ -108,14 +108,20 @@ def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
     return (*others, replace(effects[0], text=text, tables=(table,), folded=folded))
 
 
-_ROUNDING = 1e-15
-"""m, of the static displacement of an effect."""
+_ROUNDING = 1e-9
+"""um, of the static displacement of an effect."""
 
 
 def ledger_section(ledger: Mapping[str, Any]) -> Section:
     """Tabulate what was simulated and what the model leaves out, by the effect ledger of a scene."""
     rows = [
-        (entry["effect"], entry["part"], entry["on"], _displacement(float(entry["worth"])), entry["reason"])
+        (
+            entry["effect"],
+            entry["part"],
+            entry["on"],
+            _displacement(float(entry["influence_um"])),
+            entry["reason"],
+        )
         for entry in ledger.get("entries", ())
     ]
     left_out = ledger.get("left_out", {})
@@ -123,8 +129,8 @@ def ledger_section(ledger: Mapping[str, Any]) -> Section:
 
 
 def _displacement(influence: float) -> str:
-    """Write a static displacement in m; what is left by rounding is none."""
-    return f"{number(1e6 * influence, 3)} µm at the line of action" if influence > _ROUNDING else "nothing"
+    """Write a static displacement in um; what is left by rounding is none."""
+    return f"{number(influence, 3)} µm at the line of action" if influence > _ROUNDING else "nothing"
 
 
 def sampling_table(run: RunResult) -> Table:

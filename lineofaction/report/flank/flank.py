@@ -13,7 +13,7 @@ from fe_contact.analysis.flanks.load_distribution import LoadDistribution, press
 from fe_contact.ste import SteDatabase
 from fe_contact.types import IntArray
 from lineofaction.gearbox.convert.effects import assumption_lines
-from lineofaction.gearbox.units import UM
+from lineofaction.gearbox.units import UM, boundary_ledger
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -401,7 +401,7 @@ def _making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
     if not alone:
         return (section,)
     case = Section("Case", folded=case_tables(metadata.case), part=Part.INPUT)
-    return contact_effects(metadata.effect_ledger), case, section
+    return contact_effects(boundary_ledger(metadata.effect_ledger)), case, section
 
 
 def _alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str, ...]:

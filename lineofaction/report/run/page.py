@@ -17,6 +17,7 @@ from dynamics.results.mesh_figures import (
     dynamic_factor,
     planet_load_sharing,
 )
+from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number, unit_of
 from lineofaction.report.drawing.page import Headline, Part, Section
@@ -239,7 +240,7 @@ def dynamic_making(run: RunResult) -> tuple[Section, ...]:
     scene = Section("Scene", text, folded=(facts("Scene", run.case),), part=Part.INPUT)
     steps = facts("Step statistics", run.statistics.to_json())
     receipt = Section("Receipt of the run", tables=(_seconds(run),), folded=(steps,), part=Part.RECEIPT)
-    return ledger_section(run.effect_ledger), accuracy, scene, receipt
+    return ledger_section(boundary_ledger(run.effect_ledger)), accuracy, scene, receipt
 
 
 def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:

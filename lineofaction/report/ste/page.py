@@ -12,6 +12,7 @@ from bounds import leftover
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.effects import by_size, influence_place, influence_words, trifles_title
+from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import (
     Figure,
     Table,
@@ -139,7 +140,7 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
         folded=(facts("Receipt", _without(metadata.receipt, "stages")), _software(database)),
         part=Part.RECEIPT,
     )
-    return contact_effects(metadata.effect_ledger), accuracy, case, receipt
+    return contact_effects(boundary_ledger(metadata.effect_ledger)), accuracy, case, receipt
 
 
 def contact_effects(ledger: Any) -> Section:

@@ -70,7 +70,7 @@ def test_a_scene_gives_orders_of_errors_and_bearing_forces() -> None:
     (lateral,) = told["effects"]
     assert np.shape(lateral["order_change_um"]) == (1, 5)
     assert np.shape(lateral["bearing_order_change_n"]) == (4, 5)
-    assert lateral["worth_um"] == pytest.approx(1e6 * made.effects[0].influence, rel=1e-12)
+    assert lateral["influence_um"] == pytest.approx(1e6 * made.effects[0].influence, rel=1e-12)
     figure = _ablation_figure(made)
     assert [panel.title for panel in figure.content] == ["Transmission error", "Bearing force"]
     assert [line.name for line in figure.content[0].lines] == ["as decided", "without lateral"]

@@ -13,6 +13,7 @@ from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.options import AnalysisOptions, TableAxes
 from lineofaction.gearbox.convert.effects import assumption_lines, ledger_lines, run_lines
+from lineofaction.gearbox.units import boundary_ledger
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 
@@ -26,7 +27,7 @@ def test_decisions_influence_price_and_what_does_not_hold_are_told() -> None:
         GearPair(relieved, GEAR), torques=[100.0], tolerance=0.05, positions=64,
         effects={"corner_contact": "off"},
     )  # fmt: skip
-    lines = "\n".join(ledger_lines(table.metadata.effect_ledger))
+    lines = "\n".join(ledger_lines(boundary_ledger(table.metadata.effect_ledger)))
     assert "effect tooth_coupling: on  (auto); contact ratio 1.557" in lines
     assert "neglected: estimated" in lines
     assert "without it mean +0.13 um (+2.1 %), peak-to-peak +0.051 um (+1.8 %)" in lines
@@ -54,6 +55,29 @@ def test_what_a_neglected_effect_takes_of_the_tolerance_is_its_influence() -> No
     assert stated is not None, entry["decision"]
     assert float(stated[1]) == pytest.approx(100.0 * max(parts), rel=0.06)  # two digits
     assert abs(influence["relative_mean"]) > 2.0 * max(parts) * allowed.relative
+
+
+def test_ledgers_leave_in_um_whichever_version_wrote_them() -> None:
+    estimate = {"mean_m": [1e-6], "orders_m": [[2e-6]], "bearing_force_n": [3.0], "words": "w"}
+    decision = {"effect": "tilt", "part": "input", "on": True}
+    former = {
+        "entries": [decision | {"worth": 2e-6, "worth_relative": None}],
+        "worths": {"tilt": estimate},
+        "left_out": {"windage": "small"},
+    }
+    today = {
+        "entries": [decision | {"influence_m": 2e-6, "relative_influence": None}],
+        "influences": {"tilt": estimate},
+        "left_out": {"windage": "small"},
+    }
+    left = boundary_ledger(today)
+    assert left == boundary_ledger(former)
+    assert left["entries"] == [decision | {"influence_um": 2.0, "relative_influence": None}]
+    (estimated,) = left["influences"].values()
+    assert estimated == {"mean_um": [1.0], "orders_um": [[2.0]], "bearing_force_n": [3.0], "words": "w"}
+    load = {"torque_n_m": 1e-6, "misalignment_m": 1e-6}
+    (entry,) = boundary_ledger([{"name": "misalignment", "influence": load}])
+    assert entry["influence"] == {"torque_n_m": 1e-6, "misalignment_um": 1.0}
 
 
 def test_a_run_says_what_it_was_repeated_for_and_what_does_not_hold() -> None:

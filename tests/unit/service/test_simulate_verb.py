@@ -16,6 +16,7 @@ from lineofaction.cli.commands import app
 from lineofaction.cli.guard import until_interrupted
 from lineofaction.cli.simulate import _run, run_headlines
 from lineofaction.gearbox.convert.effects import effect_lines
+from lineofaction.gearbox.units import boundary_ledger
 
 SCENE = gear_pair_scene(duration=0.02)
 
@@ -47,16 +48,22 @@ def test_a_second_interrupt_is_not_held_back():
 
 def test_a_run_says_which_effects_are_on_and_what_the_others_change():
     entries = [
-        {"effect": "flexible_shafts", "part": "input", "on": False, "worth": 2e-6, "reason": "switched off"},
-        {"effect": "tilt", "part": "input", "on": False, "worth": 0.0, "reason": "centered"},
-        {"effect": "lateral", "part": "input", "on": True, "worth": 1.33e-5, "reason": "pushed aside"},
+        {
+            "effect": "flexible_shafts",
+            "part": "input",
+            "on": False,
+            "influence_m": 2e-6,
+            "reason": "switched off",
+        },
+        {"effect": "tilt", "part": "input", "on": False, "influence_m": 0.0, "reason": "centered"},
+        {"effect": "lateral", "part": "input", "on": True, "influence_m": 1.33e-5, "reason": "pushed aside"},
     ]
-    entries.append(entries[-1] | {"part": "output", "worth": 2e-6})
+    entries.append(entries[-1] | {"part": "output", "influence_m": 2e-6})
     names = ("relative_mean", "relative_peak_to_peak", "relative_bearing_force")
     small = dict.fromkeys(names, 2e-4) | {"words": "0.02 % of all", "freedoms": 4}
     large = small | {"words": "17 % of all", "relative_mean": -0.17}
-    ledger = {"entries": entries, "worths": {"tilt": small, "lateral": large}}
-    assert list(effect_lines(ledger)) == [
+    ledger = {"entries": entries, "influences": {"tilt": small, "lateral": large}}
+    assert list(effect_lines(boundary_ledger(ledger))) == [
         "effect flexible_shafts: off (input); switched off; 2 um along the line of action",
         "effect lateral: on (input, output); pushed aside; 13.3 um along the line of action",
         "       without it 17 % of all; +4 freedoms with it",

@@ -50,7 +50,7 @@ class EffectFigures(Part):
     harmonic_change_um: list[list[float]] | None = None
     relative_mean_change: list[float] | None = None
     relative_peak_to_peak_change: list[float] | None = None
-    worth_um: float | None = None
+    influence_um: float | None = None
     order_change_um: list[list[float]] | None = None
     bearing_order_change_n: list[list[float]] | None = None
 

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Source
 from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.units import boundary_ledger
 
 
 class Inputs(FlankPoint):
@@ -30,5 +31,7 @@ class FlankFigures(Figures):
     largest_line_load_n_per_mm: float
     largest_pressure_mpa: float = Field(description="Where no strip reaches an edge of a flank")
     edge_pressure_mpa: float = Field(description="At edges as if the flank went on; the true one is singular")
-    effect_ledger: Annotated[list[Json] | Json, Source("metadata.effect_ledger")]
+    effect_ledger: Annotated[
+        list[Json] | Json, Source("metadata.effect_ledger", document=True, turned=boundary_ledger)
+    ]
     receipt: Annotated[Json, Source("metadata.receipt")]

@@ -46,8 +46,8 @@ class FidelityFigures(Part):
     name: str
     title: str
     cpu_seconds: float
-    mean_m: list[float] | None = None
-    peak_to_peak_m: list[float] | None = None
+    mean_um: list[float] | None = None
+    peak_to_peak_um: list[float] | None = None
     stated_error: float | None = None
     stages: dict[str, float] | None = None
     peak_memory_bytes: int | None = None
@@ -71,4 +71,4 @@ class FrontierFigures(Figures):
     full_contact: Json | None = None
     orders: int | None = None
     blocks: int | None = None
-    transmission_error_rms_m: list[list[float]] | None = None
+    transmission_error_rms_um: list[list[float]] | None = None

@@ -23,6 +23,7 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
 from lineofaction.gearbox.studies.frontier import FrontierFigures, Inputs
+from lineofaction.gearbox.units import in_um
 
 LEAST = 2
 
@@ -75,8 +76,9 @@ class FrontierStudy(
             )
 
     def figures(self, study: Frontier | SceneFrontier) -> Json:
-        """Return all fidelities."""
-        return study.to_json()
+        """Return all fidelities with lengths in um."""
+        plain: Json = in_um(study.to_json())
+        return plain
 
 
 def _requested(inputs: Inputs, *, of_scene: bool) -> list[str]:

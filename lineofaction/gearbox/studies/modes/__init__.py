@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Json, Part, ReductionCosts, Seconds
+from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Ledger, Part, ReductionCosts, Seconds
 from lineofaction.gearbox.schemas.row import Row
 from lineofaction.gearbox.schemas.studied import MOST_SPEEDS, Orders, OverSpeeds, Speed
 
@@ -86,4 +86,4 @@ class ModesFigures(Figures):
     critical_speeds: list[CriticalSpeed]
     cpu_seconds: Seconds
     reduction_cost: ReductionCosts
-    effect_ledger: Json
+    effect_ledger: Ledger

@@ -12,7 +12,7 @@ from lineofaction.gearbox.schemas.figures import (
     Figures,
     Forces,
     HousingCost,
-    Json,
+    Ledger,
     Part,
     PredictedCost,
     ReductionCosts,
@@ -193,4 +193,4 @@ class NoiseFigures(Figures):
     over_time: Annotated[SoundOverTimeFigures | None, Source("over_time", missing=None, document=True)]
     cpu_seconds: Seconds
     reduction_cost: ReductionCosts
-    effect_ledger: Json
+    effect_ledger: Ledger

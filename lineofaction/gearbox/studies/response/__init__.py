@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Json, Part, ReductionCosts, Seconds
+from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Ledger, Part, ReductionCosts, Seconds
 from lineofaction.gearbox.schemas.studied import OverOrders
 
 
@@ -73,4 +73,4 @@ class ResponseFigures(Figures):
     equilibrium: Equilibrium
     cpu_seconds: Seconds
     reduction_cost: ReductionCosts
-    effect_ledger: Json
+    effect_ledger: Ledger

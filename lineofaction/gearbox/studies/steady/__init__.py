@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lineofaction.gearbox.schemas.figures import Figures, Json, Part, ReductionCosts, Seconds
+from lineofaction.gearbox.schemas.figures import Figures, Ledger, Part, ReductionCosts, Seconds
 from lineofaction.gearbox.schemas.row import Row
 from lineofaction.gearbox.schemas.studied import MOST_SPEEDS, OverSpeeds, TurningSpeed
 
@@ -100,4 +100,4 @@ class SteadyFigures(Figures):
     steps_per_period: int
     cpu_seconds: Seconds
     reduction_cost: ReductionCosts
-    effect_ledger: Json
+    effect_ledger: Ledger

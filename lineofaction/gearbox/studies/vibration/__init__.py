@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from lineofaction.gearbox.schemas.figures import Figures, Forces, Json, Part, ReductionCosts, Seconds
+from lineofaction.gearbox.schemas.figures import Figures, Forces, Ledger, Part, ReductionCosts, Seconds
 from lineofaction.gearbox.schemas.studied import OverSpeedsOrRun
 
 
@@ -79,4 +79,4 @@ class VibrationFigures(Figures):
     forces: Forces
     cpu_seconds: Seconds
     reduction_cost: ReductionCosts
-    effect_ledger: Json
+    effect_ledger: Ledger

@@ -174,7 +174,7 @@ def test_a_tolerance_leaves_off_what_cannot_be_seen_and_says_so() -> None:
             "",
         )
         assert entry["reason"].startswith(f"neglected for the tolerance of {loose:g}: influence ")
-    assert run.effect_ledger["worths"]["axial"]["relative_mean"] == influences["axial"].relative_mean
+    assert run.effect_ledger["influences"]["axial"]["relative_mean"] == influences["axial"].relative_mean
     assert run.case["tolerance"] == loose
 
 
@@ -185,7 +185,7 @@ def test_without_a_tolerance_the_scene_decides_and_an_explicit_choice_is_obeyed(
     assert decide_effects(changed).scene.effects["axial"] == "on"
     price = simulate(replace(scene, tolerance=0.001, effects={"tilt": "off"})).effect_ledger
     entry = next(one for one in price["entries"] if one["effect"] == "tilt")
-    assert entry["price"] == f"left out: {price['worths']['tilt']['words']}"
+    assert entry["price"] == f"left out: {price['influences']['tilt']['words']}"
     for wrong in (0.0, 0.6, -1.0):
         with pytest.raises(InputError, match="tolerance"):
             replace(scene, tolerance=wrong)

@@ -237,7 +237,7 @@ def test_off_is_the_linear_bushing_of_the_tangent_to_the_last_bit():
     np.testing.assert_allclose(at, static.displacement, rtol=1e-4, atol=1e-9)
     entry = next(e for e in mine.effect_ledger["entries"] if e["effect"] == "bearing_clearance")
     assert (entry["on"], entry["choice"]) == (False, "off")
-    assert entry["worth"] > CLEARANCE
+    assert entry["influence_m"] > CLEARANCE
 
 
 def test_modes_about_the_load_are_those_of_the_tangent():

@@ -201,7 +201,9 @@ def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) 
         statistics=StepStatistics(1000, 3, 0, 2.0, 5, 1e-6, 1e-4),
         energy=EnergyAudit(100.0, -90.0, 0.0, 6.0, 3.0, 0.0, 0.0, 0.5, 0.25, 0.25),
         effect_ledger={
-            "entries": [{"effect": "lateral", "part": "input", "on": True, "reason": "r", "worth": 1e-6}]
+            "entries": [
+                {"effect": "lateral", "part": "input", "on": True, "reason": "r", "influence_m": 1e-6}
+            ]
         },
         receipt=_receipt(rate),
         case=_scene(rate),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.page import _is_number
 from lineofaction.report.drawing.tables import facts, side_by_side
 from lineofaction.report.ste.page import (
@@ -45,7 +46,7 @@ def test_the_case_is_told_in_full(database: SteDatabase) -> None:
 
 
 def test_the_ledger_says_what_is_simulated_and_why(database: SteDatabase) -> None:
-    section = contact_effects(database.metadata.effect_ledger)
+    section = contact_effects(boundary_ledger(database.metadata.effect_ledger))
     (table,), (trifles, decisions) = section.tables, section.folded
     assert section.text.endswith("estimated change without each, at 400 N m, misalignment 0 um.")
     assert table.head == ("effect", "in", "simulated", "without it", "because")
