@@ -69,7 +69,7 @@ class DeformedPair:
         return angle * np.column_stack([-arm[:, 1], arm[:, 0], np.zeros(len(arm))])
 
     def write(self, pinion: Path, wheel: Path) -> None:
-        """Write both gears as VTU files: see `docs/deformed-gears.md` for the fields."""
+        """Write both gears as VTU files: see `docs/studies.md` for the fields."""
         _write(pinion, self.pinion, self.pinion.displacement)
         _write(wheel, self.wheel, self.wheel.displacement + self.wheel_lag)
 

@@ -81,7 +81,7 @@ def test_a_unit_without_a_scene_is_refused() -> None:
 
 def test_every_study_has_an_example_whose_inputs_are_accepted() -> None:
     called = set()
-    for call in (node for block in blocks(ROOT / "docs/python.md") for node in ast.walk(block)):
+    for call in (node for block in blocks(ROOT / "docs/studies.md") for node in ast.walk(block)):
         if isinstance(call, ast.Call) and (name := ast.unparse(call.func).removeprefix("loa.")) in FUNCTIONS:
             inputs = {k.arg: eval(ast.unparse(k.value)) for k in call.keywords if k.arg and k.arg != "run"}
             named = {"run": "0" * 64} if any(k.arg == "run" for k in call.keywords) else {}
