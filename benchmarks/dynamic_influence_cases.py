@@ -19,7 +19,7 @@ from dynamics.scene import Outputs, Scene, pair_scene
 from dynamics.shafts import BeamSection, GearBody, Inertia, hollow_cylinder
 from dynamics.types import FloatArray
 from fe_contact import GearPair, analyze
-from lineofaction.cli.simulate import scene_with_tables
+from lineofaction.cli.simulate import tabled_scene
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -49,7 +49,7 @@ def example_scenes() -> dict[str, Scene]:
     found = {}
     for file in sorted(EXAMPLES.glob("*_scene.toml")):
         given, folder = scene_of(file)
-        scene = scene_with_tables(given, folder, None, lambda _stage, _fraction: None)
+        scene = tabled_scene(given, folder, None, lambda _stage, _fraction: None).scene
         seconds = SHORT.get(file.stem, scene.duration)
         outputs = replace(scene.outputs, energy_audit=False, receipt="minimal")
         changes = {"duration": seconds, "outputs": outputs, "on_violation": "report"}

@@ -12,7 +12,7 @@ from benchmarks.figures import Figure
 from dynamics.joints import Housing
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
-from lineofaction.cli.simulate import scene_with_tables
+from lineofaction.cli.simulate import tabled_scene
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "palermo_scene.toml"
@@ -23,7 +23,7 @@ LIMIT = 1.5
 def figures() -> list[Figure]:
     """Return the times of both runs and their ratio."""
     given, folder = scene_of(EXAMPLE)
-    scene = scene_with_tables(given, folder, None, lambda _stage, _fraction: None)
+    scene = tabled_scene(given, folder, None, lambda _stage, _fraction: None).scene
     alone, housed = _seconds(scene), _seconds(in_housing(scene))
     subject = f"run-up of {scene.duration:g} s, 4 bearings, {MODES} modes and {SEATS} residual ones"
     return [

@@ -11,8 +11,11 @@ import sys
 from collections import Counter
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "fakes"))
+
+from random_cases import kind_of_end, sweep_case
+
 from lineofaction.hardcases import run_scenes
-from lineofaction.hardcases.sweep import kind_of_end, sweep_case
 
 
 def main(folder: Path, kind: str, count: int, first: int = 0) -> int:

@@ -90,7 +90,7 @@ def _print_draft(table: SteDatabase, refining: str) -> None:
     sys.stderr.flush()
 
 
-def tolerance_lines(receipt: Json) -> Iterator[str]:
+def _tolerance_lines(receipt: Json) -> Iterator[str]:
     """Yield whether the tolerance is met by the errors as measured, why not, and the passes if several."""
     kept = receipt.get("tolerance")
     if not kept:
@@ -109,7 +109,7 @@ def tolerance_lines(receipt: Json) -> Iterator[str]:
         )
 
 
-def tolerance_warnings(receipt: Json) -> Iterable[Json]:
+def _tolerance_warnings(receipt: Json) -> Iterable[Json]:
     """Return one warning where errors were measured and the tolerance is not met."""
     kept = receipt.get("tolerance")
     if not kept or kept["met"] is not False:
@@ -119,7 +119,6 @@ def tolerance_warnings(receipt: Json) -> Iterable[Json]:
 
 
 def _verdict(kept: Json) -> str:
-    """Return whether the tolerance is met."""
     tolerance = (
         f"tolerance {engineering(100 * kept['relative'], 3)} % or {engineering(kept['floor_m'] / NM, 3)} nm"
     )
@@ -130,7 +129,6 @@ def _verdict(kept: Json) -> str:
 
 
 def _pass(number: int, entry: Json) -> str:
-    """Return what one pass ran, cost and used."""
     mesh = entry["level"] if entry["slices"] == 1 else f"{entry['level']}, {entry['slices']} slices"
     used = "failed" if entry["used"] is None else f"used {engineering(entry['used'], 2)}"
     refined = f", refined {', '.join(entry['refined'])}" if entry["refined"] else ""
@@ -143,13 +141,13 @@ def _pass(number: int, entry: Json) -> str:
 _SHOWN_HARMONICS = 3
 
 
-def run_analyze(file: InputFile, output: Path, executor: ExecutorChoice, *, as_json: bool) -> None:
+def run_analyze(file: InputFile, output: Path, processes: int, dask: str | None, *, as_json: bool) -> None:
     """Compute, write, print."""
     case = assessed_case(file)
     check_netcdf_output(output)
-    with open_executor(executor) as workers, progress_bar() as report:
+    with open_executor(ExecutorChoice(processes, dask)) as workers, progress_bar() as report:
         database = analyzed(case, report, workers)
-    warn([*database.metadata.warnings, *tolerance_warnings(database.metadata.receipt)])
+    warn([*database.metadata.warnings, *_tolerance_warnings(database.metadata.receipt)])
     database.to_netcdf(output)
     summary = {"file": str(output), **summary_json(database)}
     if as_json:
@@ -171,7 +169,6 @@ def analyzed(
 
 
 def _show(summary: dict[str, Any]) -> None:
-    """Print a summary for people."""
     out = console()
     names = [f"harmonic {n} um" for n in range(1, _SHOWN_HARMONICS + 1)]
     rows = [_row(load) for load in summary["loads"]]
@@ -204,7 +201,7 @@ def _cost(receipt: dict[str, Any]) -> str:
     held_out = _held_out(receipt.get("held_out", {}))
     if held_out:
         text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
-    for line in tolerance_lines(receipt):
+    for line in _tolerance_lines(receipt):
         text += f"\n{line}"
     outgrown = receipt.get("patch_outgrown_points", 0)
     if outgrown:
@@ -222,7 +219,6 @@ def _cost(receipt: dict[str, Any]) -> str:
 
 
 def _held_out(axes: dict[str, Any]) -> str:
-    """Return the largest error between the nodes of each axis."""
     words = []
     for name, measured in axes.items():
         errors = [error for row in measured["error_m"] for error in row]
@@ -255,7 +251,6 @@ def run_plan(file: InputFile, time_budget_s: float | None, *, as_json: bool) -> 
 
 
 def _show_plan(plan: RunPlan) -> None:
-    """Print the plan for people."""
     out = console()
     for line in ledger_lines(plan_json(plan)["effect_ledger"]):
         out.print(line, highlight=False)

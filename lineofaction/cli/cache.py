@@ -35,13 +35,13 @@ def run_list(*, as_json: bool) -> None:
     out = console()
     out.print(table(["kind", "what", "files", "MB", "oldest use, days"], rows, words=["kind", "what"]))
     every = [file for files in held.values() for file in files]
-    line = f"{_size(every)} MB of {engineering(1e3 * limit_bytes() / _GB, 4)} MB in {cache_home()}"
+    line = f"{_size(every)} MB of {engineering(1e3 * _limit_bytes() / _GB, 4)} MB in {cache_home()}"
     out.print(line, highlight=False, soft_wrap=True)
 
 
 def run_limit(gigabytes: float | None, *, as_json: bool) -> None:
     """Remove what was not used for longest until the rest fits."""
-    most = limit_bytes() if gigabytes is None else round(gigabytes * _GB)
+    most = _limit_bytes() if gigabytes is None else round(gigabytes * _GB)
     removed = evict(cache_home(), most)
     _tell(removed, as_json=as_json)
 
@@ -60,10 +60,10 @@ def run_clear(kinds: list[str], *, as_json: bool) -> None:
 
 def keep_small() -> None:
     """Keep the cache within its limit: after a verb that may have filled it."""
-    evict(cache_home(), limit_bytes())
+    evict(cache_home(), _limit_bytes())
 
 
-def limit_bytes() -> int:
+def _limit_bytes() -> int:
     """Return what the cache may hold: 2 GB, or what the environment says.
 
     Raises
@@ -85,9 +85,8 @@ def _tell(removed: list[UsedFile], *, as_json: bool) -> None:
 
 
 def _facts(held: dict[str, list[UsedFile]]) -> dict[str, object]:
-    """Return what the cache holds as plain JSON."""
     kinds = {kind: {"files": len(files), "bytes": sum(f.size for f in files)} for kind, files in held.items()}
-    return {"folder": str(cache_home()), "limit_bytes": limit_bytes(), "kinds": kinds}
+    return {"folder": str(cache_home()), "limit_bytes": _limit_bytes(), "kinds": kinds}
 
 
 def _size(files: list[UsedFile]) -> str:

@@ -30,7 +30,7 @@ from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import Study
 from lineofaction.gearbox.rexs.files import read_rexs, serialized
-from lineofaction.gearbox.rexs.model import Attribute, Document
+from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.schemas.plan import left_out_warnings
@@ -41,10 +41,30 @@ from lineofaction.report.document import file_attributes, read_run, read_stored,
 _MOST_POSITIONS = 256
 
 
+Point = dict[str, float | None]
+"""The fields of a `FlankPoint`, None where nothing is said."""
+
+
 def run_export(
-    file: InputFile, output: Path, point: dict[str, float | None], at: str, beside: int, *, as_json: bool
+    file: InputFile, output: Path, point: Point, rexs: Path | None, *, as_json: bool, **further: Any
 ) -> None:
-    """Solve, expand, write, print; `point` holds the fields of `FlankPoint` that were given."""
+    """Write what the output's name promises; `further` holds the options of each kind by their names."""
+    if rexs is not None:
+        _export_rexs(file.as_it_is, rexs, output, point, as_json=as_json)
+    elif output.suffix in (*UNIVERSAL, TABLE):
+        window = further["start"], further["end"]
+        _export_run(file.as_it_is, output, further["function"], window, as_json=as_json)
+    elif output.suffix == ".fmu":
+        damping, backlash = further["damping_n_s_per_m"], further["backlash_um"]
+        _export_fmu(file.as_it_is, output, point, damping, backlash, as_json=as_json)
+    else:
+        _export_deformed(file, output, point, further["at"], further["beside"], as_json=as_json)
+
+
+def _export_deformed(
+    file: InputFile, output: Path, point: Point, at: str, beside: int, *, as_json: bool
+) -> None:
+    """Solve, expand, write, print."""
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
     case = assessed_case(file, chosen)
     where = positions(at)
@@ -69,7 +89,6 @@ def run_export(
 
 
 def _refuse_output(output: Path) -> None:
-    """Refuse a folder that cannot be one, before the work is done."""
     if output.is_file() or output.suffix == ".vtu":
         raise BadInput.of("output", str(output), "a folder", "It gets pinion.vtu and wheel.vtu.")
     if not output.is_dir() and not output.parent.is_dir():
@@ -89,7 +108,6 @@ def _written(pairs: tuple[DeformedPair, ...], output: Path) -> list[Path]:
 
 
 def _figures(pairs: tuple[DeformedPair, ...]) -> list[dict[str, float]]:
-    """Return what each position came to."""
     return [
         {
             "position": pair.position,
@@ -107,7 +125,6 @@ def _largest(displacement: FloatArray) -> float:
 
 
 def _show_deformed(pairs: tuple[DeformedPair, ...], written: list[Path]) -> None:
-    """Print the figures for people."""
     columns = ["position", "STE um", "pinion moves um", "wheel moves um", "residual"]
     rows = [
         [*(f"{row[name]:.4g}" for name in row if name != "residual"), leftover(row["residual"])]
@@ -126,15 +143,9 @@ UNIVERSAL = (".unv", ".uff", ".uf")
 TABLE = ".csv"
 
 
-def is_for_runs(output: Path) -> bool:
-    """Whether an output so named is made from a run."""
-    return output.suffix in (*UNIVERSAL, TABLE)
-
-
-def run_export_run(
+def _export_run(
     file: Path, output: Path, function: str, window: tuple[float | None, float | None], *, as_json: bool
 ) -> None:
-    """Read the run, write it in the form that the output's name asks for, print."""
     if function not in FUNCTIONS or (output.suffix == TABLE and function != "time"):
         allowed = "time" if output.suffix == TABLE else ", ".join(FUNCTIONS)
         raise BadInput.of("--function", function, f"one of {allowed}")
@@ -162,16 +173,9 @@ _INPUTS_INSTEAD = {
 }
 
 
-def run_export_fmu(
-    file: Path,
-    output: Path,
-    point: dict[str, float | None],
-    damping: float,
-    backlash_um: float | None,
-    *,
-    as_json: bool,
+def _export_fmu(
+    file: Path, output: Path, point: Point, damping: float, backlash_um: float | None, *, as_json: bool
 ) -> None:
-    """Read, export, print; `point` holds what `loa export` takes."""
     for name, instead in _INPUTS_INSTEAD.items():
         if point[name] is not None:
             advice = f"The whole table goes in; set {instead}."
@@ -201,7 +205,7 @@ def run_export_fmu(
         _show_fmu(facts)
 
 
-def _nominal_force(database: SteDatabase, point: dict[str, float | None]) -> float:
+def _nominal_force(database: SteDatabase, point: Point) -> float:
     """Return the transverse mesh force in N at the load given, or at the database's highest."""
     torque, force = point["torque_n_m"], point["normal_force_n"]
     if torque is not None and force is not None:
@@ -231,7 +235,6 @@ def _element(database: SteDatabase, damping: float, nominal: float, backlash_um:
 
 
 def _show_fmu(facts: dict[str, Any]) -> None:
-    """Print the figures for people."""
     out = console()
     out.print(
         f"{facts['positions']} positions x {facts['levels']} levels to {facts['largest_force_n']:.4g} N, "
@@ -251,10 +254,8 @@ def _show_fmu(facts: dict[str, Any]) -> None:
 _ONLY_TORQUE = ("normal_force_n", "misalignment_um", "center_distance_change_mm")
 
 
-def run_export_rexs(
-    file: Path, rexs: Path, output: Path, point: dict[str, float | None], *, as_json: bool
-) -> None:
-    """Read both files, add the results of a table or a deflection to the unit, write, print."""
+def _export_rexs(file: Path, rexs: Path, output: Path, point: Point, *, as_json: bool) -> None:
+    """Add the results of a table or a deflection to the unit."""
     check_writable(output)
     document = read_rexs(rexs)
     unit = opened(document)
@@ -300,7 +301,7 @@ def _study(file: Path) -> Study | None:
     return stored_study(file_attributes(file)) if readable else None
 
 
-def _refuse_point(point: dict[str, float | None], names: Iterable[str]) -> None:
+def _refuse_point(point: Point, names: Iterable[str]) -> None:
     """Refuse the options of a load point that the results do not depend on."""
     for name in names:
         if point[name] is not None:
@@ -310,14 +311,9 @@ def _refuse_point(point: dict[str, float | None], names: Iterable[str]) -> None:
 
 
 def _calculated(document: Document) -> dict[str, list[str]]:
-    """Return the names of the calculated attributes by component, those in load cases too."""
     names: dict[str, dict[str, None]] = {}
     for _, component in document.model.all_components():
         for entry in component.attributes:
-            if _is_calculated(entry):
+            if entry.origin == CALCULATED:
                 names.setdefault(str(component.id), {})[entry.id] = None
     return {number: list(found) for number, found in names.items()}
-
-
-def _is_calculated(attribute: Attribute) -> bool:
-    return attribute.origin == CALCULATED

@@ -84,7 +84,7 @@ Json = dict[str, Any]
 
 
 @dataclass
-class Warned:
+class _Warned:
     """The warnings of one verb, each once, in the order in which they came up."""
 
     form: str = "text"
@@ -96,19 +96,19 @@ class Warned:
         return list(self.messages.values())
 
 
-_current: ContextVar[Warned] = ContextVar("warned")
+_current: ContextVar[_Warned] = ContextVar("warned")
 
 
-def begin(form: str) -> Warned:
+def _begin(form: str) -> _Warned:
     """Begin a verb that prints "text", "csv" or "json"; return what its warnings gather in."""
-    warned = Warned(form)
+    warned = _Warned(form)
     _current.set(warned)
     return warned
 
 
 def warn(warnings: Iterable[Json]) -> None:
     """Gather warnings, and print those that are new: where people read, not into JSON or CSV."""
-    warned = _current.get(None) or begin("text")
+    warned = _current.get(None) or _begin("text")
     for warning in warnings:
         if warning["message"] in warned.messages:
             continue
@@ -159,17 +159,6 @@ def until_interrupted() -> Iterator[Callable[[], bool]]:
             signal.signal(number, handler)
 
 
-def leave() -> NoReturn:
-    """End a process with success whose work is done, without the interpreter's own end.
-
-    That frees module after module, for 0.7 CPU s once both libraries are loaded: several seconds beside
-    twenty busy processes, in which a supervisor waits.
-    """
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(0)
-
-
 # One way out of every verb: results on standard output, one clear error on standard error, an exit code.
 
 
@@ -209,7 +198,7 @@ def guarded(verb: Callable[P, R]) -> Callable[P, R]:
 
     @functools.wraps(verb)
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
-        begin(next((name for name in ("json", "csv") if kwargs.get(name)), "text"))
+        _begin(next((name for name in ("json", "csv") if kwargs.get(name)), "text"))
         try:
             return verb(*args, **kwargs)
         except (typer.Exit, typer.Abort):
@@ -234,7 +223,6 @@ def _known(error: Exception) -> ServiceError:
 
 
 def _logged(error: Exception) -> Unexpected:
-    """Write a defect to a log and return it by number."""
     directory = importlib.import_module("host.directories").cache_home() / "log"
     reference = uuid.uuid4().hex[:12]
     directory.mkdir(parents=True, exist_ok=True)
@@ -244,7 +232,6 @@ def _logged(error: Exception) -> Unexpected:
 
 
 def _text(error: ServiceError) -> str:
-    """Return an error as lines: each fault on its own."""
     lines = [f"error: {line}" for line in (error.faults or (str(error),))]
     return "\n".join((*lines, *_notes(error)))
 
@@ -254,7 +241,6 @@ def _notes(error: BaseException) -> list[str]:
 
 
 def _leave(text: str, code: int) -> NoReturn:
-    """Say why, and end."""
     sys.stdout.flush()
     print(text, file=sys.stderr, flush=True)  # noqa: T201 (this is the command line)
     raise typer.Exit(code)

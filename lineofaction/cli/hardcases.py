@@ -51,7 +51,6 @@ def _chosen_scenes(only: Sequence[str]) -> list[HardScene]:
 
 
 def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
-    """Print the table for people, and below it what failed."""
     out = console()
     rows = [
         (

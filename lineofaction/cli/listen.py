@@ -41,7 +41,7 @@ FAINT = 1e-3
 
 
 @dataclass(frozen=True)
-class RunSound:
+class _RunSound:
     """A run as it is heard.
 
     Attributes
@@ -60,18 +60,17 @@ class RunSound:
     cells: dict[str, str] = field(default_factory=dict)
 
 
-def _bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[RunSound], str]:
+def _bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[_RunSound], str]:
     """Return runs by what they hold, e.g. forces on a bearing, and what to say of all."""
     sounds = []
     for one in tuple(heard_runs(dict(runs), view)):
         recording, moment = one.recording(), loudest(one.run, one.signal)
         facts = {"loudest": None if moment is None else _moment_facts(moment)}
-        sounds.append(RunSound(one.name, recording, facts, _moment_cells(moment, recording.unit)))
+        sounds.append(_RunSound(one.name, recording, facts, _moment_cells(moment, recording.unit)))
     return sounds, NO_LOUDNESS
 
 
 def _moment_facts(moment: Loudest) -> Json:
-    """Return where a run is loudest as JSON."""
     orders = {str(order): value for order, value in moment.orders.items()}
     return {"time_s": moment.time, "rms": moment.overall, "orders_rms": orders}
 
@@ -92,15 +91,7 @@ def _moment_cells(moment: Loudest | None, unit: str) -> dict[str, str]:
 # What ``loa listen`` makes of runs through the housings of a scene: velocities, sound pressures.
 
 
-@dataclass(frozen=True)
-class HousingReceiver:
-    """A scene file, and where runs are heard through its housings."""
-
-    scene: Path
-    receiver: Receiver
-
-
-def housing_receiver(scene: Path | None, point: str, microphone: str) -> HousingReceiver | None:
+def _receiver(scene: Path | None, point: str, microphone: str) -> Receiver | None:
     """Return where runs are heard by the options of the verb; None: as what the runs hold.
 
     Raises
@@ -114,7 +105,7 @@ def housing_receiver(scene: Path | None, point: str, microphone: str) -> Housing
         given = [name for name, value in (("--point", point), ("--microphone", microphone)) if value]
         bound = "given with --scene, one of --point and --microphone"
         raise BadInput.of("--scene", None if scene is None else str(scene), bound, f"Given: {given}.")
-    return HousingReceiver(scene, Receiver(_position(microphone) if microphone else (), point))
+    return Receiver(_position(microphone) if microphone else (), point)
 
 
 def _position(text: str) -> tuple[float, ...]:
@@ -128,16 +119,16 @@ def _position(text: str) -> tuple[float, ...]:
 
 
 def _housing_sounds(
-    runs: Mapping[str, RunResult], through: HousingReceiver, view: RunView
-) -> tuple[list[RunSound], str]:
+    runs: Mapping[str, RunResult], file: Path, receiver: Receiver, view: RunView
+) -> tuple[list[_RunSound], str]:
     """Return runs through the housings of a scene, and what to say of all."""
-    receiver = replace(through.receiver, direction=view.direction)
+    receiver = replace(receiver, direction=view.direction)
     _require_no_view(view, receiver)
-    scene, folder = assessed_scene(through.scene)
+    scene, folder = assessed_scene(file)
     with progress_bar() as report:
         bodies = housings_in(scene, cache_home(), folder, report)
     housings = SceneHousings.of(HousedScene(scene, bodies))
-    sounds: list[RunSound] = []
+    sounds: list[_RunSound] = []
     remarks: list[str] = []
     for name, run in runs.items():
         try:
@@ -145,13 +136,12 @@ def _housing_sounds(
         except BadInput as error:
             raise error.within(name) from None
         warn(heard.warnings)
-        sounds.append(RunSound(name, heard.recording, *_of_pressure(heard.figures)))
+        sounds.append(_RunSound(name, heard.recording, *_of_pressure(heard.figures)))
         remarks += heard.remarks
     return sounds, "; ".join(dict.fromkeys(remarks))
 
 
 def _require_no_view(view: RunView, receiver: Receiver) -> None:
-    """Refuse options for what a run itself holds."""
     named = {"quantity": view.quantity, "bearing": view.bearing, "mesh": view.mesh}
     if not receiver.point:
         named["direction"] = view.direction
@@ -182,14 +172,23 @@ def _cells(figures: SoundFigures) -> dict[str, str]:
 
 
 def run_listen(
-    files: Sequence[Path], output: Path, view: RunView, receiver: HousingReceiver | None, *, as_json: bool
+    files: Sequence[Path],
+    output: Path,
+    view: RunView,
+    *,
+    scene: Path | None,
+    point: str,
+    microphone: str,
+    as_json: bool,
 ) -> None:
     """Read the runs, write a WAV file of each on one full scale, print what they hold."""
+    receiver = _receiver(scene, point, microphone)
     paths = _outputs(files, output)
     runs = {name: read_run(file, "runs") for name, file in named_files(files)}
-    sounds, remark = (
-        _bearing_sounds(runs, view) if receiver is None else _housing_sounds(runs, receiver, view)
-    )
+    if scene is None or receiver is None:
+        sounds, remark = _bearing_sounds(runs, view)
+    else:
+        sounds, remark = _housing_sounds(runs, scene, receiver, view)
     scale = full_scale_of([sound.recording for sound in sounds])
     if output.suffix != ".wav":
         output.mkdir(exist_ok=True)
@@ -230,8 +229,7 @@ def _outputs(files: Sequence[Path], output: Path) -> list[Path]:
     return [output / f"{stem}.wav" for stem in stems]
 
 
-def _show(sounds: Sequence[RunSound], scale: float, remark: str) -> None:
-    """Print the figures for people."""
+def _show(sounds: Sequence[_RunSound], scale: float, remark: str) -> None:
     out, unit = console(), sounds[0].recording.unit
     more = list(dict.fromkeys(name for sound in sounds for name in sound.cells))
     rows = [

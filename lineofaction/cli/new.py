@@ -6,22 +6,20 @@ import math
 import sys
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from lineofaction.cli.guard import warn
-from lineofaction.cli.options import PairWishes as Wanted
+from lineofaction.cli.options import PairWishes
 from lineofaction.cli.output import check_writable, console, print_json
 from lineofaction.cli.pair_sketch import (
+    LOAD,
+    PLANETS,
     GearSketch,
     PairSketch,
-    bore_of,
-    case_tables,
-    case_text,
+    StageSketch,
     external_pair,
-    face_width,
     internal_pair,
-    ring_pair,
+    planetary_stage,
 )
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
 from lineofaction.gearbox.from_rexs.account import FATES, Assumption
@@ -33,7 +31,71 @@ from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_table
-from lineofaction.gearbox.units import DEGREE
+
+# The text of a case file: tables with a comment beside every figure.
+
+
+_PINION, _WHEEL = "the driving gear", "the driven gear"
+
+
+def _case_text(pair: PairSketch, head: str) -> str:
+    """Return a case file under a line that says what it holds."""
+    return f"""# {head}
+# Made by loa new; every figure may be changed. All fields: docs/case-file.md.
+# Next: loa geometry FILE, then loa analyze FILE -o ste.nc, then loa report ste.nc.
+
+{_case_tables(pair)}
+[accuracy]
+tolerance = 0.02 # relative, of mean and peak-to-peak STE; or level = "draft" for a first look
+"""
+
+
+def _case_tables(pair: PairSketch, prefix: str = "") -> str:
+    """Return the tables of a case but for its accuracy, within another table if `prefix` names it."""
+    torques = ", ".join(f"{torque:g}" for torque in pair.torque)
+    helix = f"helix_angle_deg = {pair.helix:g} # of the pinion; > 0: right hand\n" if pair.helix else ""
+    return f"""[{prefix}pair]
+normal_module_mm = {pair.module:g}
+{helix}center_distance_mm = {pair.center_distance:.10g}
+
+[{prefix}pair.pinion] # {_PINION}
+{_external_gear(pair, pair.pinion)}
+[{prefix}pair.wheel] # {_WHEEL}
+{_wheel_fields(pair)}
+[{prefix}load]
+torque_n_m = [{torques}] # on the pinion, to {LOAD:g} N/mm^2 of tangential force over face width and module
+"""
+
+
+def _wheel_fields(pair: PairSketch) -> str:
+    if not pair.internal:
+        return _external_gear(pair, pair.wheel)
+    wheel = pair.wheel
+    return f"""internal = true # a ring gear
+teeth = {wheel.teeth}
+face_width_mm = {pair.width:g}
+rim_diameter_mm = {wheel.held:g} # outside of the rim, which is held
+addendum_coefficient = {pair.ring_addendum:g} # the full addendum would meet the pinion below its involute
+thickness_allowance_um = {wheel.allowance:g} # is backlash
+"""
+
+
+def _external_gear(pair: PairSketch, gear: GearSketch) -> str:
+    relief, length = pair.relief
+    shift = (
+        f"profile_shift_coefficient = {gear.shift:g} # balances the sliding of both roots\n"
+        if gear.shift
+        else ""
+    )
+    allowance = f"thickness_allowance_um = {gear.allowance:g} # is backlash\n" if gear.allowance else ""
+    return f"""teeth = {gear.teeth}
+face_width_mm = {pair.width:g}
+bore_diameter_mm = {gear.held:g}
+{shift}{allowance}tip_relief_um = {relief:g}
+tip_relief_length_mm = {length:g} # along the radius
+helix_crowning_um = {pair.crowning:g} # at both ends of the face
+"""
+
 
 # The text of scene files: a pair between two shafts, and a planetary stage.
 
@@ -69,7 +131,7 @@ driver = "pinion"
 driven = "wheel"
 damping_ratio = 0.07 # measured ones lie between 0.03 and 0.17
 
-{case_tables(pair, "meshes.case.")}{ACCURACY}
+{_case_tables(pair, "meshes.case.")}{ACCURACY}
 [[drives]] # the angle is imposed: a run-up
 name = "motor"
 shaft = "input"
@@ -125,52 +187,15 @@ radial_stiffness_n_per_m = 3e8
 # The text of a scene file of a planetary stage.
 
 
-_PLANETS = 3
-_LEAST_TEETH = 18
-"""Of a planet: with fewer, teeth without profile shift are undercut."""
 _LOAD_SHARE = 0.6
 """Of the sun's highest torque in the table."""
-
-
-@dataclass(frozen=True)
-class StageSketch:
-    """Both meshes of a stage with a held ring, and its ratio of sun to carrier."""
-
-    sun: PairSketch
-    ring: PairSketch
-    ratio: float
-
-
-def planetary_stage(wanted: Wanted) -> StageSketch:
-    """Return a stage of three planets; its ring has the teeth of the sun and twice those of a planet.
-
-    Raises
-    ------
-    BadInput
-        No planets fit a ratio that small.
-    """
-    module, teeth, helix = wanted.module or 2.0, wanted.teeth or 24, wanted.helix or 0.0
-    wished = 0.5 * teeth * ((wanted.ratio or 5.0) - 2.0)
-    fitting = [count for count in range(_LEAST_TEETH, int(wished) + 4) if (teeth + count) % _PLANETS == 0]
-    if not fitting or wished < _LEAST_TEETH:
-        least = 2.0 + 2.0 * _LEAST_TEETH / teeth
-        bound = f"at least {least:.3g} with {teeth} teeth of the sun"
-        raise BadInput.of("--ratio", wanted.ratio, bound, "Or leave it out.")
-    planet = min(fitting, key=lambda count: abs(count - wished))
-    width = wanted.width or face_width(module, helix)
-    ring = ring_pair(module, helix, width, planet, teeth + 2 * planet)
-    transverse = module / math.cos(helix * DEGREE)
-    sun = GearSketch(teeth, 0.0, bore_of(teeth, module, helix, width), ring.wheel.allowance)
-    torque = tuple(float(f"{value * teeth / planet:.2g}") for value in ring.torque)
-    pair = PairSketch(module, helix, width, 0.5 * transverse * (teeth + planet), sun, ring.pinion, torque)
-    return StageSketch(pair, ring, 2.0 + 2.0 * planet / teeth)
 
 
 def _planetary_text(stage: StageSketch, head: str) -> str:
     """Return a stage whose sun is driven, whose carrier is braked, and whose ring is held."""
     length = 2.0 * stage.sun.width
     middle = 0.5 * length
-    brake = _PLANETS * _LOAD_SHARE * stage.sun.torque[-1] * stage.ratio
+    brake = PLANETS * _LOAD_SHARE * stage.sun.torque[-1] * stage.ratio
     offset = 0.5 if stage.sun.wheel.teeth % 2 == 0 else 0.0
     return f"""{HEAD.format(head=head)}
 [run]
@@ -178,7 +203,7 @@ duration_s = 0.5
 {_shafts(stage, length)}{_gears(stage, middle)}{_bearings(middle)}
 [[planets]] # all are copies of the first
 planet = "planet"
-number = {_PLANETS}
+number = {PLANETS}
 
 [[meshes]]
 name = "sun mesh"
@@ -186,7 +211,7 @@ driver = "sun gear"
 driven = "planet gear"
 damping_ratio = 0.07 # measured ones lie between 0.03 and 0.17
 
-{case_tables(stage.sun, "meshes.case.")}{ACCURACY}
+{_case_tables(stage.sun, "meshes.case.")}{ACCURACY}
 [[meshes]]
 name = "ring mesh"
 driver = "planet gear"
@@ -194,7 +219,7 @@ driven = "ring gear"
 damping_ratio = 0.07
 position_offset = {offset} # planets with an even number of teeth meet sun and ring half a pitch apart
 
-{case_tables(stage.ring, "meshes.case.")}{ACCURACY}
+{_case_tables(stage.ring, "meshes.case.")}{ACCURACY}
 [[drives]] # the angle is imposed: a run-up
 name = "motor"
 shaft = "sun"
@@ -301,31 +326,30 @@ axial_stiffness_n_per_m = 1e8
     )
 
 
-def _spur(wanted: Wanted) -> str:
-    return case_text(external_pair(wanted, teeth=24, ratio=1.5, helix=0.0, module=3.0), "A spur pair")
+def _spur(wanted: PairWishes) -> str:
+    return _case_text(external_pair(wanted, teeth=24, ratio=1.5, helix=0.0, module=3.0), "A spur pair")
 
 
-def _helical(wanted: Wanted) -> str:
+def _helical(wanted: PairWishes) -> str:
     pair = external_pair(wanted, teeth=23, ratio=67 / 23, helix=22.0, module=1.8)
-    return case_text(pair, "A helical pair")
+    return _case_text(pair, "A helical pair")
 
 
-def _internal(wanted: Wanted) -> str:
-    return case_text(internal_pair(wanted, teeth=36, ratio=96 / 36, module=2.0), "A pinion in a ring gear")
+def _internal(wanted: PairWishes) -> str:
+    return _case_text(internal_pair(wanted, teeth=36, ratio=96 / 36, module=2.0), "A pinion in a ring gear")
 
 
-def _planetary(wanted: Wanted) -> str:
+def _planetary(wanted: PairWishes) -> str:
     head = "A planetary stage: the sun drives, the carrier is braked, the ring is held"
     return _planetary_text(planetary_stage(wanted), head)
 
 
-def _scene(wanted: Wanted) -> str:
-    """Return a helical pair between two shafts."""
+def _scene(wanted: PairWishes) -> str:
     pair = external_pair(wanted, teeth=23, ratio=67 / 23, helix=22.0, module=1.8)
     return _pair_scene_text(pair, "A helical pair between two shafts: motor, brake, four bearings")
 
 
-KINDS: Mapping[str, Callable[[Wanted], str]] = {
+KINDS: Mapping[str, Callable[[PairWishes], str]] = {
     "spur": _spur,
     "helical": _helical,
     "internal": _internal,
@@ -335,7 +359,7 @@ KINDS: Mapping[str, Callable[[Wanted], str]] = {
 """What is made, by the option that names it."""
 
 
-def run_new(kinds: Mapping[str, bool], wanted: Wanted, output: Path | None) -> None:
+def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) -> None:
     """Write or print the file of the one kind that was named; a helical pair if none was."""
     named = [kind for kind, chosen in kinds.items() if chosen]
     if len(named) > 1:
@@ -343,7 +367,7 @@ def run_new(kinds: Mapping[str, bool], wanted: Wanted, output: Path | None) -> N
         raise BadInput.of("kind", given, f"one of {', '.join(f'--{kind}' for kind in KINDS)}", "Choose one.")
     if output is not None:
         _check_new(output)
-    text = new_text(named[0] if named else "helical", wanted)
+    text = _new_text(named[0] if named else "helical", wanted)
     if output is None:
         sys.stdout.write(text)
         return
@@ -355,7 +379,7 @@ def run_new(kinds: Mapping[str, bool], wanted: Wanted, output: Path | None) -> N
     out.print(f"written to {output}", highlight=False)
 
 
-def new_text(kind: str, wanted: Wanted) -> str:
+def _new_text(kind: str, wanted: PairWishes) -> str:
     """Return the file of a kind; it is read once, so that what is written can be run.
 
     Raises
@@ -377,7 +401,6 @@ def new_text(kind: str, wanted: Wanted) -> str:
 
 
 def _check_new(output: Path) -> None:
-    """Refuse a file that exists, and one that is no TOML by its name."""
     if output.suffix != ".toml":
         raise BadInput.of("output", str(output), "a file ending in .toml")
     check_writable(output)
@@ -427,7 +450,6 @@ def _others(load: LoadCase) -> str:
 
 
 def _write_unit(unit: OpenedUnit, folder: Path) -> list[Path]:
-    """Write the files into a folder, which is made."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -441,7 +463,6 @@ def _write_unit(unit: OpenedUnit, folder: Path) -> list[Path]:
 
 
 def _show_unit(unit: OpenedUnit, counts: Counter[str], written: list[Path]) -> None:
-    """Print the report for people."""
     out = console()
     values = ", ".join(f"{counts[fate]} {fate}" for fate in FATES if counts[fate])
     out.print(f"{len(unit.lines)} components and values: {values}", highlight=False, soft_wrap=True)

@@ -35,33 +35,6 @@ DaskScheduler = Annotated[
 Force = Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")]
 
 
-@dataclass(frozen=True)
-class LoadPoint:
-    """One load and alignment."""
-
-    torque: Annotated[
-        float | None, typer.Option(help="Torque on the driving gear in N m; default: the highest load.")
-    ] = None
-    force: Force = None
-    misalignment_um: Annotated[
-        float | None, typer.Option(help="Misalignment in um; default: the value of the case nearest to 0.")
-    ] = None
-    center_distance_change_mm: Annotated[
-        float | None,
-        typer.Option(help="Change of the center distance in mm; default: the value nearest to 0."),
-    ] = None
-
-    @property
-    def inputs(self) -> dict[str, float | None]:
-        """The load and the alignment under the names of their fields."""
-        return {
-            "torque_n_m": self.torque,
-            "normal_force_n": self.force,
-            "misalignment_um": self.misalignment_um,
-            "center_distance_change_mm": self.center_distance_change_mm,
-        }
-
-
 # What the caller of ``loa new`` says of a pair, as its options.
 
 
@@ -109,7 +82,6 @@ SceneFile = Annotated[InputFile, file_argument("Scene file", "SCENE")]
 
 
 def _options(subject: str) -> list[inspect.Parameter]:
-    """Return the options for what is read: a scene has ``--set`` alone."""
     shown = [
         _parameter(
             "overrides", Annotated[list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help=_SET)]
@@ -125,7 +97,6 @@ def _options(subject: str) -> list[inspect.Parameter]:
 
 
 def _parameter(name: str, annotation: Any) -> inspect.Parameter:
-    """Return an option that may be left out."""
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=annotation)
 
 

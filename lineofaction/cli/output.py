@@ -118,23 +118,3 @@ def check_netcdf_output(output: Path) -> None:
     if output.suffix not in ("", ".nc", ".nc4"):
         advice = "Write the netCDF file; `loa report FILE.nc -o PAGE.html` draws it."
         raise BadInput.of("output", str(output), "a file ending in .nc", advice)
-
-
-def output_files(output: Path, stem: str, endings: Sequence[str]) -> list[Path]:
-    """Return the files to write: one by its ending, or `stem` with all endings in a folder, made if missing.
-
-    Raises
-    ------
-    BadInput
-        Neither, or not writable.
-    """
-    bound = f"a folder, or a file ending in one of {', '.join(endings)}"
-    if output.suffix and not output.is_dir():
-        if output.suffix not in endings:
-            raise BadInput.of("output", str(output), bound)
-        check_writable(output)
-        return [output]
-    if output.is_file():
-        raise BadInput.of("output", str(output), bound)
-    check_writable(output / "x" if output.is_dir() else output)
-    return [output / f"{stem}{ending}" for ending in endings]

@@ -71,7 +71,6 @@ def run_geometry(file: InputFile, output: Path | None, *, as_json: bool) -> None
 
 
 def _write_sheet(pair: ParallelAxes, output: Path, implausible: list[str]) -> None:
-    """Write the page, or the drawing alone."""
     if output.suffix not in _ENDINGS:
         raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(_ENDINGS)}")
     check_writable(output)
@@ -84,7 +83,6 @@ def _write_sheet(pair: ParallelAxes, output: Path, implausible: list[str]) -> No
 
 
 def _show_sheet(pair: ParallelAxes, output: Path | None) -> None:
-    """Print the data sheet for people."""
     out = console()
     for part in data_sheet(pair):
         out.print(table(part.head, part.rows, part.caption, words=_WORDS))
@@ -96,7 +94,6 @@ def _show_sheet(pair: ParallelAxes, output: Path | None) -> None:
 
 
 def _summary(pair: ParallelAxes) -> tuple[str, str]:
-    """Say what decides about noise and strength first."""
     facts = facts_of(pair)
     transverse, overlap = pair.active_contact_ratio, pair.overlap_ratio
     ratios = f"contact ratio {transverse:.3f} + {overlap:.3f} = {transverse + overlap:.3f}"

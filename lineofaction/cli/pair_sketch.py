@@ -1,4 +1,4 @@
-"""A pair from few arguments, its data by rule, and the text of its case file."""
+"""A pair or a planetary stage from few arguments, its data by rule."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 from fe_contact.geometry import Gear
 from fe_contact.geometry.backlash import balanced_shifts, reference_center_distance
-from lineofaction.cli.options import PairWishes as Wanted
+from lineofaction.cli.options import PairWishes
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import DEGREE, MM
 
 OVERLAP = 1.5
@@ -60,13 +61,13 @@ class PairSketch:
         return max(3, round(0.2 * self.width))
 
 
-def external_pair(wanted: Wanted, *, teeth: int, ratio: float, helix: float, module: float) -> PairSketch:
+def external_pair(wanted: PairWishes, *, teeth: int, ratio: float, helix: float, module: float) -> PairSketch:
     """Return an external pair; the keywords stand for what is left open."""
     module = wanted.module or module
     helix = helix if wanted.helix is None else wanted.helix
     first = wanted.teeth or teeth
     second = _hunting_teeth(first, wanted.ratio or ratio)
-    width = wanted.width or face_width(module, helix)
+    width = wanted.width or _face_width(module, helix)
     pinion, wheel = (_blank(count, module, helix, width) for count in (first, second))
     distance = _round_up(reference_center_distance(pinion, wheel) / MM, 0.5 if module >= 1.0 else 0.1)
     shifts = balanced_shifts(pinion, wheel, distance * MM)
@@ -78,15 +79,15 @@ def external_pair(wanted: Wanted, *, teeth: int, ratio: float, helix: float, mod
     return PairSketch(module, helix, width, distance, gears[0], gears[1], _torques(pinion))
 
 
-def internal_pair(wanted: Wanted, *, teeth: int, ratio: float, module: float) -> PairSketch:
+def internal_pair(wanted: PairWishes, *, teeth: int, ratio: float, module: float) -> PairSketch:
     """Return a pinion in a ring gear, without profile shift."""
     module = wanted.module or module
     helix, first = wanted.helix or 0.0, wanted.teeth or teeth
-    width = wanted.width or face_width(module, helix)
-    return ring_pair(module, helix, width, first, round(first * (wanted.ratio or ratio)))
+    width = wanted.width or _face_width(module, helix)
+    return _ring_pair(module, helix, width, first, round(first * (wanted.ratio or ratio)))
 
 
-def ring_pair(module: float, helix: float, width: float, teeth: int, ring_teeth: int) -> PairSketch:
+def _ring_pair(module: float, helix: float, width: float, teeth: int, ring_teeth: int) -> PairSketch:
     """Return a pinion in a ring gear of these numbers of teeth; lengths in mm, angles in deg."""
     pinion = _blank(teeth, module, helix, width)
     transverse = module / math.cos(helix * DEGREE)
@@ -121,7 +122,7 @@ def _hunting_teeth(teeth: int, ratio: float) -> int:
     return next((count for count in counts if math.gcd(count, teeth) == 1), counts[0])
 
 
-def face_width(module: float, helix: float) -> float:
+def _face_width(module: float, helix: float) -> float:
     """Return a face width in mm: 10 modules, of helical gears what `OVERLAP` takes."""
     if not helix:
         return float(math.ceil(10.0 * module))
@@ -134,7 +135,7 @@ def _blank(teeth: int, module: float, helix: float, width: float) -> Gear:
     return Gear(teeth, *lengths, helix_angle=helix * DEGREE)
 
 
-def bore_of(teeth: int, module: float, helix: float, width: float) -> float:
+def _bore_of(teeth: int, module: float, helix: float, width: float) -> float:
     """Return the bore in mm of a gear without profile shift; lengths in mm, the angle in deg."""
     return _bore(_blank(teeth, module, helix, width), 0.0)
 
@@ -156,67 +157,43 @@ def _round_up(value: float, step: float) -> float:
     return round(math.ceil(value / step - 1e-9) * step, 6)
 
 
-# The text of a case file: tables with a comment beside every figure.
+# A planetary stage.
 
 
-_PINION, _WHEEL = "the driving gear", "the driven gear"
+PLANETS = 3
+_LEAST_TEETH = 18
+"""Of a planet: with fewer, teeth without profile shift are undercut."""
 
 
-def case_text(pair: PairSketch, head: str) -> str:
-    """Return a case file under a line that says what it holds."""
-    return f"""# {head}
-# Made by loa new; every figure may be changed. All fields: docs/case-file.md.
-# Next: loa geometry FILE, then loa analyze FILE -o ste.nc, then loa report ste.nc.
+@dataclass(frozen=True)
+class StageSketch:
+    """Both meshes of a stage with a held ring, and its ratio of sun to carrier."""
 
-{case_tables(pair)}
-[accuracy]
-tolerance = 0.02 # relative, of mean and peak-to-peak STE; or level = "draft" for a first look
-"""
+    sun: PairSketch
+    ring: PairSketch
+    ratio: float
 
 
-def case_tables(pair: PairSketch, prefix: str = "") -> str:
-    """Return the tables of a case but for its accuracy, within another table if `prefix` names it."""
-    torques = ", ".join(f"{torque:g}" for torque in pair.torque)
-    helix = f"helix_angle_deg = {pair.helix:g} # of the pinion; > 0: right hand\n" if pair.helix else ""
-    return f"""[{prefix}pair]
-normal_module_mm = {pair.module:g}
-{helix}center_distance_mm = {pair.center_distance:.10g}
+def planetary_stage(wanted: PairWishes) -> StageSketch:
+    """Return a stage of three planets; its ring has the teeth of the sun and twice those of a planet.
 
-[{prefix}pair.pinion] # {_PINION}
-{_gear(pair, pair.pinion)}
-[{prefix}pair.wheel] # {_WHEEL}
-{_wheel(pair)}
-[{prefix}load]
-torque_n_m = [{torques}] # on the pinion, to {LOAD:g} N/mm^2 of tangential force over face width and module
-"""
-
-
-def _wheel(pair: PairSketch) -> str:
-    if not pair.internal:
-        return _gear(pair, pair.wheel)
-    wheel = pair.wheel
-    return f"""internal = true # a ring gear
-teeth = {wheel.teeth}
-face_width_mm = {pair.width:g}
-rim_diameter_mm = {wheel.held:g} # outside of the rim, which is held
-addendum_coefficient = {pair.ring_addendum:g} # the full addendum would meet the pinion below its involute
-thickness_allowance_um = {wheel.allowance:g} # is backlash
-"""
-
-
-def _gear(pair: PairSketch, gear: GearSketch) -> str:
-    """Return the fields of an external gear."""
-    relief, length = pair.relief
-    shift = (
-        f"profile_shift_coefficient = {gear.shift:g} # balances the sliding of both roots\n"
-        if gear.shift
-        else ""
-    )
-    allowance = f"thickness_allowance_um = {gear.allowance:g} # is backlash\n" if gear.allowance else ""
-    return f"""teeth = {gear.teeth}
-face_width_mm = {pair.width:g}
-bore_diameter_mm = {gear.held:g}
-{shift}{allowance}tip_relief_um = {relief:g}
-tip_relief_length_mm = {length:g} # along the radius
-helix_crowning_um = {pair.crowning:g} # at both ends of the face
-"""
+    Raises
+    ------
+    BadInput
+        No planets fit a ratio that small.
+    """
+    module, teeth, helix = wanted.module or 2.0, wanted.teeth or 24, wanted.helix or 0.0
+    wished = 0.5 * teeth * ((wanted.ratio or 5.0) - 2.0)
+    fitting = [count for count in range(_LEAST_TEETH, int(wished) + 4) if (teeth + count) % PLANETS == 0]
+    if not fitting or wished < _LEAST_TEETH:
+        least = 2.0 + 2.0 * _LEAST_TEETH / teeth
+        bound = f"at least {least:.3g} with {teeth} teeth of the sun"
+        raise BadInput.of("--ratio", wanted.ratio, bound, "Or leave it out.")
+    planet = min(fitting, key=lambda count: abs(count - wished))
+    width = wanted.width or _face_width(module, helix)
+    ring = _ring_pair(module, helix, width, planet, teeth + 2 * planet)
+    transverse = module / math.cos(helix * DEGREE)
+    sun = GearSketch(teeth, 0.0, _bore_of(teeth, module, helix, width), ring.wheel.allowance)
+    torque = tuple(float(f"{value * teeth / planet:.2g}") for value in ring.torque)
+    pair = PairSketch(module, helix, width, 0.5 * transverse * (teeth + planet), sun, ring.pinion, torque)
+    return StageSketch(pair, ring, 2.0 + 2.0 * planet / teeth)

@@ -8,7 +8,7 @@ import shutil
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,16 +33,7 @@ if TYPE_CHECKING:
 _COLORS = {"failed": "red", "dismissed": "yellow"}
 
 
-@dataclass(frozen=True)
-class JobSelection:
-    """Which jobs are listed: of these processes and states (empty: all), at most so many."""
-
-    process: Sequence[str]
-    status: Sequence[str]
-    limit: int
-
-
-def waited(client: LineOfActionClient, job: str) -> Result:
+def _waited(client: LineOfActionClient, job: str) -> Result:
     """Say which job it is, wait for it with a bar on a terminal; Ctrl-C says what can be done with it."""
     screen = Console(stderr=True)
     screen.print(f"job {job}", highlight=False)
@@ -74,10 +65,12 @@ def _bar(screen: Console) -> Iterator[Watch]:
         yield see
 
 
-def run_jobs(service: str, wanted: JobSelection, *, as_json: bool) -> None:
-    """List the jobs of a service, the newest first."""
+def run_jobs(
+    service: str, process: Sequence[str], status: Sequence[str], limit: int, *, as_json: bool
+) -> None:
+    """List so many jobs of a service, the newest first, of these processes and states (empty: all)."""
     with LineOfActionClient(service) as client:
-        jobs = list(client.jobs(process=wanted.process, status=wanted.status, limit=wanted.limit))
+        jobs = list(client.jobs(process=process, status=status, limit=limit))
     if as_json:
         print_json({"jobs": [asdict(job) for job in jobs]})
         return
@@ -110,28 +103,27 @@ _OF_SCENES = ("simulate", *studies_of("scene"))
 _OF_BOTH = studies_of("case or scene")
 
 
-@dataclass(frozen=True)
-class ProcessRequest:
-    """A process to run on a file, None for the file's own, further inputs as JSON, terms of the job."""
-
-    process: str | None = None
-    inputs: str | None = None
-    terms: Mapping[str, Any] = field(default_factory=dict)
-
-
 def run_submit(
-    file: InputFile, service: str, request: ProcessRequest, *, wait: bool, output: Path | None, as_json: bool
+    file: InputFile,
+    service: str,
+    process: str | None,
+    inputs: str | None,
+    terms: Mapping[str, Any],
+    *,
+    wait: bool,
+    output: Path | None,
+    as_json: bool,
 ) -> None:
-    """Submit; wait and write if requested."""
+    """Submit a process, None for the file's own, with inputs as JSON; wait and write if requested."""
     if output is not None:
         check_writable(output)
-    further = _further(request)
-    with LineOfActionClient(service).with_terms(**request.terms) as client:
-        state = _submitted(client, file, request.process, further)
+    further = _further(process, inputs)
+    with LineOfActionClient(service).with_terms(**terms) as client:
+        state = _submitted(client, file, process, further)
         warn(state.warnings)
         facts: dict[str, object] = {"job": state.id, "process": state.process, "status": state.status}
         if wait or output is not None:
-            result = waited(client, state.id)
+            result = _waited(client, state.id)
             facts |= {"status": "successful", "hash": result.key, "kind": result.kind}
         if output is not None:
             shutil.copyfile(client.fetch_file(result.key, result.kind), output)
@@ -147,21 +139,21 @@ def run_submit(
         _tell(f"Its result, once it has ended: loa fetch {state.id} --service {service} -o FILE")
 
 
-def _further(request: ProcessRequest) -> dict[str, Any]:
+def _further(process: str | None, text: str | None) -> dict[str, Any]:
     known = (*_OF_CASES, *_OF_SCENES, *_OF_BOTH)
-    if request.process not in (None, *known):
-        raise BadInput.of("--process", request.process, f"one of {', '.join(known)}", "Or leave it out.")
-    if request.inputs is None:
+    if process not in (None, *known):
+        raise BadInput.of("--process", process, f"one of {', '.join(known)}", "Or leave it out.")
+    if text is None:
         return {}
     example = """For example --inputs '{"misalignment_um": 30}'."""
-    if request.process is None:
-        raise BadInput.of("--inputs", request.inputs, "given with --process", example)
+    if process is None:
+        raise BadInput.of("--inputs", text, "given with --process", example)
     try:
-        inputs = json.loads(request.inputs)
+        inputs = json.loads(text)
     except json.JSONDecodeError:
         inputs = None
     if not isinstance(inputs, dict) or "case" in inputs or "scene" in inputs:
-        raise BadInput.of("--inputs", request.inputs, "a JSON object without case and scene", example)
+        raise BadInput.of("--inputs", text, "a JSON object without case and scene", example)
     return inputs
 
 
@@ -210,7 +202,7 @@ def _ended(client: LineOfActionClient, job: str, *, wait: bool) -> Result:
     if not re.fullmatch(r"[0-9a-fA-F-]{1,64}", job):
         raise BadInput.of("name", job, "the identifier of a job or a content hash", "loa submit prints both.")
     try:
-        return waited(client, job) if wait else client.result(job)
+        return _waited(client, job) if wait else client.result(job)
     except ResultNotReady as error:
         raise ResultNotReady(f"{error} Wait for it with: loa fetch {job} --wait -o FILE") from None
 

@@ -1,152 +1,152 @@
-"""``loa serve``: the server of one process, its connections bounded."""
+"""Programs that run for long: ``loa serve`` in one process or several, ``loa work``; log and management port.
+
+Serving processes are forked from a process that has loaded the libraries, which they share. All accept
+connections of the one socket, so that none is lost when one of them dies.
+"""
 
 from __future__ import annotations
 
-import asyncio
+import logging
+import multiprocessing
+import os
+import shutil
 import signal
 import socket
-import uuid
+import sys
+import tempfile
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, closing, contextmanager
+from dataclasses import dataclass, field
 from functools import partial
+from multiprocessing.connection import wait
+from multiprocessing.process import BaseProcess
 from types import FrameType
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import structlog
-import uvicorn
-from fastapi import FastAPI
-from uvicorn.protocols.http.auto import AutoHTTPProtocol
+from prometheus_client import generate_latest
+from prometheus_client.multiprocess import MultiProcessCollector, mark_process_dead
 
+from host import child_environment
 from host.directories import keep_private
-from lineofaction.cli.guard import leave
-from lineofaction.cli.processes import (
-    announce_management,
-    end_with_parent,
-    log_to_standard_error,
-    managed,
-    serve_in_processes,
-)
-from lineofaction.gearbox.problems import (
-    BadInput,
-    HeadTooLarge,
-    Malformed,
-    ServiceError,
-    TooManyRequests,
-    TooSlow,
-)
+from lineofaction.gearbox.problems import BadInput, Unexpected
 from service.access import open_identities
 from service.access.capacity import capacity
-from service.app import create_app
-from service.management.server import EventLoop, Vitals
-from service.routes.context import Context
-from service.routes.middleware import problem_of
+from service.management.figures import process_registry
+from service.management.server import ManagementServer, Vitals
+from service.queue.machinery import Machinery, job_machinery
+from service.queue.scheduler import Scheduler
+from service.routes.warm_up import HEAVY
 from service.settings import Settings, load_settings
+from service.store import DirectoryLock
+from service.store.database import shown
+from service.store.deployment import Deployment, WriteCheck
+from service.tracing.tracer import tracer
+from service.worker.cluster import RemoteWork
+from service.worker.process import default_registry
 
-MOST_HEAD_BYTES = 65_536
-HEAD_WITHIN_S = 20.0
+if TYPE_CHECKING:
+    from lineofaction.cli.connections import Server
 
 logger = structlog.get_logger(__name__)
 
 
-class BoundedHttp(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of two classes, chosen by uvicorn
-    """A connection that is closed when a head is too long or late, or when idle while others want in.
+def log_to_standard_error() -> None:
+    """Write one line of JSON per event to standard error."""
+    structlog.configure(
+        processors=[
+            structlog.contextvars.merge_contextvars,
+            structlog.processors.add_log_level,
+            structlog.processors.TimeStamper(fmt="iso", utc=True),
+            structlog.processors.format_exc_info,
+            structlog.processors.JSONRenderer(),
+        ],
+        logger_factory=structlog.PrintLoggerFactory(sys.stderr),
+    )
+    logging.basicConfig(level=logging.WARNING, stream=sys.stderr)
 
-    Without it a peer that sends a head byte by byte holds its connection for ever, one that never ends a
-    head fills the memory, and some hundred that send nothing shut everybody out. Both classes of uvicorn
-    begin a new `cycle` with every head that is complete.
+
+# The management port of a program, where the settings have one.
+
+
+@contextmanager
+def _managed(settings: Settings, vitals: Vitals, metrics: Callable[[], bytes]) -> Iterator[str | None]:
+    """Answer on the management port while the context lasts; yields its URL, None without one.
+
+    Raises
+    ------
+    BadInput
+        The port is taken.
     """
+    if settings.management_port is None:
+        yield None
+        return
+    with ManagementServer(settings.management_host, settings.management_port, vitals, metrics) as server:
+        yield server.address
 
-    _timer: asyncio.TimerHandle | None = None
-    _head = 0
 
-    @property
-    def _idle(self) -> dict[BoundedHttp, None]:
-        """Connections of this server without a request, the one that is so for longest first."""
-        idle: dict[BoundedHttp, None] = self.server_state.__dict__.setdefault("idle", {})
-        return idle
+def _announce_management(address: str | None) -> None:
+    """Print where it is, below the line of the program itself."""
+    if address is not None:
+        print(f"lineofaction tells its health at {address}", flush=True)  # noqa: T201 (command line)
 
-    def connection_made(self, transport: Any) -> None:
-        """Make room if there are too many, and wait for the first head."""
-        super().connection_made(transport)
-        self.config.app.state.metrics.connected(1)
-        capacity = self.config.app.state.capacity
-        if len(self.connections) > capacity.comfortable_connections and self._idle:
-            self._close_longest_idle()
-        elif len(self.connections) > capacity.connections:
-            self._refuse(TooManyRequests("All connections are busy. Try again soon."))
-            return
-        self._idle[self] = None
-        self._await_head()
 
-    def data_received(self, data: bytes) -> None:
-        """Read on; close what is too long."""
-        before = self.cycle
-        if self._timer is None and (before is None or before.response_complete):
-            self._await_head()
-        self._head += len(data)
-        super().data_received(data)
-        if self.cycle is not before:
-            self._head_is_there()
-        elif self._timer is not None and self._head > MOST_HEAD_BYTES:
-            self._refuse(HeadTooLarge(f"The head has more than {MOST_HEAD_BYTES} bytes."))
+def _leave() -> NoReturn:
+    """End a process with success whose work is done, without the interpreter's own end.
 
-    def on_response_complete(self) -> None:
-        """Count as idle, unless the next request is there already."""
-        super().on_response_complete()
-        if self.cycle.response_complete and not self.transport.is_closing():
-            self._idle[self] = None
+    That frees module after module, for 0.7 CPU s once both libraries are loaded: several seconds beside
+    twenty busy processes, in which a supervisor waits.
+    """
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)
 
-    def connection_lost(self, exc: Exception | None) -> None:
-        """Wait no more."""
-        self._head_is_there()
-        self.config.app.state.metrics.connected(-1)
-        super().connection_lost(exc)
 
-    def send_400_response(self, msg: str) -> None:
-        """Refuse what is no HTTP, in place of the server's plain text."""
-        self._refuse(Malformed(msg))
+# ``loa work``.
 
-    def _close_longest_idle(self) -> None:
-        """Close one connection, as any server may at any time between requests (RFC 9112, section 9.5)."""
-        longest = next(iter(self._idle))
-        longest._head_is_there()
-        longest.transport.close()
-        self.config.app.state.metrics.dropped()
-        logger.info("idle connection closed", connections=len(self.connections))
 
-    def _await_head(self) -> None:
-        """Begin to count and to wait."""
-        self._head = 0
-        late = TooSlow(f"The head of the request did not arrive within {HEAD_WITHIN_S:g} s.")
-        self._timer = self.loop.call_later(HEAD_WITHIN_S, self._refuse, late)
+def run_work(**options: object) -> None:
+    """Run jobs until stopped by SIGTERM or SIGINT; workers end with the scheduler."""
+    settings = load_settings(**options)
+    keep_private()
+    log_to_standard_error()
+    lock = DirectoryLock(settings.data_directory)
+    lock.acquire()
+    stopped = threading.Event()
 
-    def _head_is_there(self) -> None:
-        """Wait no more."""
-        self._idle.pop(self, None)
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
+    def stop(_number: int, _frame: FrameType | None) -> None:
+        stopped.set()
 
-    def _refuse(self, error: ServiceError) -> None:
-        """Say why in the one shape of all problems, count and log it, and close."""
-        self._head_is_there()
-        if self.transport.is_closing():
-            return
-        identifier, answer = uuid.uuid4().hex[:12], problem_of(error)
-        headers = [*answer.raw_headers, (b"x-request-id", identifier.encode()), (b"connection", b"close")]
-        lines = b"".join(b"%s: %s\r\n" % header for header in headers)
-        status = f"HTTP/1.1 {error.status} {error.title}\r\n".encode()
-        self.transport.write(status + lines + b"\r\n" + bytes(answer.body))
-        self.transport.close()
-        self.config.app.state.metrics.refused(error.kind)
-        logger.info("request", status=error.status, problem=error.kind, request_id=identifier)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, stop)
+    try:
+        _work(settings, stopped)
+    finally:
+        lock.release()
+    _leave()
+
+
+def _work(settings: Settings, stopped: threading.Event) -> None:
+    """Run jobs until `stopped`."""
+    with closing(job_machinery(settings, default_registry())) as machinery:
+        engine, store, scheduler = machinery.engine, machinery.store, machinery.scheduler
+        writes = WriteCheck(Deployment(engine, store))
+        registry = process_registry(engine, store, writes, scheduler, settings)
+        with _managed(settings, Vitals(scheduler, writes), partial(generate_latest, registry)) as where:
+            scheduler.start()
+            try:
+                print(f"lineofaction works for {shown(engine)}", flush=True)  # noqa: T201 (command line)
+                _announce_management(where)
+                stopped.wait()
+            finally:
+                scheduler.stop()
+                tracer().flush()
 
 
 # ``loa serve``.
-
-
-_STOPPING_S = 2
-_KEPT_S = 75
-"""How long an idle connection is kept: longer than by clients (5 s) and proxies (60 s). If the server closed
-first, a request that is on its way just then would be answered with a reset."""
 
 
 def run_serve(*, works: bool = True, **options: object) -> None:
@@ -158,17 +158,16 @@ def run_serve(*, works: bool = True, **options: object) -> None:
     with _listener(settings) as listener:
         if settings.processes > 1:
             capacity(settings.workers if works else 0)  # refused before a process is started
-            serve_in_processes(
+            _serve_in_processes(
                 settings, works, partial(_serve, settings, listener), partial(_announce, listener)
             )
-            leave()
-        app = create_app(settings, works=works)
+            _leave()
+        server = _server(settings, works=works)
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, _stopped)
-        server = http_server(app)
-        with managed(settings, server.vitals, app.state.metrics.text) as where:
+        with _managed(settings, server.vitals, server.metrics) as where:
             _announce(listener)
-            announce_management(where)
+            _announce_management(where)
             server.run(sockets=[listener])
 
 
@@ -176,49 +175,17 @@ def _serve(settings: Settings, listener: socket.socket) -> None:
     """Serve as one of several processes, until stopped or until the one that supervises them is gone."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _stopped)
-    end_with_parent()
+    _end_with_parent()
     log_to_standard_error()
-    http_server(create_app(settings, works=False)).run(sockets=[listener])
+    _server(settings, works=False).run(sockets=[listener])
 
 
-def http_server(app: FastAPI) -> _Server:
-    """Return the server of an app."""
-    config = uvicorn.Config(
-        app,
-        http=BoundedHttp,
-        ws="none",
-        log_config=None,
-        access_log=False,
-        timeout_graceful_shutdown=_STOPPING_S,
-        timeout_keep_alive=_KEPT_S,
-        lifespan="on",
-    )
-    return _Server(config, app.state.context)
+def _server(settings: Settings, *, works: bool) -> Server:
+    """Return the server of this process; ``loa work`` loads none of it."""
+    from lineofaction.cli.connections import http_server  # noqa: PLC0415 (start-up time)
+    from service.app import create_app  # noqa: PLC0415 (start-up time)
 
-
-class _Server(uvicorn.Server):
-    """Tells those who wait for a live answer at once that the service stops; the rest have time to end.
-
-    Attributes
-    ----------
-    vitals : Vitals
-        Of the process that it serves in.
-    """
-
-    def __init__(self, config: uvicorn.Config, context: Context) -> None:
-        super().__init__(config)
-        self._context, self._loop = context, EventLoop()
-        self.vitals = Vitals(context.scheduler, context.writes, self._loop.fault)
-
-    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Begin to serve."""
-        self._loop.loop = asyncio.get_running_loop()
-        await super().startup(sockets)
-
-    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """End the workers that somebody waits for, then what uvicorn ends."""
-        await asyncio.to_thread(self._context.stop_waiting)
-        await super().shutdown(sockets)
+    return http_server(create_app(settings, works=works))
 
 
 def _announce(listener: socket.socket) -> None:
@@ -231,7 +198,7 @@ def _announce(listener: socket.socket) -> None:
 
 def _stopped(_number: int, _frame: FrameType | None) -> NoReturn:
     """End with success: uvicorn raises the signal again after it has shut everything down."""
-    leave()
+    _leave()
 
 
 def _listener(settings: Settings) -> socket.socket:
@@ -248,3 +215,151 @@ def _listener(settings: Settings) -> socket.socket:
         suggestion = f"{error.strerror}. Choose another with --port, or 0 for a free one."
         raise BadInput.of("port", settings.port, "a free port", suggestion) from None
     return listener
+
+
+# Several serving processes on one socket, and beside them the scheduler of their jobs.
+
+
+LEAST_LIFE_S = 5.0
+"""Processes that end earlier are replaced only after so long: what they lack may be there by then."""
+STOPPING_S = 3.5
+"""After which serving processes that do not stop are killed."""
+_LOOK_S = 0.2
+_APPLICATION = "service.app"
+_METRICS = "PROMETHEUS_MULTIPROC_DIR"
+"""Where prometheus-client keeps the figures of all processes, by its own name."""
+
+Work = Callable[[], None]
+"""What a process does; pickled on the way to it."""
+
+
+def _serve_in_processes(settings: Settings, works: bool, serve: Work, announce: Work) -> None:
+    """Let `settings.processes` processes `serve` until SIGTERM or SIGINT; if it `works`, a scheduler here.
+
+    `announce` is called when the first of them are started.
+
+    Raises
+    ------
+    BadInput, DatabaseUnavailable, StoreUnavailable
+        As `job_machinery`, before a process is started.
+    Unexpected
+        The scheduler died: the service has to be started again.
+    """
+    stopped = threading.Event()
+
+    def stop(_number: int, _frame: FrameType | None) -> None:
+        stopped.set()
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, stop)
+    lock = DirectoryLock(settings.data_directory)
+    if works:
+        lock.acquire()
+    metrics = tempfile.mkdtemp(prefix="loa-metrics-")
+    os.environ.update(child_environment(**{_METRICS: metrics}))
+    try:
+        machinery = job_machinery(settings, default_registry(), works=works)
+        with closing(machinery), _managed_in_sum(settings, machinery, metrics) as where:
+            processes = ServingProcesses(settings.processes, serve)
+            machinery.scheduler.start()
+            announce()
+            _announce_management(where)
+            _supervise(processes, machinery.scheduler, stopped)
+    finally:
+        lock.release()
+        shutil.rmtree(metrics, ignore_errors=True)
+    if not stopped.is_set():
+        raise Unexpected("scheduler")
+
+
+def _managed_in_sum(
+    settings: Settings, machinery: Machinery, metrics: str
+) -> AbstractContextManager[str | None]:
+    """Return the management port: health of the scheduler, sums of the figures in the folder `metrics`."""
+    engine, store, scheduler = machinery.engine, machinery.store, machinery.scheduler
+    writes = WriteCheck(Deployment(engine, store))
+    registry = process_registry(engine, store, writes, scheduler, settings)
+    MultiProcessCollector(registry, path=metrics)  # type: ignore[no-untyped-call]
+    return _managed(settings, Vitals(scheduler, writes), partial(generate_latest, registry))
+
+
+def _supervise(
+    processes: ServingProcesses, scheduler: Scheduler | RemoteWork, stopped: threading.Event
+) -> None:
+    """Keep the processes alive until `stopped`, or the scheduler is dead; then stop all."""
+    try:
+        while not stopped.is_set() and scheduler.alive:
+            processes.replace_dead()
+            processes.wait(_LOOK_S)
+    finally:
+        processes.terminate()
+        scheduler.stop()
+        processes.join()
+
+
+@dataclass
+class ServingProcesses:
+    """Processes that answer requests.
+
+    Attributes
+    ----------
+    number : int
+        How many there are to be.
+    serve : callable
+        What each does until it is stopped.
+    """
+
+    number: int
+    serve: Work
+    _alive: list[BaseProcess] = field(default_factory=list)
+    _starts: deque[float] = field(default_factory=deque)
+
+    def replace_dead(self) -> None:
+        """Start what is missing; `number` starts are at least `LEAST_LIFE_S` apart."""
+        for process in [process for process in self._alive if not process.is_alive()]:
+            logger.warning("serving process ended", pid=process.pid, code=process.exitcode)
+            mark_process_dead(process.pid, os.environ[_METRICS])  # type: ignore[no-untyped-call]
+            self._alive.remove(process)
+        while len(self._alive) < self.number:
+            if len(self._starts) == self.number and time.monotonic() < self._starts[0] + LEAST_LIFE_S:
+                return
+            self._starts = deque([*self._starts, time.monotonic()], maxlen=self.number)
+            self._alive.append(self._started())
+
+    def _started(self) -> BaseProcess:
+        context = multiprocessing.get_context("forkserver")
+        context.set_forkserver_preload([_APPLICATION, *HEAVY])
+        process = context.Process(target=self.serve)
+        process.start()
+        logger.info("serving process started", pid=process.pid)
+        return process
+
+    def wait(self, longest_s: float) -> None:
+        """Wait until a process ends, or for so long."""
+        wait([process.sentinel for process in self._alive], longest_s)
+
+    def terminate(self) -> None:
+        """Ask all to stop."""
+        for process in self._alive:
+            process.terminate()
+
+    def join(self) -> None:
+        """Wait until all have stopped; kill those that take too long."""
+        end = time.monotonic() + STOPPING_S
+        for process in self._alive:
+            process.join(max(end - time.monotonic(), 0.0))
+            if process.is_alive():
+                logger.warning("serving process killed", pid=process.pid)
+                process.kill()
+
+
+def _end_with_parent() -> None:
+    """Let this process stop when the supervising process has ended, however that ended."""
+
+    def heed() -> None:
+        parent = multiprocessing.parent_process()
+        assert parent is not None
+        parent.join()
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    threading.Thread(target=heed, name="parent", daemon=True).start()

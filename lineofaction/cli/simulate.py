@@ -41,7 +41,7 @@ from lineofaction.report.drawing.page import Headline
 # The main figures of a run: how far its forces swing.
 
 
-def run_headlines(peaks: Mapping[str, Any]) -> tuple[Headline, ...]:
+def _run_headlines(peaks: Mapping[str, Any]) -> tuple[Headline, ...]:
     """Return the largest mesh force, and the largest force on a bearing, from the `peaks` of a receipt."""
     meshes = {name: (force["peak"], force["rms"]) for name, force in peaks.get("mesh_force", {}).items()}
     bearings = {
@@ -62,13 +62,8 @@ def _largest(what: str, forces: dict[str, tuple[float, float]]) -> Headline:
     return Headline(f"largest {what} {name}", f"{number(peak, 4)} N", f"rms {number(rms, 4)} N")
 
 
-def scene_with_tables(scene: SceneInput, folder: Path, service: str | None, report: Report) -> Scene:
-    """Return the scene in SI with its tables; `folder` is what its files are relative to."""
-    return tabled_scene(scene, folder, service, report).scene
-
-
 def tabled_scene(scene: SceneInput, folder: Path, service: str | None, report: Report) -> TabledScene:
-    """Return the scene with its tables and with its cases written out; see `scene_with_tables`."""
+    """Return the scene with its tables and with its cases written out; its files are relative to `folder`."""
     if service is None:
         here = MeshTables(folder, ComputedTables(lambda case: analyzed(case, report)))
         return scene_by_tables(
@@ -89,7 +84,7 @@ def run_simulate(file: InputFile, output: Path, service: str | None, *, resume: 
         advice = "There is none. Omit --resume to start a run."
         raise BadInput.of("--resume", str(output), "the file of a run that was interrupted", advice)
     with progress_bar() as report:
-        _run(scene_with_tables(scene, folder, service, report), output, report, resume=resume)
+        _run(tabled_scene(scene, folder, service, report).scene, output, report, resume=resume)
     stamp(output, warnings_so_far())
     facts = {"file": str(output), **run_json(output)}
     if as_json:
@@ -111,11 +106,10 @@ def _run(scene: Scene, output: Path, report: Report, *, resume: bool) -> None:
 
 
 def _show(facts: dict[str, Any]) -> None:
-    """Print a run for people."""
     out = console()
     attributes, sizes = facts["attributes"], facts["dimensions"]
     for line in model_lines(attributes):
         out.print(line, highlight=False, soft_wrap=True)
     status = str(attributes["status"]).lower().replace("_", " ")
     out.print(f"run {status}: {sizes['time']} samples", highlight=False)
-    print_result(run_headlines(attributes["receipt"].get("peaks", {})), [Path(str(facts["file"]))])
+    print_result(_run_headlines(attributes["receipt"].get("peaks", {})), [Path(str(facts["file"]))])

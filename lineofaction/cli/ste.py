@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from bounds import engineering
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.guard import warn
-from lineofaction.cli.output import console, print_json, table
+from lineofaction.cli.output import console, csv_text, print_json, table
 from lineofaction.gearbox.convert.answers import curve_json
 from lineofaction.gearbox.problems import BadInput
 
@@ -20,26 +18,17 @@ _FARTHEST = 1e6
 _SHOWN_ORDERS = 8
 
 
-@dataclass(frozen=True)
-class CurveRequest:
-    """The arguments of ``loa ste``, in boundary units."""
-
-    torque: float | None
-    force: float | None
-    at: str | None
-    misalignment_um: float | None
-    center_distance_change_mm: float | None
-
-
-def run_ste(file: Path, request: CurveRequest, *, as_csv: bool, as_json: bool) -> None:
-    """Read, evaluate, print."""
+def run_ste(
+    file: Path, point: dict[str, float | None], at: str | None, *, as_csv: bool, as_json: bool
+) -> None:
+    """Read, evaluate, print; `point` holds the options of load and alignment by their names."""
     database = open_ste(file)
     warn(database.metadata.warnings)
-    curve = curve_json(database, **_arguments(request))
+    curve = curve_json(database, **_arguments(point), at=None if at is None else positions(at))
     if as_json:
         print_json(curve)
     elif as_csv:
-        _write_csv(curve)
+        sys.stdout.write(csv_text(_columns(curve), _rows(curve)))
     else:
         _show(curve)
 
@@ -56,24 +45,18 @@ def open_ste(file: Path) -> SteDatabase:
     return SteDatabase.from_netcdf(file)
 
 
-def _arguments(request: CurveRequest) -> dict[str, Any]:
-    if (request.torque is None) == (request.force is None):
-        both = None if request.torque is None else f"--torque {request.torque:g} --force {request.force:g}"
+def _arguments(point: dict[str, float | None]) -> dict[str, Any]:
+    torque, force, misalignment_um, center_distance_change_mm = point.values()
+    if (torque is None) == (force is None):
+        both = None if torque is None else f"--torque {torque:g} --force {force:g}"
         raise BadInput.of(
             "--torque", both, "given, or --force instead, but not both", "For example --torque 100."
         )
-    names = ("torque", "force", "misalignment_um", "center_distance_change_mm")
-    for name in names:
-        value = getattr(request, name)
+    for name, value in point.items():
         if value is not None and not math.isfinite(value):
             raise BadInput.of(f"--{name.replace('_', '-')}", value, "a finite number")
-    return {
-        "torque_n_m": request.torque,
-        "force_n": request.force,
-        "at": None if request.at is None else positions(request.at),
-        "misalignment_um": request.misalignment_um,
-        "center_distance_change_mm": request.center_distance_change_mm,
-    }
+    place = {"misalignment_um": misalignment_um, "center_distance_change_mm": center_distance_change_mm}
+    return {"torque_n_m": torque, "force_n": force, **place}
 
 
 def positions(text: str) -> list[float]:
@@ -89,7 +72,6 @@ def positions(text: str) -> list[float]:
 
 
 def _rows(curve: dict[str, Any]) -> list[list[str]]:
-    """Lines of the table."""
     lines = zip(curve["position"], curve["ste_um"], curve["load_share"], strict=True)
     return [[repr(x), f"{ste:.9g}", *(f"{share:.6g}" for share in shares)] for x, ste, shares in lines]
 
@@ -98,14 +80,7 @@ def _columns(curve: dict[str, Any]) -> list[str]:
     return ["position", "ste_um", *(f"load_share_{pair:+d}" for pair in curve["pair"])]
 
 
-def _write_csv(curve: dict[str, Any]) -> None:
-    writer = csv.writer(sys.stdout, lineterminator="\n")
-    writer.writerow(_columns(curve))
-    writer.writerows(_rows(curve))
-
-
 def _show(curve: dict[str, Any]) -> None:
-    """Print the curve for people."""
     out = console()
     rows = [[f"{float(row[0]):.5f}", f"{float(row[1]):.4f}", *row[2:]] for row in _rows(curve)]
     out.print(table(_columns(curve), rows))

@@ -24,7 +24,6 @@ from lineofaction.cli.output import (
     check_writable,
     console,
     csv_text,
-    output_files,
     print_json,
     print_result,
     progress_bar,
@@ -114,7 +113,6 @@ def run_study(study: Study, options: Json) -> None:
 def _tell(
     study: Study, subject: Any, result: Any, targets: list[Path], options: Json, remote_seconds: float
 ) -> None:
-    """Write the files, and print the result in the form that was requested."""
     for target in targets:
         target.parent.mkdir(exist_ok=True)
         _writers(study, subject)[target.suffix](result, target)
@@ -132,7 +130,6 @@ def _run(options: Json) -> RunResult | None:
 
 
 def _inputs(study: Study, options: Json) -> Any:
-    """Return the inputs, from their file or the options that were given."""
     if study.from_file:
         if options["study"] is None:
             return validated(study.inputs, {})
@@ -141,7 +138,6 @@ def _inputs(study: Study, options: Json) -> Any:
 
 
 def _fields(study: Study, options: Json) -> Json:
-    """Return the fields of the inputs, from the options that were given."""
     fields = {}
     for name, field in study.inputs.model_fields.items():
         value, spelling = options[name], spelling_of(field)
@@ -195,11 +191,31 @@ def _targets(study: Study, output: Path | None) -> list[Path]:
     if output is None:
         return []
     if study.folder:
-        return output_files(output, study.folder, study.endings)
+        return _output_files(output, study.folder, study.endings)
     if output.suffix not in study.endings:
         raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(study.endings)}")
     check_writable(output)
     return [output]
+
+
+def _output_files(output: Path, stem: str, endings: Sequence[str]) -> list[Path]:
+    """Return the files to write: one by its ending, or `stem` with all endings in a folder, made if missing.
+
+    Raises
+    ------
+    BadInput
+        Neither, or not writable.
+    """
+    bound = f"a folder, or a file ending in one of {', '.join(endings)}"
+    if output.suffix and not output.is_dir():
+        if output.suffix not in endings:
+            raise BadInput.of("output", str(output), bound)
+        check_writable(output)
+        return [output]
+    if output.is_file():
+        raise BadInput.of("output", str(output), bound)
+    check_writable(output / "x" if output.is_dir() else output)
+    return [output / f"{stem}{ending}" for ending in endings]
 
 
 def _writers(study: Study, subject: Any) -> dict[str, Writer]:
@@ -220,7 +236,6 @@ def _writers(study: Study, subject: Any) -> dict[str, Writer]:
 
 
 def _csv(study: Study, result: Any) -> str:
-    """Return the numbers of the plot as CSV."""
     numbers = presentation_of(study).series
     assert numbers is not None
     series = numbers(result)

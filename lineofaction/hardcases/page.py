@@ -35,7 +35,6 @@ def hardcases_page(outcomes: Sequence[Outcome]) -> Page:
 
 
 def _section(family: str, outcomes: Sequence[Outcome]) -> Section:
-    """Return the scenes of one family, and their figures folded."""
     head = ("scene", "result", "time, s", "CPU, s", "hard because", "criterion")
     rows = tuple(
         (
@@ -55,7 +54,6 @@ def _section(family: str, outcomes: Sequence[Outcome]) -> Section:
 
 
 def _figures(outcome: Outcome) -> Table:
-    """Return the figures of one scene with their bounds."""
     rows = tuple(
         (figure.name, number(figure.value, 3), figure.bound, "" if figure.passed else "out of bounds")
         for figure in outcome.figures

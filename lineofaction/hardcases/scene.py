@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import multiprocessing
-import os
 import signal
 import time
 import warnings
@@ -15,7 +14,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any
 
 from bounds import PlausibilityWarning
-from host import kill_group, lead_session
+from host import cpu_seconds, kill_group, lead_session
 
 TIME_LIMIT = 60.0
 """Seconds after which a scene is ended from outside, unless it says otherwise."""
@@ -99,11 +98,6 @@ class HardScene:
         begin, busy = time.perf_counter(), cpu_seconds()
         figures = tuple(self.measure())
         return Outcome(self, figures, time.perf_counter() - begin, cpu_seconds=cpu_seconds() - busy)
-
-
-def cpu_seconds() -> float:
-    """Return the CPU time of this process and of what it started and has ended, s."""
-    return sum(os.times()[:4])
 
 
 @dataclass(frozen=True)
@@ -238,7 +232,6 @@ def _serve(pipe: Connection) -> None:
 
 
 def _outcome(scene: HardScene) -> Outcome:
-    """Run one scene; an exception is an outcome."""
     begin = time.perf_counter()
     try:
         return scene.run()

@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.errors import FeContactError, InputError
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.types import FloatArray
-from lineofaction.hardcases.contact.laws import even_positions
+from lineofaction.hardcases.contact.laws import even_positions, off
 from lineofaction.hardcases.scene import HardScene, Measured
 
 BASE_RADIUS = 0.04 * math.cos(math.radians(20.0))
@@ -98,7 +98,7 @@ _SEED = 20260102
 _FORCE = np.array([500.0, 1000.0, 2500.0, 5000.0])
 
 
-def square_wave_ste() -> Sequence[Measured]:
+def _square_wave_ste() -> Sequence[Measured]:
     """Extract forces from an STE that jumps to its double between two knots."""
     position = even_positions(64)
     ste = _square_wave(position)[:, None] * _FORCE
@@ -167,7 +167,7 @@ def _lift_off() -> Sequence[Measured]:
     )
 
 
-def queries_outside() -> Sequence[Measured]:
+def _queries_outside() -> Sequence[Measured]:
     """Ask beyond every end of the table, far away, and for what is no number."""
     position = even_positions(32)
     compliance = COMPLIANCE * (1.0 + 0.3 * np.cos(2.0 * np.pi * position))
@@ -186,9 +186,7 @@ def queries_outside() -> Sequence[Measured]:
     return (
         Measured("a million pitches away, relative change", float(far), most=1e-9),
         Measured("12345 pitches back, relative change", float(behind), most=1e-11),
-        Measured(
-            "beyond the top, off the straight continuation", _relative(beyond.force, straight), most=1e-9
-        ),
+        Measured("beyond the top, off the straight continuation", off(beyond.force, straight), most=1e-9),
         Measured("flags beyond the top", float(np.count_nonzero(beyond.validity)), least=float(x.size)),
         Measured("flags inside", float(np.count_nonzero(inside.validity)), most=0.0),
         Measured("of four queries that are no numbers, refused", float(refused), least=4.0),
@@ -210,9 +208,9 @@ def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     return (
         Measured(
             "STE at each misalignment off the one stored for it",
-            max(_relative(values, np.full(x.size, f)) for values, f in zip(at, factor, strict=True)), 1e-12,
+            max(off(values, np.full(x.size, f)) for values, f in zip(at, factor, strict=True)), 1e-12,
         ),
-        Measured("force likewise", max(_relative(values, np.full(x.size, 2500.0)) for values in force), 1e-9),
+        Measured("force likewise", max(off(values, np.full(x.size, 2500.0)) for values in force), 1e-9),
         Measured("STE between two misalignments over that at the lower one", float(between.min()), least=1.0),
         Measured("over that at the higher one", float(between.max() / 1.5), most=1.0),
         Measured("flags beyond the axis", float(np.count_nonzero(beyond.validity)), least=float(x.size)),
@@ -266,14 +264,10 @@ def _slope_error(table: SteDatabase) -> Measured:
     return Measured("stiffness off the difference of forces", float(off.max()), most=1e-3)
 
 
-def _relative(values: FloatArray, expected: FloatArray) -> float:
-    return float(np.abs(values / expected - 1.0).max())
-
-
 def _above(table: SteDatabase, straight: FloatArray, force: FloatArray) -> float:
     """Largest relative difference to a straight law, from the lowest stored load on."""
     stored = force >= table.force[0]
-    return _relative(table.ste(table.position[:, None], force[stored]), straight[:, stored])
+    return off(table.ste(table.position[:, None], force[stored]), straight[:, stored])
 
 
 def _refused(table: SteDatabase, position: float, deflection: float) -> bool:
@@ -290,7 +284,7 @@ SQUARE_WAVE = HardScene(
     "STE doubles between two knots, at every load: any smooth interpolant wants to swing.",
     "No value leaves the wave's range, force grows with approach, and force and STE are inverse to each "
     "other.",
-    square_wave_ste,
+    _square_wave_ste,
 )
 TWO_LOADS = HardScene(
     "two_loads_only",
@@ -311,7 +305,7 @@ OUTSIDE = HardScene(
     "table",
     "Positions of a million pitches, approaches far beyond the highest load, and what is no number.",
     "Position repeats; beyond the top the curve goes on straight and is flagged; no number is refused.",
-    queries_outside,
+    _queries_outside,
 )
 NEARLY_PARALLEL = HardScene(
     "nearly_parallel_curves",

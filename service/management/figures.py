@@ -215,7 +215,7 @@ class Metrics:
     def __init__(self, process: CollectorRegistry) -> None:
         self._process, self._registry = process, CollectorRegistry()
         self._answered = self._registry
-        if "PROMETHEUS_MULTIPROC_DIR" in os.environ:  # see `lineofaction.cli.processes`
+        if "PROMETHEUS_MULTIPROC_DIR" in os.environ:  # see `lineofaction.cli.serve`
             self._answered = CollectorRegistry()
             MultiProcessCollector(self._answered)  # type: ignore[no-untyped-call]
         labels = ["method", "route", "status"]

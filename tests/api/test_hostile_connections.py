@@ -12,7 +12,7 @@ from running_service import PATIENCE_S, until
 from service_fakes import REGISTRY
 
 from lineofaction.cli import serve as bounded_http
-from lineofaction.cli.serve import BoundedHttp
+from lineofaction.cli.connections import BoundedHttp
 from service.access.capacity import Capacity
 from service.app import create_app
 from service.routes import middleware

@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 from running_service import until
 from service_fakes import REGISTRY
 
-from lineofaction.cli.processes import log_to_standard_error
+from lineofaction.cli.serve import log_to_standard_error
 from service.app import create_app
 from service.settings import Settings
 

@@ -23,8 +23,8 @@ import pytest
 from running_service import PATIENCE_S, lives, until
 from whole_service import _CASE
 
-from lineofaction.cli import processes as serving_processes
-from lineofaction.cli.processes import ServingProcesses
+from lineofaction.cli import serve as serving_processes
+from lineofaction.cli.serve import ServingProcesses
 
 ROOT = Path(__file__).parents[2]
 NUMBER, CALLERS = 3, 6

@@ -18,7 +18,7 @@ from served_app import served
 from service_fakes import REGISTRY
 from trace_receiver import TraceReceiver, trace_receiver
 
-from lineofaction.cli.processes import log_to_standard_error
+from lineofaction.cli.serve import log_to_standard_error
 from lineofaction.client import LineOfActionClient
 from service.app import create_app
 from service.queue.attempt import WorkerFigures
@@ -168,7 +168,7 @@ def test_nothing_of_opentelemetry_is_loaded_by_the_client_and_its_sdk_by_nobody_
         "from lineofaction.client.exchange import traced\n"
         "assert traced({'json': 1}) == {'json': 1}\n"
         "assert not [name for name in sys.modules if name.startswith('opentelemetry')]\n"
-        "import lineofaction.cli.processes, service.app\n"
+        "import lineofaction.cli.serve, service.app\n"
         "from service.tracing.tracer import Silent, tracer\n"
         "assert isinstance(tracer(), Silent)\n"
         "assert not [name for name in sys.modules if name.startswith('opentelemetry.sdk')]\n"

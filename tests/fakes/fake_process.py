@@ -30,7 +30,7 @@ DatabaseUnavailable = import_module(
 
 def serve(works: bool, descriptor: int) -> None:
     """Answer on the socket until stopped."""
-    http_server = import_module(f"{'service' if OLD else 'lineofaction'}.cli.serve").http_server
+    http_server = import_module("service.cli.serve" if OLD else "lineofaction.cli.connections").http_server
     from service import app as application  # noqa: PLC0415 (start-up time: working needs no web framework)
 
     application.warm_up = lambda: None

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from fastapi import FastAPI
 from running_service import until
 
-from lineofaction.cli.serve import http_server
+from lineofaction.cli.connections import http_server
 
 
 @contextmanager

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,19 +14,25 @@ from lineofaction.cli.options import (
     CaseFile,
     DaskScheduler,
     Force,
-    LoadPoint,
+    PairWishes,
     SceneFile,
     TableService,
     TaskWorkers,
     file_argument,
     overridable,
 )
-from lineofaction.cli.options import PairWishes as Wanted
-from lineofaction.gearbox.input_file import InputFile
+from lineofaction.cli.verbs import Later
+from lineofaction.gearbox.input_file import InputFile, number_list
 
 if TYPE_CHECKING:
-    from lineofaction.cli.listen import HousingReceiver
-    from lineofaction.report.run.view import RunView
+    from lineofaction.cli import analyze, export, hardcases, listen, new, pages, simulate, ste
+    from lineofaction.report.run import view as views
+else:
+    analyze, export, hardcases, listen = map(
+        Later, ("cli.analyze", "cli.export", "cli.hardcases", "cli.listen")
+    )
+    new, pages, simulate, ste = map(Later, ("cli.new", "cli.pages", "cli.simulate", "cli.ste"))
+    views = Later("report.run.view")
 
 verbs = typer.Typer()
 
@@ -50,14 +56,12 @@ def _new(
     internal: Annotated[bool, typer.Option("--internal", help="A pinion in a ring gear.")] = False,
     planetary: Annotated[bool, typer.Option("--planetary", help="A planetary stage, as a scene.")] = False,
     scene: Annotated[bool, typer.Option("--scene", help="A helical pair between shafts.")] = False,
-    wanted: Wanted,
+    wanted: PairWishes,
     output: NewFile = None,
 ) -> None:
     """Write a first case or scene file; rules set all data that are not given."""
-    from lineofaction.cli.new import run_new  # noqa: PLC0415 (start-up time)
-
     kinds = {"spur": spur, "helical": helical, "internal": internal, "planetary": planetary, "scene": scene}
-    run_new(kinds, wanted, output)
+    new.run_new(kinds, wanted, output)
 
 
 @verbs.command("open", epilog="Example: loa open gearbox.rexs --out gearbox")
@@ -75,9 +79,7 @@ def _open_unit(
     json: AsJson = False,
 ) -> None:
     """Open a gear unit of another tool (REXS): write its cases, its scene and the report of the import."""
-    from lineofaction.cli.new import run_open  # noqa: PLC0415 (start-up time)
-
-    run_open(file, out, assume or (), as_json=json)
+    new.run_open(file, out, assume or (), as_json=json)
 
 
 # Verbs on one gear pair: its table, curves, and files for other programs.
@@ -94,10 +96,7 @@ def _analyze(
     json: AsJson = False,
 ) -> None:
     """Compute the STE database of a case."""
-    from lineofaction.cli.analyze import run_analyze  # noqa: PLC0415 (start-up time)
-    from lineofaction.gearbox.tabled_scene import ExecutorChoice  # noqa: PLC0415
-
-    run_analyze(case, output, ExecutorChoice(workers, dask), as_json=json)
+    analyze.run_analyze(case, output, workers, dask, as_json=json)
 
 
 @verbs.command("geometry", epilog="Example: loa geometry examples/sensitivity_automotive.toml -o pair.html")
@@ -112,9 +111,7 @@ def _geometry(
     json: AsJson = False,
 ) -> None:
     """Print the data sheet of a pair (ISO 21771-1), and draw its mesh and its flank modifications."""
-    from lineofaction.cli.pages import run_geometry  # noqa: PLC0415 (start-up time)
-
-    run_geometry(case, output, as_json=json)
+    pages.run_geometry(case, output, as_json=json)
 
 
 @verbs.command("ste", epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")
@@ -135,14 +132,39 @@ def _ste(
     json: AsJson = False,
 ) -> None:
     """Print one STE curve of a database, with load sharing, mean, peak-to-peak and harmonics."""
-    from lineofaction.cli.ste import CurveRequest, run_ste  # noqa: PLC0415 (start-up time)
-
-    request = CurveRequest(torque, force, at, misalignment_um, center_distance_change_mm)
-    run_ste(database, request, as_csv=csv, as_json=json)
+    place = {"misalignment_um": misalignment_um, "center_distance_change_mm": center_distance_change_mm}
+    ste.run_ste(database, {"torque": torque, "force": force, **place}, at, as_csv=csv, as_json=json)
 
 
 @dataclass(frozen=True)
-class FmuOptions:
+class _LoadPoint:
+    """One load and alignment."""
+
+    torque: Annotated[
+        float | None, typer.Option(help="Torque on the driving gear in N m; default: the highest load.")
+    ] = None
+    force: Force = None
+    misalignment_um: Annotated[
+        float | None, typer.Option(help="Misalignment in um; default: the value of the case nearest to 0.")
+    ] = None
+    center_distance_change_mm: Annotated[
+        float | None,
+        typer.Option(help="Change of the center distance in mm; default: the value nearest to 0."),
+    ] = None
+
+    @property
+    def inputs(self) -> dict[str, float | None]:
+        """The load and the alignment under the names of their fields."""
+        return {
+            "torque_n_m": self.torque,
+            "normal_force_n": self.force,
+            "misalignment_um": self.misalignment_um,
+            "center_distance_change_mm": self.center_distance_change_mm,
+        }
+
+
+@dataclass(frozen=True)
+class _FmuOptions:
     """Start values of an exported FMU."""
 
     damping_n_s_per_m: Annotated[
@@ -155,7 +177,7 @@ class FmuOptions:
 
 
 @dataclass(frozen=True)
-class RunPart:
+class _RunPart:
     """What of a run is exported."""
 
     function: Annotated[
@@ -193,7 +215,7 @@ def _export(
             "with --rexs .rexs, .rexsj or .rexsz.",
         ),
     ],
-    point: LoadPoint,
+    point: _LoadPoint,
     at: Annotated[str, typer.Option(help="Positions of the driving gear in base pitches.")] = "0",
     beside: Annotated[
         int, typer.Option(min=0, max=100, help="Unloaded teeth to show on either side, in three dimensions.")
@@ -202,35 +224,20 @@ def _export(
         Path | None,
         typer.Option(help="REXS file of the unit to which the results are added."),
     ] = None,
-    fmu: FmuOptions,
-    part: RunPart,
+    fmu: _FmuOptions,
+    part: _RunPart,
     json: AsJson = False,
 ) -> None:
     """Write gears as they bend in mesh, the mesh force as FMU, results into REXS, a run as UFF or CSV."""
-    from lineofaction.cli.export import (  # noqa: PLC0415
-        is_for_runs,
-        run_export,
-        run_export_fmu,
-        run_export_rexs,
-        run_export_run,
-    )
-
-    if rexs is not None:
-        run_export_rexs(case.as_it_is, rexs, output, point.inputs, as_json=json)
-    elif is_for_runs(output):
-        run_export_run(case.as_it_is, output, part.function, (part.start, part.end), as_json=json)
-    elif output.suffix == ".fmu":
-        facts = point.inputs, fmu.damping_n_s_per_m, fmu.backlash_um
-        run_export_fmu(case.as_it_is, output, *facts, as_json=json)
-    else:
-        run_export(case, output, point.inputs, at, beside, as_json=json)
+    further = asdict(fmu) | asdict(part)
+    export.run_export(case, output, point.inputs, rexs, at=at, beside=beside, as_json=json, **further)
 
 
 # Verbs on scenes that are no studies: runs.
 
 
 @dataclass(frozen=True)
-class HeardOptions:
+class _HeardOptions:
     """What of a run is heard."""
 
     quantity: Annotated[
@@ -252,16 +259,9 @@ class HeardOptions:
         ),
     ] = ""
 
-    @property
-    def view(self) -> RunView:
-        """The view that the options name."""
-        from lineofaction.report.run.view import RunView  # noqa: PLC0415 (start-up time)
-
-        return RunView(self.quantity, self.bearing, self.mesh, direction=self.direction)
-
 
 @dataclass(frozen=True)
-class HousingOptions:
+class _HousingOptions:
     """Where a run is heard through the housings of a scene."""
 
     scene: Annotated[
@@ -280,13 +280,6 @@ class HousingOptions:
         ),
     ] = ""
 
-    @property
-    def receiver(self) -> HousingReceiver | None:
-        """What the options name."""
-        from lineofaction.cli.listen import housing_receiver  # noqa: PLC0415 (start-up time)
-
-        return housing_receiver(self.scene, self.point, self.microphone)
-
 
 @verbs.command("simulate", epilog="Example: loa simulate examples/palermo_scene.toml -o run.nc")
 @computing
@@ -301,9 +294,7 @@ def _simulate(
     json: AsJson = False,
 ) -> None:
     """Run the dynamics of a scene; Ctrl-C stops it, stores the results so far, and --resume continues."""
-    from lineofaction.cli.simulate import run_simulate  # noqa: PLC0415 (start-up time)
-
-    run_simulate(scene, output, service, resume=resume, as_json=json)
+    simulate.run_simulate(scene, output, service, resume=resume, as_json=json)
 
 
 @verbs.command("listen", epilog="Example: loa listen before.nc after.nc -o sounds")
@@ -316,14 +307,12 @@ def _listen(
         Path,
         typer.Option("-o", "--output", help="WAV file, or folder of one file per run, named as the run."),
     ],
-    heard: HeardOptions,
-    housing: HousingOptions,
+    heard: _HeardOptions,
+    housing: _HousingOptions,
     json: AsJson = False,
 ) -> None:
     """Write runs as WAV files of stated quantity and level, to hear and to compare by ear."""
-    from lineofaction.cli.listen import run_listen  # noqa: PLC0415 (start-up time)
-
-    run_listen(runs, output, heard.view, housing.receiver, as_json=json)
+    listen.run_listen(runs, output, views.RunView(**asdict(heard)), **asdict(housing), as_json=json)
 
 
 # Verbs on accuracy and robustness that are not studies of the registry: plans, hard scenes.
@@ -341,9 +330,7 @@ def _plan(
     json: AsJson = False,
 ) -> None:
     """Predict time by stage, memory and error of a case, with its effects; computes no contact."""
-    from lineofaction.cli.analyze import run_plan  # noqa: PLC0415 (start-up time)
-
-    run_plan(case, time_budget_s, as_json=json)
+    analyze.run_plan(case, time_budget_s, as_json=json)
 
 
 @verbs.command("hardcases", epilog="Example: loa hardcases --only table -o hardcases.html")
@@ -358,16 +345,14 @@ def _hardcases(
     json: AsJson = False,
 ) -> None:
     """Run the hard scenes: cases known to break solvers, each checked against laws of physics."""
-    from lineofaction.cli.hardcases import run_hardcases  # noqa: PLC0415 (start-up time)
-
-    run_hardcases(only or [], output, as_json=json)
+    hardcases.run_hardcases(only or [], output, as_json=json)
 
 
 # The verbs that write pages.
 
 
 @dataclass(frozen=True)
-class ViewOptions:
+class _ViewOptions:
     """What of a run is shown."""
 
     quantity: Annotated[
@@ -398,13 +383,10 @@ class ViewOptions:
     ] = ""
 
     @property
-    def view(self) -> RunView:
+    def view(self) -> views.RunView:
         """The view that the options name."""
-        from lineofaction.gearbox.input_file import number_list  # noqa: PLC0415 (start-up time)
-        from lineofaction.report.run.view import RunView  # noqa: PLC0415 (start-up time)
-
         cuts = tuple(number_list("--orders", self.orders)) if self.orders else ()
-        return RunView(self.quantity, self.bearing, self.mesh, cuts, self.window, self.scale, self.direction)
+        return views.RunView(**{**asdict(self), "orders": cuts})
 
 
 @verbs.command("report", epilog="Example: loa report ste.nc run.nc -o report.html")
@@ -424,13 +406,11 @@ def _report(
         bool,
         typer.Option("--flank", help="Compute the flank results at the load of the page."),
     ] = False,
-    view: ViewOptions,
+    view: _ViewOptions,
     json: AsJson = False,
 ) -> None:
     """Write one HTML page with the plots of a database, flank results, studies or a run."""
-    from lineofaction.cli.pages import run_report  # noqa: PLC0415 (start-up time)
-
-    run_report(files, output, images, view.view, flank=flank, as_json=json)
+    pages.run_report(files, output, images, view.view, flank=flank, as_json=json)
 
 
 @verbs.command("compare", epilog="Example: loa compare before.nc after.nc measured.csv -o comparison.html")
@@ -447,10 +427,8 @@ def _compare(
         float | None,
         typer.Option(help="Torque of the ripples shown, N m.", show_default="the middle one"),
     ] = None,
-    view: ViewOptions,
+    view: _ViewOptions,
     json: AsJson = False,
 ) -> None:
     """Compare two tables or two runs, or one with a measurement: differences with their errors."""
-    from lineofaction.cli.pages import run_compare  # noqa: PLC0415 (start-up time)
-
-    run_compare(files, output, view.view, torque, as_json=json)
+    pages.run_compare(files, output, view.view, torque, as_json=json)

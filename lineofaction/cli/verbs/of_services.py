@@ -4,14 +4,21 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from lineofaction.cli.guard import computing, grouped, guarded
 from lineofaction.cli.options import DEFAULT_SERVICE, AsJson, Service, file_argument, overridable
+from lineofaction.cli.verbs import Later
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.registry import studies_of
+
+if TYPE_CHECKING:
+    from lineofaction.cli import cache as kept
+    from lineofaction.cli import remote, serve, upkeep
+else:
+    kept, remote, serve, upkeep = map(Later, ("cli.cache", "cli.remote", "cli.serve", "cli.upkeep"))
 
 verbs = typer.Typer()
 
@@ -36,10 +43,8 @@ def _serve(
     ] = False,
 ) -> None:
     """Serve jobs and results over HTTP on this machine, until stopped."""
-    from lineofaction.cli.serve import run_serve  # noqa: PLC0415 (start-up time)
-
     settings = {"host": host, "port": port, "data_directory": data_directory}
-    run_serve(**settings, workers=workers, processes=processes, works=not no_work)
+    serve.run_serve(**settings, workers=workers, processes=processes, works=not no_work)
 
 
 @verbs.command("work", epilog="Example: LOA_DATABASE_URL=postgresql://loa@db/loa loa work --workers 4")
@@ -51,13 +56,11 @@ def _work(
     workers: Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")] = None,
 ) -> None:
     """Run the jobs of a database that loa serve --no-work fills, until stopped."""
-    from lineofaction.cli.processes import run_work  # noqa: PLC0415 (start-up time)
-
-    run_work(data_directory=data_directory, workers=workers)
+    serve.run_work(data_directory=data_directory, workers=workers)
 
 
 @dataclass(frozen=True)
-class TermOptions:
+class _TermOptions:
     """The terms of a job."""
 
     title: Annotated[str, typer.Option(help="Name of the job in lists.")] = ""
@@ -96,14 +99,12 @@ def _submit(
     inputs: Annotated[
         str | None, typer.Option(help="Further inputs of that process, as a JSON object.")
     ] = None,
-    terms: TermOptions,
+    terms: _TermOptions,
     json: AsJson = False,
 ) -> None:
     """Submit a case or a scene to a service."""
-    from lineofaction.cli.remote import ProcessRequest, run_submit  # noqa: PLC0415 (start-up time)
-
-    request = ProcessRequest(process, inputs, terms.as_sent)
-    run_submit(file, service, request, wait=wait, output=output, as_json=json)
+    job = process, inputs, terms.as_sent
+    remote.run_submit(file, service, *job, wait=wait, output=output, as_json=json)
 
 
 @verbs.command("fetch", epilog="Example: loa fetch 3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d -o ste.nc")
@@ -119,9 +120,7 @@ def _fetch(
     json: AsJson = False,
 ) -> None:
     """Fetch the result of a job, or a result by its hash, from a service or the cache."""
-    from lineofaction.cli.remote import run_fetch  # noqa: PLC0415 (start-up time)
-
-    run_fetch(name, output, service, wait=wait, as_json=json)
+    remote.run_fetch(name, output, service, wait=wait, as_json=json)
 
 
 # Verbs of the jobs of a service.
@@ -140,9 +139,7 @@ def _jobs(
     json: AsJson = False,
 ) -> None:
     """List the jobs of a service, the newest first."""
-    from lineofaction.cli.remote import JobSelection, run_jobs  # noqa: PLC0415 (start-up time)
-
-    run_jobs(service, JobSelection(process or (), status or (), limit), as_json=json)
+    remote.run_jobs(service, process or (), status or (), limit, as_json=json)
 
 
 @verbs.command("dismiss", epilog="Example: loa dismiss 3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d")
@@ -153,9 +150,7 @@ def _dismiss(
     json: AsJson = False,
 ) -> None:
     """Cancel a job of a service; its work ends unless other jobs share it."""
-    from lineofaction.cli.remote import run_dismiss  # noqa: PLC0415 (start-up time)
-
-    run_dismiss(job, service, as_json=json)
+    remote.run_dismiss(job, service, as_json=json)
 
 
 # Verbs of access keys: ``loa keys add``, ``rotate``, ``list`` and ``remove``.
@@ -174,7 +169,7 @@ Expires = Annotated[
 
 
 @dataclass(frozen=True)
-class KeyLimits:
+class _KeyLimits:
     """The limits of a key; None: none."""
 
     requests_per_minute: Annotated[int | None, typer.Option(help="Default: no limit.")] = None
@@ -204,14 +199,13 @@ def _add(
     ] = None,
     scopes: Annotated[str | None, typer.Option(help="Of read,submit,dismiss,operate; default: all.")] = None,
     expires: Expires = None,
-    limits: KeyLimits,
+    limits: _KeyLimits,
     file: KeysFile = None,
     json: AsJson = False,
 ) -> None:
     """Create a key, print it once, and store its hash."""
-    from lineofaction.cli.upkeep import run_add  # noqa: PLC0415 (start-up time)
-
-    run_add(name, file, as_json=json, scopes=scopes, expires=expires, project=project, **asdict(limits))
+    rights = {"scopes": scopes, "expires": expires, "project": project, **asdict(limits)}
+    upkeep.Keys(file, as_json=json).add(name, **rights)
 
 
 @access_keys.command("rotate", epilog="Example: loa keys rotate test-bench-3 --overlap 7d")
@@ -224,27 +218,21 @@ def _rotate(
     json: AsJson = False,
 ) -> None:
     """Create the next key of a name, with the rights of the old one, which ends after the overlap."""
-    from lineofaction.cli.upkeep import run_rotate  # noqa: PLC0415 (start-up time)
-
-    run_rotate(name, file, overlap, expires, as_json=json)
+    upkeep.Keys(file, as_json=json).rotate(name, overlap, expires)
 
 
 @access_keys.command("list")
 @guarded
 def _list_keys(file: KeysFile = None, json: AsJson = False) -> None:
     """Print names, projects, scopes, ends and limits of all keys."""
-    from lineofaction.cli.upkeep import run_list_keys as run_list  # noqa: PLC0415 (start-up time)
-
-    run_list(file, as_json=json)
+    upkeep.Keys(file, as_json=json).show()
 
 
 @access_keys.command("remove", epilog="Example: loa keys remove test-bench-3")
 @guarded
 def _remove(name: Name, file: KeysFile = None) -> None:
     """Remove a key; running services refuse it from the next request on."""
-    from lineofaction.cli.upkeep import run_remove  # noqa: PLC0415 (start-up time)
-
-    run_remove(name, file)
+    upkeep.Keys(file).remove(name)
 
 
 # Verbs of the database and the store of a service.
@@ -267,27 +255,21 @@ DataDirectory = Annotated[
 @guarded
 def _upgrade(data_directory: DataDirectory = None, json: AsJson = False) -> None:
     """Upgrade the tables, or create them; no data are lost."""
-    from lineofaction.cli.upkeep import run_upgrade  # noqa: PLC0415 (start-up time)
-
-    run_upgrade(as_json=json, data_directory=data_directory)
+    upkeep.JobTables(data_directory, as_json=json).upgrade()
 
 
 @database.command("status", epilog="Example: loa database status --json")
 @guarded
 def _status(data_directory: DataDirectory = None, json: AsJson = False) -> None:
     """Print the schema of the database and of this program; exit code 1 if they differ."""
-    from lineofaction.cli.upkeep import run_status  # noqa: PLC0415 (start-up time)
-
-    run_status(as_json=json, data_directory=data_directory)
+    upkeep.JobTables(data_directory, as_json=json).status()
 
 
 @store.command("verify", epilog="Example: loa store verify --json")
 @guarded
 def _verify(data_directory: DataDirectory = None, json: AsJson = False) -> None:
     """Compare files with their digests, set damaged ones aside; exit code 1 if one is damaged or missing."""
-    from lineofaction.cli.upkeep import run_verify  # noqa: PLC0415 (start-up time)
-
-    run_verify(as_json=json, data_directory=data_directory)
+    upkeep.Results(data_directory, as_json=json).verify()
 
 
 @store.command("gc", epilog="Example: loa store gc --dry-run --older-than 90")
@@ -308,9 +290,7 @@ def _gc(
 
     Files of results go to quarantine, for LOA_QUARANTINE_DAYS.
     """
-    from lineofaction.cli.upkeep import run_gc  # noqa: PLC0415 (start-up time)
-
-    run_gc(as_json=json, dry_run=dry_run, older_than=older_than, data_directory=data_directory)
+    upkeep.Results(data_directory, as_json=json).collect(dry_run=dry_run, older_than=older_than)
 
 
 @store.command("reindex", epilog="Example: loa store reindex --json")
@@ -327,18 +307,14 @@ def _reindex(
     The files become those of this database: a service that had them removes none of them any more, and is
     refused at its next start. Exit code 3 if a file is damaged.
     """
-    from lineofaction.cli.upkeep import run_reindex  # noqa: PLC0415 (start-up time)
-
-    run_reindex(as_json=json, quarantined=quarantined, data_directory=data_directory)
+    upkeep.Results(data_directory, as_json=json).reindex(quarantined=quarantined)
 
 
 @cache.command("list", epilog="Example: loa cache list --json")
 @guarded
 def _list_cache(json: AsJson = False) -> None:
     """Print the number of files and their size, by kind."""
-    from lineofaction.cli.cache import run_list  # noqa: PLC0415 (start-up time)
-
-    run_list(as_json=json)
+    kept.run_list(as_json=json)
 
 
 @cache.command("limit", epilog="Example: loa cache limit --gb 0.5")
@@ -348,9 +324,7 @@ def _limit(
     json: AsJson = False,
 ) -> None:
     """Remove the least recently used entries until the rest fits; entries used within 10 minutes stay."""
-    from lineofaction.cli.cache import run_limit  # noqa: PLC0415 (start-up time)
-
-    run_limit(gb, as_json=json)
+    kept.run_limit(gb, as_json=json)
 
 
 @cache.command("clear", epilog="Example: loa cache clear results")
@@ -362,6 +336,4 @@ def _clear(
     json: AsJson = False,
 ) -> None:
     """Remove all entries; they are computed or fetched again when needed."""
-    from lineofaction.cli.cache import run_clear  # noqa: PLC0415 (start-up time)
-
-    run_clear(kinds or [], as_json=json)
+    kept.run_clear(kinds or [], as_json=json)

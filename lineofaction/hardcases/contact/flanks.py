@@ -18,9 +18,11 @@ from lineofaction.hardcases.contact.laws import (
     NOMINAL_TORQUE,
     Posed,
     even_positions,
+    mean_off,
     nominal_gear,
     nominal_pair,
     posed,
+    range_off,
     soundness,
 )
 from lineofaction.hardcases.scene import HardScene, Measured
@@ -31,9 +33,9 @@ _DECADES = np.geomspace(1e-4, 1e3, 29)
 def _seven_decades() -> Sequence[Measured]:
     """Solve one table over seven decades of load, and its nominal curve alone."""
     wide = posed(nominal_pair(), NOMINAL_TORQUE * _DECADES)
-    problem, solution = wide.solve(even_positions(48), wide.plan.load)
+    problem, solution = wide.solve(even_positions(48))
     alone = posed(nominal_pair())
-    nominal = alone.solve(even_positions(48), alone.plan.load)[1].deflection[:, 0]
+    nominal = alone.ste(even_positions(48))[:, 0]
     here = solution.deflection[:, int(np.argmin(np.abs(_DECADES - 1.0)))]
     elastic = solution.deflection - solution.no_load[:, None]
     stiffening = np.diff(solution.tangent, axis=1) / solution.tangent[:, :-1]
@@ -46,21 +48,19 @@ def _seven_decades() -> Sequence[Measured]:
         ),
         Measured("largest growth of the tangent compliance", float(stiffening.max()), most=1e-9),
         Measured(
-            "mean STE at nominal load, against a table of that load alone",
-            abs(float(here.mean() / nominal.mean()) - 1.0),
-            most=5e-3,
+            "mean STE at nominal load, against a table of that load alone", mean_off(here, nominal), 5e-3
         ),
-        Measured("peak-to-peak likewise", abs(float(np.ptp(here) / np.ptp(nominal)) - 1.0), most=2e-2),
+        Measured("peak-to-peak likewise", range_off(here, nominal), most=2e-2),
         Measured("points whose contact outgrew its patch", float(solution.beyond.sum())),
     )
 
 
-def zero_load() -> Sequence[Measured]:
+def _zero_load() -> Sequence[Measured]:
     """Go to zero load in the solver, in the table and at the entry point."""
     relief = FlankModification(tip_relief=20e-6, tip_relief_length=2e-3, profile_crowning=5e-6)
     pair = nominal_pair(modification=relief)
     case = posed(pair, NOMINAL_TORQUE * np.geomspace(1e-15, 1.0, 6))
-    problem, solution = case.solve(even_positions(48), case.plan.load)
+    problem, solution = case.solve(even_positions(48))
     left = (solution.deflection[:, 0] - solution.no_load) / solution.deflection[:, -1]
     table = analyze(pair, torques=[NOMINAL_TORQUE], level="draft", positions=48, receipt="minimal")
     at_rest = table.ste(table.position, 0.0)
@@ -93,7 +93,7 @@ ZERO_LOAD = HardScene(
     "contact",
     "At zero load no tangent stiffness exists and every figure is 0/0.",
     "STE tends to the rigid gap, where the table's force is exactly zero; a load of zero is refused by name.",
-    zero_load,
+    _zero_load,
 )
 
 
@@ -201,7 +201,7 @@ _ROUNDING = 0.15e-3
 def _tip_edge_at_high_load() -> Sequence[Measured]:
     """Load the nominal pair tenfold and look at how its tip edges enter and leave."""
     case = posed(nominal_pair(), [10.0 * NOMINAL_TORQUE])
-    problem, solution = case.solve(even_positions(400), case.plan.load)
+    problem, solution = case.solve(even_positions(400))
     without = case.with_model(corner_contact=False).solve(even_positions(400), case.plan.load)[1]
     saved = (without.deflection - solution.deflection) / solution.deflection
     return (
@@ -212,32 +212,34 @@ def _tip_edge_at_high_load() -> Sequence[Measured]:
     )
 
 
-def sharp_tips() -> Sequence[Measured]:
+def _sharp_tips() -> Sequence[Measured]:
     """Raise the tips until next to nothing is left of them."""
     highest = brentq(lambda h: _tall(h).tip_tooth_thickness - _POINTED * 4e-3, 1.0, 1.7, xtol=1e-10)
     gear = _tall(highest)
     coarse, fine = (posed(GearPair(gear, gear), level=level) for level in ("standard", "fine"))
-    problem, solution = fine.solve(even_positions(200), fine.plan.load)
+    problem, solution = fine.solve(even_positions(200))
     rougher = coarse.solve(even_positions(200), fine.plan.load)[1]
     return (
         *soundness(problem, solution),
         Measured("tip thickness, modules", gear.tip_tooth_thickness / gear.normal_module),
-        Measured("mean STE of two meshes apart", _apart(rougher.deflection, solution.deflection), most=3e-3),
-        Measured("peak-to-peak likewise", _ranges_apart(rougher.deflection, solution.deflection), most=2e-2),
+        Measured(
+            "mean STE of two meshes apart", mean_off(rougher.deflection, solution.deflection), most=3e-3
+        ),
+        Measured("peak-to-peak likewise", range_off(rougher.deflection, solution.deflection), most=2e-2),
         _smoothness(coarse),
     )
 
 
-def rounded_tips() -> Sequence[Measured]:
+def _rounded_tips() -> Sequence[Measured]:
     """Round the tip edges off, by a relief steep enough to take them out of contact."""
     sharp = posed(nominal_pair(), [2.0 * NOMINAL_TORQUE])
     position = even_positions(200)
-    plain = sharp.solve(position, sharp.plan.load)[1].deflection
+    plain = sharp.ste(position)
     curves = []
     for depth in (0.0, 1e-9, 2e-6, 20e-6, 200e-6):
         pair = nominal_pair(modification=_rounding(depth))
         case = posed(pair, [2.0 * NOMINAL_TORQUE], bodies=sharp.contact)
-        problem, solution = case.solve(position, case.plan.load)
+        problem, solution = case.solve(position)
         curves.append(solution.deflection)
     rises = [float(np.min(deep - shallow)) for shallow, deep in pairwise(curves)]
     return (
@@ -258,7 +260,6 @@ def _tall(addendum: float) -> Gear:
 
 
 def _rounding(depth: float) -> FlankModification:
-    """Return a parabolic relief over the last of the tip."""
     return FlankModification(
         tip_relief=depth, tip_relief_length=_ROUNDING if depth else 0.0, tip_relief_shape="parabolic"
     )
@@ -268,21 +269,13 @@ def _smoothness(case: Posed) -> Measured:
     """Return how the largest step of STE shrinks on positions four times as close: 1/4 if smooth."""
     steps = []
     for count in (256, 1024):
-        curve = case.solve(even_positions(count), case.plan.load)[1].deflection[:, -1]
+        curve = case.ste(even_positions(count))[:, -1]
         steps.append(_largest(np.diff(curve, append=curve[0])))
     return Measured("largest step of STE, at a quarter of the spacing", steps[1] / steps[0], most=0.4)
 
 
 def _largest(values: FloatArray) -> float:
     return float(np.abs(values).max())
-
-
-def _apart(first: FloatArray, second: FloatArray) -> float:
-    return abs(float(first.mean() / second.mean()) - 1.0)
-
-
-def _ranges_apart(first: FloatArray, second: FloatArray) -> float:
-    return abs(float(np.ptp(first) / np.ptp(second)) - 1.0)
 
 
 TIP_EDGE = HardScene(
@@ -298,7 +291,7 @@ SHARP_TIPS = HardScene(
     "contact",
     "Teeth of 0.02 modules thickness at the tip: a wedge of elements, and no room for a load patch.",
     "Two meshes agree, the curve is continuous, two solvers agree.",
-    sharp_tips,
+    _sharp_tips,
 )
 ROUNDED_TIPS = HardScene(
     "rounded_tips",
@@ -306,7 +299,7 @@ ROUNDED_TIPS = HardScene(
     "A tip edge rounded over 0.15 mm: the relief is so steep that the touching point leaves the line of "
     "action.",
     "STE changes by less than 1 nm with 1 nm of rounding, rises with its depth, and is continuous.",
-    rounded_tips,
+    _rounded_tips,
 )
 
 
@@ -320,11 +313,11 @@ _NOISE = 2e-6
 _SEED = 20260101
 
 
-def gap_beyond_deflection() -> Sequence[Measured]:
+def _gap_beyond_deflection() -> Sequence[Measured]:
     """Relieve both tips by 0.3 mm, so that most pairs cannot touch whatever the load."""
     relief = FlankModification(tip_relief=300e-6, tip_relief_length=3e-3)
     case = posed(nominal_pair(modification=relief), NOMINAL_TORQUE * np.array([0.01, 1.0, 4.0]))
-    problem, solution = case.solve(even_positions(200), case.plan.load)
+    problem, solution = case.solve(even_positions(200))
     c = problem.candidates
     elastic = float((solution.deflection - solution.no_load[:, None]).max())
     far = np.isfinite(c.gap) & (c.gap - solution.no_load[:, None] > 2.0 * elastic)
@@ -335,25 +328,25 @@ def gap_beyond_deflection() -> Sequence[Measured]:
         Measured("candidates out of reach", float(far.sum()), least=50.0),
         Measured("largest gap over the elastic deflection", float(c.gap[far].max()) / elastic),
         Measured("force on them, N", float(solution.force[far[:, None, :].repeat(3, 1)].max()), most=0.0),
-        Measured("STE without them, change in m", _most(without.deflection - solution.deflection), 0.0),
-        Measured("STE with 1 m more gap, change in m", _most(wider.deflection - solution.deflection), 0.0),
+        Measured("STE without them, change in m", _largest(without.deflection - solution.deflection), 0.0),
+        Measured("STE with 1 m more gap, change in m", _largest(wider.deflection - solution.deflection), 0.0),
     )
 
 
-def pitch_error_beyond_deflection() -> Sequence[Measured]:
+def _pitch_error_beyond_deflection() -> Sequence[Measured]:
     """Put one tooth 50 um ahead of its place, then all of them."""
     position = even_positions(48)
     plain = posed(nominal_pair())
-    _, alone = plain.solve(position, plain.plan.load)
+    _, alone = plain.solve(position)
     teeth = np.zeros(20)
     teeth[5] = _STEP
     case = posed(_with_pitch(tuple(teeth)), pitches=20, bodies=plain.contact)
     problem, solution = case.solve(position, case.plan.load, np.repeat(np.arange(20), 48))
     every = posed(_with_pitch((_STEP,) * 20), pitches=1, bodies=plain.contact)
-    shifted = every.solve(position, every.plan.load)[1].deflection
+    shifted = every.ste(position)
     shift = _STEP * np.cos(plain.pair.pinion.transverse_pressure_angle)
     every = posed(_with_pitch((_STEP,) * 20), pitches=1, bodies=plain.contact)
-    shifted = every.solve(position, every.plan.load)[1].deflection - alone.deflection + shift
+    shifted = every.ste(position) - alone.deflection + shift
     meeting = np.repeat(np.arange(20), 48)[:, None] - problem.candidates.pair
     carried = np.tile(alone.force[:, 0] > 0.0, (20, 1))
     single = carried.sum(axis=1) == 1
@@ -364,24 +357,24 @@ def pitch_error_beyond_deflection() -> Sequence[Measured]:
     return (
         *soundness(problem, solution),
         Measured("share of the tooth that is ahead, least", float(share[ahead].min()), least=1.0),
-        Measured("its STE off the shifted curve, m", _most(change[ahead] + shift), most=1e-15),
-        Measured("STE far from it, change in m", _most(change[apart]), most=1e-15),
-        Measured("all teeth ahead: STE off the shifted curve, m", _most(shifted), most=1e-15),
+        Measured("its STE off the shifted curve, m", _largest(change[ahead] + shift), most=1e-15),
+        Measured("STE far from it, change in m", _largest(change[apart]), most=1e-15),
+        Measured("all teeth ahead: STE off the shifted curve, m", _largest(shifted), most=1e-15),
         Measured("positions with the one tooth alone", float(ahead.sum()), least=5.0),
     )
 
 
-def noisy_flanks() -> Sequence[Measured]:
+def _noisy_flanks() -> Sequence[Measured]:
     """Put noise on both flanks, as a measurement would."""
     rng = np.random.default_rng(_SEED)
     plain = posed(nominal_pair())
     position = even_positions(200)
-    smooth = plain.solve(position, plain.plan.load)[1].deflection
+    smooth = plain.ste(position)
     first, second = (_with_grid(np.maximum(rng.normal(5.0 * _NOISE, _NOISE, 25), 0.0)) for _ in range(2))
     noisy = posed(
         GearPair(first, second, 80e-3), NOMINAL_TORQUE * np.geomspace(1e-3, 4.0, 7), bodies=plain.contact
     )
-    problem, solution = noisy.solve(position, noisy.plan.load)
+    problem, solution = noisy.solve(position)
     low, high = (sum(side(_heights(gear)) for gear in (first, second)) for side in (np.min, np.max))
     nominal = posed(GearPair(first, second, 80e-3), bodies=plain.contact).solve(position, plain.plan.load)[1]
     added = nominal.deflection - smooth
@@ -400,7 +393,6 @@ def _with_gap(problem: ContactProblem, gap: FloatArray) -> ContactProblem:
 
 
 def _with_pitch(cumulative: tuple[float, ...]) -> GearPair:
-    """Return the nominal pair whose pinion has these deviations."""
     pinion = nominal_gear(pitch_deviation=PitchDeviation(cumulative))
     return GearPair(pinion, nominal_gear(), 80e-3)
 
@@ -420,17 +412,13 @@ def _heights(gear: Gear) -> FloatArray:
     return gear.modification.material_removed(gear, roll)
 
 
-def _most(values: FloatArray) -> float:
-    return float(np.abs(values).max())
-
-
 GAP_BEYOND_DEFLECTION = HardScene(
     "gap_beyond_deflection",
     "contact",
     "Relief of 0.3 mm where teeth bend by 8 um: gaps and deflections differ by orders of magnitude, and "
     "most candidates never touch.",
     "Out of reach means without effect: taking those candidates away, or a meter further, changes no bit.",
-    gap_beyond_deflection,
+    _gap_beyond_deflection,
 )
 PITCH_ERROR = HardScene(
     "pitch_error_beyond_deflection",
@@ -438,7 +426,7 @@ PITCH_ERROR = HardScene(
     "One tooth stands 50 um ahead where teeth bend by 8 um: its neighbors lose contact and STE jumps.",
     "The tooth ahead carries alone, on the curve shifted by its deviation on the line of action; all teeth "
     "ahead shift the whole curve (superposition of rigid offsets).",
-    pitch_error_beyond_deflection,
+    _pitch_error_beyond_deflection,
 )
 NOISY_FLANKS = HardScene(
     "noisy_flanks",
@@ -447,5 +435,5 @@ NOISY_FLANKS = HardScene(
     "wander.",
     "STE grows by no less than the least and no more than the most removed, and with load; two solvers "
     "agree.",
-    noisy_flanks,
+    _noisy_flanks,
 )

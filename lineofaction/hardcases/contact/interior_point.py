@@ -54,7 +54,7 @@ class Problem:
 
 
 @dataclass(frozen=True)
-class Answer:
+class _Answer:
     """Deflection in m, forces in N, the largest relative violation of the conditions, and the iterations."""
 
     deflection: float
@@ -63,7 +63,7 @@ class Answer:
     iterations: int
 
 
-def pieces(about: GapAbout, center: Array, half: Array) -> tuple[Array, Array, Array]:
+def _pieces(about: GapAbout, center: Array, half: Array) -> tuple[Array, Array, Array]:
     """Means of g', g' sin t and g over the angle of strips, from break to break; shapes (n, ...).
 
     Between two breaks g is a parabola through its values at the ends and the middle, g' the straight line
@@ -104,7 +104,7 @@ def _gap_at(about: GapAbout, x: Array) -> Array:
     return value
 
 
-def root(function: Callable[[Array], Array], low: Array, high: Array, tolerance: Array) -> Array:
+def _root(function: Callable[[Array], Array], low: Array, high: Array, tolerance: Array) -> Array:
     """Zeros between bounds of rising functions, by false position (Illinois); a bound where there is none."""
     at_low, at_high = function(low), function(high)
     held = (at_low >= 0.0) | (at_high <= 0.0)
@@ -125,24 +125,24 @@ def root(function: Callable[[Array], Array], low: Array, high: Array, tolerance:
     return middle
 
 
-def strips(problem: Problem, half: Array) -> tuple[Array, Array]:
+def _strips(problem: Problem, half: Array) -> tuple[Array, Array]:
     """Line load in N/m and mean gap in m of strips of half lengths (n, ...)."""
     about = problem.gap_about
     extra = (1,) * (half.ndim - 1)
     low = np.maximum(-half, about.low.reshape(-1, *extra) + half)
     high = np.maximum(np.minimum(half, about.high.reshape(-1, *extra) - half), low)
-    middle = root(lambda at: pieces(about, at, half)[0], low, high, 1e-8 * half)
-    slope, tilted, mean = pieces(about, middle, half)
+    middle = _root(lambda at: _pieces(about, at, half)[0], low, high, 1e-8 * half)
+    slope, tilted, mean = _pieces(about, middle, half)
     at_edge = (middle == low) | (middle == high)
     # at a break at the end of the strip both means go with the root of the distance: straight to each other
     below, above = (np.clip(middle + side * 1e-8 * half, low, high) for side in (-1.0, 1.0))
-    (under, left, _), (over, right, _) = pieces(about, below, half), pieces(about, above, half)
+    (under, left, _), (over, right, _) = _pieces(about, below, half), _pieces(about, above, half)
     between = np.where(over > under, over - under, np.inf)
     tilted = np.where(at_edge, tilted + np.abs(slope), left - under * (right - left) / between)
     return 0.5 * np.pi * problem.modulus.reshape(-1, *extra) * half * tilted, mean
 
 
-class GuardedLaw:
+class _GuardedLaw:
     """The law with its secant below a strip of 1e-4 reference lengths and straight on above one of 0.66.
 
     Strips are tabulated over their length; between the entries the length is found by the secant method.
@@ -154,7 +154,7 @@ class GuardedLaw:
         first = np.full(widest.size, np.log(1e-4 * problem.length))
         last = np.log(np.minimum(0.66 * problem.length, widest))
         self.half = np.exp(first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, 129))
-        self.load, mean = strips(problem, self.half)
+        self.load, mean = _strips(problem, self.half)
         self.value = mean + self.k[:, None] * self.load * (np.log(problem.length / self.half) - 0.25)
         self.slope = np.stack([np.gradient(v, p) for v, p in zip(self.value, self.load, strict=True)])
         self.beyond = self.k * (np.log(problem.length / self.half[:, -1]) - 0.25)
@@ -191,17 +191,17 @@ class GuardedLaw:
         above = np.array([np.searchsorted(load, at) for at, load in zip(p, self.load, strict=True)])
         above = np.clip(above, 1, self.half.shape[1] - 1)
         low, high = np.log(self.half[rows, above - 1]), np.log(self.half[rows, above])
-        x = root(
-            lambda at: np.log(strips(self.problem, np.exp(at))[0]) - target, low, high, np.full(p.size, 1e-7)
+        x = _root(
+            lambda at: np.log(_strips(self.problem, np.exp(at))[0]) - target, low, high, np.full(p.size, 1e-7)
         )
-        _, mean = strips(self.problem, np.exp(x))
+        _, mean = _strips(self.problem, np.exp(x))
         value = mean + self.k * p * (np.log(self.problem.length / np.exp(x)) - 0.25)
         return value, self._entry(p, self.slope)
 
 
-def solve(problem: Problem, total: float) -> Answer:
+def solve(problem: Problem, total: float) -> _Answer:
     """Solve for one load > 0; the answer's `violation` says how well it holds."""
-    law, n = GuardedLaw(problem), problem.gap.size
+    law, n = _GuardedLaw(problem), problem.gap.size
     motion, torque = problem.motion_arm, problem.torque_arm
     touch = float(np.min(problem.gap / motion))
     gap = problem.gap - touch * motion
@@ -235,9 +235,9 @@ def solve(problem: Problem, total: float) -> Answer:
     return _polished(problem, law, total, touch, gap, force, slack, unit, iterations)
 
 
-def balanced(
+def _balanced(
     problem: Problem,
-    law: GuardedLaw,
+    law: _GuardedLaw,
     total: float,
     gap: Array,
     force: Array,
@@ -263,7 +263,7 @@ def balanced(
 
 def _polished(
     problem: Problem,
-    law: GuardedLaw,
+    law: _GuardedLaw,
     total: float,
     touch: float,
     gap: Array,
@@ -271,14 +271,14 @@ def _polished(
     slack: Array,
     unit: float,
     iterations: int,
-) -> Answer:
+) -> _Answer:
     """Solve the equations of the contacts left loaded, and measure every condition on the result.
 
     The table of the law is good to a few digits: a contact that just touches may be on the wrong side.
     """
     loaded = force / total > slack / unit
     for _ in range(10):
-        force, d = balanced(problem, law, total, gap, np.where(loaded, force, 0.0), loaded)
+        force, d = _balanced(problem, law, total, gap, np.where(loaded, force, 0.0), loaded)
         value, _ = law(np.maximum(force, 0.0))
         slack = problem.compliance @ force + value + gap - problem.motion_arm * d
         sides = np.where(loaded, force > 0.0, slack < -1e-14 * unit)
@@ -293,4 +293,4 @@ def _polished(
         float(np.max(np.abs(force * slack))) / (total * d),
         abs(float(problem.torque_arm @ force) - total) / total,
     )
-    return Answer(touch + d, force, violation, iterations)
+    return _Answer(touch + d, force, violation, iterations)

@@ -42,10 +42,14 @@ class Posed:
         return self.contact.pair
 
     def solve(
-        self, position: FloatArray, load: FloatArray, pitch: IntArray | None = None
+        self, position: FloatArray, load: FloatArray | None = None, pitch: IntArray | None = None
     ) -> tuple[ContactProblem, ContactSolution]:
-        """Solve positions (P,) in base pitches at normal forces (L,) in N."""
-        return self.contact.solve(self.model, position, load, pitch)
+        """Solve positions (P,) in base pitches at normal forces (L,) in N; None: those of the plan."""
+        return self.contact.solve(self.model, position, self.plan.load if load is None else load, pitch)
+
+    def ste(self, position: FloatArray) -> FloatArray:
+        """Return the STE (P, L) in m at the loads of the plan."""
+        return self.solve(position)[1].deflection
 
     def with_model(self, **changes: object) -> Posed:
         """Return the same bodies with another contact model."""
@@ -96,6 +100,21 @@ def posed(
 def even_positions(count: int) -> FloatArray:
     """Return positions spread evenly over one base pitch."""
     return np.arange(count) / count
+
+
+def off(values: FloatArray, expected: FloatArray) -> float:
+    """Return the largest relative difference."""
+    return float(np.abs(values / expected - 1.0).max())
+
+
+def mean_off(values: FloatArray, expected: FloatArray) -> float:
+    """Return the relative difference of the means."""
+    return abs(float(values.mean() / expected.mean()) - 1.0)
+
+
+def range_off(values: FloatArray, expected: FloatArray) -> float:
+    """Return the relative difference of the ranges."""
+    return abs(float(np.ptp(values) / np.ptp(expected)) - 1.0)
 
 
 def _again(bodies: PairContact, pair: ParallelAxes, plan: Plan) -> PairContact:

@@ -20,8 +20,11 @@ from lineofaction.hardcases.contact.laws import (
     NOMINAL_TORQUE,
     Posed,
     even_positions,
+    mean_off,
     nominal_pair,
+    off,
     posed,
+    range_off,
     soundness,
 )
 from lineofaction.hardcases.scene import HardScene, Measured
@@ -42,8 +45,8 @@ def _five_per_cent() -> Sequence[Measured]:
         for sign in (1.0, -1.0)
     )
     position = even_positions(24)
-    problem, solution = case.solve(position, case.plan.load)
-    mirrored_problem, mirrored = other.solve(position, other.plan.load)
+    problem, solution = case.solve(position)
+    mirrored_problem, mirrored = other.solve(position)
     slices = case.plan.discretization.slices
     wedge = 0.5 * _MISALIGNMENT * (1.0 - 1.0 / (slices * POINTS))
     return (
@@ -56,7 +59,7 @@ def _five_per_cent() -> Sequence[Measured]:
         ),
         Measured(
             "misaligned to the other side: relative difference of STE",
-            float(np.abs(mirrored.deflection / solution.deflection - 1.0).max()),
+            off(mirrored.deflection, solution.deflection),
             most=1e-9,
         ),
         Measured(
@@ -68,14 +71,14 @@ def _five_per_cent() -> Sequence[Measured]:
     )
 
 
-def single_slice() -> Sequence[Measured]:
+def _single_slice() -> Sequence[Measured]:
     """Spread the load evenly: one slice in three dimensions, then three, then nine."""
     full = posed(nominal_pair(), model="3d")
     position = even_positions(24)
     curves = []
     for slices in (1, 3, 9):
         fewer = Posed(full.contact.in_slices(slices), full.model)
-        problem, solution = fewer.solve(position, fewer.plan.load)
+        problem, solution = fewer.solve(position)
         curves.append(solution.deflection[:, 0])
         if slices == 1:
             figures = soundness(problem, solution, 8)
@@ -93,8 +96,8 @@ def _duplicates() -> Sequence[Measured]:
     """Ask for the same position several times, in any order, alone and among others."""
     case = posed(nominal_pair())
     positions = np.array([0.3, 0.3, 0.0, 0.97, 0.3, 0.0, 0.5, 0.5])
-    problem, together = case.solve(positions, case.plan.load)
-    apart = [case.solve(np.array([x]), case.plan.load)[1].deflection[0, 0] for x in positions]
+    problem, together = case.solve(positions)
+    apart = [case.ste(np.array([x]))[0, 0] for x in positions]
     groups = [together.deflection[positions == x, 0] for x in np.unique(positions)]
     return (
         *soundness(problem, together),
@@ -143,7 +146,7 @@ SINGLE_SLICE = HardScene(
     "One slice over the whole face: the load may not spread as it likes, and patches are as wide as the "
     "gear.",
     "Dividing the slice frees the load: STE falls everywhere (least complementary energy), by less than 5 %.",
-    single_slice,
+    _single_slice,
 )
 DUPLICATES = HardScene(
     "identical_positions",
@@ -167,8 +170,8 @@ def _handover_at_ratio(ratio: float) -> Sequence[Measured]:
     pair = _pair_of_ratio(ratio)
     case = posed(pair, NOMINAL_TORQUE * pair.pinion.base_radius / 0.0376 * np.array([1e-3, 1.0]))
     position = even_positions(240)
-    problem, solution = case.solve(position, case.plan.load)
-    ends = case.solve(np.array([0.0, 1.0]), case.plan.load)[1].deflection
+    problem, solution = case.solve(position)
+    ends = case.ste(np.array([0.0, 1.0]))
     loaded = solution.force * problem.candidates.torque_share[:, None, :]
     shares = loaded.sum(axis=2) / case.plan.load
     return (
@@ -179,11 +182,7 @@ def _handover_at_ratio(ratio: float) -> Sequence[Measured]:
             abs(_mean_pairs(case) - ratio),
             most=2.0 / _COUNTED,
         ),
-        Measured(
-            "STE one pitch further, relative change",
-            float(np.abs(ends[1] / ends[0] - 1.0).max()),
-            most=CYCLIC,
-        ),
+        Measured("STE one pitch further, relative change", off(ends[1], ends[0]), most=CYCLIC),
         Measured("load shares off one", float(np.abs(shares - 1.0).max()), most=1e-12),
         Measured("smallest share", float(loaded.min()), least=0.0),
     )
@@ -251,10 +250,10 @@ def _undercut_pinion() -> Sequence[Measured]:
     pair = _undercut_pair()
     cases = [posed(pair, [0.2 * NOMINAL_TORQUE], level=level) for level in ("draft", "standard", "fine")]
     position = even_positions(240)
-    curves = [case.solve(position, case.plan.load)[1].deflection[:, 0] for case in cases]
-    problem, solution = cases[-1].solve(position, cases[-1].plan.load)
-    errors = [abs(float(curve.mean() / curves[-1].mean()) - 1.0) for curve in curves]
-    ranges = [abs(float(np.ptp(curve) / np.ptp(curves[-1])) - 1.0) for curve in curves]
+    curves = [case.ste(position)[:, 0] for case in cases]
+    problem, solution = cases[-1].solve(position)
+    errors = [mean_off(curve, curves[-1]) for curve in curves]
+    ranges = [range_off(curve, curves[-1]) for curve in curves]
     alone = cases[0].with_model(corner_contact=False).solve(even_positions(2000), cases[0].plan.load)[1]
     pairs = float((alone.force[:, 0] > 0.0).sum(axis=1).mean())
     return (
@@ -287,15 +286,15 @@ def _twenty_to_two_hundred() -> Sequence[Measured]:
     position = np.linspace(0.0, 0.98, 50)
     there = posed(GearPair(pinion, wheel), [20.0]).with_model(corner_contact=False)
     back = posed(GearPair(wheel, pinion), [200.0]).with_model(corner_contact=False)
-    problem, driven = there.solve(position, there.plan.load)
+    problem, driven = there.solve(position)
     driving = back.solve((1.0 - position) % 1.0, there.plan.load)[1]
     cornered, solution = posed(GearPair(pinion, wheel), [20.0]).solve(position, there.plan.load)
     return (
         *soundness(cornered, solution),
         Measured(
             "STE with the wheel driving, relative difference",
-            float(np.abs(driving.deflection / driven.deflection - 1.0).max()),
-            most=CYCLIC,
+            off(driving.deflection, driven.deflection),
+            CYCLIC,
         ),
         Measured("positions compared", float(problem.candidates.position.size), least=50.0),
     )

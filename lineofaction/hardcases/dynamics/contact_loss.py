@@ -79,7 +79,7 @@ def _no_mean_load() -> Sequence[Measured]:
     )
 
 
-def reversal() -> Sequence[Measured]:
+def _reversal() -> Sequence[Measured]:
     """Reverse the load slowly enough to settle: teeth cross the gap and rest on their backs."""
     torque = TimeLaw((0.0, 0.01, 0.03), (TORQUE, TORQUE, -TORQUE))
     scene = torsional(
@@ -104,7 +104,7 @@ def reversal() -> Sequence[Measured]:
     )
 
 
-def impacts() -> Sequence[Measured]:
+def _impacts() -> Sequence[Measured]:
     """Throw a gear between both flanks, without load or damping, twenty times to and fro."""
     coarse, fine = _TOLERANCE, 1e-2 * _TOLERANCE
     runs = {
@@ -172,14 +172,14 @@ REVERSAL = HardScene(
     "The load reverses and takes the teeth through backlash: for a while nothing holds the gear.",
     "Teeth rest at T/(r k) on the driving flank before, and a backlash further on the coast flank after; "
     "integrators agree, energy balances.",
-    reversal,
+    _reversal,
 )
 IMPACTS = HardScene(
     "impacts_on_both_sides",
     "dynamics",
     "Forty undamped impacts: what is wrong after one is wrong in all that follow, and grows in every flight.",
     "The closed form of flights and half sines, to one tolerance per impact; so does the energy.",
-    impacts,
+    _impacts,
 )
 
 
@@ -395,7 +395,7 @@ def _on_bushings() -> Scene:
     return replace(scene, shafts=shafts, gears=gears, bushings=bushings, effects=effects)
 
 
-def unloaded_in_clearance() -> Sequence[Measured]:
+def _unloaded_in_clearance() -> Sequence[Measured]:
     """Throw an unloaded disc to and fro in the clearance of its bearing."""
     natural = math.sqrt(_WALL / _MASS)
     duration = 0.5 * _BOUNCES * cycle(2.0 * _CLEARANCE, _SPEED_SUPPORTS, natural)
@@ -467,5 +467,5 @@ UNLOADED = HardScene(
     "rest.",
     "The closed form of flights and half sines between the walls, to one tolerance per impact; so does the "
     "energy.",
-    unloaded_in_clearance,
+    _unloaded_in_clearance,
 )

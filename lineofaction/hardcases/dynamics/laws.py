@@ -173,7 +173,7 @@ LARGEST_MISSING = 1e-3
 
 
 @dataclass(frozen=True)
-class Runs:
+class _Runs:
     """The same scene by both integrators."""
 
     implicit: RunResult
@@ -185,10 +185,10 @@ class Runs:
         return self.implicit, self.explicit
 
 
-def run_both(scene: Scene) -> Runs:
+def run_both(scene: Scene) -> _Runs:
     """Run `scene` by both integrators, each at the tolerance of the scene, and take points of the motion."""
     points = replace(scene, outputs=replace(scene.outputs, anti_alias=False))
-    return Runs(*(simulate(by_method(points, method)) for method in METHODS))
+    return _Runs(*(simulate(by_method(points, method)) for method in METHODS))
 
 
 def by_method(scene: Scene, method: str) -> Scene:
@@ -196,7 +196,7 @@ def by_method(scene: Scene, method: str) -> Scene:
     return replace(scene, integration=replace(scene.integration, method=method))
 
 
-def common_figures(runs: Runs, scene: Scene) -> tuple[Measured, ...]:
+def common_figures(runs: _Runs, scene: Scene) -> tuple[Measured, ...]:
     """Return how far both integrators are apart, and the energy that the worse one misses.
 
     They agree to their tolerances; where the scene has errors measured (`Integration.estimate_error`), since
@@ -221,7 +221,7 @@ def common_figures(runs: Runs, scene: Scene) -> tuple[Measured, ...]:
     )
 
 
-def off_closed_form(runs: Runs, scene: Scene, exact: Callable[[FloatArray], FloatArray]) -> Measured:
+def off_closed_form(runs: _Runs, scene: Scene, exact: Callable[[FloatArray], FloatArray]) -> Measured:
     """Return the rms distance of the worse integrator from `exact`, over the tolerance or its error."""
     off = [rms(run.dynamic_transmission_error[0] - exact(run.time)) for run in runs.both]
     if not scene.integration.estimate_error:

@@ -174,7 +174,7 @@ def _ringing(rate: float) -> Callable[[FloatArray], FloatArray]:
     return exact
 
 
-def torque_step() -> Sequence[Measured]:
+def _torque_step() -> Sequence[Measured]:
     """Raise the load to two and a half times within a tenth of a microsecond."""
     torque = TimeLaw.ramp(TORQUE, TORQUE + _STEP_TORQUE, _RISE, begin=_STEP_TIME)
     scene = torsional(
@@ -202,7 +202,7 @@ def torque_step() -> Sequence[Measured]:
     )
 
 
-def tolerances() -> Sequence[Measured]:
+def _tolerances() -> Sequence[Measured]:
     """Ask for a hundredth and for a billionth of the deflection."""
     rate = 1000.0
     exact = _ringing(2.0 * np.pi * rate)
@@ -276,14 +276,14 @@ TORQUE_STEP = HardScene(
     "dynamics",
     "The load rises to 2.5 times within 1e-4 of a natural period, without damping.",
     "The closed form to the measured error, a peak of twice the step; integrators agree, energy balances.",
-    torque_step,
+    _torque_step,
 )
 TOLERANCES = HardScene(
     "tolerances_1e-2_and_1e-9",
     "dynamics",
     "A tolerance that lets every step through, and one of 7e-15 m, close to rounding.",
     "The closed form of a damped oscillator to the tolerance requested, by both integrators.",
-    tolerances,
+    _tolerances,
 )
 IMPLICIT_STEPS, EXPLICIT_STEPS = (
     HardScene(

@@ -114,7 +114,6 @@ def _fresh_service(**settings: Any) -> Iterator[JobService]:
 
 
 def _service(directory: Path, log: list[Any], settings: dict[str, Any]) -> JobService:
-    """Put the machinery together; it is not started."""
     chosen = Settings(data_directory=directory, workers=1, **settings)
     parts = job_machinery(chosen, default_registry())
     return JobService(directory, parts.submissions, parts.store, parts.scheduler, log)
@@ -199,7 +198,7 @@ def aftermath(
 
 
 @dataclass(frozen=True)
-class Undisturbed:
+class _Undisturbed:
     """The small job in a service that nothing disturbs: elapsed seconds, transmission errors."""
 
     seconds: float
@@ -207,12 +206,12 @@ class Undisturbed:
 
 
 @cache
-def undisturbed() -> Undisturbed:
+def undisturbed() -> _Undisturbed:
     """Run the small job, once for all scenes of a process."""
     with _fresh_service() as service:
         began = time.perf_counter()
         ended = service.ended(service.submit(SMALL))
-        return Undisturbed(time.perf_counter() - began, service.errors(ended))
+        return _Undisturbed(time.perf_counter() - began, service.errors(ended))
 
 
 def _left(service: JobService) -> tuple[Measured, ...]:
@@ -238,7 +237,6 @@ def _workspaces_left(service: JobService) -> int:
 
 
 def _failed_turns(service: JobService) -> int:
-    """Count what the scheduler did not foresee."""
     return sum("exception" in entry or entry["log_level"] == "error" for entry in service.log)
 
 

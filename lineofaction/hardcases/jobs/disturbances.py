@@ -152,7 +152,7 @@ def _mesher_killed() -> Sequence[Measured]:
     )
 
 
-def worker_killed_once() -> Sequence[Measured]:
+def _worker_killed_once() -> Sequence[Measured]:
     """Kill the first worker in mid-mesh."""
     outcome, killed = _killing(WORKER_COMMAND, 1)
     off = np.inf if outcome.errors is None else largest_difference(outcome.errors, _of_python())
@@ -178,7 +178,6 @@ def _worker_killed_always() -> Sequence[Measured]:
 
 
 def _of_python() -> FloatArray:
-    """Return the transmission errors of the job, computed here."""
     case = validated(Case, MEDIUM)
     return ste_database(gear_pair(case), table_axes(case), analysis_options(case)).static_transmission_error
 
@@ -195,7 +194,7 @@ WORKER_ONCE = HardScene(
     "service",
     "The worker is killed (SIGKILL) while its mesher hangs: nobody tells the service, and the mesher stays.",
     f"The second attempt gives what Python gives undisturbed, to the last bit; {AFTER}",
-    worker_killed_once,
+    _worker_killed_once,
 )
 WORKER_ALWAYS = HardScene(
     "worker_killed_at_every_attempt",

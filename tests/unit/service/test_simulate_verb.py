@@ -14,7 +14,7 @@ from dynamics.simulation import simulate
 from dynamics.types import RunStatus
 from lineofaction.cli.commands import app
 from lineofaction.cli.guard import until_interrupted
-from lineofaction.cli.simulate import _run, run_headlines
+from lineofaction.cli.simulate import _run, _run_headlines
 from lineofaction.gearbox.convert.effects import effect_lines
 from lineofaction.gearbox.units import boundary_ledger
 
@@ -76,12 +76,12 @@ def test_a_run_ends_with_its_largest_forces():
         "mesh_force": {"a": {"peak": 3.0, "rms": 1.0}, "b": {"peak": 5.0, "rms": 2.0}},
         "bearing_force": {"left": {"peak": [3.0, 4.0, 0.0], "rms": [0.6, 0.8, 0.0]}},
     }
-    lines = [(line.name, line.value, line.remark) for line in run_headlines(peaks)]
+    lines = [(line.name, line.value, line.remark) for line in _run_headlines(peaks)]
     assert lines == [
         ("largest mesh force of b", "5.000 N", "rms 2.000 N"),
         ("largest force on bearing left, y", "4.000 N", "rms 0.8000 N"),
     ]
-    assert run_headlines({}) == ()
+    assert _run_headlines({}) == ()
 
 
 def test_resume_without_an_interrupted_run_is_refused(tmp_path):

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
-from lineofaction.cli.analyze import tolerance_lines, tolerance_warnings
+from lineofaction.cli.analyze import _tolerance_lines, _tolerance_warnings
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.answers import draft_line
 from lineofaction.gearbox.problems import EXIT_WARNINGS
@@ -106,21 +106,21 @@ def test_a_job_carries_the_draft_in_its_stages_and_its_fraction_stays(draft: Ste
 
 def test_passes_are_listed_where_there_are_several() -> None:
     second = PASS | {"level": "standard", "used": 1.5, "refined": ["mesh draft -> standard"]}
-    lines = list(tolerance_lines({"tolerance": KEPT, "passes": [PASS, second]}))
+    lines = list(_tolerance_lines({"tolerance": KEPT, "passes": [PASS, second]}))
     assert lines[0] == "tolerance 1 % or 20 nm: NOT met, largest error 1.5 of it"
     assert lines[1] == "pass 1: plane strain, draft, 0.5 CPU s, used 3"
     assert lines[2].endswith("used 1.5, refined mesh draft -> standard")
-    assert len(list(tolerance_lines({"tolerance": KEPT, "passes": [PASS]}))) == 1
-    assert list(tolerance_lines({})) == []
+    assert len(list(_tolerance_lines({"tolerance": KEPT, "passes": [PASS]}))) == 1
+    assert list(_tolerance_lines({})) == []
 
 
 def test_what_is_missed_between_loads_says_where_a_value_is_wanted() -> None:
     beyond = {"axis": "misalignment", "used": 2.0, "between": [0.0, 3e-5]}
-    (_, line) = tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}})
+    (_, line) = _tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}})
     assert line == "between the misalignments 0 and 30 um interpolation uses 2 of it: add a value there"
 
 
 def test_errors_that_were_not_estimated_are_no_warning() -> None:
     unknown = {"relative": AllowedError().relative, "floor_m": 2e-8, "used": None, "met": None}
-    assert list(tolerance_warnings({"tolerance": unknown})) == []
-    assert [one["check"] for one in tolerance_warnings({"tolerance": KEPT})] == ["tolerance"]
+    assert list(_tolerance_warnings({"tolerance": unknown})) == []
+    assert [one["check"] for one in _tolerance_warnings({"tolerance": KEPT})] == ["tolerance"]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 import scenes_that_break as fake
+from random_cases import kind_of_end, random_request
 
 from fe_contact.errors import InputError
 from lineofaction.hardcases import Outcome
-from lineofaction.hardcases.sweep import kind_of_end, random_request
 
 REFUSAL = str(InputError("teeth", 3, "at least 4", "Add teeth."))
 

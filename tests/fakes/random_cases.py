@@ -135,7 +135,6 @@ def _internal(draw: _Draw, rack: Fields, pinion: Gear) -> InternalGearPair:
 
 
 def _rack(draw: _Draw) -> Fields:
-    """Return what both gears share."""
     helical = draw.sometimes(0.7 if draw.across_face else 0.03)
     return {
         "normal_module": draw.power((-3.7, -1.4), (-5.0, -0.5)),
@@ -194,7 +193,6 @@ def _modification(draw: _Draw, module: float, width: float) -> FlankModification
 
 
 def _arguments(draw: _Draw, pair: ParallelAxes) -> Fields:
-    """Return loads, errors and accuracy."""
     module = pair.pinion.normal_module
     softest = min(gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel))
     nominal = _LINE_LOAD * pair.face_width * module * softest / 210e9
@@ -233,12 +231,12 @@ def sweep_case(kind: Kind, seed: int) -> HardScene:
         "sweep",
         "Anything may come.",
         "A converged table with residuals below tolerance, within its predicted time, or one clear refusal.",
-        partial(measure, kind, seed),
+        partial(_measure, kind, seed),
         _HANGS,
     )
 
 
-def measure(kind: Kind, seed: int) -> Sequence[Measured]:
+def _measure(kind: Kind, seed: int) -> Sequence[Measured]:
     """Compute the table that `seed` picks; what a process does once is done before."""
     warm_up(across_face=kind == "face")
     pair, arguments = random_request(kind, seed)
@@ -268,7 +266,6 @@ def assessed(pair: ParallelAxes, arguments: Mapping[str, Any]) -> Sequence[Measu
 
 
 def _none(table: SteDatabase) -> int:
-    """Count values that are no numbers."""
     names = (
         "static_transmission_error",
         "tangent_compliance",
