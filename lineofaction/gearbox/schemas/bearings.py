@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -118,6 +118,9 @@ _TILTS_OR_NOT = {
 }
 
 
+_Curve = Annotated[Listed[Number], Field(min_length=2, max_length=1000)]
+
+
 class SpringCurveInput(BoundaryModel):
     """A bearing's force by displacement in one direction."""
 
@@ -126,33 +129,21 @@ class SpringCurveInput(BoundaryModel):
     direction: Literal["x", "y", "z", "tilt_x", "tilt_y"] = Field(
         description="Direction of displacement and force", examples=["x"]
     )
-    displacement_um: Listed[Number] | None = Field(
+    displacement_um: _Curve | None = Field(
         default=None,
-        min_length=2,
-        max_length=1000,
         description="Displacements in um, increasing; for x, y, z",
         examples=[[-40.0, 0.0, 40.0]],
     )
-    force_n: Listed[Number] | None = Field(
+    force_n: _Curve | None = Field(
         default=None,
-        min_length=2,
-        max_length=1000,
         description="Forces in N at these displacements, increasing",
         examples=[[-6000.0, 0.0, 6000.0]],
     )
-    tilt_mrad: Listed[Number] | None = Field(
-        default=None,
-        min_length=2,
-        max_length=1000,
-        description="Tilts in mrad, increasing; for tilt_x, tilt_y",
-        examples=[[-1.0, 0.0, 1.0]],
+    tilt_mrad: _Curve | None = Field(
+        default=None, description="Tilts in mrad, increasing; for tilt_x, tilt_y", examples=[[-1.0, 0.0, 1.0]]
     )
-    moment_n_m: Listed[Number] | None = Field(
-        default=None,
-        min_length=2,
-        max_length=1000,
-        description="Moments in N m at these tilts, increasing",
-        examples=[[-50.0, 0.0, 50.0]],
+    moment_n_m: _Curve | None = Field(
+        default=None, description="Moments in N m at these tilts, increasing", examples=[[-50.0, 0.0, 50.0]]
     )
 
     @model_validator(mode="after")
@@ -181,15 +172,11 @@ class BearingInput(BoundaryModel):
     shaft: Name = Field(description="The shaft it carries", examples=["input"])
     stiffness_matrix: SeatRows | None = Field(
         default=None,
-        min_length=5,
-        max_length=6,
         description="Added stiffness: 5 by 5 in x, y, z, tilt_x, tilt_y, or 6 by 6 with 0 for the rotation; "
         "N, m, rad",
     )
     damping_matrix: SeatRows | None = Field(
         default=None,
-        min_length=5,
-        max_length=6,
         description="Added damping, likewise; N, m, rad, s; left out: proportional to the stiffness, from "
         "damping_ratio",
     )

@@ -18,6 +18,7 @@ from lineofaction.gearbox.schemas.model import (
     CouplingRows,
     Listed,
     Name,
+    Point,
     exactly_one_of,
     refuse,
     stated,
@@ -57,13 +58,10 @@ class CouplingInput(BoundaryModel):
     first: Name = Field(description="One shaft", examples=["output"])
     second: Name = Field(description="The other shaft", examples=["machine"])
     stiffness_matrix: CouplingRows | None = Field(
-        default=None,
-        min_length=6,
-        max_length=6,
-        description="Added stiffness: 6 by 6 in x, y, z, tilt_x, tilt_y, rotation; N, m, rad",
+        default=None, description="Added stiffness: 6 by 6 in x, y, z, tilt_x, tilt_y, rotation; N, m, rad"
     )
     damping_matrix: CouplingRows | None = Field(
-        default=None, min_length=6, max_length=6, description="Added damping, likewise; N, m, rad, s"
+        default=None, description="Added damping, likewise; N, m, rad, s"
     )
 
 
@@ -121,12 +119,8 @@ class ShaftInput(BoundaryModel):
 
     name: Name = Field(description="Name of the shaft", examples=["input"])
     length_mm: float
-    origin_mm: Listed[Coordinate] = Field(
-        default=(0.0, 0.0, 0.0),
-        min_length=3,
-        max_length=3,
-        description="Left end of the axis, x, y, z in mm",
-        examples=[[0.0, 0.0, 0.0]],
+    origin_mm: Point = Field(
+        default=(0.0, 0.0, 0.0), description="Left end of the axis, x, y, z in mm", examples=[[0.0, 0.0, 0.0]]
     )
     diameter_mm: float | None = Field(
         default=None,

@@ -13,7 +13,6 @@ from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fie
 from lineofaction.gearbox.schemas.files import FileContentInput
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
-    Coordinate,
     HousingRows,
     Listed,
     Name,
@@ -154,22 +153,16 @@ class _MatrixHousing(BoundaryModel):
     )
     stiffness_matrix: HousingRows | None = Field(
         default=None,
-        min_length=3,
-        max_length=6000,
         description="Stiffness over all seats: per bushing 3 rows x, y, z, or 5 with tilt_x, tilt_y, or 6 "
         "with the rotation; then a row per modal coordinate; N, m, rad. A scene file may name a CSV or NPZ "
         "file by stiffness_file instead, or a reduced housing (NetCDF) by modes_file",
     )
     damping_matrix: HousingRows | None = Field(
         default=None,
-        min_length=3,
-        max_length=6000,
         description="Damping over all seats, likewise; left out: none, with mass that of damping_ratio",
     )
     mass_matrix: HousingRows | None = Field(
         default=None,
-        min_length=3,
-        max_length=6000,
         description="Mass over all seats, likewise; kg, m, rad; left out: no mass",
         exclude_if=_left_out,
     )
@@ -244,10 +237,8 @@ class HousingInput(_MatrixHousing):
     points: Listed[HousingPointInput] = Field(
         default=(), max_length=1000, description="Points of interest of the solid", exclude_if=_left_out
     )
-    origin_mm: Listed[Coordinate] | None = Field(
+    origin_mm: Point | None = Field(
         default=None,
-        min_length=3,
-        max_length=3,
         description="Where the origin of the file is in the scene, x, y, z in mm; left out: at its origin",
         examples=[[0.0, 0.0, 60.0]],
         exclude_if=_left_out,

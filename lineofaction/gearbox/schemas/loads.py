@@ -13,6 +13,7 @@ from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
     Course,
+    Listed,
     Name,
     Number,
     Numbers,
@@ -33,17 +34,11 @@ class DriveInput(BoundaryModel):
 
     name: Name = Field(description="Name of the drive", examples=["motor"])
     shaft: Name = Field(description="The driven shaft", examples=["input"])
-    time_s: Times = Field(
-        default=(0.0,), min_length=1, max_length=100_000, description="Times in s", examples=[[0.0, 5.0]]
-    )
+    time_s: Times = Field(default=(0.0,), description="Times in s", examples=[[0.0, 5.0]])
     speed_rpm: Numbers | None = Field(
-        default=None,
-        min_length=1,
-        max_length=100_000,
-        description="Speeds in rpm at these times",
-        examples=[[0.0, 955.0]],
+        default=None, description="Speeds in rpm at these times", examples=[[0.0, 955.0]]
     )
-    angle_deg: Numbers | None = Field(
+    angle_deg: Listed[Number] | None = Field(
         default=None,
         min_length=4,
         max_length=100_000,
@@ -79,15 +74,8 @@ class LoadTorqueInput(BoundaryModel):
     name: Name = Field(description="Name of the load", examples=["brake"])
     shaft: Name = Field(description="The loaded shaft", examples=["output"])
     position_mm: float
-    time_s: Times = Field(
-        default=(0.0,), min_length=1, max_length=100_000, description="Times in s", examples=[[0.0]]
-    )
-    torque_n_m: Numbers = Field(
-        min_length=1,
-        max_length=100_000,
-        description="Resisting torques in N m at these times",
-        examples=[[100.0]],
-    )
+    time_s: Times = Field(default=(0.0,), description="Times in s", examples=[[0.0]])
+    torque_n_m: Numbers = Field(description="Resisting torques in N m at these times", examples=[[100.0]])
     course: Course = Field(default="linear", description="Course between the times", examples=["linear"])
 
     @model_validator(mode="after")
@@ -108,15 +96,11 @@ class SpeedTorqueInput(BoundaryModel):
         examples=["table"],
     )
     speed_rpm: Numbers = Field(
-        min_length=1,
-        max_length=100_000,
         description="Speeds in rpm: of the table, of the torque of a square, or at which a constant is "
         "reached",
         examples=[[0.0, 1500.0]],
     )
     torque_n_m: Numbers = Field(
-        min_length=1,
-        max_length=100_000,
         description="Torques in N m against the rotation at these speeds; negative: driving",
         examples=[[-50.0, -40.0]],
     )
@@ -180,13 +164,9 @@ class ForceInput(BoundaryModel):
         examples=["input"],
     )
     time_s: Times | None = Field(
-        default=None,
-        min_length=1,
-        max_length=100_000,
-        description="Factor by time: times in s",
-        examples=[[0.0, 1.0]],
+        default=None, description="Factor by time: times in s", examples=[[0.0, 1.0]]
     )
-    speed_rpm: Numbers | None = Field(
+    speed_rpm: Listed[Number] | None = Field(
         default=None,
         min_length=2,
         max_length=100_000,
@@ -194,11 +174,7 @@ class ForceInput(BoundaryModel):
         examples=[[0.0, 3000.0]],
     )
     factor: Numbers | None = Field(
-        default=None,
-        min_length=1,
-        max_length=100_000,
-        description="Factors at these times or speeds; left out: 1",
-        examples=[[0.0, 1.0]],
+        default=None, description="Factors at these times or speeds; left out: 1", examples=[[0.0, 1.0]]
     )
     course: Course = Field(default="linear", description="Course between the times", examples=["linear"])
     orders: Orders | None = Field(
@@ -209,17 +185,17 @@ class ForceInput(BoundaryModel):
         "per turn, multiples of 1/d with a whole number d up to 1000",
         examples=[[2.0]],
     )
-    amplitude: Numbers | None = Field(
+    amplitude: Listed[Number] | None = Field(
         default=None, max_length=10_000, description="Amplitudes of the orders", examples=[[0.1]]
     )
-    phase_deg: Numbers | None = Field(
+    phase_deg: Listed[Number] | None = Field(
         default=None,
         max_length=10_000,
         description="Phases of the orders in degrees; left out: 0",
         examples=[[0.0]],
     )
     mean: Number = Field(default=0.0, description="Mean of the factor by orders", examples=[1.0])
-    turn_factor: Numbers | None = Field(
+    turn_factor: Listed[Number] | None = Field(
         default=None,
         min_length=3,
         max_length=20_000,

@@ -72,10 +72,8 @@ class SceneInput(BoundaryModel):
     """A geared system and the run to make with it."""
 
     run: RunInput = Field(description="The run", examples=[{"duration_s": 5.0}])
-    gravity_m_per_s2: Listed[Acceleration] = Field(
+    gravity_m_per_s2: Acceleration = Field(
         default=(0.0, 0.0, 0.0),
-        min_length=3,
-        max_length=3,
         description="Acceleration of gravity in x, y, z in m/s^2",
         examples=[[0.0, -9.81, 0.0]],
     )
