@@ -26,7 +26,7 @@ sparse = {solver!r} != "own"
 def meshed(gear, recipe):
     section = quad_sector(gear, recipe)
     sector = swept_sector(section.grid, gear.face_width, recipe)
-    return sector, sector_stiffness(gear, section, sector, flank_frames(section, twist(gear)))
+    return sector, sector_stiffness(gear, section, sector)
 
 def assembled(sector, stiffness, numbers):
     held = np.append(numbers, np.full((len(numbers), 1), -1), axis=1)

@@ -121,7 +121,6 @@ def _file(directory: Path, key: str) -> Path:
 
 
 def _checksum(arrays: dict[str, np.ndarray[Any, Any]], facts: str) -> str:
-    """Return the SHA-256 of what a file holds."""
     digest = hashlib.sha256(facts.encode())
     for name, value in arrays.items():
         array = np.ascontiguousarray(value)
@@ -131,7 +130,6 @@ def _checksum(arrays: dict[str, np.ndarray[Any, Any]], facts: str) -> str:
 
 
 def _restored(kind: type[Kept], arrays: dict[str, np.ndarray[Any, Any]], facts: Json) -> Kept:
-    """Build the compliance again."""
     laws = RootStressChecks if issubclass(kind, UnitRootStress) else ComplianceChecks
     checks = laws(**facts.pop("checks"))
     content: dict[str, Any] = arrays | facts | {"checks": checks, "from_cache": True}

@@ -12,7 +12,7 @@ from scipy.linalg import cho_factor, cho_solve
 from fe_contact.compliance.cyclic_ring import FreeTurn, HeldSector, RingSolution, close_ring, hold_sector
 from fe_contact.compliance.elimination_tree import sector_tree
 from fe_contact.compliance.flank import ComplianceChecks, left_by_rounding
-from fe_contact.compliance.sector_stiffness import ElementStiffness, flank_frames, sector_stiffness, twist
+from fe_contact.compliance.sector_stiffness import ElementStiffness, sector_stiffness
 from fe_contact.compliance.substructure import Condensation, condense
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.quad_sector import QuadSector
@@ -230,14 +230,8 @@ def condensed_gear(
     ----------
     gear : Gear
         Right hand or spur.
-    section : QuadSector
-        Mesh of its transverse section.
-    recipe : SectorRecipe
-        Layers.
     reach : int
         Largest distance in teeth that is kept.
-    support : BoreSupport
-        How the bore is held.
     clock : StageClock
         Gets the stages ``assembly``, ``condensation``, ``ring`` and their progress.
     probes : (nf, p) array, optional
@@ -276,7 +270,7 @@ def condensed_tooth(
         The sector, and probe loads for the checks, N.
     """
     sector = swept_sector(section.grid, gear.face_width, recipe, support, gear.web)
-    stiffness = sector_stiffness(gear, section, sector, flank_frames(section, twist(gear)))
+    stiffness = sector_stiffness(gear, section, sector)
     clock.finish("assembly")
     report = partial(clock.progress, "condensation")
     condensation = condense(sector_tree(sector), sector.element_freedoms, stiffness, report)

@@ -96,19 +96,14 @@ class _SectorSizes(NamedTuple):
 def predict_cost(
     gear: Toothing,
     recipe: SectorRecipe | None = None,
-    reach: int | None = None,
     cache: Path | None = None,
 ) -> PredictedCost:
     """Predict what `flank_compliance_3d` costs for a gear that is not in the cache.
 
     Parameters
     ----------
-    gear : Gear
-        The gear.
     recipe : SectorRecipe, optional
         Default `SectorRecipe.standard(gear)`.
-    reach : int, optional
-        Default `usual_reach(gear)`.
     cache : Path, optional
         Directory of what is known of the host.
     """
@@ -116,8 +111,7 @@ def predict_cost(
     grid = sector_outline(tooth_profile(gear), recipe).grid
     sector = swept_sector(grid, gear.face_width, recipe, bore_support(gear), gear.web)
     tree = sector_tree(sector)
-    distance = usual_reach(gear) if reach is None else reach
-    sizes = _sector_sizes(sector, gear.teeth, distance)
+    sizes = _sector_sizes(sector, gear.teeth, usual_reach(gear))
     key = len(sector.key_bore) + len(sector.key_cut)
     answers = float(gear.teeth * sizes.cut * key)  # of all cuts to forces on the bore
     operations = {
@@ -133,7 +127,6 @@ def predict_cost(
 
 
 def _sector_sizes(sector: SweptSector, teeth: int, reach: int) -> _SectorSizes:
-    """Count what the cost follows from."""
     matrices = sum(len(batch.quads) for batch in sector.batches)
     return _SectorSizes(len(sector.loaded), len(sector.left), teeth // 2 + 1, reach, matrices)
 

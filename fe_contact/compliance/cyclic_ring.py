@@ -159,8 +159,6 @@ def close_ring(
 
     Parameters
     ----------
-    held : HeldSector
-        The sector.
     teeth : int
         z.
     reach : int
@@ -223,8 +221,6 @@ def left_cuts(
 
     Parameters
     ----------
-    held : HeldSector
-        The sector.
     loads : (2 nc, p) array
         On the cuts of sector 0.
     teeth, reach : int

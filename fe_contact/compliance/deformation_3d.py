@@ -16,13 +16,10 @@ from fe_contact.compliance.condensed_gear import CondensedGear, condensed_gear, 
 from fe_contact.compliance.deformed_gear import DeformedGear, nodal_mean, stress_of, turn_about_axis
 from fe_contact.compliance.sector_stiffness import (
     REFERENCE,
-    SECTION,
-    coarse_face,
-    cylindrical_frames,
-    flank_frames,
     gradients_at,
     lame_parameters,
-    layer_nodes,
+    node_axes,
+    placed_layer,
     twist,
 )
 from fe_contact.errors import InputError
@@ -30,7 +27,7 @@ from fe_contact.geometry import Toothing
 from fe_contact.mesh.quad_sector import QuadSector, quad_sector
 from fe_contact.mesh.quality import quad_quality
 from fe_contact.mesh.recipe import SectorRecipe
-from fe_contact.mesh.sector_grid import BoreSupport, bore_support
+from fe_contact.mesh.sector_grid import bore_support
 from fe_contact.mesh.swept_sector import LOWER_FACE, Batch, SweptSector, swept_sector
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
@@ -127,13 +124,8 @@ def _sector_elements(gear: Toothing, section: QuadSector, sector: SweptSector) -
     ----------
     gear : Gear or RingGear
         Right hand or spur, as the sector was made for.
-    section : QuadSector
-        Its transverse mesh.
-    sector : SweptSector
-        Its hexahedra.
     """
-    axes = np.tile(np.eye(3), (sector.grid.nodes, 1, 1))
-    axes[sector.grid.flank] = flank_frames(section, twist(gear))
+    axes = node_axes(gear, section)
     count = len(sector.elements)
     nodes, jacobian = np.empty((count, 20, 3)), np.empty(count)
     numbers, points = sector.elements.copy(), len(sector.freedoms)
@@ -167,12 +159,8 @@ def _frames(
     section: QuadSector, batch: Batch, axes: FloatArray, turn_per_length: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return nodes (m, 20, 3) and Cartesian displacements per freedom (m, 60, 60) in a layer's frame."""
-    quads, turn = section.grid.quads[batch.quads], batch.thickness * turn_per_length
-    corners = section.points[quads]
-    nodes = layer_nodes(corners, batch.thickness, turn)
-    frames = cylindrical_frames(nodes) @ axes[quads[:, SECTION]]
-    if batch.half:
-        face = coarse_face(corners, batch.thickness, turn, batch.half)
+    nodes, frames, face = placed_layer(section, batch, axes, turn_per_length)
+    if face is not None:
         return face.attach(nodes), face.transform(frames)
     transform = np.zeros((len(nodes), 20, 3, 20, 3))
     every = np.arange(20)
@@ -190,7 +178,6 @@ def deformed_solids(
     recipe: SectorRecipe,
     loads: Sequence[Load],
     beside: int = 1,
-    support: BoreSupport | None = None,
     *,
     seen_from_behind: bool = False,
 ) -> tuple[DeformedGear, ...]:
@@ -198,8 +185,7 @@ def deformed_solids(
 
     Parameters
     ----------
-    gear : Gear or RingGear
-    recipe, support
+    recipe
         As for `flank_compliance_3d`.
     loads : sequence of mapping
         Tooth number to nodal forces (nf,) along the outward normal, in the freedoms of `FlankCompliance3D`,
@@ -220,7 +206,7 @@ def deformed_solids(
         raise InputError("seat.key", "given", "left out for deformed gears", advice)
     right = gear.right_handed()
     section = quad_sector(right, recipe)
-    support = support or bore_support(right)
+    support = bore_support(right)
     left, mirror = gear.helix_angle < 0.0, None
     if left != seen_from_behind:
         planes = swept_sector(section.grid, gear.face_width, recipe, support, right.web).flank_index[::-1]
@@ -285,7 +271,6 @@ def _deformed(
     mirror: IntArray | None,
     left: bool,
 ) -> DeformedGear:
-    """Expand the sectors of one case and put them together."""
     shown = _shown(loaded.teeth, beside, teeth)
     fields, forces = _fields(gear, loaded, shown)
     closed = len(shown) == teeth

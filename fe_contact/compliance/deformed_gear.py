@@ -121,7 +121,6 @@ def deformed_sections(
 
     Parameters
     ----------
-    gear : Gear or RingGear
     recipe, hypothesis
         As for `flank_compliance`.
     loads : sequence of mapping
@@ -135,7 +134,6 @@ def deformed_sections(
 
 
 def _field(ring: Ring, load: Mapping[int, FloatArray]) -> Field:
-    """Add up the fields of all loaded teeth."""
     first = int(ring.mesh.teeth[0])
     parts = [field_under(ring, tooth - first, forces) for tooth, forces in load.items()]
     return Field(
@@ -146,7 +144,6 @@ def _field(ring: Ring, load: Mapping[int, FloatArray]) -> Field:
 
 
 def _deformed(ring: Ring, field: Field, lame: tuple[float, float], out_of_plane: float) -> DeformedGear:
-    """Turn a field into stresses and displacements."""
     mesh = ring.mesh
     out = field.load - field.internal
     out[mesh.bore_nodes] = 0.0

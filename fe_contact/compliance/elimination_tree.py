@@ -185,7 +185,6 @@ class _Builder:
         return group[low], group[~low]
 
     def _shared(self, group: IntArray, other: IntArray) -> int:
-        """Return the number of nodes that two groups share."""
         mine, theirs = self.nodes[group], self.nodes[other]
         mine = mine[mine >= 0]
         self._seen[mine] = True

@@ -59,7 +59,6 @@ def _disc_rounding(slenderness: float, helix_angle: float, layers: int, material
         rad.
     layers : int
         Of elements across the face.
-    material : Material
     """
     nu = material.poissons_ratio
     stretching = (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))

@@ -24,7 +24,7 @@ from fe_contact.compliance.flank import (
     left_by_rounding,
     refuse_broken_laws,
 )
-from fe_contact.compliance.plane_elasticity import PlaneHypothesis
+from fe_contact.compliance.plane_elasticity import PlaneHypothesis, stiffness_matrix
 from fe_contact.compliance.ring_2d import (
     FACTORIZATION,
     Ring,
@@ -152,12 +152,8 @@ def _ring_checks(ring: Ring, tooth_index: int, load: _FlankLoad, matrix: FloatAr
 
     Parameters
     ----------
-    ring : Ring
-        The condensed gear.
     tooth_index : int
         Index of the tooth that is loaded.
-    load : FlankLoad
-        The load.
     matrix : (n, n) array
         Flank compliance as computed, before it is made symmetric; the loaded tooth is the middle one.
     """
@@ -204,8 +200,6 @@ def flank_compliance(
         much thinner than the others (`docs/effects/thin_rim.md`).
     recipe : MeshRecipe, optional
         Default `MeshRecipe.standard(gear)`.
-    hypothesis : PlaneHypothesis
-        Plane strain or plane stress.
     teeth : int, optional
         Number of condensed teeth, odd, centered on tooth 0, at most the real ones; default 5, or as many as
         there are.
@@ -328,8 +322,6 @@ def compute_flank_compliance(
 
 def condensed_ring(gear: Toothing, mesh: GearMesh, hypothesis: PlaneHypothesis) -> Ring:
     """Assemble sector and hub, condense the sector, assemble and factorise the ring."""
-    from fe_contact.compliance.plane_elasticity import stiffness_matrix  # noqa: PLC0415 - a cached result needs no skfem
-
     lame = hypothesis.lame_parameters(gear.material)
     normals = tooth_profile(gear).normal(mesh.sector.s)
     stiffness = stiffness_matrix(mesh.sector.points, mesh.sector.triangles, lame)

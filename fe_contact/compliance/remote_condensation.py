@@ -69,13 +69,11 @@ class _Solid:
 
     @classmethod
     def of(cls, gear: Toothing, recipe: SectorRecipe) -> _Solid:
-        """Return the solid that `flank_compliances_3d` condenses."""
         right = gear.right_handed()
         return cls(right, recipe, usual_reach(gear), bore_support(right))
 
     @property
     def key(self) -> str:
-        """Its name in the cache."""
         return compliance_key_3d(self.gear, self.recipe, self.reach, self.support)
 
 

@@ -33,7 +33,7 @@ SECTION = np.array([0, 1, 2, 3, 0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7, 0, 1, 2, 3])
 QUADRATURE_ORDER = 5  # three Gauss points each way
 
 
-def layer_nodes(section: FloatArray, thickness: float, turn: float) -> FloatArray:
+def _layer_nodes(section: FloatArray, thickness: float, turn: float) -> FloatArray:
     """Return the nodes of the hexahedra between two turned copies of quadrilaterals.
 
     Parameters
@@ -184,7 +184,7 @@ class _CoarseFace:
         return transform.reshape(len(frames), 60, 60)
 
 
-def coarse_face(section: FloatArray, thickness: float, turn: float, half: int) -> _CoarseFace:
+def _coarse_face(section: FloatArray, thickness: float, turn: float, half: int) -> _CoarseFace:
     """Return the face that elements hang on.
 
     Parameters
@@ -272,7 +272,7 @@ def twist(gear: Toothing) -> float:
     return abs(math.tan(gear.helix_angle)) / gear.reference_radius
 
 
-def flank_frames(section: QuadSector, turn_per_length: float) -> FloatArray:
+def _flank_frames(section: QuadSector, turn_per_length: float) -> FloatArray:
     """Return the axes (k, 3, 3) at the flank nodes in cylindrical components, one per column.
 
     The first is the outward normal of the helicoid: with the transverse normal (n_r, n_phi),
@@ -289,24 +289,22 @@ def flank_frames(section: QuadSector, turn_per_length: float) -> FloatArray:
     return np.stack([normal, first, np.cross(normal, first)], axis=-1)
 
 
-def sector_stiffness(
-    gear: Toothing, section: QuadSector, sector: SweptSector, frames: FloatArray
-) -> ElementStiffness:
+def node_axes(gear: Toothing, section: QuadSector) -> FloatArray:
+    """Return the axes (n, 3, 3) of the freedoms at all nodes of a section, in cylindrical components."""
+    axes = np.tile(np.eye(3), (section.grid.nodes, 1, 1))
+    axes[section.grid.flank] = _flank_frames(section, twist(gear))
+    return axes
+
+
+def sector_stiffness(gear: Toothing, section: QuadSector, sector: SweptSector) -> ElementStiffness:
     """Compute the matrices of all batches of a sector.
 
     Parameters
     ----------
     gear : Gear
         Its material and helix matter.
-    section : QuadSector
-        Transverse mesh.
-    sector : SweptSector
-        Its hexahedra.
-    frames : (k, 3, 3) array
-        Axes at the flank nodes.
     """
-    axes = np.tile(np.eye(3), (sector.grid.nodes, 1, 1))
-    axes[sector.grid.flank] = frames
+    axes = node_axes(gear, section)
     matrices = [
         np.tile(_seat_stiffness(gear, sector.grid, batch.thickness, sector.seat), (len(batch.quads), 1, 1))
         if batch.seat
@@ -321,6 +319,17 @@ def sector_stiffness(
     return ElementStiffness(np.concatenate(matrices), of_element)
 
 
+def placed_layer(
+    section: QuadSector, batch: Batch, axes: FloatArray, turn_per_length: float
+) -> tuple[FloatArray, FloatArray, _CoarseFace | None]:
+    """Return nodes (m, 20, 3) and axes (m, 20, 3, 3) of a batch, and the coarse face that it may hang on."""
+    quads, turn = section.grid.quads[batch.quads], batch.thickness * turn_per_length
+    corners = section.points[quads]
+    nodes = _layer_nodes(corners, batch.thickness, turn)
+    face = _coarse_face(corners, batch.thickness, turn, batch.half) if batch.half else None
+    return nodes, cylindrical_frames(nodes) @ axes[quads[:, SECTION]], face
+
+
 def lame_parameters(material: Material) -> tuple[float, float]:
     """Return lambda and mu of the solid, Pa."""
     E, nu = material.youngs_modulus, material.poissons_ratio
@@ -331,13 +340,9 @@ def _batch_stiffness(
     material: Material, section: QuadSector, batch: Batch, axes: FloatArray, turn_per_length: float
 ) -> FloatArray:
     """Return the matrices of one batch, (m, 60, 60)."""
-    quads, turn = section.grid.quads[batch.quads], batch.thickness * turn_per_length
-    points = section.points[quads]
-    nodes = layer_nodes(points, batch.thickness, turn)
-    frames = cylindrical_frames(nodes) @ axes[quads[:, SECTION]]
+    nodes, frames, face = placed_layer(section, batch, axes, turn_per_length)
     lame = lame_parameters(material)
-    if not batch.half:
+    if face is None:
         return _in_frames(_stiffness_of(nodes, lame), frames)
-    face = coarse_face(points, batch.thickness, turn, batch.half)
     transform = face.transform(frames)
     return np.asarray(transform.transpose(0, 2, 1) @ _stiffness_of(face.attach(nodes), lame) @ transform)

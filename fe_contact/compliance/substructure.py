@@ -62,12 +62,8 @@ def condense(
 
     Parameters
     ----------
-    tree : EliminationTree
-        The order.
     freedoms : (e, 60) int array
         Freedoms of the elements, -1 where held.
-    stiffness : ElementStiffness
-        Their matrices.
     report : callable
         Called after each front with the fraction of the operations done.
 

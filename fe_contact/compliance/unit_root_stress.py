@@ -33,17 +33,24 @@ from fe_contact.compliance.flank_compliance_2d import (
 from fe_contact.compliance.plane_elasticity import PlaneHypothesis
 from fe_contact.compliance.ring_2d import FACTORIZATION, Ring, freedoms
 from fe_contact.compliance.root_stress import (
+    COMPONENTS,
+    STATIONS,
     RootStressChecks,
+    RootSurface,
     UnitRootStress,
+    between_nodes,
     refuse_broken_stress,
     relative_difference,
+    root_coordinate,
 )
-from fe_contact.compliance.surface_stress import COMPONENTS, between_nodes, edge_stress, triangle_root
 from fe_contact.geometry import Toothing, tooth_profile
-from fe_contact.geometry.flank_profile import tangent_angle
+from fe_contact.geometry.flank_profile import FlankProfile, tangent_angle
 from fe_contact.geometry.gear import refuse_key
+from fe_contact.material import Material
 from fe_contact.mesh import MeshRecipe, SectorRecipe, mesh_gear
 from fe_contact.mesh.sector_grid import BoreSupport, bore_support
+from fe_contact.mesh.tooth_sector import ToothSector
+from fe_contact.mesh.triangulation import SIDES
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
 
@@ -140,7 +147,6 @@ def unit_root_stresses_3d(
 
 
 def _kept(compliance: str, compute: Callable[[], UnitRootStress], cache: Path | None) -> UnitRootStress:
-    """Return the kept result that belongs to the `compliance` of a key, or compute and keep it."""
     key = content_hash({"root stress": MODEL_VERSION, "compliance": compliance})
     return kept_or_computed(cache, key, UnitRootStress, compute)
 
@@ -150,11 +156,11 @@ def _compute_in_plane(
 ) -> UnitRootStress:
     clock = StageClock()
     mesh, profile = mesh_gear(gear, recipe), tooth_profile(gear)
-    root = triangle_root(mesh.sector, profile)
+    root = _triangle_root(mesh.sector, profile)
     clock.finish("mesh")
     ring = condensed_ring(gear, mesh, hypothesis)
     clock.finish("factorisation")
-    rows = [edge_stress(mesh.sector.points, chain, gear.material, hypothesis) for chain in root.nodes]
+    rows = [_edge_stress(mesh.sector.points, chain, gear.material, hypothesis) for chain in root.nodes]
     functionals = sp.csr_array(sp.vstack(rows))
     own, index = tooth_indices(mesh, 1), tooth_indices(mesh, teeth)
     stress = _unit_load_stress(ring, functionals, int(own[0]), index)
@@ -212,3 +218,65 @@ def _checks_in_plane(
         residual=float(np.linalg.norm(out_of_balance) / np.linalg.norm(field.load)),
         recovery=relative_difference(stress @ forces, direct),
     )
+
+
+def _triangle_root(sector: ToothSector, profile: FlankProfile) -> RootSurface:
+    """Return the root of a sector of six-node triangles; it is found by walking along the boundary."""
+    form = int(np.argmin(np.abs(sector.s[::2] - profile.s_form)))
+    ahead = _boundary(sector.triangles)
+    back = {after: (middle, before) for before, (middle, after) in ahead.items()}
+    if profile.gear.sign < 0:  # teeth that point inwards
+        ahead, back = back, ahead
+    right = _walk(ahead, int(sector.right_side[-1]), int(sector.flank[2 * form]))
+    left = _walk(back, int(sector.left_side[-1]), int(sector.coast_flank[2 * form]))
+    return RootSurface(np.array([right, left]), root_coordinate(profile, sector.points[right]))
+
+
+def _boundary(triangles: IntArray) -> dict[int, tuple[int, int]]:
+    """Return the middle and the end of the boundary edge that begins at each corner, counter-clockwise."""
+    edges = np.concatenate([triangles[:, [*side, 3 + i]] for i, side in enumerate(SIDES)])
+    ends = np.sort(edges[:, :2], axis=1)
+    _, first, count = np.unique(ends, axis=0, return_index=True, return_counts=True)
+    return {int(a): (int(middle), int(b)) for a, b, middle in edges[first[count == 1]]}
+
+
+def _walk(following: dict[int, tuple[int, int]], start: int, stop: int) -> list[int]:
+    """Return the nodes from one corner of the boundary to another."""
+    nodes = [start]
+    while nodes[-1] != stop:
+        nodes += following[nodes[-1]]
+    return nodes
+
+
+def _edge_stress(
+    points: FloatArray, nodes: IntArray, material: Material, hypothesis: PlaneHypothesis
+) -> sp.csr_array:
+    """Return the stresses of a chain of quadratic edges by the displacement of a plane mesh.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        Nodes of the mesh, m.
+    nodes : (2e + 1,) int array
+        The chain.
+    material : Material
+        E and nu.
+
+    Returns
+    -------
+    (3 * 2e, 2n) sparse array
+        Pa/m; all stations of one component stand together. There is no shear between profile and axis.
+    """
+    edges = np.stack([nodes[:-2:2], nodes[1::2], nodes[2::2]], axis=1)
+    slopes = np.stack([STATIONS - 0.5, -2.0 * STATIONS, STATIONS + 0.5], axis=1)
+    along = slopes @ points[edges]  # (e, 2 stations, 2)
+    length = np.linalg.norm(along, axis=2)[:, :, None, None]
+    strain = slopes[:, :, None] * along[:, :, None, :] / length**2  # (e, station, node, component)
+    freedoms = np.broadcast_to(2 * edges[:, None, :, None] + np.arange(2), strain.shape)
+    rows = np.broadcast_to(np.arange(2 * len(edges)).reshape(-1, 2, 1, 1), strain.shape)
+    shape = (2 * len(edges), 2 * len(points))
+    profile = hypothesis.contact_modulus(material) * sp.csr_array(
+        (strain.ravel(), (rows.ravel(), freedoms.ravel())), shape=shape
+    )
+    held = material.poissons_ratio if hypothesis is PlaneHypothesis.PLANE_STRAIN else 0.0
+    return sp.csr_array(sp.vstack([profile, held * profile, sp.csr_array(shape)]))

@@ -1,7 +1,7 @@
 """Loaded contact: which teeth touch, what each carries, how far the driven gear lags."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from fe_contact.contact.adjoint import Adjoint, CarryingStrips, adjoint, force_changes
+from fe_contact.contact.adjoint import CarryingStrips, adjoint, force_changes
 from fe_contact.contact.assembly import contact_problem, face_contact_problem, in_pitches, with_compliances
 from fe_contact.contact.candidates import (
     PatchRule,
@@ -16,7 +16,6 @@ from fe_contact.contact.sweep import ContactSolution, Start, solve_contact
 from fe_contact.contact.touch import flank_coordinate
 
 __all__ = [
-    "Adjoint",
     "Break",
     "Candidates",
     "CarryingStrips",

@@ -35,7 +35,7 @@ from fe_contact.types import FloatArray, IntArray, Status
 
 
 @dataclass(frozen=True)
-class Adjoint:
+class _Adjoint:
     """Influences on the transmission error of P positions at L loads, and their strips; m candidates.
 
     Attributes
@@ -52,12 +52,12 @@ class Adjoint:
     half: FloatArray
 
 
-def adjoint(problem: ContactProblem, solution: ContactSolution) -> Adjoint:
+def adjoint(problem: ContactProblem, solution: ContactSolution) -> _Adjoint:
     """Find the weights of all candidates, and the strips, of a solved problem."""
     weight, middle, half = np.zeros((3, *solution.force.shape))
     _weigh(point_problems(problem), solution.force, weight, middle, half)
     weight[solution.status != Status.CONVERGED] = np.nan
-    return Adjoint(weight, middle, half)
+    return _Adjoint(weight, middle, half)
 
 
 @njit(cache=True, error_model="numpy")
@@ -184,7 +184,6 @@ class CarryingStrips:
 
     Attributes
     ----------
-    pair : GearPair or InternalGearPair
     shape : (int, int, int)
         Numbers of positions, loads and candidates.
     index : ndarray of int, shape (k,)
@@ -215,7 +214,7 @@ class CarryingStrips:
     weight: FloatArray
 
     @classmethod
-    def of(cls, pair: ParallelAxes, candidates: Candidates, adjoint: Adjoint) -> CarryingStrips:
+    def of(cls, pair: ParallelAxes, candidates: Candidates, adjoint: _Adjoint) -> CarryingStrips:
         """Gather them from a solution of these candidates."""
         at = np.nonzero(adjoint.weight)
         strips = adjoint.middle[at], adjoint.half[at], adjoint.weight[at]

@@ -64,13 +64,10 @@ def contact_candidates(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     model : ContactModel
         Whether tip edges may touch; its gaps are added by `with_gaps`.
     position : ndarray, shape (P,)
         Base pitches by the driving gear's angle.
-    rule : PatchRule
-    slices : Slices
 
     Returns
     -------

@@ -57,7 +57,6 @@ def face_loads(
 
     Parameters
     ----------
-    grid : FaceGrid
     center, half_width, edge_share : ndarray, shape (n, Q)
         See `fe_contact.contact.patch.Patches`.
     low, high : ndarray, shape (n,)
@@ -224,7 +223,6 @@ def add_compliance(
         blocks[m]: displacement on tooth j + m per force on tooth j; its transpose for -m.
     tooth : ndarray of int, shape (n,)
         Tooth of each patch, counted counter-clockwise; patches of one tooth stand together.
-    loads : FaceLoads
     lever : ndarray, shape (n,)
 
     Notes

@@ -31,7 +31,6 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    problem : ContactProblem
     force : ndarray, shape (P, L, n)
         Normal forces, N.
     """
@@ -52,7 +51,6 @@ def at_edges(problem: ContactProblem, force: FloatArray, pressure: FloatArray) -
 
     Parameters
     ----------
-    problem : ContactProblem
     force, pressure : ndarray, shape (P, L, n)
         Normal forces, N, and their `contact_pressure`, Pa.
     """
@@ -127,7 +125,6 @@ def plane_flank_forces(
 
     Parameters
     ----------
-    candidates : Candidates
     force : ndarray, shape (P, m)
         Of the candidates, N.
     position : int

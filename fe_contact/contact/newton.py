@@ -93,7 +93,6 @@ def solve_point(
 
     Parameters
     ----------
-    problem : PointProblem
     total : float
         Right-hand side of the equilibrium in N, > 0.
     force : ndarray, shape (m,)

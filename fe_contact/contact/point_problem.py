@@ -235,14 +235,12 @@ def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
 
 @njit(cache=True, error_model="numpy")
 def _subtract(x: FloatArray, y: FloatArray, part: float) -> None:
-    """Subtract a part of one row from another of the same length."""
     for k in range(x.size):
         x[k] -= part * y[k]
 
 
 @njit(cache=True, error_model="numpy")
 def _swap(x: FloatArray, y: FloatArray, n: int) -> None:
-    """Exchange two rows."""
     for k in range(n):
         x[k], y[k] = y[k], x[k]
 

@@ -268,7 +268,6 @@ class ContactProblem:
 
     Attributes
     ----------
-    candidates : Candidates
     compliance : ndarray, shape (Q, n, n)
         Of position p at row p modulo Q, P a multiple of Q.
         Normal approach of slice i per unit normal force on j, both gears, m/N.

@@ -92,7 +92,6 @@ def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[floa
 
     Parameters
     ----------
-    gap : Gap
     i : int
         Of the contact.
     line_load : float

@@ -198,7 +198,6 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     roll_1, roll_2 : ndarray, shape (P, n)
         Nominal roll lengths, m; beyond A and E too.
     corners : bool
@@ -262,7 +261,6 @@ def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tup
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     touch : Touch
         Of plain involutes.
     face : ndarray, shape (n,)

@@ -3,9 +3,10 @@
 It shares geometry and mesher with the rest of the project, and nothing of its contact.
 """
 
-from fe_contact.full_contact.condensation import FullContactTable, Resolution, solve_full_contact
-from fe_contact.full_contact.over_face import solve_full_contact_over_face
-from fe_contact.full_contact.table import FullContactPoint
+from fe_contact.full_contact.condensation.sites import Resolution
+from fe_contact.full_contact.condensation.solve import solve_full_contact
+from fe_contact.full_contact.over_face.solve import solve_full_contact_over_face
+from fe_contact.full_contact.table import FullContactPoint, FullContactTable
 from fe_contact.full_contact.validity import refusal, refusal_over_face
 
 __all__ = [

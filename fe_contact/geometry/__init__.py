@@ -4,7 +4,7 @@ from fe_contact.body import CLAMPED, BoreSeat, GearBlank, Key, Shaft
 from fe_contact.flank.flank_grid import FlankGrid
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry.basic_rack import BasicRack
-from fe_contact.geometry.corner_contact import CornerContact, Side, corner_contact, corner_gap, edge_gap
+from fe_contact.geometry.corner_contact import CornerContact, Side, corner_contact, edge_gap
 from fe_contact.geometry.flank_profile import ToothProfile, tooth_profile
 from fe_contact.geometry.gear import Gear, seat_compliance
 from fe_contact.geometry.gear_pair import GearPair, InternalGearPair
@@ -37,7 +37,6 @@ __all__ = [
     "Toothing",
     "blank_factor",
     "corner_contact",
-    "corner_gap",
     "edge_gap",
     "iso6336_stiffness",
     "seat_compliance",

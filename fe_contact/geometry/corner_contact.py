@@ -114,7 +114,7 @@ def corner_contact(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> Corn
     raise InputError("side", side, 'one of "approach" and "exit"')
 
 
-def corner_gap(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> FloatArray:
+def _corner_gap(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> FloatArray:
     """Rigid gap of `corner_contact` in m, NaN where the edge meets no involute."""
     return corner_contact(pair, side, overshoot).gap
 
@@ -124,7 +124,6 @@ def edge_gap(pair: ParallelAxes, side: Side, edge: ArrayLike, roll_length: Array
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     side : {"approach", "exit"}
         Whether the points belong to gear 2, or to gear 1.
     edge, roll_length : array_like

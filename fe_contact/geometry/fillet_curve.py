@@ -204,8 +204,6 @@ def find_form_point(
 
     Parameters
     ----------
-    trochoid : Trochoid
-        The fillet.
     normal_pressure_angle : float
         alpha_n in rad: the tool angle at which the tool's rounding begins.
     tangent_roll_length : float

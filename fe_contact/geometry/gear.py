@@ -83,7 +83,6 @@ THINNEST_WEB = 0.02  # in face widths
 
 
 def _refuse_infeasible_gear(gear: Toothing, blank: GearBlank | None) -> None:
-    """Raise `InfeasibleGeometry` if no such external gear can be generated."""
     _refuse_bore(gear)
     if blank is not None:
         _refuse_rim(gear, blank)
@@ -156,7 +155,6 @@ def _refuse_undercut(gear: Toothing) -> None:
 
 
 def _refuse_pointed_tooth(gear: Toothing) -> None:
-    """Refuse a tooth whose flanks meet below the tip circle."""
     if gear.tip_tooth_thickness <= 0.0:
         thickness = Quantity(gear.tip_tooth_thickness, "m", digits=3)
         bound = Text.of("smaller: the transverse tip thickness is ", thickness)

@@ -234,7 +234,6 @@ def _beyond_rounding(pair: ParallelAxes) -> Text:
 
 
 def _refuse_contact_ratio(pair: ParallelAxes) -> None:
-    """Refuse a pair that loses contact between one tooth pair and the next."""
     if pair.total_contact_ratio < 1.0:
         value = pair.total_contact_ratio
         if pair.overlap_ratio == 0.0:
@@ -258,7 +257,6 @@ def _refuse_short_flanks(pair: ParallelAxes) -> None:
 
 
 def _refuse_tip_clearance(pair: ParallelAxes) -> None:
-    """Refuse a tip circle that reaches the mating root circle."""
     gears = (("pinion", pair.pinion, pair.wheel), ("wheel", pair.wheel, pair.pinion))
     for name, gear, mate in gears:
         largest = pair.center_distance - mate.root_radius
@@ -328,7 +326,6 @@ def _largest_clear_tip(pair: ParallelAxes, gear: Toothing, mate: Toothing) -> fl
 
 
 def _refuse_tooth_numbers(pinion: Toothing, ring: Toothing) -> None:
-    """Refuse a pinion that is no smaller than the ring."""
     if ring.teeth <= pinion.teeth:
         bound = above(pinion.teeth, name="the pinion's")
         advice = "With standard teeth of 20 deg about ten more are needed for the tips to pass each other."
@@ -336,7 +333,6 @@ def _refuse_tooth_numbers(pinion: Toothing, ring: Toothing) -> None:
 
 
 def _refuse_short_distance(pair: ParallelAxes) -> None:
-    """Refuse base circles without a common tangent."""
     shortest = abs(base_radius_sum(pair.pinion, pair.wheel))
     if pair.center_distance <= shortest:
         bound = above(shortest, "m", note=", the difference of the base radii")
@@ -346,7 +342,6 @@ def _refuse_short_distance(pair: ParallelAxes) -> None:
 
 
 def _refuse_internal_contact_ratio(pair: ParallelAxes) -> None:
-    """Refuse a pair that loses contact between one tooth pair and the next."""
     if pair.total_contact_ratio < 1.0:
         bound = f"larger: the contact ratio is {pair.total_contact_ratio:.6g}, below 1"
         advice = "Raise the center distance or the pinion's tip diameter, or lower the ring's tip diameter."
@@ -354,7 +349,6 @@ def _refuse_internal_contact_ratio(pair: ParallelAxes) -> None:
 
 
 def _refuse_internal_tip_clearance(pair: ParallelAxes) -> None:
-    """Refuse a tip circle that reaches the mating root circle."""
     at_pinion_tip, at_ring_tip = pair.tip_clearances
     if at_pinion_tip <= 0.0:
         largest = 2.0 * (pair.pinion.tip_radius + at_pinion_tip)
@@ -389,7 +383,6 @@ def _refuse_internal_interference(pair: ParallelAxes) -> None:
 
 
 def _refuse_tip_interference(pair: ParallelAxes) -> None:
-    """Refuse tips that hit each other as they enter or leave."""
     depth = _tip_interference(pair)
     if depth > _FILLET_SLACK * pair.pinion.normal_module:
         overlap = Quantity(depth, "m", digits=3)
@@ -401,7 +394,6 @@ def _refuse_tip_interference(pair: ParallelAxes) -> None:
 
 
 def _refuse_trochoidal_interference(pair: ParallelAxes) -> None:
-    """Refuse a tip that cuts the mating fillet."""
     depth = _trochoidal_interference(pair)
     if depth > _FILLET_SLACK * pair.pinion.normal_module:
         cut = Quantity(depth, "m", digits=3)

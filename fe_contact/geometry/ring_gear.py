@@ -233,7 +233,6 @@ _OTHER_CUTTER = "Choose another number of teeth or profile shift of the cutter."
 
 
 def _refuse_infeasible_ring(gear: Toothing, cutter: _PinionCutter) -> None:
-    """Raise `InfeasibleGeometry` if the cutter cannot generate such a ring gear."""
     _refuse_rounding(gear, cutter)
     _refuse_tip_diameter(gear, cutter)
     _refuse_cut_tips(gear, cutter)
@@ -256,7 +255,6 @@ def _refuse_shift_sum_of_cutter(gear: Toothing, teeth: int, profile_shift: float
 
 
 def _refuse_narrow_rim(gear: Toothing) -> None:
-    """Refuse a rim that leaves nothing behind the teeth."""
     rim = 2.0 * gear.held_radius
     if rim <= 2.0 * gear.root_radius:
         bound = above(2.0 * gear.root_radius, "m", "the root diameter")
@@ -299,7 +297,6 @@ def _refuse_cut_tips(gear: Toothing, cutter: _PinionCutter) -> None:
 
 
 def _refuse_pointed_tooth(gear: Toothing) -> None:
-    """Refuse a tooth whose flanks meet before the tip circle."""
     if gear.tip_tooth_thickness <= 0.0:
         thickness = Quantity(gear.tip_tooth_thickness, "m", digits=3)
         bound = Text.of("larger: the transverse tip thickness is ", thickness)

@@ -1,24 +1,21 @@
 """Meshes on exact tooth profiles, made by gmsh in a child process, checked for quality."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from fe_contact.mesh.gear_mesh import FlankNodes, GearMesh, mesh_gear
+from fe_contact.mesh.gear_mesh import GearMesh, mesh_gear
 from fe_contact.mesh.quad_sector import QuadSector, quad_sector
-from fe_contact.mesh.quality import MeshQuality, QualityLimits, mesh_quality
+from fe_contact.mesh.quality import QualityLimits, mesh_quality
 from fe_contact.mesh.recipe import MeshRecipe, SectorRecipe
-from fe_contact.mesh.sector_grid import BoreSupport, ClampedBore, PlaneStrain, SeatedBore, bore_support
+from fe_contact.mesh.sector_grid import BoreSupport, ClampedBore, PlaneStrain, bore_support
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
 
 __all__ = [
     "BoreSupport",
     "ClampedBore",
-    "FlankNodes",
     "GearMesh",
-    "MeshQuality",
     "MeshRecipe",
     "PlaneStrain",
     "QuadSector",
     "QualityLimits",
-    "SeatedBore",
     "SectorRecipe",
     "SweptSector",
     "bore_support",

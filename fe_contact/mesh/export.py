@@ -1,4 +1,4 @@
-"""Export of gear meshes through meshlane: VTU for viewers, msh for gmsh."""
+"""Elements with values as VTU for viewers, through meshlane, and the teeth that elements belong to."""
 
 from __future__ import annotations
 
@@ -11,43 +11,7 @@ from fe_contact.errors import InputError
 from fe_contact.mesh.gear_mesh import GearMesh
 from fe_contact.types import FloatArray, IntArray
 
-FORMATS = {".vtu": "vtu", ".msh": "gmsh"}
 HUB = -1_000_000  # stands for "no tooth" among the tooth numbers
-
-
-def write_mesh(mesh: GearMesh, path: Path | str, point_data: Mapping[str, FloatArray] | None = None) -> None:
-    """Write the mesh of a gear, in m, z = 0.
-
-    Cells carry ``tooth`` (number of the tooth, `HUB` in the hub), nodes ``bore`` (1 on the bore).
-
-    Parameters
-    ----------
-    mesh : GearMesh
-        What to write.
-    path : Path
-        Its suffix decides the format: ``.vtu`` or ``.msh`` (gmsh 4.1).
-    point_data : mapping, optional
-        Further values per node, (n,) or (n, 3).
-
-    Raises
-    ------
-    InputError
-        The suffix is another one.
-    """
-    import meshlane  # noqa: PLC0415 - only who exports needs it
-
-    path = Path(path)
-    if path.suffix not in FORMATS:
-        raise InputError("path", str(path), "a file name that ends in .vtu or .msh")
-    bore = np.zeros(len(mesh.points))
-    bore[mesh.bore_nodes] = 1.0
-    points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
-    meshlane.Mesh(
-        points,
-        [("triangle6", mesh.triangles)],
-        point_data={"bore": bore} | dict(point_data or {}),
-        cell_data={"tooth": [cell_teeth(mesh).astype(float)]},
-    ).write(path, file_format=FORMATS[path.suffix])
 
 
 def cell_teeth(mesh: GearMesh) -> IntArray:

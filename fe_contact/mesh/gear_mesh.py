@@ -10,11 +10,10 @@ import numpy as np
 
 from fe_contact.geometry import Toothing, ToothProfile, tooth_profile
 from fe_contact.mesh.outline import Outline, Piece, arc, divide, piece
-from fe_contact.mesh.quadratic import QuadraticMesh, quadratic_mesh, region, rotated
-from fe_contact.mesh.quality import QualityLimits, refuse_poor_elements
+from fe_contact.mesh.quality import QualityLimits
 from fe_contact.mesh.recipe import MeshRecipe
 from fe_contact.mesh.tooth_sector import LARGEST_ARC, ToothSector, tooth_outline, tooth_sector
-from fe_contact.mesh.triangulation import triangulate
+from fe_contact.mesh.triangulation import QuadraticMesh, quadratic_meshes, rotated
 from fe_contact.types import FloatArray, IntArray
 
 # Mesh of what lies below and beside the real teeth: the rest of the ring down to the bore.
@@ -100,12 +99,12 @@ def _inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tu
             radii, thickness = [*radii, held], [*thickness, 1.0]
     depths = [*(abs(a - b) for a, b in pairwise(radii)), np.inf]
     return tuple(
-        _InnerRing(circle(r, min(near), abs(bottom_radius - r), recipe), part)
+        _InnerRing(_divided_circle(r, min(near), abs(bottom_radius - r), recipe), part)
         for r, near, part in zip(radii[1:], pairwise(depths), thickness, strict=True)
     )
 
 
-def circle(radius: float, depth: float, distance: float, recipe: MeshRecipe) -> Outline:
+def _divided_circle(radius: float, depth: float, distance: float, recipe: MeshRecipe) -> Outline:
     """Return a circle, clockwise.
 
     Parameters
@@ -116,8 +115,6 @@ def circle(radius: float, depth: float, distance: float, recipe: MeshRecipe) -> 
         Of the thinner ring beside it, m.
     distance : float
         From the sectors, m.
-    recipe : MeshRecipe
-        Element sizes.
     """
     size = min(recipe.body_size + recipe.growth * distance, HALF * depth)
     step = min(size / radius, LARGEST_ARC)
@@ -125,7 +122,7 @@ def circle(radius: float, depth: float, distance: float, recipe: MeshRecipe) -> 
     return Outline((piece("circle", arc(radius), ends),))
 
 
-def hub(
+def _joined_hub(
     meshes: Sequence[QuadraticMesh],
     toothed: Outline,
     thickness: Sequence[float],
@@ -186,7 +183,7 @@ def _joined(outside: QuadraticMesh, inside: QuadraticMesh) -> QuadraticMesh:
 
 
 @dataclass(frozen=True)
-class FlankNodes:
+class _FlankNodes:
     """Nodes along the right flank of one tooth.
 
     Attributes
@@ -241,7 +238,7 @@ class GearMesh:
     points: FloatArray
     triangles: IntArray
     bore_nodes: IntArray
-    flanks: tuple[FlankNodes, ...]
+    flanks: tuple[_FlankNodes, ...]
     teeth: IntArray
     pitch_angle: float
     sector: ToothSector
@@ -263,10 +260,6 @@ def _assemble(
 
     Parameters
     ----------
-    sector : ToothSector
-        Mesh of one tooth.
-    hub : _Hub or None
-        The rest of the ring.
     teeth : (t,) int array
         Consecutive tooth numbers.
     pitch_angle : float
@@ -287,7 +280,7 @@ def _assemble(
         triangles = np.concatenate([triangles, hub_nodes[hub.triangles]])
     bore = hub_nodes[hub.bore] if hub is not None else np.unique(sector_nodes[:, sector.bottom])
     flanks = tuple(
-        FlankNodes(int(j), sector_nodes[i, sector.flank], sector.s, rotated(normals, j * pitch_angle))
+        _FlankNodes(int(j), sector_nodes[i, sector.flank], sector.s, rotated(normals, j * pitch_angle))
         for i, j in enumerate(teeth)
     )
     return GearMesh(points, triangles, bore, flanks, teeth, pitch_angle, sector, sector_nodes, hub_nodes, hub)
@@ -331,7 +324,6 @@ def mesh_gear(
     gear: Toothing,
     recipe: MeshRecipe | None = None,
     limits: QualityLimits | None = None,
-    seconds: float = 60.0,
 ) -> GearMesh:
     """Mesh the transverse section of one gear.
 
@@ -343,20 +335,18 @@ def mesh_gear(
         Element sizes; default `MeshRecipe.standard(gear)`.
     limits : QualityLimits, optional
         Least acceptable element quality.
-    seconds : float
-        Time limit of gmsh, which runs in a child process.
 
     Raises
     ------
     MeshError
         gmsh failed, was killed or ran out of time, or an element misses its quality limit.
     """
-    recipe, filling = recipe or MeshRecipe.standard(gear), _Filling(limits or QualityLimits(), seconds)
+    recipe, limits = recipe or MeshRecipe.standard(gear), limits or QualityLimits()
     profile = tooth_profile(gear)
     teeth = real_teeth(gear.teeth, recipe.real_teeth)
     bottom_radius = _sector_bottom(gear, profile, all_real=len(teeth) == gear.teeth)
-    sector = _mesh_sector(profile, bottom_radius, recipe, filling)
-    rest = None if bottom_radius == gear.held_radius else _mesh_hub(gear, sector, teeth, recipe, filling)
+    sector = _mesh_sector(profile, bottom_radius, recipe, limits)
+    rest = None if bottom_radius == gear.held_radius else _mesh_hub(gear, sector, teeth, recipe, limits)
     # Copies of the sector are as good as the sector, which is checked.
     return _assemble(sector, rest, teeth, profile.pitch_angle, profile.normal(sector.s))
 
@@ -370,31 +360,17 @@ def _sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> flo
     return gear.root_radius - gear.sign * min(RIM_DEPTH * gear.normal_module, 0.5 * depth)
 
 
-@dataclass(frozen=True)
-class _Filling:
-    """Limits on filling outlines with elements: quality, and time in s."""
-
-    limits: QualityLimits
-    seconds: float
-
-    def mesh(self, part: str, outlines: tuple[Outline, ...], scale: float, growth: float) -> QuadraticMesh:
-        """Return the checked mesh of `part` inside outlines; `scale` is a length of its size, m."""
-        (straight,) = triangulate([region(outlines)], scale, growth, self.seconds)
-        mesh = quadratic_mesh(outlines, straight)
-        refuse_poor_elements(part, mesh.points, mesh.triangles, self.limits)
-        return mesh
-
-
 def _mesh_sector(
-    profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe, filling: _Filling
+    profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe, limits: QualityLimits
 ) -> ToothSector:
     outline = tooth_outline(profile, bottom_radius, recipe)
-    scale = profile.gear.normal_module
-    return tooth_sector(filling.mesh("tooth sector", (outline.outline,), scale, recipe.growth), outline)
+    outlines, module = {"tooth sector": (outline.outline,)}, profile.gear.normal_module
+    (mesh,) = quadratic_meshes(outlines, module, recipe.growth, limits)
+    return tooth_sector(mesh, outline)
 
 
 def _mesh_hub(
-    gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe, filling: _Filling
+    gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe, limits: QualityLimits
 ) -> _Hub:
     """Mesh the rest of the ring: of a solid gear in one piece, else what is left of the rim, web and hub."""
     toothed = _hub_outline(gear, sector, teeth, recipe)
@@ -402,6 +378,6 @@ def _mesh_hub(
     meshes, around = [], toothed
     for ring in rings:
         outermost_first = (around, ring.circle)[:: gear.sign]
-        meshes.append(filling.mesh("hub", outermost_first, gear.normal_module, recipe.growth))
+        meshes += quadratic_meshes({"hub": outermost_first}, gear.normal_module, recipe.growth, limits)
         around = ring.circle.reversed()
-    return hub(meshes, toothed, [ring.thickness for ring in rings], teeth, gear.sign)
+    return _joined_hub(meshes, toothed, [ring.thickness for ring in rings], teeth, gear.sign)

@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.errors import MeshError
 from fe_contact.geometry import Toothing, ToothProfile, tooth_profile
 from fe_contact.mesh.outline import middles
-from fe_contact.mesh.quality import QualityLimits, refuse_poor_quads
+from fe_contact.mesh.quality import QualityLimits, refuse_poor_elements
 from fe_contact.mesh.recipe import SectorRecipe
 from fe_contact.mesh.sector_grid import SectorGrid
 from fe_contact.mesh.triangulation import ask_gmsh
@@ -35,8 +35,6 @@ class _SectorOutline:
 
     Attributes
     ----------
-    profile : ToothProfile
-        The exact right flank.
     s : (k,) array
         Flank coordinates of the loaded flank from the split point to the tip, m.
     land : (2 land_elements + 1,) array
@@ -58,7 +56,6 @@ class _SectorOutline:
 
     @property
     def grid(self) -> SectorGrid:
-        """The logical grid."""
         return SectorGrid(
             body_rows=len(self.depth) // 2,
             tooth_rows=len(self.s) // 2,
@@ -271,7 +268,6 @@ def _fill_blocks(
 
 
 def _received(block: _Block, points: FloatArray) -> FloatArray:
-    """Return one answer with the points of the sides as they were given."""
     if points.shape != (len(block.left), len(block.bottom), 2):
         raise ValueError(f"block of shape {points.shape}")
     points[0], points[-1], points[:, 0], points[:, -1] = block.bottom, block.top, block.left, block.right
@@ -303,21 +299,13 @@ class QuadSector:
     normals: FloatArray
 
 
-def quad_sector(
-    gear: Toothing, recipe: SectorRecipe, limits: QualityLimits = QUAD_LIMITS, seconds: float = 60.0
-) -> QuadSector:
+def quad_sector(gear: Toothing, recipe: SectorRecipe, limits: QualityLimits = QUAD_LIMITS) -> QuadSector:
     """Mesh the transverse section of one tooth sector.
 
     Parameters
     ----------
     gear : Gear or RingGear
         Its modification, face width and hand play no part.
-    recipe : SectorRecipe
-        Element sizes.
-    limits : QualityLimits
-        Least acceptable element quality.
-    seconds : float
-        Time limit of gmsh, which runs in a child process.
 
     Raises
     ------
@@ -326,14 +314,14 @@ def quad_sector(
     """
     outline = sector_outline(tooth_profile(gear), recipe)
     grid = outline.grid
-    points = _sector_points(outline, grid, seconds)
-    refuse_poor_quads(points, grid.quads, limits)
+    points = _sector_points(outline, grid)
+    refuse_poor_elements("sector section", points, grid.quads, limits)
     return QuadSector(points, grid, outline.s, outline.profile.normal(outline.s))
 
 
-def _sector_points(outline: _SectorOutline, grid: SectorGrid, seconds: float) -> FloatArray:
+def _sector_points(outline: _SectorOutline, grid: SectorGrid) -> FloatArray:
     """Place all nodes: corners by gmsh, middles of inner sides between them, the rest on exact curves."""
-    tooth, *body = _fill_blocks(_blocks(outline), outline.profile.gear.normal_module, seconds)
+    tooth, *body = _fill_blocks(_blocks(outline), outline.profile.gear.normal_module)
     points, number, low = np.empty((grid.nodes, 2)), grid.number, 2 * grid.body_rows
     # The blocks run from the bore up and from the right cut to the left one, as the grid does.
     points[number[: low + 1 : 2, ::2]] = np.concatenate([*(part[:-1] for part in body), body[-1][-1:]])

@@ -33,7 +33,7 @@ class QualityLimits:
 
 
 @dataclass(frozen=True)
-class MeshQuality:
+class _MeshQuality:
     """Quality of every element of a mesh.
 
     Attributes
@@ -48,10 +48,10 @@ class MeshQuality:
     scaled_jacobian: FloatArray
 
 
-def mesh_quality(points: FloatArray, triangles: IntArray) -> MeshQuality:
+def mesh_quality(points: FloatArray, triangles: IntArray) -> _MeshQuality:
     """Return the quality of six-node triangles (m, 6) on points (n, 2)."""
     nodes = points[triangles]
-    return MeshQuality(_least_angle(nodes[:, :3]), scaled_jacobian(nodes))
+    return _MeshQuality(_least_angle(nodes[:, :3]), _least_jacobian(nodes))
 
 
 def _least_angle(corners: FloatArray) -> FloatArray:
@@ -62,7 +62,7 @@ def _least_angle(corners: FloatArray) -> FloatArray:
     return np.asarray(np.arccos(np.clip(cosines, -1.0, 1.0)).min(axis=1))
 
 
-def scaled_jacobian(nodes: FloatArray) -> FloatArray:
+def _least_jacobian(nodes: FloatArray) -> FloatArray:
     """Return a lower bound of min det J / max det J over each element (m, 6, 2), if above 0.
 
     The determinant is a quadratic polynomial, hence between its least and largest Bernstein coefficients:
@@ -85,35 +85,12 @@ def shape_derivatives(at: FloatArray) -> FloatArray:
     return np.stack([np.stack(in_x, axis=-1), np.stack(in_y, axis=-1)], axis=1)
 
 
-def refuse_poor_elements(part: str, points: FloatArray, triangles: IntArray, limits: QualityLimits) -> None:
-    """Refuse a mesh that misses its limits; `part` names it.
-
-    Raises
-    ------
-    MeshError
-        Naming the worst element, where it is, its value and the limit.
-    """
-    quality = mesh_quality(points, triangles)
-    for name, values, limit, unit, factor in (
-        ("scaled Jacobian", quality.scaled_jacobian, limits.scaled_jacobian, "", 1.0),
-        ("least angle", quality.angle, limits.angle, " deg", math.degrees(1.0)),
-    ):
-        worst = int(np.argmin(values))
-        if not values[worst] >= limit:
-            x, y = 1e3 * points[triangles[worst, :3]].mean(axis=0)
-            raise MeshError(
-                f"{part}: element {worst} at ({x:.4g}, {y:.4g}) mm: {name} "
-                f"{factor * values[worst]:.3g}{unit} is below {factor * limit:.3g}{unit}. "
-                "Try other element sizes in the mesh recipe."
-            )
-
-
 CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 MIDDLES = np.array([(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)])
 CENTER = np.array([(0.0, 0.0)])
 
 
-def quad_quality(points: FloatArray, quads: IntArray) -> MeshQuality:
+def quad_quality(points: FloatArray, quads: IntArray) -> _MeshQuality:
     """Return the quality of eight-node quadrilaterals (m, 8) on points (n, 2).
 
     `angle` is the least of a corner's angle and what it lacks to a straight one; `scaled_jacobian` the least
@@ -125,7 +102,7 @@ def quad_quality(points: FloatArray, quads: IntArray) -> MeshQuality:
     )
     determinant = gradients[..., 0, 0] * gradients[..., 1, 1] - gradients[..., 0, 1] * gradients[..., 1, 0]
     largest = np.abs(determinant).max(axis=1)
-    return MeshQuality(_corner_angle(nodes[:, :4]), determinant.min(axis=1) / largest)
+    return _MeshQuality(_corner_angle(nodes[:, :4]), determinant.min(axis=1) / largest)
 
 
 def _corner_angle(corners: FloatArray) -> FloatArray:
@@ -148,24 +125,26 @@ def _shape_derivatives(at: FloatArray) -> FloatArray:
     )
 
 
-def refuse_poor_quads(points: FloatArray, quads: IntArray, limits: QualityLimits) -> None:
-    """Refuse a section that misses its limits.
+def refuse_poor_elements(part: str, points: FloatArray, elements: IntArray, limits: QualityLimits) -> None:
+    """Refuse six-node triangles or eight-node quadrilaterals that miss their limits; `part` names the mesh.
 
     Raises
     ------
     MeshError
         Naming the worst element, where it is, its value and the limit.
     """
-    quality = quad_quality(points, quads)
+    triangles = elements.shape[1] == len(_NODES)
+    corners, angle, recipe = (3, "least angle", "mesh") if triangles else (4, "corner angle", "sector")
+    quality = (mesh_quality if triangles else quad_quality)(points, elements)
     for name, values, limit, unit, factor in (
         ("scaled Jacobian", quality.scaled_jacobian, limits.scaled_jacobian, "", 1.0),
-        ("corner angle", quality.angle, limits.angle, " deg", math.degrees(1.0)),
+        (angle, quality.angle, limits.angle, " deg", math.degrees(1.0)),
     ):
         worst = int(np.argmin(values))
         if not values[worst] >= limit:
-            x, y = 1e3 * points[quads[worst, :4]].mean(axis=0)
+            x, y = 1e3 * points[elements[worst, :corners]].mean(axis=0)
             raise MeshError(
-                f"sector section: element {worst} at ({x:.4g}, {y:.4g}) mm: {name} "
+                f"{part}: element {worst} at ({x:.4g}, {y:.4g}) mm: {name} "
                 f"{factor * values[worst]:.3g}{unit} is below {factor * limit:.3g}{unit}. "
-                "Try other element sizes in the sector recipe."
+                f"Try other element sizes in the {recipe} recipe."
             )

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from bounds import at_most
 from fe_contact.errors import InputError, integer, positive, within
 from fe_contact.types import Json
 
+if TYPE_CHECKING:
+    from fe_contact.geometry import Toothing
+
 # The recipe of a gear's mesh: element sizes, real teeth, limits.
-
-
-class _HasNormalModule(Protocol):
-    """Anything that knows its normal module in m."""
-
-    @property
-    def normal_module(self) -> float:
-        """Normal module in m."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +62,7 @@ class MeshRecipe:
                 raise InputError("real_teeth", self.real_teeth, "odd", "The teeth are centered on tooth 0.")
 
     @classmethod
-    def standard(cls, gear: _HasNormalModule) -> MeshRecipe:
+    def standard(cls, gear: Toothing) -> MeshRecipe:
         """Return the recipe of everyday use: sizes in proportion to the normal module of `gear`."""
         m = gear.normal_module
         return cls(
@@ -99,30 +92,10 @@ class MeshRecipe:
         """Return all fields as plain JSON."""
         return asdict(self)
 
-    def content_hash(self) -> str:
-        """Return the SHA-256 of the fields, hexadecimal: equal for equal recipes in every process."""
-        return hashlib.sha256(json.dumps(self.content(), sort_keys=True).encode()).hexdigest()
-
 
 HELICAL_BODY_LAYERS = 6
 """Layers that the body below a helical tooth wants at least."""
 _SIZES = ("flank_size", "tip_size", "depth_size", "depth_limit", "body_size", "body_limit")
-
-
-class _HasFace(Protocol):
-    """Anything that knows its normal module, face width and helix."""
-
-    @property
-    def normal_module(self) -> float:
-        """Normal module in m."""
-
-    @property
-    def face_width(self) -> float:
-        """Face width in m."""
-
-    @property
-    def helix_angle(self) -> float:
-        """Helix angle at the reference circle in rad."""
 
 
 @dataclass(frozen=True)
@@ -188,7 +161,6 @@ class SectorRecipe:
         self._check_merging()
 
     def _check_merging(self) -> None:
-        """Check that layers can be merged where they shall be."""
         rows = self.merge_rows
         if any(row > -1 for row in rows) or any(b >= a for a, b in pairwise(rows)):
             raise InputError("merge_rows", rows, "negative and strictly decreasing", "(-2,) is usual.")
@@ -204,7 +176,7 @@ class SectorRecipe:
         return int(2 ** len(self.merge_rows))
 
     @classmethod
-    def draft(cls, gear: _HasFace) -> SectorRecipe:
+    def draft(cls, gear: Toothing) -> SectorRecipe:
         """Return the quickest useful recipe: flank elements of 0.2 modules, 8 layers or more."""
         m = gear.normal_module
         layers = _layers(gear, least=8, thickest=1.5, most=16)
@@ -222,7 +194,7 @@ class SectorRecipe:
         )
 
     @classmethod
-    def standard(cls, gear: _HasFace) -> SectorRecipe:
+    def standard(cls, gear: Toothing) -> SectorRecipe:
         """Return the recipe of everyday use: flank elements of 0.15 modules, 12 or (helical) 16 layers."""
         m = gear.normal_module
         return cls(
@@ -236,7 +208,7 @@ class SectorRecipe:
         )
 
     @classmethod
-    def fine(cls, gear: _HasFace) -> SectorRecipe:
+    def fine(cls, gear: Toothing) -> SectorRecipe:
         """Return the recipe of reference solutions: flank elements of 0.1 modules, 18 layers or more."""
         m = gear.normal_module
         return cls(
@@ -253,7 +225,7 @@ class SectorRecipe:
         )
 
     @classmethod
-    def even_load(cls, gear: _HasFace) -> SectorRecipe:
+    def even_load(cls, gear: Toothing) -> SectorRecipe:
         """Return the recipe of a spur gear's response to even loads: flank elements of 0.4 modules, 3 layers.
 
         For the difference to plane strain, which is smooth: within 1.5 % of a fine mesh's up to a face of 20
@@ -284,12 +256,8 @@ class SectorRecipe:
         """Return all fields as plain JSON."""
         return asdict(self) | {"merge_rows": list(self.merge_rows)}
 
-    def content_hash(self) -> str:
-        """Return the SHA-256 of the fields, hexadecimal: equal for equal recipes in every process."""
-        return hashlib.sha256(json.dumps(self.content(), sort_keys=True).encode()).hexdigest()
 
-
-def _layers(gear: _HasFace, least: int, thickest: float, most: int) -> int:
+def _layers(gear: Toothing, least: int, thickest: float, most: int) -> int:
     """Return an even number of layers no thicker than `thickest` modules, within its bounds."""
     needed = gear.face_width / (thickest * gear.normal_module)
     return 2 * math.ceil(min(max(least, needed), most) / 2)

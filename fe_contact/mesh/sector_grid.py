@@ -164,13 +164,11 @@ class PlaneStrain:
 
 
 @dataclass(frozen=True)
-class SeatedBore:
+class _SeatedBore:
     """The bore is held where its seat is, in the directions in which that is rigid.
 
     Attributes
     ----------
-    seat : BoreSeat
-        The seat.
     face_width : float
         m.
     """
@@ -195,4 +193,4 @@ class SeatedBore:
 
 def bore_support(gear: Toothing) -> BoreSupport:
     """Return how a gear is held: clamped, or by its seat."""
-    return ClampedBore() if gear.seat == CLAMPED else SeatedBore(gear.seat, gear.face_width)
+    return ClampedBore() if gear.seat == CLAMPED else _SeatedBore(gear.seat, gear.face_width)

@@ -31,7 +31,7 @@ DIGITS = 12  # of a layer's thickness over the face width: equal in them is equa
 
 
 @dataclass(frozen=True)
-class Layers:
+class _Layers:
     """Layers of elements, or those above mid-face; symmetric unless a web or a seat of the bore is not.
 
     Attributes
@@ -51,7 +51,7 @@ class Layers:
 
 def _layers_to_mid_face(
     width: float, count: int, growth: float = 1.0, breaks: Sequence[float] = ()
-) -> Layers:
+) -> _Layers:
     """Divide the upper half of a face into layers that thicken from its end towards mid-face.
 
     Parameters
@@ -69,18 +69,18 @@ def _layers_to_mid_face(
         below = [-z for z in reversed(breaks)]
         whole = _broken(width, 0.5 * width / count, 1, growth, [*below, 0.0, *breaks])
         middle = len(whole.kind) // 2
-        return Layers(whole.ends[middle:], whole.kind[middle:], whole.thickness)
+        return _Layers(whole.ends[middle:], whole.kind[middle:], whole.thickness)
     kind = np.arange(count)[::-1]
     relative = growth ** (np.arange(count) / max(count - 1, 1))
     thickness = 0.5 * width * relative / relative.sum()
     ends = np.concatenate([[0.0], np.cumsum(thickness[kind])])
     ends[-1] = 0.5 * width
-    return Layers(ends, kind, thickness)
+    return _Layers(ends, kind, thickness)
 
 
 def _layers_across(
     width: float, count: int, group: int = 1, growth: float = 1.0, breaks: Sequence[float] = ()
-) -> Layers:
+) -> _Layers:
     """Divide `width` into `count` layers.
 
     Parameters
@@ -104,10 +104,10 @@ def _layers_across(
     thickness = relative * width / relative[kind].sum()
     ends = np.concatenate([[0.0], np.cumsum(thickness[kind])]) - 0.5 * width
     ends[-1] = 0.5 * width
-    return Layers(0.5 * (ends - ends[::-1]), kind, thickness)
+    return _Layers(0.5 * (ends - ends[::-1]), kind, thickness)
 
 
-def _broken(width: float, usual: float, group: int, growth: float, breaks: Sequence[float]) -> Layers:
+def _broken(width: float, usual: float, group: int, growth: float, breaks: Sequence[float]) -> _Layers:
     """Divide every part of the face by itself; `usual` is the thickness of a group without breaks."""
     corners = [-0.5 * width, *breaks, 0.5 * width]
     ends, thickness = [corners[:1]], []
@@ -124,7 +124,7 @@ def _broken(width: float, usual: float, group: int, growth: float, breaks: Seque
         ends.append([*(low + np.cumsum(parts))[:-1], high])
     rounded = np.round(np.concatenate(thickness) / width, DIGITS)
     _, first, kind = np.unique(rounded, return_index=True, return_inverse=True)
-    return Layers(np.concatenate(ends), kind, np.concatenate(thickness)[first])
+    return _Layers(np.concatenate(ends), kind, np.concatenate(thickness)[first])
 
 
 # 20-node hexahedra _stacked across the face on the quadrilaterals of a section, by equal matrices.
@@ -165,7 +165,7 @@ Stack = tuple[tuple[Batch, ...], IntArray, FloatArray]
 
 def _stacked(
     grid: SectorGrid,
-    layers: Layers,
+    layers: _Layers,
     nodes: IntArray,
     level: IntArray,
     node_level: IntArray,
@@ -175,8 +175,6 @@ def _stacked(
 
     Parameters
     ----------
-    grid : SectorGrid
-    layers : Layers
     nodes : (2 L + 1, n) int array
         Node above each section node in each plane, -1 where there is none.
     level, node_level : (m,), (n,) int array
@@ -205,7 +203,7 @@ def _stacked(
 
 
 def _with_seat(
-    grid: SectorGrid, layers: Layers, bodies: Stack, ends: tuple[float, float], elastic: bool
+    grid: SectorGrid, layers: _Layers, bodies: Stack, ends: tuple[float, float], elastic: bool
 ) -> Stack:
     """Add the elements of a seat between axial positions `ends` in m: the nodes of the bodies above them."""
     batches, elements, position = bodies
@@ -249,8 +247,6 @@ class SweptSector:
 
     Attributes
     ----------
-    grid : SectorGrid
-        The section.
     layers : Layers
         The layers of the tooth, L of them.
     nodes : (2 L + 1, n) int array
@@ -269,7 +265,7 @@ class SweptSector:
     """
 
     grid: SectorGrid
-    layers: Layers
+    layers: _Layers
     nodes: IntArray
     elements: IntArray
     place: FloatArray
@@ -353,8 +349,6 @@ def swept_sector(
 
     Parameters
     ----------
-    grid : SectorGrid
-        Topology of the section.
     face_width : float
         m.
     recipe : SectorRecipe
@@ -391,7 +385,7 @@ def between_ends(ends: FloatArray) -> FloatArray:
     return z
 
 
-def _layers(face_width: float, recipe: SectorRecipe, web: Web | None, seat: BoreSeat) -> Layers:
+def _layers(face_width: float, recipe: SectorRecipe, web: Web | None, seat: BoreSeat) -> _Layers:
     """Divide the face, or its half above mid-face; groups of layers end where web and seat end."""
     faces: tuple[float, ...] = () if web is None else (web.low, web.high)
     if seat.width is not None:
@@ -415,7 +409,7 @@ def _inner_breaks(positions: Sequence[float], face_width: float) -> tuple[float,
     return tuple(breaks[1:])
 
 
-def _extents(grid: SectorGrid, layers: Layers, web: Web | None) -> IntArray:
+def _extents(grid: SectorGrid, layers: _Layers, web: Web | None) -> IntArray:
     """Return the first layer of each quadrilateral, and the first one above it, (m, 2)."""
     extent = np.tile([0, len(layers.kind)], (len(grid.quads), 1))
     if web is not None:

@@ -9,8 +9,8 @@ import numpy as np
 
 from fe_contact.geometry import ToothProfile
 from fe_contact.mesh.outline import Outline, Piece, arc, divide, middles, piece, radial_line, spread
-from fe_contact.mesh.quadratic import QuadraticMesh
 from fe_contact.mesh.recipe import MeshRecipe
+from fe_contact.mesh.triangulation import QuadraticMesh
 from fe_contact.types import FloatArray, IntArray
 
 # Outline of the right half of one tooth with the ring below it (of a ring gear: outside it).
@@ -50,12 +50,8 @@ def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecip
 
     Parameters
     ----------
-    profile : ToothProfile
-        The exact right flank.
     bottom_radius : float
         Radius of the sector's lower end, away from the tip, m.
-    recipe : MeshRecipe
-        Element sizes.
     """
     s_low = _lowest_flank_node(profile, recipe)
     ends = _flank_divisions(profile, s_low, recipe)

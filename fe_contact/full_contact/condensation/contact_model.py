@@ -78,7 +78,6 @@ def _plane_strain_stiffness(points: FloatArray, triangles: IntArray, material: M
         Nodes, m.
     triangles : (m, 6) int array
         Corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0.
-    material : Material
 
     Returns
     -------
@@ -94,7 +93,6 @@ def _plane_strain_stiffness(points: FloatArray, triangles: IntArray, material: M
 
 
 def _elasticity(material: Material) -> FloatArray:
-    """Return the matrix from (e_xx, e_yy, gamma_xy) to stresses, Pa."""
     modulus, nu = material.youngs_modulus, material.poissons_ratio
     factor = modulus / ((1.0 + nu) * (1.0 - 2.0 * nu))
     rows = [[1.0 - nu, nu, 0.0], [nu, 1.0 - nu, 0.0], [0.0, 0.0, 0.5 - nu]]
@@ -129,7 +127,6 @@ class _CondensedBody:
 
     Attributes
     ----------
-    body : PlacedBody
     nodes : (k,) int array
         All nodes of its strips.
     columns : mapping of int to int array
@@ -255,14 +252,7 @@ def _moment(body: _CondensedBody, forces: FloatArray) -> float:
 
 @dataclass(frozen=True)
 class _PairGeometry:
-    """Two condensed bodies that may touch at sites.
-
-    Attributes
-    ----------
-    pair : GearPair or InternalGearPair
-    sites : tuple of ContactSite
-    bodies : (CondensedBody, CondensedBody)
-    """
+    """Two condensed bodies that may touch at sites."""
 
     pair: ParallelAxes
     sites: tuple[ContactSite, ...]
@@ -270,7 +260,6 @@ class _PairGeometry:
 
     @property
     def undeformed(self) -> Configuration:
-        """Rigid gears in the conjugate position."""
         first, second = (np.zeros(2 * len(body.nodes)) for body in self.bodies)
         return Configuration(0.0, (first, second))
 
@@ -289,7 +278,6 @@ class _PairGeometry:
         return _bore_checks(self.bodies, solutions)
 
     def linearized(self, at: Configuration) -> LinearizedContact:
-        """Return the contact with the geometry and the forces of a configuration."""
         turn, center = rotation(self.lag_rate * at.lag), self.bodies[1].body.center
         rigid = (self.bodies[0].points, (self.bodies[1].points - center) @ turn.T + center)
         first, second = (u.reshape(-1, 2) for u in at.displacements)
@@ -326,8 +314,8 @@ class _PairGeometry:
             weight=np.concatenate([gap.weight for gap in gaps])[kept],
         )
         site = np.repeat(np.arange(len(gaps)), [len(gap.gap) for gap in gaps])[kept]
-        at_end = np.concatenate([_at_end(self, site) for site in self.sites])[kept]
-        return LinearizedContact(system, (first, second), moved, site, site, at_end)
+        ends = [at_end(self.pair, each, self.bodies[each.slave].body) for each in self.sites]
+        return LinearizedContact(system, (first, second), moved, site, site, np.concatenate(ends)[kept])
 
     def _forces(self, gaps: Sequence[WeakGap], number: int) -> FloatArray:
         """Return the nodal forces (2 k, h) of all pairs on one gear."""
@@ -348,10 +336,10 @@ def _full_weights(geometry: _PairGeometry, site: ContactSite) -> FloatArray:
     return np.asarray(0.5 * (np.append(lengths, 0.0) + np.insert(lengths, 0, 0.0)))
 
 
-def _at_end(geometry: _PairGeometry, site: ContactSite) -> BoolArray:
-    """Say which hats of a site are at an end of its strip that is no tip edge."""
-    s = geometry.bodies[site.slave].body.strips[site.ahead].s
-    gear = (geometry.pair.pinion, geometry.pair.wheel)[site.slave]
+def at_end(pair: ParallelAxes, site: ContactSite, slave: PlacedBody) -> BoolArray:
+    """Say which hats along the profile of a site are at an end of its strip that is no tip edge."""
+    s = slave.strips[site.ahead].s
+    gear = (pair.pinion, pair.wheel)[site.slave]
     ends = np.zeros(len(s), dtype=bool)
     ends[0], ends[-1] = True, s[-1] < tooth_profile(gear).s_tip
     return ends

@@ -55,7 +55,6 @@ class ActiveSetSolution:
         m.
     gap : (h,) array
         Weak gaps, m^2.
-    status : Status
     iterations : int
     residual : float
         Largest breach of the laws: pressures below zero over the largest one, gaps below zero over the lag,
@@ -77,7 +76,6 @@ def solve_active_set(
 
     Parameters
     ----------
-    system : ContactSystem
     torque : float
         > 0.
     start : (h,) bool array, optional
@@ -139,7 +137,6 @@ def _solution(
     lag: float,
     iterations: int,
 ) -> ActiveSetSolution:
-    """Check the laws."""
     gap = system.gap + system.compliance @ pressure - system.closing * lag
     largest = float(pressure.max())
     breaches = (
@@ -171,7 +168,6 @@ class LinearizedContact:
 
     Attributes
     ----------
-    system : ContactSystem
     forces, moved : ((u_1, h), (u_2, h)) arrays
         Forces on the strips of both gears by unit pressures, and what displacements follow.
     site : (h,) int array

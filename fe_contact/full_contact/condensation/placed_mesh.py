@@ -20,10 +20,9 @@ from fe_contact.full_contact.condensation.sites import (
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
 from fe_contact.mesh.gear_mesh import real_teeth
 from fe_contact.mesh.outline import Outline, Piece, arc, divide, middles, piece, spread
-from fe_contact.mesh.quadratic import QuadraticMesh, quadratic_mesh, region, rotated
-from fe_contact.mesh.quality import QualityLimits, refuse_poor_elements
+from fe_contact.mesh.quality import QualityLimits
 from fe_contact.mesh.tooth_sector import LARGEST_ARC, MIRRORED
-from fe_contact.mesh.triangulation import triangulate
+from fe_contact.mesh.triangulation import QuadraticMesh, quadratic_meshes, rotated
 from fe_contact.types import FloatArray, IntArray
 
 # Boundary of one gear divided for one position: real teeth, plain ring, held circle.
@@ -63,12 +62,10 @@ def _gear_boundary(
 
     Parameters
     ----------
-    gear : Gear or RingGear
     teeth : (t,) int array
         Consecutive numbers of the real teeth.
     strips : mapping of int to SizedStrip
         By tooth that may touch.
-    resolution : Resolution
     """
     size = _size_near(gear, strips, resolution)
     pieces: list[Piece] = []
@@ -190,7 +187,7 @@ SECONDS = 120.0
 
 
 @dataclass(frozen=True)
-class Strip:
+class _Strip:
     """Nodes along the part of a flank that may touch.
 
     Attributes
@@ -227,7 +224,7 @@ class PlacedBody:
     triangles: IntArray
     held: IntArray
     center: FloatArray
-    strips: Mapping[int, Strip]
+    strips: Mapping[int, _Strip]
 
 
 def placed_bodies(
@@ -237,12 +234,10 @@ def placed_bodies(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     position : float
         Base pitches; the reference pair touches there on the line of action.
     sites : sequence of ContactSite
         Pairs that may touch there.
-    resolution : Resolution
 
     Raises
     ------
@@ -259,13 +254,15 @@ def placed_bodies(
         )
         for number, gear in enumerate(gears)
     ]
-    loops = [(b.toothed, b.held)[:: gear.sign] for b, gear in zip(boundaries, gears, strict=True)]
-    regions = [region(loop) for loop in loops]
-    straight = triangulate(regions, pair.pinion.normal_module, resolution.inner_growth, SECONDS)
+    loops = {
+        f"gear {number}": (boundary.toothed, boundary.held)[:: gear.sign]
+        for number, (boundary, gear) in enumerate(zip(boundaries, gears, strict=True), start=1)
+    }
+    meshes = quadratic_meshes(
+        loops, pair.pinion.normal_module, resolution.inner_growth, QualityLimits(), SECONDS
+    )
     bodies = []
-    for number, gear in enumerate(gears):
-        mesh = quadratic_mesh(loops[number], straight[number])
-        refuse_poor_elements(f"gear {number + 1}", mesh.points, mesh.triangles, QualityLimits())
+    for number, (gear, mesh) in enumerate(zip(gears, meshes, strict=True)):
         strips = {
             site.ahead: _strip(gear, mesh, boundaries[number], AHEAD[number] * site.ahead, site, number)
             for site in sites
@@ -288,7 +285,7 @@ def _strip(
     tooth: int,
     site: ContactSite,
     number: int,
-) -> Strip:
+) -> _Strip:
     """Return the elements of a flank that a strip reaches into."""
     along = mesh.boundary[:: gear.sign][0]
     nodes, s = along[boundary.toothed.positions(f"flank {tooth}")], boundary.s[tooth]
@@ -297,11 +294,11 @@ def _strip(
     first = max(int(np.searchsorted(corners, ends.low, side="right")) - 1, 0)
     last = min(int(np.searchsorted(corners, ends.high, side="left")), len(corners) - 1)
     part = slice(2 * first, 2 * last + 1)
-    return Strip(nodes[part], s[part])
+    return _Strip(nodes[part], s[part])
 
 
 def _placed(
-    pair: ParallelAxes, number: int, mesh: QuadraticMesh, strips: Mapping[int, Strip], position: float
+    pair: ParallelAxes, number: int, mesh: QuadraticMesh, strips: Mapping[int, _Strip], position: float
 ) -> PlacedBody:
     """Mirror a ring gear, turn, move: its flank's outward normal lies on the line of action."""
     gear = (pair.pinion, pair.wheel)[number]

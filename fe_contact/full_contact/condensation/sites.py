@@ -191,12 +191,10 @@ def contact_sites(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
     position : float
         By the driving gear, base pitches, from -0.5 to 0.5.
     held : Range
         Loads, and the lag within which teeth off the path of contact come to touch.
-    resolution : Resolution
     """
     path = pair.path_of_contact
     reach = math.ceil(path.length / pair.base_pitch) + 2
@@ -285,7 +283,6 @@ def _on_path(
 
 
 def _arc(gear: Toothing, roll: float) -> float:
-    """Return the flank coordinate at a roll length, m."""
     return gear.sign * 0.5 * roll**2 / gear.base_radius
 
 

@@ -80,7 +80,6 @@ def _settled(geometry: ContactGeometry, undeformed: LinearizedContact, torque: f
 def _point(
     geometry: ContactGeometry, state: _Settled, position: float, torque: float, check: tuple[float, float]
 ) -> FullContactPoint:
-    """Gather a point, with its status."""
     contact, solution = state.contact, state.solution
     residual = max(solution.residual, check[0])
     status, reason = _status(state, residual)
@@ -116,7 +115,6 @@ def _largest_pressure(contact: LinearizedContact, solution: ActiveSetSolution) -
 
 
 def _status(state: _Settled, residual: float) -> tuple[Status, str]:
-    """Say whether a solution holds, and else why not."""
     if not state.solution.status.usable or not residual < LARGEST_RESIDUAL:
         return Status.ITERATION_LIMIT, f"the active set did not settle: residual {residual:.1e}"
     if not state.change < ENOUGH:
@@ -153,14 +151,12 @@ def _solve_position(
 
     Parameters
     ----------
-    model : ContactModel
     pair : GearPair or InternalGearPair
         That the model holds.
     torques : sequence of float
         On gear 1, N m, > 0.
     position : float
         By the driving gear, base pitches; any.
-    resolution : Resolution
 
     Returns
     -------
@@ -296,7 +292,6 @@ def resolutions(resolution: Resolution, *, estimate_error: bool) -> tuple[Resolu
 
 
 def _check(torques: Sequence[float], positions: Sequence[float]) -> None:
-    """Refuse torques and positions that cannot be solved."""
     for name, values in (("torques", torques), ("positions", positions)):
         if len(values) == 0:
             raise InputError(name, "none", "at least one number")
@@ -312,7 +307,6 @@ def _with_error(fine: _SolvedPosition, coarse: _SolvedPosition) -> _SolvedPositi
 
 
 def _apart(fine: Loads, coarse: Loads) -> Loads:
-    """State the differences of one contact."""
     return tuple(
         replace(own, error_estimate=abs(own.transmission_error - other.transmission_error))
         if own.status.usable

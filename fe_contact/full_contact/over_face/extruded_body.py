@@ -163,8 +163,6 @@ class ExtrudedBody:
 
     Attributes
     ----------
-    body : PlacedBody
-    layers : Layers
     nodes : (k,) int array
         All nodes of its strips.
     columns : mapping of int to int array

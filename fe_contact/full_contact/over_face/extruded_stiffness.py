@@ -127,8 +127,6 @@ def extruded_stiffness(
         Nodes of the plane mesh, m.
     triangles : (e, 6) int array
         Corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0.
-    layers : Layers
-    material : Material
     """
     hats, bubbles = np.split(np.arange(2 * layers.count + 1), [layers.count + 1])
     corners = np.unique(triangles[:, :3])

@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from scipy.optimize import brentq
 
 from fe_contact.errors import InputError, finite
-from fe_contact.full_contact.condensation.contact_model import softness
+from fe_contact.full_contact.condensation.contact_model import at_end, softness
 from fe_contact.full_contact.condensation.linearized_contact import (
     LEAST_FACING,
     Configuration,
@@ -35,8 +35,8 @@ from fe_contact.full_contact.over_face.extruded_body import ExtrudedBody, extrud
 from fe_contact.full_contact.over_face.extruded_stiffness import Layers, graded_layers
 from fe_contact.full_contact.table import FullContactTable
 from fe_contact.full_contact.validity import refusal_over_face
-from fe_contact.geometry import ParallelAxes, tooth_profile
-from fe_contact.types import BoolArray, FloatArray
+from fe_contact.geometry import ParallelAxes
+from fe_contact.types import FloatArray
 
 # All weak gaps of a pair over its face under one misalignment, as one contact system.
 
@@ -111,7 +111,6 @@ class _FaceGeometry:
     pair : GearPair
         Of equal face widths.
     sites : tuple of ContactSite
-    bodies : (ExtrudedBody, ExtrudedBody)
     misalignment : float
         Growth of the gap over the face in the plane of action, zero at mid-face, m.
     """
@@ -124,12 +123,10 @@ class _FaceGeometry:
 
     @property
     def undeformed(self) -> Configuration:
-        """Rigid gears in the conjugate position."""
         first, second = (np.zeros(2 * len(body.even)) for body in self.bodies)
         return Configuration(0.0, (first, second))
 
     def linearized(self, at: Configuration) -> LinearizedContact:
-        """Return the contact with the geometry and the forces of a configuration."""
         sections = _Sections(self, at)
         layers = self.bodies[0].layers
         gaps = [
@@ -183,8 +180,10 @@ class _FaceGeometry:
         line = np.concatenate(
             [number * over + np.arange(len(gap.gap)) % over for number, gap in enumerate(gaps)]
         )
-        at_end = np.concatenate([np.repeat(self._at_end(site), over) for site in self.sites])
-        return LinearizedContact(system, forces, moved, site, line[kept], at_end[kept])
+        ends = np.concatenate(
+            [np.repeat(at_end(self.pair, site, self.bodies[site.slave].body), over) for site in self.sites]
+        )
+        return LinearizedContact(system, forces, moved, site, line[kept], ends[kept])
 
     def _forces(self, gaps: Sequence[_FaceGap], number: int) -> FloatArray:
         """Return the forces (2 2 k f, h) of all pairs on one gear."""
@@ -206,14 +205,6 @@ class _FaceGeometry:
         widths = np.diff(np.concatenate([-planes[:0:-1], planes]))
         along, over = (0.5 * (np.append(d, 0.0) + np.insert(d, 0, 0.0)) for d in (lengths, widths))
         return np.asarray(np.outer(along, over).ravel())
-
-    def _at_end(self, site: ContactSite) -> BoolArray:
-        """Say which hats along the profile of a site are at an end of its strip that is no tip edge."""
-        s = self.bodies[site.slave].body.strips[site.ahead].s
-        gear = (self.pair.pinion, self.pair.wheel)[site.slave]
-        ends = np.zeros(len(s), dtype=bool)
-        ends[0], ends[-1] = True, s[-1] < tooth_profile(gear).s_tip
-        return ends
 
 
 @dataclass(frozen=True)

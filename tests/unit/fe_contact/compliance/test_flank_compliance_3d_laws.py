@@ -21,7 +21,7 @@ from fe_contact.compliance import (
 from fe_contact.compliance.condensed_gear import _least_eigenvalue, _pressure_forces
 from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
 from fe_contact.compliance.ring_2d import factorise
-from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
+from fe_contact.compliance.sector_stiffness import sector_stiffness, twist
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import Gear, RingGear, Toothing
 from fe_contact.material import Material
@@ -52,7 +52,7 @@ def global_compliance(gear: Toothing, recipe: SectorRecipe) -> np.ndarray:
     """Flank of every tooth under forces on tooth 0, (z, nf, nf), by one sparse factorisation of all teeth."""
     section = quad_sector(gear, recipe)
     sector = swept_sector(section.grid, gear.face_width, recipe, web=gear.web)
-    stiffness = sector_stiffness(gear, section, sector, flank_frames(section, twist(gear)))
+    stiffness = sector_stiffness(gear, section, sector)
     teeth, size = gear.teeth, sector.size
     own = np.setdiff1d(np.arange(size), sector.left)
     number = np.full((teeth, size), -1)
@@ -144,8 +144,8 @@ def test_a_gear_swept_the_other_way_is_the_mirror_image(
 ) -> None:
     left = replace(gear, helix_angle=-gear.helix_angle)
     mirrored = flank_compliance_3d(left, coarse(gear), reach=2)
-    for module in (stiffness_module, gear_module):
-        monkeypatch.setattr(module, "twist", lambda gear: math.tan(gear.helix_angle) / gear.reference_radius)
+    signed = "twist", lambda gear: math.tan(gear.helix_angle) / gear.reference_radius
+    monkeypatch.setattr(stiffness_module, *signed)
     swept = flow.compute_flank_compliance_3d(left, coarse(gear), 2, ClampedBore())
     assert relative(swept.blocks, mirrored.blocks) < 1e-10
 

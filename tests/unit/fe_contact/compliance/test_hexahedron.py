@@ -11,11 +11,11 @@ from skfem.models.elasticity import linear_elasticity
 
 from fe_contact.compliance.sector_stiffness import (
     REFERENCE,
+    _flank_frames,
     _in_frames,
+    _layer_nodes,
     _stiffness_of,
     cylindrical_frames,
-    flank_frames,
-    layer_nodes,
     sector_stiffness,
     twist,
 )
@@ -43,7 +43,7 @@ def section() -> QuadSector:
 @pytest.fixture(scope="module")
 def nodes(section: QuadSector) -> np.ndarray:
     """Nodes (m, 20, 3) of one strongly turned layer."""
-    return layer_nodes(section.points[section.grid.quads], 5e-3, 0.1)
+    return _layer_nodes(section.points[section.grid.quads], 5e-3, 0.1)
 
 
 def serendipity(at: np.ndarray) -> np.ndarray:
@@ -106,7 +106,7 @@ def test_a_folded_element_is_named(section: QuadSector) -> None:
     squares = section.points[section.grid.quads]
     squares[2] = squares[2][[1, 0, 3, 2, 4, 7, 6, 5]]  # clockwise
     with pytest.raises(MeshError, match=r"element 2 at .* is folded"):
-        _stiffness_of(layer_nodes(squares, 1e-3, 0.1), LAME)
+        _stiffness_of(_layer_nodes(squares, 1e-3, 0.1), LAME)
 
 
 def node_positions(section: QuadSector, sector: SweptSector) -> np.ndarray:
@@ -134,8 +134,8 @@ class FreeBore:
 def test_constant_strain_is_exact_in_a_merged_helical_sector(section: QuadSector) -> None:
     """Patch test: inner nodes, hanging ones included, balance under a linear field; the energy is exact."""
     sector = swept_sector(section.grid, GEAR.face_width, RECIPE, FreeBore())
-    frames = flank_frames(section, twist(GEAR))
-    stiffness = sector_stiffness(GEAR, section, sector, frames)
+    frames = _flank_frames(section, twist(GEAR))
+    stiffness = sector_stiffness(GEAR, section, sector)
     places = node_positions(section, sector)
     axes = cylindrical_frames(places[None])[0]
     at_flank = sector.nodes[:, section.grid.flank]
@@ -173,7 +173,7 @@ def test_constant_strain_is_exact_in_a_merged_helical_sector(section: QuadSector
 
 
 def test_the_flank_frame_is_the_helicoid(section: QuadSector) -> None:
-    frames = flank_frames(section, twist(GEAR))
+    frames = _flank_frames(section, twist(GEAR))
     assert np.einsum("kab,kac->kbc", frames, frames) == pytest.approx(
         np.tile(np.eye(3), (len(frames), 1, 1)), abs=1e-14
     )

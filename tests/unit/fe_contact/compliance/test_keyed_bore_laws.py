@@ -16,7 +16,7 @@ from fe_contact.compliance.condensed_gear import _probe_loads
 from fe_contact.compliance.deformation_3d import deformed_solids
 from fe_contact.compliance.keyed_bore import _key_points
 from fe_contact.compliance.ring_2d import factorise
-from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
+from fe_contact.compliance.sector_stiffness import sector_stiffness, twist
 from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
 from fe_contact.contact.assembly import _KeyedFlanks
 from fe_contact.contact.face_patch import FaceGrid, add_compliance, face_loads
@@ -57,7 +57,7 @@ def test_equals_the_solution_of_the_whole_gear(gear: Gear) -> None:
     held = keyed(gear)
     recipe, section = coarse(held), quad_sector(held, coarse(held))
     sector = swept_sector(section.grid, held.face_width, recipe, bore_support(held))
-    stiffness = sector_stiffness(held, section, sector, flank_frames(section, twist(held)))
+    stiffness = sector_stiffness(held, section, sector)
     teeth, size = held.teeth, sector.size
     own = np.setdiff1d(np.arange(size), sector.left)
     number = np.full((teeth, size + 1), -1)

@@ -13,7 +13,6 @@ import scipy.sparse as sp
 from compliance_gears import HELICAL, SPUR, coarse
 from scipy.sparse.linalg import splu
 
-import fe_contact.compliance.condensed_gear as gear_module
 import fe_contact.compliance.root_stress_3d as face_module
 import fe_contact.compliance.sector_stiffness as stiffness_module
 from fe_contact.compliance import PlaneHypothesis
@@ -21,10 +20,11 @@ from fe_contact.compliance.condensed_gear import _pressure_forces
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
 from fe_contact.compliance.ring_2d import _inward_loads, factorise, freedoms
 from fe_contact.compliance.root_stress import UnitRootStress, refuse_broken_stress
-from fe_contact.compliance.root_stress_3d import _root_functionals, compute_root_stress_3d
-from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
-from fe_contact.compliance.surface_stress import edge_stress, quad_root, triangle_root
+from fe_contact.compliance.root_stress_3d import _quad_root, _root_functionals, compute_root_stress_3d
+from fe_contact.compliance.sector_stiffness import sector_stiffness
 from fe_contact.compliance.unit_root_stress import (
+    _edge_stress,
+    _triangle_root,
     unit_root_stress,
     unit_root_stress_3d,
     unit_root_stresses,
@@ -108,7 +108,7 @@ def agrees_with_the_whole_mesh(gear: Toothing, recipe: MeshRecipe) -> None:
     free = np.setdiff1d(np.arange(2 * len(mesh.points)), freedoms(mesh.bore_nodes))
     solve = splu(sp.csc_array(matrix[free][:, free])).solve
     own = int(np.flatnonzero(mesh.teeth == 0)[0])
-    chains = mesh.sector_nodes[own, triangle_root(mesh.sector, tooth_profile(gear)).nodes]
+    chains = mesh.sector_nodes[own, _triangle_root(mesh.sector, tooth_profile(gear)).nodes]
     forces = some_forces(len(found.s))
     for n, ahead in enumerate(found.distance):
         flank = mesh.flanks[own - ahead]
@@ -116,7 +116,7 @@ def agrees_with_the_whole_mesh(gear: Toothing, recipe: MeshRecipe) -> None:
         loads = _inward_loads(len(mesh.points), flank.nodes, flank.normals) @ forces
         moved[free] = solve(loads[free])
         for side, chain in enumerate(chains):
-            expected = edge_stress(mesh.points, chain, gear.material, STRAIN) @ moved
+            expected = _edge_stress(mesh.points, chain, gear.material, STRAIN) @ moved
             stress = (found.stress[n, side, :, :, 0] @ forces).reshape(-1, 3)
             assert relative(stress, expected) < 1e-9
 
@@ -125,7 +125,7 @@ def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
     """Root stress of every tooth by forces on tooth 0, (z, r, 3), by one sparse factorisation."""
     section = quad_sector(gear, recipe)
     sector = swept_sector(section.grid, gear.face_width, recipe)
-    stiffness = sector_stiffness(gear, section, sector, flank_frames(section, twist(gear)))
+    stiffness = sector_stiffness(gear, section, sector)
     number = np.full((gear.teeth, sector.size), -1)
     own = np.setdiff1d(np.arange(sector.size), sector.left)
     number[:, own] = np.arange(gear.teeth * len(own)).reshape(gear.teeth, -1)
@@ -139,7 +139,7 @@ def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
     loads = np.zeros((matrix.shape[0], 3))
     loads[number[0, sector.flank]] = -some_forces(len(sector.flank))  # inwards
     moved = factorise(matrix, block=1)(loads)
-    rows = _root_functionals(gear, section, sector, quad_root(section, tooth_profile(gear)))
+    rows = _root_functionals(gear, section, sector, _quad_root(section, tooth_profile(gear)))
     return np.stack([rows @ moved[number[j]] for j in range(gear.teeth)])
 
 
@@ -221,7 +221,7 @@ def test_opposite_hands_are_mirror_images() -> None:
 def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.MonkeyPatch) -> None:
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     mirrored = over_face(left, two_on_land(left), reach=1)
-    for module in (stiffness_module, gear_module, face_module):
+    for module in (stiffness_module, face_module):
         monkeypatch.setattr(module, "twist", lambda gear: math.tan(gear.helix_angle) / gear.reference_radius)
     swept = compute_root_stress_3d(left, two_on_land(left), 1, ClampedBore())
     # single nodal forces hold what the cuts tell apart to 1e-6 only
@@ -264,8 +264,8 @@ def test_nodes_of_the_root_have_their_flank_coordinates(gear: Toothing) -> None:
     section = quad_sector(gear, SectorRecipe.draft(gear))
     sector = mesh_gear(gear, MeshRecipe.standard(gear)).sector
     for points, root in (
-        (section.points, quad_root(section, profile)),
-        (sector.points, triangle_root(sector, profile)),
+        (section.points, _quad_root(section, profile)),
+        (sector.points, _triangle_root(sector, profile)),
     ):
         right, left = points[root.nodes[0]], points[root.nodes[1]]
         assert left == pytest.approx(right * [-1.0, 1.0], abs=1e-15)

@@ -13,7 +13,7 @@ from fe_contact.full_contact.condensation.contact_model import freedoms
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody, placed_bodies
 from fe_contact.full_contact.condensation.sites import Range, Resolution, contact_sites, least_gap_left_out
 from fe_contact.geometry import ParallelAxes
-from fe_contact.mesh.quality import scaled_jacobian
+from fe_contact.mesh.quality import _least_jacobian
 from fe_contact.types import FloatArray
 
 PINION = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -97,7 +97,7 @@ def test_teeth_off_the_path_are_held_where_the_lag_brings_them_to_touch() -> Non
 def test_no_element_is_turned_over_by_a_relief_as_deep_as_it_is_large() -> None:
     relieved = replace(PINION, modification=FlankModification(tip_relief=60e-6, tip_relief_length=1.7e-3))
     for body in bodies_at(GearPair(relieved, PINION, center_distance=80e-3), 0.2):
-        assert scaled_jacobian(body.points[body.triangles]).min() > 0.1
+        assert _least_jacobian(body.points[body.triangles]).min() > 0.1
 
 
 def test_freedoms_go_node_by_node() -> None:

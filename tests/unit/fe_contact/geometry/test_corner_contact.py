@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import InputError
-from fe_contact.geometry import Gear, GearPair, corner_contact, corner_gap
-from fe_contact.geometry.corner_contact import Side
+from fe_contact.geometry import Gear, GearPair, corner_contact
+from fe_contact.geometry.corner_contact import Side, _corner_gap
 
 SIDES: tuple[Side, Side] = ("approach", "exit")
 sides = pytest.mark.parametrize("side", SIDES)
@@ -44,14 +44,14 @@ def test_gap_and_slope_grow_with_the_overshoot(pair: GearPair, side: Side) -> No
 
 @sides
 def test_near_the_path_the_gap_is_quadratic(pair: GearPair, side: Side) -> None:
-    gap = corner_gap(pair, side, np.array([1e-5, 2e-5]))
+    gap = _corner_gap(pair, side, np.array([1e-5, 2e-5]))
     assert gap[1] / gap[0] == pytest.approx(4.0, rel=1e-2)
 
 
 def test_lever_arm_at_exit_is_the_rate_of_the_gap(pair: GearPair) -> None:
     # virtual work: F (arm_1 dtheta_1 - r_b2 dtheta_2) = 0 along the closed contact
     over, step = np.linspace(1e-4, 6e-3, 20), 1e-7
-    rate = (corner_gap(pair, "exit", over + step) - corner_gap(pair, "exit", over - step)) / (2.0 * step)
+    rate = (_corner_gap(pair, "exit", over + step) - _corner_gap(pair, "exit", over - step)) / (2.0 * step)
     state = corner_contact(pair, "exit", over)
     assert 1.0 - rate == pytest.approx(state.lever_arm_ratio_pinion, rel=1e-8)
     assert np.all(state.lever_arm_ratio_wheel == 1.0)
@@ -60,7 +60,7 @@ def test_lever_arm_at_exit_is_the_rate_of_the_gap(pair: GearPair) -> None:
 def test_lever_arm_at_approach_is_the_rate_of_the_gap(pair: GearPair) -> None:
     # virtual work again: r_b1 dtheta_1 = arm_2 dtheta_2, now with the overshoot falling as gear 1 turns
     over, step = np.linspace(1e-4, 3e-3, 20), 1e-7
-    rate = (corner_gap(pair, "approach", over + step) - corner_gap(pair, "approach", over - step)) / (
+    rate = (_corner_gap(pair, "approach", over + step) - _corner_gap(pair, "approach", over - step)) / (
         2.0 * step
     )
     state = corner_contact(pair, "approach", over)
@@ -71,10 +71,10 @@ def test_lever_arm_at_approach_is_the_rate_of_the_gap(pair: GearPair) -> None:
 def test_swapping_the_gears_swaps_the_sides_to_first_order(pair: GearPair) -> None:
     # the driving gear is held in both cases, so they differ by the gap itself over the overshoot only
     over = np.array([1e-6, 1e-5])
-    exit_gap, approach_gap = corner_gap(pair, "exit", over), corner_gap(pair.swapped(), "approach", over)
+    exit_gap, approach_gap = _corner_gap(pair, "exit", over), _corner_gap(pair.swapped(), "approach", over)
     assert approach_gap == pytest.approx(exit_gap, rel=1e-2)
     # exactly: a lag e of the tip gear is an overshoot larger by e
-    assert corner_gap(pair, "exit", over + approach_gap) == pytest.approx(approach_gap, rel=1e-9)
+    assert _corner_gap(pair, "exit", over + approach_gap) == pytest.approx(approach_gap, rel=1e-9)
 
 
 @sides
@@ -83,8 +83,8 @@ def test_lengths_scale(make_gear: Callable[..., Gear], side: Side) -> None:
     one = GearPair(make_gear(teeth=25), make_gear(teeth=31))
     three = GearPair(make_gear(teeth=25, **large), make_gear(teeth=31, **large))
     over = np.linspace(0.0, 3e-3, 9)
-    assert corner_gap(three, side, 3.0 * over) == pytest.approx(
-        3.0 * corner_gap(one, side, over), rel=1e-9, abs=1e-16
+    assert _corner_gap(three, side, 3.0 * over) == pytest.approx(
+        3.0 * _corner_gap(one, side, over), rel=1e-9, abs=1e-16
     )
 
 
@@ -104,16 +104,16 @@ def test_edge_that_has_left_the_flank_is_masked(pair: GearPair, side: Side) -> N
 
 @sides
 def test_shapes_follow_the_overshoot(pair: GearPair, side: Side) -> None:
-    assert corner_gap(pair, side, 1e-4).shape == ()
-    assert corner_gap(pair, side, np.full((2, 3), 1e-4)).shape == (2, 3)
+    assert _corner_gap(pair, side, 1e-4).shape == ()
+    assert _corner_gap(pair, side, np.full((2, 3), 1e-4)).shape == (2, 3)
 
 
 def test_bad_arguments_are_refused(pair: GearPair) -> None:
     for overshoot in (-1e-9, np.nan):
         with pytest.raises(InputError, match="overshoot"):
-            corner_gap(pair, "exit", overshoot)
+            _corner_gap(pair, "exit", overshoot)
     with pytest.raises(InputError, match="side"):
-        corner_gap(pair, "middle", 0.0)  # type: ignore[arg-type]
+        _corner_gap(pair, "middle", 0.0)  # type: ignore[arg-type]
 
 
 def test_newton_ends_where_rounding_begins(pair: GearPair, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -122,11 +122,11 @@ def test_newton_ends_where_rounding_begins(pair: GearPair, monkeypatch: pytest.M
     calls, touch = [], module._touch
     monkeypatch.setattr(module, "_touch", lambda *given: calls.append(0) or touch(*given))
     over = np.linspace(0.0, 0.3, 200) * pair.base_pitch
-    gap = corner_gap(pair, "approach", over)
+    gap = _corner_gap(pair, "approach", over)
     assert len(calls) <= 8
-    alone = [corner_gap(pair, "approach", one) for one in over]
+    alone = [_corner_gap(pair, "approach", one) for one in over]
     assert np.array_equal(gap, alone)  # no bit depends on what is asked beside it
     calls.clear()
     monkeypatch.setattr(module, "_ROUNDING", 0.0)
-    assert gap == pytest.approx(corner_gap(pair, "approach", over), rel=1e-12, abs=1e-16)
+    assert gap == pytest.approx(_corner_gap(pair, "approach", over), rel=1e-12, abs=1e-16)
     assert len(calls) == 50

@@ -11,8 +11,7 @@ from fe_contact.errors import MeshError
 from fe_contact.geometry import Gear
 from fe_contact.mesh import MeshRecipe, QualityLimits, mesh_gear, mesh_quality
 from fe_contact.mesh.outline import Outline, Piece
-from fe_contact.mesh.quadratic import quadratic_mesh
-from fe_contact.mesh.triangulation import Triangulation
+from fe_contact.mesh.triangulation import _quadratic_mesh, _Triangulation
 
 STRAIGHT = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 ELEMENT = np.arange(6)[None, :]
@@ -85,7 +84,7 @@ def test_a_recipe_that_cannot_be_meshed_well_is_refused() -> None:
 
 def test_an_outline_edge_that_was_divided_is_an_error() -> None:
     points = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0]])
-    straight = Triangulation(points, np.array([[0, 3, 2], [3, 1, 2]]))
+    straight = _Triangulation(points, np.array([[0, 3, 2], [3, 1, 2]]))
     nodes = np.array([[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [0.5, 0.5], [0.0, 1.0], [0.0, 0.5], [0.0, 0.0]])
     with pytest.raises(MeshError, match="divided"):
-        quadratic_mesh([Outline((Piece("all", nodes),))], straight)
+        _quadratic_mesh([Outline((Piece("all", nodes),))], straight)

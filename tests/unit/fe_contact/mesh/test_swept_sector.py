@@ -148,5 +148,5 @@ def test_recipes_follow_the_gear() -> None:
     # A helical body keeps at least six layers.
     for recipe in (SectorRecipe.draft(helical), SectorRecipe.standard(helical), SectorRecipe.fine(helical)):
         assert recipe.layers // recipe.layer_group >= 6
-    assert SectorRecipe.draft(SPUR).content_hash() != SectorRecipe.standard(SPUR).content_hash()
-    assert SectorRecipe.draft(SPUR).content_hash() == SectorRecipe.draft(SPUR).content_hash()
+    assert SectorRecipe.draft(SPUR).content() != SectorRecipe.standard(SPUR).content()
+    assert SectorRecipe.draft(SPUR).content() == SectorRecipe.draft(SPUR).content()
