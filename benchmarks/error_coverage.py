@@ -15,7 +15,7 @@ from benchmarks.marked_section import replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.stored_runs import finest_run, table_run
 
-PAGE = Path(__file__).parents[1] / "docs" / "accuracy.md"
+PAGE = Path(__file__).parents[1] / "docs" / "lab" / "accuracy.md"
 SECTION = "finest"
 SUBJECT = "stated errors against the finest solution"
 LEVELS = ("draft", "standard")
@@ -56,7 +56,7 @@ def _kind(case: PairCase, level: str) -> str:
 
 
 def markdown(found: Sequence[Assessed], whole: Sequence[Assessed]) -> str:
-    """Return the section of docs/accuracy.md; `whole` are the tables with all that they state."""
+    """Return the section of docs/lab/accuracy.md; `whole` are the tables with all that they state."""
     groups = {"all, with `model`": list(whole), "all": list(found)}
     groups |= {kind: [one for one in found if one.level == kind] for kind in sorted({o.level for o in found})}
     return coverage_table(groups) + "\n" + _worst(found)

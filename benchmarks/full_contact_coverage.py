@@ -22,7 +22,7 @@ from fe_contact.types import FloatArray
 
 ROOT = Path(__file__).parents[1]
 REFERENCE = ROOT / "tests" / "reference" / "full_contact_curves.csv"
-PAGE, SECTION = ROOT / "docs" / "accuracy.md", "full contact"
+PAGE, SECTION = ROOT / "docs" / "lab" / "accuracy.md", "full contact"
 SUBJECT = "stated errors against full contact"
 LEVELS = ("standard", "fine")
 _COVERAGE = 90.0
@@ -99,7 +99,7 @@ def quantities(position: FloatArray, ste: FloatArray) -> FloatArray:
 
 
 def markdown(found: Sequence[AssessedCase]) -> str:
-    """Return the section of docs/accuracy.md."""
+    """Return the section of docs/lab/accuracy.md."""
     groups = {"all": list(found), "set no constant": [one for one in found if one.case.held_out]}
     return coverage_table(groups) + "\n" + _cases(found)
 

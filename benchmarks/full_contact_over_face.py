@@ -22,7 +22,7 @@ from fe_contact.types import FloatArray
 
 ROOT = Path(__file__).parents[1]
 REFERENCE = ROOT / "tests" / "reference" / "full_contact_over_face.csv"
-PAGE, SECTION = ROOT / "docs" / "accuracy.md", "full contact over the face"
+PAGE, SECTION = ROOT / "docs" / "lab" / "accuracy.md", "full contact over the face"
 SUBJECT = "3-D standard against full contact over the face"
 HEAD = ("case", "misalignment_um", "torque_n_m", "position_driver", "ste_um", "error_um")
 
@@ -139,7 +139,7 @@ def reference(case: FaceCase, misalignment: float) -> tuple[FloatArray, FloatArr
 
 
 def markdown(found: Sequence[AssessedFace]) -> str:
-    """Return the section of docs/accuracy.md: a row for each pair and misalignment."""
+    """Return the section of docs/lab/accuracy.md: a row for each pair and misalignment."""
     lines = [
         "| pair | misaligned, um | loads, N m | peer's mean, um | its own error, um | worst point off, um "
         "| stated there, um | covered |",

@@ -17,7 +17,7 @@ from benchmarks.stored_runs import StoredRun, table_run
 from benchmarks.tolerance_kept import ALLOWED
 from fe_contact.allowed_error import RELATIVE
 
-PAGE, SECTION = Path(__file__).parents[1] / "docs" / "frontier.md", "predicted errors"
+PAGE, SECTION = Path(__file__).parents[1] / "docs" / "lab" / "accuracy.md", "predicted errors"
 SUBJECT = "predicted over stated errors"
 FACTOR = 3.0
 _WITHIN = 90.0
@@ -76,7 +76,7 @@ def within(ratio: float) -> bool:
 
 
 def markdown(found: Sequence[Predicted]) -> str:
-    """Return the section of docs/frontier.md."""
+    """Return the section of docs/lab/accuracy.md."""
     kinds = ["all", *dict.fromkeys(one.kind for one in found)]
     lines = ["| runs | number | relative | mean, um | peak-to-peak, um |", "|---|---:|---:|---:|---:|"]
     for kind in kinds:

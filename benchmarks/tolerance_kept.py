@@ -20,7 +20,7 @@ from benchmarks.stored_runs import finest_run, table_run
 from fe_contact import AllowedError
 from fe_contact.types import FloatArray
 
-PAGE, SECTION = Path(__file__).parents[1] / "docs" / "accuracy.md", "tolerance"
+PAGE, SECTION = Path(__file__).parents[1] / "docs" / "lab" / "accuracy.md", "tolerance"
 ALLOWED = AllowedError(0.01)
 SUBJECT = f"tolerance = {ALLOWED.relative:g} against the finest solution"
 LEVELS = ("draft", "standard")
@@ -143,7 +143,7 @@ def _dear(prices: Sequence[float]) -> list[bool]:
 
 
 def markdown(found: Sequence[ToleranceRun]) -> str:
-    """Return the section of docs/accuracy.md."""
+    """Return the section of docs/lab/accuracy.md."""
     lines = [
         f"| {len(found)} pairs | |",
         "|---|---:|",

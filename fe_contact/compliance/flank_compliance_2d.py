@@ -197,7 +197,7 @@ def flank_compliance(
     ----------
     gear : Gear
         Modification plays no part, and face width only beside the thickness of a web: its elements are as
-        much thinner than the others (`docs/effects/thin_rim.md`).
+        much thinner than the others (`docs/effects.md#thin_rim`).
     recipe : MeshRecipe, optional
         Default `MeshRecipe.standard(gear)`.
     teeth : int, optional

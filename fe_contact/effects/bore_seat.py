@@ -19,7 +19,7 @@ class BoreSeatElasticity(Effect):
     needs: ClassVar[tuple[str, ...]] = ("bore seat",)
     adds: ClassVar[tuple[str, ...]] = ("compliance",)
     cost: ClassVar[str] = "none beside the three-dimensional model it calls for"
-    sources: ClassVar[tuple[str, ...]] = ("docs/effects/bore_seat.md",)
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects.md#bore_seat",)
     valid_for: ClassVar[str] = "external gears; a seat that carries tension and compression"
     of_bodies: ClassVar[bool] = True
 

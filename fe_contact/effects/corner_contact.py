@@ -25,7 +25,7 @@ class CornerContact(Effect):
     needs: ClassVar[tuple[str, ...]] = ("position", "load", "curvature")
     adds: ClassVar[tuple[str, ...]] = ("candidates", "gap")
     cost: ClassVar[str] = "two more candidates a position; no finite-element work"
-    sources: ClassVar[tuple[str, ...]] = ("docs/effects/corner_contact.md",)
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects.md#corner_contact",)
     valid_for: ClassVar[str] = "sharp, rounded and chamfered tip edges"
 
     def called_for(self, scene: ContactScene) -> Verdict:

@@ -18,7 +18,7 @@ class FaceLoadDistribution(Effect):
     needs: ClassVar[tuple[str, ...]] = ("face position", "load")
     adds: ClassVar[tuple[str, ...]] = ("compliance", "candidates")
     cost: ClassVar[str] = "finite elements of whole sectors instead of sections; 90 candidates a pair"
-    sources: ClassVar[tuple[str, ...]] = ("docs/effects/face_load_distribution.md",)
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects.md#face_load_distribution",)
     valid_for: ClassVar[str] = "every pair"
     of_bodies: ClassVar[bool] = True
 

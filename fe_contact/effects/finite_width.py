@@ -18,7 +18,7 @@ class FiniteWidth(Effect):
     needs: ClassVar[tuple[str, ...]] = ("position",)
     adds: ClassVar[tuple[str, ...]] = ("compliance",)
     cost: ClassVar[str] = "finite elements of both faces' ends; no more candidates"
-    sources: ClassVar[tuple[str, ...]] = ("docs/effects/finite_width.md",)
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects.md#finite_width",)
     valid_for: ClassVar[str] = "spur pairs with nothing acting across the face"
     of_bodies: ClassVar[bool] = True
 

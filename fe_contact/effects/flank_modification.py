@@ -67,7 +67,7 @@ class ProfileModification(Effect):
     needs: ClassVar[tuple[str, ...]] = ("position",)
     adds: ClassVar[tuple[str, ...]] = ("gap",)
     cost: ClassVar[str] = "a search for the touching point of every candidate; no finite-element work"
-    sources: ClassVar[tuple[str, ...]] = ("docs/effects/profile_modification.md", "ISO 21771-1")
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects.md#profile_modification", "ISO 21771-1")
     valid_for: ClassVar[str] = "slopes below about 0.05; tip edges that open further"
 
     def called_for(self, scene: ContactScene) -> Verdict:
@@ -99,7 +99,7 @@ class LeadModification(Effect):
     needs: ClassVar[tuple[str, ...]] = ("face position",)
     adds: ClassVar[tuple[str, ...]] = ("gap",)
     cost: ClassVar[str] = "none beside the three-dimensional model; twist: a search for touching points"
-    sources: ClassVar[tuple[str, ...]] = ("docs/effects/lead_modification.md", "ISO 21771-1")
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects.md#lead_modification", "ISO 21771-1")
     valid_for: ClassVar[str] = "every pair in three dimensions"
 
     def called_for(self, scene: ContactScene) -> Verdict:

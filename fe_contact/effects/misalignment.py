@@ -40,7 +40,7 @@ class Misalignment(Effect):
     needs: ClassVar[tuple[str, ...]] = ("face position",)
     adds: ClassVar[tuple[str, ...]] = ("gap", "table axis")
     cost: ClassVar[str] = "one more contact sweep per value; no finite-element work"
-    sources: ClassVar[tuple[str, ...]] = ("docs/effects/misalignment.md",)
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects.md#misalignment",)
     valid_for: ClassVar[str] = "every pair in three dimensions"
 
     def called_for(self, scene: ContactScene) -> Verdict:

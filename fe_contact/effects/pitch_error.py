@@ -45,7 +45,7 @@ class PitchError(Effect):
     needs: ClassVar[tuple[str, ...]] = ("position", "tooth numbers")
     adds: ClassVar[tuple[str, ...]] = ("gap", "period")
     cost: ClassVar[str] = "a contact sweep for every base pitch of the period; no finite-element work"
-    sources: ClassVar[tuple[str, ...]] = ("docs/effects/pitch_error.md", "ISO 1328-1")
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects.md#pitch_error", "ISO 1328-1")
     valid_for: ClassVar[str] = "flanks displaced as a whole"
 
     def called_for(self, scene: ContactScene) -> Verdict:

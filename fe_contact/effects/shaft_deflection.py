@@ -121,7 +121,7 @@ class ShaftDeflection(Effect):
     needs: ClassVar[tuple[str, ...]] = ("face position", "load")
     adds: ClassVar[tuple[str, ...]] = ("compliance",)
     cost: ClassVar[str] = "none beside the three-dimensional model it needs"
-    sources: ClassVar[tuple[str, ...]] = ("docs/effects/shaft_deflection.md", "Cowper 1966")
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects.md#shaft_deflection", "Cowper 1966")
     valid_for: ClassVar[str] = "round shafts on two bearings, the gear rigid on its seat"
 
     def called_for(self, scene: ContactScene) -> Verdict:

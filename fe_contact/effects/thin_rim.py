@@ -18,7 +18,7 @@ class ThinRim(Effect):
     needs: ClassVar[tuple[str, ...]] = ("gear blank",)
     adds: ClassVar[tuple[str, ...]] = ("compliance",)
     cost: ClassVar[str] = "none beside the three-dimensional model it calls for"
-    sources: ClassVar[tuple[str, ...]] = ("docs/effects/thin_rim.md", "ISO 6336-1: gear blank factor C_R")
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects.md#thin_rim", "ISO 6336-1: gear blank factor C_R")
     valid_for: ClassVar[str] = "external gears; rim and hub as wide as the face, web a plain disc"
     of_bodies: ClassVar[bool] = True
 

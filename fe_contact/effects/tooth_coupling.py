@@ -17,7 +17,7 @@ class ToothCoupling(Effect):
     needs: ClassVar[tuple[str, ...]] = ("position",)
     adds: ClassVar[tuple[str, ...]] = ("coupling",)
     cost: ClassVar[str] = "none: the blocks come with the condensed compliance"
-    sources: ClassVar[tuple[str, ...]] = ("docs/effects/tooth_coupling.md",)
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects.md#tooth_coupling",)
     valid_for: ClassVar[str] = "every pair"
 
     def called_for(self, scene: ContactScene) -> Verdict:

@@ -26,7 +26,7 @@ def finite_width_excess(pair: ParallelAxes) -> float:
     The ends of the face are free, so a narrow gear is in plane stress and a very wide one in plane strain;
     between them the excess falls as 1/(1 + (b/m)/5). It is right within about a half: good enough to say
     what plane strain leaves out before anything is computed. What a result is corrected by is computed
-    (docs/effects/finite_width.md).
+    (docs/effects.md#finite_width).
     """
     modules = pair.face_width / pair.pinion.normal_module
     return PLANE_STRESS_SHARE * _moduli(pair) / (1.0 + modules / DECAY_WIDTH)

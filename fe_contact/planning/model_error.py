@@ -51,7 +51,7 @@ def _flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
 
 
 FLOOR = (1e-3, 1.5e-3, 2.5e-3)
-"""Of mean, peak-to-peak and harmonics; set on one pair of each of six regimes (docs/accuracy.md)."""
+"""Of mean, peak-to-peak and harmonics; set on one pair of each of six regimes (docs/lab/accuracy.md)."""
 LARGE_DISPLACEMENT = (0.3, 0.6, 0.6)
 """Over the mean STE in modules."""
 TILT = (2.0, 8.0, 8.0)

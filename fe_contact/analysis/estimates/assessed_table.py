@@ -37,7 +37,7 @@ from fe_contact.types import FloatArray, IntArray, Json, Status
 # which bounds what is left of the difference (`Discretization.remaining`). The table's error is measured
 # at the middles between its nodes. Where the plane stands in for three dimensions, a part of what it was
 # corrected by is its error; it is measured against three-dimensional solutions
-# (docs/effects/finite_width.md). A plane that is not corrected, requested by name or not, errs by what it
+# (docs/effects.md#finite_width). A plane that is not corrected, requested by name or not, errs by what it
 # leaves out of the finite width.
 
 
@@ -147,7 +147,7 @@ class TableSample:
 
 CORRECTION_ERROR = 0.03
 """Error of the correction for a finite width in parts of the correction itself. The largest seen of mean,
-peak-to-peak and harmonics on its pairs (docs/accuracy.md, "Constants") is 0.033, of peak-to-peak at a face of
+peak-to-peak and harmonics on its pairs (docs/lab/accuracy.md, "Constants") is 0.033, of peak-to-peak at a face of
 1.2 modules, of which the mesh covers its part."""
 
 
@@ -298,7 +298,7 @@ LEFT_BY_MESH = {
 elements half as large; over the face of a spur pair, of elements of two thirds; of a helical pair, over what
 second order leaves of that change (`FaceDiscretization.remaining`). Coarse meshes are not in the range yet in
 which errors fall with a power of the size: a draft in the plane leaves less of its change than a finer mesh,
-one over the face more. Set on pairs that docs/accuracy.md names under "Constants"; the level fine has the
+one over the face more. Set on pairs that docs/lab/accuracy.md names under "Constants"; the level fine has the
 parts of standard."""
 HARMONIC_SHARE = 0.3
 """Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k: half the

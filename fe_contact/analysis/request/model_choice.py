@@ -31,7 +31,7 @@ from fe_contact.types import FloatArray, Json
 # Errors of meshes and slices are parts of the mean transmission error; requested is a part of peak-to-peak,
 # which may be half of the mean or a thousandth. Uncoupled slices tell which in hundredths of a second.
 # Without the coupling of the teeth and the bodies their mean is 0.55 to 0.94 of that of finite elements
-# (median 0.78), their ripple 0.8 to 1.4 times it where it is above 5 % of the mean (docs/frontier.md,
+# (median 0.78), their ripple 0.8 to 1.4 times it where it is above 5 % of the mean (docs/accuracy.md,
 # "Plan").
 
 LAW = SliceLaw(parabolic_stiffness, with_gaps=True)

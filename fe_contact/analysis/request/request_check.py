@@ -26,7 +26,7 @@ from fe_contact.planning.plan import CycleCost, make_plan
 
 SHARE = 0.1
 """Part of the tolerance that all neglected effects together may change by their estimates, which are right
-within a factor of two in most cases (docs/effects/influence.md): what is neglected stays below it."""
+within a factor of two in most cases (docs/accuracy.md): what is neglected stays below it."""
 
 
 def _neglected_effects(

@@ -101,7 +101,7 @@ class _Fidelity(model_studies.Fidelity[Checked], Protocol):
 POSITIONS = 64
 
 ISO_ERROR, SLICE_ERROR = 0.45, 0.6
-"""Relative error of the mean stated for the fidelities: above the worst of docs/frontier.md."""
+"""Relative error of the mean stated for the fidelities: above the worst of docs/accuracy.md."""
 
 
 @dataclass(frozen=True)

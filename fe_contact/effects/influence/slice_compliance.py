@@ -193,7 +193,7 @@ BODY_DECAY = 2.0 / math.pi
 SUNK_DEPTH = 3.75
 """Modules of body depth that Weber and Banaschek's half plane stands for."""
 WEB_EXCESS = 2.1
-"""Compliance that a web adds over its own twist: 1.9 to 2.3 measured (docs/effects/thin_rim.md)."""
+"""Compliance that a web adds over its own twist: 1.9 to 2.3 measured (docs/effects.md#thin_rim)."""
 
 
 class _GearCompliance(NamedTuple):

@@ -51,7 +51,7 @@ def test_a_case_gives_table_json_and_picture(case: Path, tmp_path: Path) -> None
     assert told["torque_n_m"] == pytest.approx([20.0, 100.0])
     coupling, relief = told["effects"]
     assert (coupling["name"], relief["name"]) == ("tooth_coupling", "profile_modification")
-    # docs/effects/profile_modification.md: what ignoring the relief changes at 100 N m
+    # docs/effects.md#profile_modification: what ignoring the relief changes at 100 N m
     assert relief["relative_mean_change"][1] == pytest.approx(-0.138, abs=0.02)
     for entry in (coupling, relief):
         whole = entry["with"]["mean_um"][1]

@@ -133,7 +133,7 @@ def test_effects_declare_themselves(effect):
     assert effect.adds
     assert effect.cost
     assert effect.valid_for
-    assert f"docs/effects/{effect.name}.md" in effect.sources
+    assert f"docs/effects.md#{effect.name}" in effect.sources
 
 
 def test_names_are_unique():

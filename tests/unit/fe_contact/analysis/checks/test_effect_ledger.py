@@ -63,7 +63,7 @@ def test_a_choice_against_the_scene_is_obeyed_and_has_a_price() -> None:
     assert not off["on"]
     assert off["decision"] == "as requested, although the scene calls for it"
     assert off["price"] == off["influence"]["words"]
-    assert -0.06 < off["influence"]["relative_mean"] < -0.05  # docs/effects/tooth_coupling.md
+    assert -0.06 < off["influence"]["relative_mean"] < -0.05  # docs/effects.md#tooth_coupling
     on = ledger(PLAIN, effects={"face_load_distribution": "on"})["face_load_distribution"]
     assert on["on"]
     assert on["cost_cpu_seconds"] > 0.1
