@@ -377,7 +377,7 @@ _FREE_ENDS = 0.35
 def effort(pair: ParallelAxes, plan: Plan, model: ContactModel, alignments: tuple[int, int]) -> float:
     """Return the work of a run with nothing in the cache, CPU seconds of the host of the constants.
 
-    Parameters are those of `fe_contact.planning.predict_run`.
+    Parameters are those of `predict_run`.
     """
     made = plan.discretization
     bodies = tuple(body.right_handed() for body in plan.bodies(pair))

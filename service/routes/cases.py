@@ -32,9 +32,8 @@ _READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
 _MOST_FILES = 16
 
 router = APIRouter(tags=["cases"], route_class=ScopedRoute)
-case_json, outline_json = (
-    on_demand(f"lineofaction.gearbox.convert.{name}") for name in ("case:case_json", "outline:outline_json")
-)
+case_json = on_demand("lineofaction.gearbox.convert.case:case_json")
+outline_json = on_demand("lineofaction.gearbox.convert.live:outline_json")
 
 
 class CaseInputs(BoundaryModel):

@@ -37,9 +37,9 @@ from lineofaction.gearbox.problems import (
 )
 from lineofaction.gearbox.schemas.faults import fault_of, innermost
 from lineofaction.gearbox.schemas.live import LiveInput, LiveOutput, PlanRequest
+from lineofaction.gearbox.schemas.model import HASH
 from lineofaction.gearbox.schemas.plan import PlanBody
 from lineofaction.gearbox.schemas.query import LIMITS, QueryInput, QueryOutput, validity_words
-from lineofaction.gearbox.schemas.result_kinds import HASH
 from service.access import Scope
 from service.live.order import LiveOrder
 from service.project import address_of

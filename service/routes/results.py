@@ -16,7 +16,8 @@ from starlette.responses import FileResponse, JSONResponse, Response
 from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.problems import BadInput, DamagedFile, LiveUnavailable, NotFound, QueueFull
 from lineofaction.gearbox.registry import NETCDF
-from lineofaction.gearbox.schemas.result_kinds import HASH, RESULT_KINDS, RESULTS, SUFFIX
+from lineofaction.gearbox.schemas.model import HASH
+from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX
 from service.access import Scope
 from service.live.order import LiveOrder
 from service.routes.context import Context, Ctx

@@ -56,6 +56,4 @@ def test_every_call_fits_its_signature(page: Path) -> None:
 
 
 def test_pages_with_examples_are_found() -> None:
-    assert {"README.md", "flank-results.md", "studies.md", "accuracy.md"} <= {
-        page.name for page in PAGES
-    }
+    assert {"README.md", "flank-results.md", "studies.md", "accuracy.md"} <= {page.name for page in PAGES}

@@ -23,7 +23,7 @@ from gear_case import housing_of, seats_of
 import lineofaction as loa
 import warnings
 warnings.simplefilter("ignore")
-from lineofaction.gearbox.from_rexs.files import unit_files
+from lineofaction.gearbox.from_rexs.opened import unit_files
 import tomllib
 scene = unit_files(loa.open_unit("unit.rexs"))["scene.toml"]
 pathlib.Path("scene.toml").write_text(scene)

@@ -11,6 +11,7 @@ from dynamics.meshes.gear_mesh import GearMesh
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import (
+    HASH,
     BoundaryModel,
     Listed,
     Name,
@@ -19,7 +20,6 @@ from lineofaction.gearbox.schemas.model import (
     refuse,
     stated,
 )
-from lineofaction.gearbox.schemas.result_kinds import HASH
 
 # A mesh in closed form: its teeth, and its stiffness and transmission error over a base pitch.
 

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 # The base of all boundary models: strict, closed, finite, frozen.
 
 
+HASH = "^[0-9a-f]{64}$"
+"""Pattern of the names of results, which are content hashes."""
 MOST_FAULTS = 50
 """Faults that are reported of one body."""
 

@@ -11,8 +11,6 @@ if TYPE_CHECKING:
 
 SUFFIX = ".nc"
 """Ending of their files, which are netCDF."""
-HASH = "^[0-9a-f]{64}$"
-"""Pattern of their names, which are content hashes."""
 RESULTS = "/v1/results"
 """Where results are on the service, before their hash."""
 

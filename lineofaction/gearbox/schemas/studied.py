@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.model import (
+    HASH,
     BoundaryModel,
     Spelling,
     both,
@@ -18,7 +19,6 @@ from lineofaction.gearbox.schemas.model import (
     refuse,
     stated,
 )
-from lineofaction.gearbox.schemas.result_kinds import HASH
 from lineofaction.gearbox.schemas.row import Row
 from lineofaction.gearbox.schemas.scene import SceneInput
 
