@@ -177,7 +177,7 @@ def finding_of(content: Json) -> Finding:
 def warn_of(findings: Sequence[Finding]) -> None:
     """Warn of findings, once of each, in the name of who called the package that found them."""
     library, level = _package(2), 3
-    while _package(level) == library:
+    while _package(level) in (library, "functools"):  # the latter of a property that is kept
         level += 1
     for finding in findings:
         warnings.warn(f"implausible: {finding.message()}", PlausibilityWarning, level)

@@ -9,6 +9,7 @@ from bounds import warn_of
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.database.compute_database import compute_database, solved_findings
 from fe_contact.analysis.database.kept_tolerance import OnDraft, kept_tolerance
+from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Levels, Run, TableAxes
@@ -126,9 +127,19 @@ def ste_database(
         Once for each implausible value, of the request before the run and of its results after it; all are in
         `SteDatabase.warnings`.
     """
-    checked = check_request(pair, axes, options)
+    return table_of_checked(check_request(pair, axes, options), run, case=case, on_draft=on_draft)
+
+
+def table_of_checked(
+    checked: Checked,
+    run: Run = Run(),  # noqa: B008 (frozen)
+    *,
+    case: Json | None = None,
+    on_draft: OnDraft | None = None,
+) -> SteDatabase:
+    """Compute the table of a request that `check_request` has checked; the rest as `ste_database`."""
     phrased = case or checked.request.to_json()
-    if options.refines:
+    if checked.request.options.refines:
         database = kept_tolerance(checked, phrased, run, on_draft or _unread)
     else:
         database = compute_database(checked, phrased, run)

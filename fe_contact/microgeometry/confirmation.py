@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache as cached
 from functools import partial
@@ -192,7 +192,12 @@ class DesignSpace:
 
 
 def design_study(
-    space: DesignSpace, torques: Levels, further_torques: Levels, clock: StageClock, run: Run
+    space: DesignSpace,
+    torques: Levels,
+    further_torques: Levels,
+    clock: StageClock,
+    run: Run,
+    check: Callable[[], Checked] | None = None,
 ) -> DesignStudy:
     """Choose the model and condense the gears.
 
@@ -202,6 +207,8 @@ def design_study(
         Those that count, and those that only maps show, N m.
     run : Run
         Only this process works.
+    check : callable, optional
+        Returns what `space.check` does, of a request that keeps it.
 
     Raises
     ------
@@ -211,7 +218,8 @@ def design_study(
     own = DesignLoads.of(torques, space.misalignment)
     loads, counted = own.with_torques(further_torques)
     with clock.stage("planning"):
-        decided = _on_one_mesh(space.check(torques, further_torques), run.cache)
+        checked = check() if check else space.check(torques, further_torques)
+        decided = _on_one_mesh(checked, run.cache)
     run.progress("compliance", 0.0)
     with clock.stage("compliance"):
         report = partial(run.progress, "compliance")

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 
+from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import increasing
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmation import (
@@ -105,8 +107,9 @@ class OptimizationRequest:
         parts = MAP_PARTS * counted[-1]
         return np.asarray(parts[np.abs(parts[:, None] - counted).min(axis=1) > CLOSE * counted[-1]])
 
-    def check(self) -> None:
-        """Check everything without computing anything.
+    @cached_property
+    def checked(self) -> Checked:
+        """The request of its torques: everything is checked, nothing computed.
 
         Raises
         ------
@@ -115,7 +118,7 @@ class OptimizationRequest:
         """
         check_variables(self.pair, self.variables)
         self.objective.check(DesignLoads.of(self.torques, self.misalignment).torque.size)
-        self.space.check(self.torques)
+        return self.space.check(self.torques)
 
     def to_json(self, study: DesignStudy) -> Json:
         """Return plain JSON, with what the study decided."""

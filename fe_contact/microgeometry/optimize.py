@@ -438,7 +438,7 @@ def optimize(
         No acceptable mesh, or the contact of one of both designs cannot be solved.
     """
     clock = StageClock(run.workers.cost)
-    request.check()
+    _ = request.checked
     study = design_study(request.space, request.torques, request.further_torques, clock, run)
     with clock.stage("search"):
         problem = _posed(study, request, memory)

@@ -118,8 +118,9 @@ class SweepRequest:
         skew, change = self.point.misalignment, self.point.center_distance_change
         return design.get(MISALIGNMENT, skew), design.get(CENTER_DISTANCE, change)
 
-    def check(self) -> Checked:
-        """Check everything without computing; return the request of the design that acts most.
+    @cached_property
+    def checked(self) -> Checked:
+        """The request of the design that acts most: everything is checked, nothing computed.
 
         Raises
         ------
@@ -254,7 +255,7 @@ def sweep(request: SweepRequest, run: Run = Run()) -> Sweep:  # noqa: B008 (froz
     """
     clock = StageClock(run.workers.cost)
     swept = _SweptPair(request, None if run.cache is None else str(run.cache))
-    request.check()
+    _ = request.checked
     run.progress("compliance", 0.0)
     with clock.stage("compliance"):
         across_face = swept.bodies.checked.model.across_face
@@ -293,7 +294,7 @@ class _SweptPair:
     def bodies(self) -> CondensedPair:
         """The gears, condensed."""
         cache = None if self.cache is None else Path(self.cache)
-        return condense(self.request.pair, self.request.check(), cache)
+        return condense(self.request.pair, self.request.checked, cache)
 
 
 def _swept_design(shared: _SweptPair, design: tuple[tuple[str, float], ...]) -> FloatArray:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 from scipy.special import ndtr, ndtri
 
 from bounds import SiNote
+from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import InputError, SolveError, integer, positive, within
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study, full_table, ripple_errors
@@ -322,16 +324,38 @@ def scatter(
     MeshError, SolveError
         No acceptable mesh, or the contact of a pair cannot be solved.
     """
-    space = toleranced(pair, tolerances, sampling, options, misalignment)
-    return _sampled(space, torques, tolerances, sampling, run)
+    return sampled(ToleranceRequest(pair, torques, tolerances, sampling, options, misalignment), run)
 
 
-def _sampled(
-    space: DesignSpace, torques: Levels, tolerances: Tolerances, sampling: Sampling, run: Run
-) -> ToleranceStudy:
-    """Sample a space of designs within tolerances; see `scatter`."""
-    clock = StageClock(run.workers.cost)
-    study = design_study(space, torques, [], clock, run)
+@dataclass(frozen=True)
+class ToleranceRequest:
+    """What `scatter` takes."""
+
+    pair: ParallelAxes
+    torques: Levels
+    tolerances: Tolerances
+    sampling: Sampling
+    options: AnalysisOptions
+    misalignment: float
+
+    @property
+    def space(self) -> DesignSpace:
+        """The pairs that the tolerances allow, as designs: everything deviates that may."""
+        deviations = Scatter(self.tolerances.misalignment, self.tolerances.modification, ACTING)
+        return DesignSpace(
+            self.pair, {}, deviations, self.misalignment, self.sampling.positions, self.options
+        )
+
+    @cached_property
+    def checked(self) -> Checked:
+        """Everything is checked, nothing computed; raises `InputError`."""
+        return self.space.check(self.torques)
+
+
+def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
+    """Sample pairs within tolerances; see `scatter`."""
+    clock, tolerances, sampling = StageClock(run.workers.cost), request.tolerances, request.sampling
+    study = design_study(request.space, request.torques, [], clock, run, lambda: request.checked)
     deviation = tolerances.sample(sampling.samples, sampling.seed)
     names, nominal = tuple(tolerances.widths), replace(study.evaluator, nodes=ONE_NODE)
     with clock.stage("first order"):
@@ -357,21 +381,9 @@ def _sampled(
             "tolerances": tolerances.to_json(),
             "seed": sampling.seed,
             "positions": sampling.positions,
-            "misalignment_m": space.misalignment,
+            "misalignment_m": request.misalignment,
         },
     )
-
-
-def toleranced(
-    pair: ParallelAxes,
-    tolerances: Tolerances,
-    sampling: Sampling,
-    options: AnalysisOptions,
-    misalignment: float,
-) -> DesignSpace:
-    """Return the pairs that tolerances allow, as designs: everything deviates that may."""
-    deviations = Scatter(tolerances.misalignment, tolerances.modification, ACTING)
-    return DesignSpace(pair, {}, deviations, misalignment, sampling.positions, options)
 
 
 def _evaluated(evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArray, run: Run) -> FloatArray:

@@ -24,7 +24,7 @@ from lineofaction.cli.output import (
     table,
 )
 from lineofaction.gearbox.convert.answers import draft_line, summary_json
-from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.convert.effects import assumption_lines, ledger_lines
 from lineofaction.gearbox.convert.live import plan_json, plan_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
@@ -41,7 +41,7 @@ from lineofaction.gearbox.units import MM, NM, UM
 from lineofaction.report.ste.page import static_headlines
 
 
-def assessed_case(file: InputFile, point: FlankPoint | None = None) -> Case:
+def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCase:
     """Return the case in a file, at one load and alignment if requested; warn of what is implausible.
 
     Raises
@@ -52,9 +52,10 @@ def assessed_case(file: InputFile, point: FlankPoint | None = None) -> Case:
     case = read_model(Case, file)
     if point is not None:
         case = case_at(case, point)
+    checked = CheckedCase(case)
     with located(file):
-        warn(case_warnings(case))
-    return case
+        warn(case_warnings(checked))
+    return checked
 
 
 def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
@@ -160,7 +161,7 @@ def run_analyze(file: InputFile, output: Path, processes: int, dask: str | None,
 
 
 def analyzed(
-    case: Case,
+    case: CheckedCase,
     report: Report,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> SteDatabase:

@@ -24,7 +24,7 @@ from lineofaction.cli.analyze import assessed_case
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
 from lineofaction.cli.ste import open_ste, positions
-from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, check_case, operating_point
+from lineofaction.gearbox.convert.case import boundary_errors, operating_point
 from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
@@ -71,12 +71,12 @@ def _export_deformed(
     if len(where) > _MOST_POSITIONS:
         raise BadInput.of("--at", f"{len(where)} positions", f"at most {_MOST_POSITIONS} positions")
     _refuse_output(output)
-    pair = check_case(case, whole_table=False)
+    pair = case.at_point.request.pair
     with progress_bar() as report, boundary_errors():
         pairs = deformed_pairs(
             pair,
-            operating_point(case),
-            analysis_options(case),
+            operating_point(case.case),
+            case.options,
             Run(cache=cache_home() / "compliance", progress=report),
             at=where,
             beside=beside,

@@ -16,7 +16,7 @@ from host.directories import cache_home
 from lineofaction.cli.analyze import assessed_case
 from lineofaction.cli.guard import messages, warn
 from lineofaction.cli.output import Report, check_writable, console, print_json, progress_bar, table
-from lineofaction.gearbox.convert.case import case_at, gear_pair
+from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.result_files import stamped
 from lineofaction.gearbox.input_file import InputFile
@@ -58,7 +58,7 @@ _WORDS = ("quantity", "symbol", "unit", "point")
 
 def run_geometry(file: InputFile, output: Path | None, *, as_json: bool) -> None:
     """Print the data sheet of a case; draw it if requested."""
-    pair = gear_pair(assessed_case(file))
+    pair = assessed_case(file).pair
     implausible = messages()
     warn(pair_remarks(pair))
     if output is not None:
@@ -158,7 +158,7 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
         misalignment_um=1e6 * misalignment,
         center_distance_change_mm=1e3 * change,
     )
-    return flanks_of(case_at(case, point), cache_home() / "compliance", report)
+    return flanks_of(CheckedCase(case_at(case, point)), cache_home() / "compliance", report)
 
 
 # ``loa compare``.

@@ -23,6 +23,7 @@ from lineofaction.cli.output import (
 from lineofaction.cli.remote import watching
 from lineofaction.client import LineOfActionClient
 from lineofaction.client.client import ServiceTables
+from lineofaction.gearbox.convert.case import CheckedCases
 from lineofaction.gearbox.convert.effects import model_lines
 from lineofaction.gearbox.convert.result_files import run_json, staged, stamp
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -64,15 +65,22 @@ def _largest(what: str, forces: dict[str, tuple[float, float]]) -> Headline:
 
 def tabled_scene(scene: SceneInput, folder: Path, service: str | None, report: Report) -> TabledScene:
     """Return the scene with its tables and with its cases written out; its files are relative to `folder`."""
+    cases = CheckedCases()
     if service is None:
-        here = MeshTables(folder, ComputedTables(lambda case: analyzed(case, report)))
+        here = MeshTables(folder, ComputedTables(lambda case: analyzed(cases.of(case), report)))
         return scene_by_tables(
-            scene, folder, lambda index, mesh: finished(here.of(index, mesh)), cache_home(), report, warn
+            scene,
+            folder,
+            lambda index, mesh: finished(here.of(index, mesh)),
+            cache_home(),
+            report,
+            warn,
+            cases,
         )
     with LineOfActionClient(service, progress=watching(report)) as client:
         there, run = MeshTables(folder, ServiceTables(client)), client.driver.run
         return scene_by_tables(
-            scene, folder, lambda index, mesh: run(there.of(index, mesh)), cache_home(), report, warn
+            scene, folder, lambda index, mesh: run(there.of(index, mesh)), cache_home(), report, warn, cases
         )
 
 

@@ -30,6 +30,7 @@ from lineofaction.cli.output import (
     table,
 )
 from lineofaction.cli.simulate import tabled_scene
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.result_files import stamp
 from lineofaction.gearbox.input_file import InputFile, number_list
@@ -88,7 +89,7 @@ def run_study(study: Study, options: Json) -> None:
     stopping = until_interrupted if study.run.interruptible else nullcontext
     with (
         open_executor(executor) as others,
-        _resumed_workers(study, [subject for subject, _ in subjects], inputs, others) as workers,
+        _resumed_workers(study, [_as_written(subject) for subject, _ in subjects], inputs, others) as workers,
         progress_bar() as report,
         stopping() as cancel,
     ):
@@ -159,25 +160,29 @@ def _digest(file: Path) -> str:
         return hashlib.file_digest(content, "sha256").hexdigest()
 
 
-def _read(study: Study, file: InputFile) -> tuple[Case | SceneInput, Path]:
+def _read(study: Study, file: InputFile) -> tuple[CheckedCase | SceneInput, Path]:
     if study.subject == "scene" or (study.subject != "case" and "shafts" in read_table(file)):
         return assessed_scene(file)
-    return read_model(Case, file), file.folder
+    return CheckedCase(read_model(Case, file)), file.folder
 
 
-def _assessed(subject: Case | SceneInput) -> Case | SceneInput:
+def _assessed(subject: CheckedCase | SceneInput) -> CheckedCase | SceneInput:
     """Return what is studied; what is implausible about a case is said, about a scene with its tables."""
-    if isinstance(subject, Case):
+    if isinstance(subject, CheckedCase):
         warn(case_warnings(subject))
     return subject
+
+
+def _as_written(subject: CheckedCase | SceneInput) -> BoundaryModel:
+    return subject.case if isinstance(subject, CheckedCase) else subject
 
 
 def _runs_folder(targets: list[Path]) -> Path | None:
     return targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
 
 
-def _made(subject: Case | SceneInput, folder: Path, service: str | None, report: Report) -> Any:
-    return subject if isinstance(subject, Case) else tabled_scene(subject, folder, service, report)
+def _made(subject: CheckedCase | SceneInput, folder: Path, service: str | None, report: Report) -> Any:
+    return subject if isinstance(subject, CheckedCase) else tabled_scene(subject, folder, service, report)
 
 
 def _names(study: Study, files: Sequence[InputFile]) -> list[str]:

@@ -98,12 +98,14 @@ def case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> schemas.Case | No
 
 def with_own_cases(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
     """Return the scene with the cases in its files written out; raises `BadInput`."""
-    cases = [case_of_mesh(mesh, f"meshes[{i}]", folder) for i, mesh in enumerate(scene.meshes)]
-    meshes = (
-        mesh if case is None else mesh.model_copy(update={"case": case, "case_file": None})
-        for mesh, case in zip(scene.meshes, cases, strict=True)
-    )
+    meshes = (with_case(mesh, f"meshes[{i}]", folder) for i, mesh in enumerate(scene.meshes))
     return scene.model_copy(update={"meshes": tuple(meshes)})
+
+
+def with_case(mesh: MeshInput, field: str, folder: Path) -> MeshInput:
+    """Return the mesh with the case in its file written out; raises `BadInput`."""
+    case = case_of_mesh(mesh, field, folder)
+    return mesh if case is None else mesh.model_copy(update={"case": case, "case_file": None})
 
 
 def with_own_files(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:

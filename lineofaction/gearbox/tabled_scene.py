@@ -10,19 +10,12 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from fe_contact.analysis.analyze import ste_database
+from fe_contact.analysis.analyze import table_of_checked
 from fe_contact.options import Run
 from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import (
-    analysis_options,
-    boundary_errors,
-    case_json,
-    check_case,
-    gear_pair,
-    table_axes,
-)
+from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, boundary_errors, case_json
 from lineofaction.gearbox.convert.housings import housings_in
 from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_database, scene_warnings, within
@@ -31,19 +24,20 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.subjects import Steps, case_of_mesh, with_own_cases, without_modes_files
+from lineofaction.gearbox.subjects import Steps, with_case, with_own_cases, without_modes_files
 from model_studies.progress import Progress, silent
 
 Warn = Callable[[Iterable[dict[str, Any]]], object]
+OnDraft = Callable[[SteDatabase, str], None]
 TableOf = Callable[[int, MeshInput], SteDatabase]
 
 
 def database_of(
-    case: Case,
+    checked: CheckedCase,
     home: Path,
     progress: Progress = silent,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
-    on_draft: Callable[[SteDatabase, str], None] | None = None,
+    on_draft: OnDraft | None = None,
 ) -> SteDatabase:
     """Compute the STE database of a case; condensed gears are kept in `home`, the folder of caches.
 
@@ -52,17 +46,16 @@ def database_of(
     BadInput
         No such pair exists, or not under these loads.
     """
-    pair = gear_pair(case)
+    run = Run(workers, home / "compliance", progress)
+    return checked_table(checked, run, on_draft)
+
+
+def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = None) -> SteDatabase:
+    """Compute the STE database of a case, its warnings in the fields and units of the case."""
+    request = checked.checked
     with boundary_errors():
-        database = ste_database(
-            pair,
-            table_axes(case),
-            analysis_options(case),
-            Run(workers, home / "compliance", progress),
-            case=case_json(case),
-            on_draft=on_draft,
-        )
-    return phrased_database(database, case)
+        database = table_of_checked(request, run, case=case_json(checked.case), on_draft=on_draft)
+    return phrased_database(database, checked.case)
 
 
 class ComputedTables:
@@ -90,7 +83,13 @@ class ComputedTables:
 
 
 def tabled_scene(
-    scene: SceneInput, folder: Path, table_of: TableOf, home: Path, progress: Progress, warn: Warn
+    scene: SceneInput,
+    folder: Path,
+    table_of: TableOf,
+    home: Path,
+    progress: Progress,
+    warn: Warn,
+    cases: CheckedCases,
 ) -> TabledScene:
     """Return a scene with its tables, housings reduced; all is checked before anything is computed.
 
@@ -107,6 +106,8 @@ def tabled_scene(
         Called as progress(stage, fraction).
     warn : callable
         Takes what is implausible about cases and scene.
+    cases : CheckedCases
+        Of this scene: `table_of` goes on from what is checked here.
 
     Raises
     ------
@@ -116,26 +117,27 @@ def tabled_scene(
         A table has failed points.
     """
     began = cpu_seconds()
-    facts = {mesh.name: _facts(i, mesh, folder, table_of, warn) for i, mesh in scene.with_database}
+    meshes, facts = list(scene.meshes), {}
+    for i, mesh in scene.with_database:
+        meshes[i] = with_case(mesh, f"meshes[{i}]", folder)
+        facts[mesh.name] = _facts(i, meshes[i], table_of, cases, warn)
     warn(scene_warnings(scene, check_scene(scene, facts)))
     housings = housings_in(scene, home, folder, progress)
-    databases = {mesh.name: table_of(i, mesh) for i, mesh in scene.with_database}
+    databases = {mesh.name: table_of(i, meshes[i]) for i, mesh in scene.with_database}
     built = dynamic_scene(scene, databases, housings)
     warn(scene_warnings(scene, built, {name: table.metadata.warnings for name, table in databases.items()}))
-    return TabledScene(
-        without_modes_files(with_own_cases(scene, folder)), databases, built, housings, cpu_seconds() - began
-    )
+    own = with_own_cases(scene.model_copy(update={"meshes": tuple(meshes)}), folder)
+    return TabledScene(without_modes_files(own), databases, built, housings, cpu_seconds() - began)
 
 
-def _facts(index: int, mesh: MeshInput, folder: Path, table_of: TableOf, warn: Warn) -> PairFacts:
+def _facts(index: int, mesh: MeshInput, table_of: TableOf, cases: CheckedCases, warn: Warn) -> PairFacts:
     """Return the facts of a mesh's pair; of a case without computing anything."""
-    field = f"meshes[{index}]"
-    case = case_of_mesh(mesh, field, folder)
-    if case is None:
+    if mesh.case is None:
         return table_of(index, mesh).facts
+    field, checked = f"meshes[{index}]", cases.of(mesh.case)
     try:
-        warn(within(warning, field) for warning in case_warnings(case))
-        return facts_of(check_case(case))
+        warn(within(warning, field) for warning in case_warnings(checked))
+        return facts_of(checked.feasible.request.pair)
     except BadInput as error:
         raise error.within(f"{field}.case") from None
 

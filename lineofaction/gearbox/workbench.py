@@ -17,6 +17,7 @@ from fe_contact.ste import SteDatabase
 from fe_contact.workers import InProcess, Workers
 from fe_contact.workers.remembering import content_digest
 from host.directories import cache_home
+from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.from_rexs.account import Assumption
@@ -135,7 +136,7 @@ def analyze(subject: ParallelAxes | Subject, **options: Any) -> SteDatabase:
     """
     if isinstance(subject, ParallelAxes):
         return analyze_pair(subject, **options)
-    case = case_of(_source(subject))
+    case = CheckedCase(case_of(_source(subject)))
     _warn(case_warnings(case))
     return database_of(case, cache_home(), **options)
 
@@ -164,9 +165,17 @@ def tabled(subject: Subject, progress: Progress = silent) -> TabledScene:
 
 def _tabled(scene: SceneInput, folder: Path, progress: Progress) -> TabledScene:
     _warn(left_out_warnings(scene.left_out))
-    tables = MeshTables(folder, ComputedTables(lambda case: database_of(case, cache_home(), progress)))
+    cases = CheckedCases()
+    here = ComputedTables(lambda case: database_of(cases.of(case), cache_home(), progress))
+    tables = MeshTables(folder, here)
     return scene_by_tables(
-        scene, folder, lambda index, mesh: finished(tables.of(index, mesh)), cache_home(), progress, _warn
+        scene,
+        folder,
+        lambda index, mesh: finished(tables.of(index, mesh)),
+        cache_home(),
+        progress,
+        _warn,
+        cases,
     )
 
 
@@ -226,7 +235,7 @@ class StudyCall(Generic[Result]):
         stated, files = self._stated(subject)
         chosen = study.run.narrowed(stated, varied)
         study.run.check(chosen, varied)
-        made = chosen if isinstance(chosen, Case) else _tabled(chosen, files, progress)
+        made = chosen if isinstance(chosen, CheckedCase) else _tabled(chosen, files, progress)
         means = Means(cache_home(), progress, workers, folder=folder, run=run)
         result: Result = study.run.compute(made, varied, means)
         _warn(study.run.warnings(result) or ())
@@ -234,12 +243,12 @@ class StudyCall(Generic[Result]):
             raise JobFailed(failure)
         return result
 
-    def _stated(self, subject: Subject) -> tuple[Case | SceneInput, Path]:
+    def _stated(self, subject: Subject) -> tuple[CheckedCase | SceneInput, Path]:
         """Return what is studied as written, and the folder of its files."""
         kind = STUDIES[self.name].subject
         if kind == "scene" or (kind != "case" and _has_shafts(subject)):
             return _scene(subject)
-        case = case_of(_source(subject))
+        case = CheckedCase(case_of(_source(subject)))
         _warn(case_warnings(case))
         return case, Path()
 

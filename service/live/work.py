@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from fe_contact.analysis.live.condensed_pair import CondensedPair
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.live import condensed_of, live_curves, plan_json, plan_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.schemas import Case
@@ -35,7 +36,7 @@ def live_ste(inputs: Json) -> Json:
 
 def live_plan(inputs: Json) -> Json:
     """Return what `loa plan --json` says of a case."""
-    case = Case.model_validate_json(json.dumps(inputs["case"]))
+    case = CheckedCase(Case.model_validate_json(json.dumps(inputs["case"])))
     plan = plan_of(case, inputs["time_budget_s"], Path(inputs["cache"]))
     return plan_json(plan) | {"warnings": case_warnings(case)}
 

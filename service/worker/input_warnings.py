@@ -9,15 +9,14 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.plausibility import case_warnings, scene_warnings, unique, within
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.worker.order import Product, WorkOrder
+from service.worker.preparations import CASES
 from service.worker.process import on_demand
 
 Json = dict[str, Any]
@@ -45,7 +44,7 @@ def _warnings(inputs: Json) -> list[Json]:
 
 def _warnings_of_case(case: Json) -> list[Json]:
     """Assess a normalized case."""
-    return case_warnings(Case.model_validate_json(json.dumps(case)))
+    return case_warnings(CASES.of_json(case))
 
 
 def _of_scene(scene: SceneInput) -> list[Json]:
@@ -55,11 +54,11 @@ def _of_scene(scene: SceneInput) -> list[Json]:
         within(warning, f"meshes[{index}]")
         for index, mesh in enumerate(scene.meshes)
         if mesh.case is not None
-        for warning in case_warnings(mesh.case)
+        for warning in case_warnings(CASES.of(mesh.case))
     ]
     if len(cases) < len(scene.with_database):
         return warnings
-    moving = check_scene(scene, {name: facts_of(gear_pair(case)) for name, case in cases.items()})
+    moving = check_scene(scene, {name: facts_of(CASES.of(case).pair) for name, case in cases.items()})
     return unique([*warnings, *scene_warnings(scene, moving)])
 
 

@@ -7,7 +7,7 @@ from typing import Any, NoReturn
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
-from lineofaction.gearbox.convert.case import check_case
+from lineofaction.gearbox.convert.case import CheckedCases
 from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
@@ -16,6 +16,10 @@ from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.schemas.execute import AnalyzeInputs, SimulateInputs
 from service.store import ResultStore
+
+CASES = CheckedCases()
+"""The last cases of this process, a service or a worker: a submission, its predicted cost and its warnings
+are of one check, and so are a result and the warnings in its file."""
 
 # Checks of a request beyond its schema, and the normalized inputs that are hashed and worked on.
 
@@ -38,7 +42,7 @@ def _facts(field: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
     _check_source(field, mesh, store)
     if mesh.case is not None:
         try:
-            return facts_of(check_case(mesh.case))
+            return facts_of(CASES.of(mesh.case).feasible.request.pair)
         except BadInput as error:
             raise error.within(f"{field}.case") from None
     return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path).facts
@@ -75,7 +79,7 @@ def prepare_analyze(inputs: BoundaryModel, store: ResultStore) -> Json:
     assert isinstance(inputs, AnalyzeInputs)
     normalized: Json = inputs.model_dump(mode="json")
     if store.find(name_database(normalized), "database") is None:
-        check_case(inputs.case)
+        _ = CASES.of(inputs.case).feasible
     return normalized
 
 

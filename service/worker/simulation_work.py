@@ -13,19 +13,12 @@ from typing import Any
 from dynamics.errors import ResultError
 from dynamics.scene import Scene
 from dynamics.simulation import simulate_to_file
-from fe_contact.analysis.analyze import ste_database
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.answers import draft_line
-from lineofaction.gearbox.convert.case import (
-    analysis_options,
-    boundary_errors,
-    case_json,
-    gear_pair,
-    table_axes,
-)
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, case_json
 from lineofaction.gearbox.convert.housings import HousedScene, reduced_in
-from lineofaction.gearbox.convert.plausibility import phrased_database, scene_warnings
+from lineofaction.gearbox.convert.plausibility import scene_warnings
 from lineofaction.gearbox.convert.result_files import staged
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput, JobFailed
@@ -33,10 +26,12 @@ from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.stages import TableFraction
+from lineofaction.gearbox.tabled_scene import checked_table
 from model_studies.progress import Report, by_cost
 from service.store import ResultStore, stored_results
 from service.worker.cluster import table_workers
 from service.worker.order import Product, Progress, WorkOrder
+from service.worker.preparations import CASES
 from service.worker.process import ANALYZE
 
 # The work of the process analyze, done in a child process of its own.
@@ -87,25 +82,18 @@ def warm_up() -> None:
 
 def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Compute the STE database of a case."""
-    case = Case.model_validate_json(json.dumps(order.inputs["case"]))
+    case = CASES.of_json(order.inputs["case"])
     file = order.workspace / "database.nc"
     database_of(case, order, progress).to_netcdf(file)
     return (Product(order.key, "database", file),)
 
 
-def database_of(case: Case, order: WorkOrder, progress: Progress) -> SteDatabase:
+def database_of(case: CheckedCase, order: WorkOrder, progress: Progress) -> SteDatabase:
     """Return the STE database of a case of an order; condensed gears are kept in the service's cache."""
-    drafted = DraftedProgress(progress, refines=case.accuracy.tolerance is not None)
+    drafted = DraftedProgress(progress, refines=case.case.accuracy.tolerance is not None)
     with boundary_errors(), table_workers(order) as workers:
-        database = ste_database(
-            gear_pair(case),
-            table_axes(case),
-            analysis_options(case),
-            Run(workers, order.data_directory / "compliance", drafted, drafted.plan),
-            case=case_json(case),
-            on_draft=drafted.draft,
-        )
-    return phrased_database(database, case)
+        run = Run(workers, order.data_directory / "compliance", drafted, drafted.plan)
+        return checked_table(case, run, drafted.draft)
 
 
 def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
@@ -189,7 +177,7 @@ def _table(
         report(whole or 0.0)
 
     try:
-        database = database_of(mesh.case, order, part)
+        database = database_of(CASES.of(mesh.case), order, part)
     except BadInput as error:
         raise error.within(f"meshes[{index}].case") from None
     database.to_netcdf(file)

@@ -10,14 +10,13 @@ from typing import Any
 from dynamics.results import RunResult
 from lineofaction.gearbox.convert.housings import HousedScene
 from lineofaction.gearbox.registry import STUDIES, Study
-from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.result_kinds import SUFFIX
 from lineofaction.gearbox.studies.computation import Means
 from service.store import ResultStore
 from service.worker.cluster import cluster_of, table_workers
 from service.worker.order import Product, Progress, WorkOrder
-from service.worker.preparations import check_run, check_scene_inputs
+from service.worker.preparations import CASES, check_run, check_scene_inputs
 from service.worker.simulation_work import housed_scene, ordered_scene, store_of
 
 Json = dict[str, Any]
@@ -36,12 +35,14 @@ def prepare(study: Study, inputs: Any, store: ResultStore) -> Json:
     name = "case" if getattr(inputs, "case", None) is not None else "scene"
     fields = study.inputs.model_fields
     varied = study.inputs.model_construct(**{field: getattr(inputs, field) for field in fields})
-    subject = study.run.narrowed(getattr(inputs, name), varied)
+    stated = CASES.of(inputs.case) if name == "case" else inputs.scene
+    subject = study.run.narrowed(stated, varied)
     if name == "scene":
         check_scene_inputs(subject, store)
     check_run(getattr(varied, "run", None), store)
     study.run.check(subject, varied)
-    return {name: subject.model_dump(mode="json"), **study.run.normalized(subject, varied)}
+    written = subject.case if name == "case" else subject
+    return {name: written.model_dump(mode="json"), **study.run.normalized(subject, varied)}
 
 
 def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
@@ -73,4 +74,4 @@ def _subject(study: Study, order: WorkOrder, progress: Progress) -> tuple[Any, t
     if "scene" in order.inputs:
         ordered = ordered_scene(order, progress)
         return ordered.tabled, ordered.products, ordered.warnings
-    return Case.model_validate_json(json.dumps(order.inputs["case"])), (), None
+    return CASES.of_json(order.inputs["case"]), (), None

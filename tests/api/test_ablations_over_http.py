@@ -14,6 +14,7 @@ from study_service import CASE, Served, figures_alone, prepared, scene_by_hash, 
 from fe_contact.effects import EFFECTS
 from fe_contact.ste import SteDatabase
 from lineofaction.client import JobState
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
@@ -48,7 +49,9 @@ def scene(tmp_path: Path) -> SceneInput:
 def test_the_ablation_of_a_case_is_that_of_python(served: Served, tmp_path: Path) -> None:
     seen: list[JobState] = []
     told = figures_alone(served.client.ablate.submit(CASE, only=ONLY).figures(seen.append))
-    here = RUN.compute(validated(Case, CASE), Inputs(only=tuple(ONLY)), Means(tmp_path, lambda *_: None))
+    here = RUN.compute(
+        CheckedCase(validated(Case, CASE)), Inputs(only=tuple(ONLY)), Means(tmp_path, lambda *_: None)
+    )
     assert [effect["name"] for effect in told["effects"]] == ["tooth_coupling"]
     assert told["left_out"] == {"misalignment": "the gears are aligned"}
     assert abs(told["effects"][0]["mean_change_um"][1]) > 1e-3

@@ -16,6 +16,7 @@ from fe_contact.analysis.studies.frontier import FIDELITIES
 from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase
 from lineofaction.client import JobState
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.result_files import figures_of
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.schemas import Case, validated
@@ -58,7 +59,9 @@ def worked(inputs: dict[str, Any], workspace: Path, data: Path) -> tuple[dict[st
 def test_the_ladder_of_a_case_is_that_of_python(served: Served, tmp_path: Path) -> None:
     seen: list[JobState] = []
     told = figures_alone(served.client.frontier.submit(CASE, rungs=CLOSED).figures(seen.append))
-    here = RUN.compute(validated(Case, CASE), Inputs(rungs=tuple(CLOSED)), Means(tmp_path, lambda *_: None))
+    here = RUN.compute(
+        CheckedCase(validated(Case, CASE)), Inputs(rungs=tuple(CLOSED)), Means(tmp_path, lambda *_: None)
+    )
     assert [rung["name"] for rung in told["rungs"]] == CLOSED
     assert told["rungs"][0]["mean_error"] > 1e-3 and told["reference"] == "thin_slices"
     assert all(rung["cpu_seconds"] > 0.0 for rung in told["rungs"])

@@ -14,6 +14,7 @@ from running_service import REFERENCES
 from study_service import empty_service, figures_alone
 
 from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.studies.computation import Means
@@ -66,7 +67,9 @@ def test_the_optimization_is_that_of_python(served: Served, data: Path) -> None:
     answer = client.optimize.submit(CASE, STUDY).figures(seen.append)
     told = figures_alone(answer)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
-    here = RUN.compute(validated(Case, CASE), validated(Inputs, STUDY), Means(data, lambda *_: None))
+    here = RUN.compute(
+        CheckedCase(validated(Case, CASE)), validated(Inputs, STUDY), Means(data, lambda *_: None)
+    )
     expected = json.loads(json.dumps(RUN.figures(here) | {"warnings": RUN.warnings(here)}))
     assert untimed(told) == untimed(expected)
     assert told["outcome"] == "improved" and told["gain_um"] > told["gain_error_um"]

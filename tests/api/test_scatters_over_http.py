@@ -13,6 +13,7 @@ from fastapi.testclient import TestClient
 from study_service import empty_service, figures_alone
 
 from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.studies.computation import Means
@@ -49,7 +50,7 @@ def test_the_pairs_are_those_of_python(served: tuple[LineOfActionClient, TestCli
     answer = client.scatter.submit(CASE, **SAMPLING).figures(seen.append)
     told = figures_alone(answer)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
-    here = RUN.compute(validated(Case, CASE), Inputs(**SAMPLING), Means(data, lambda *_: None))
+    here = RUN.compute(CheckedCase(validated(Case, CASE)), Inputs(**SAMPLING), Means(data, lambda *_: None))
     expected = json.loads(json.dumps(RUN.figures(here))) | {"warnings": []}
     assert {**told, "cost": None} == {**expected, "cost": None}
     assert len(told["peak_to_peak_um"]) == 40 and told["names"] == [

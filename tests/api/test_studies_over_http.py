@@ -15,7 +15,7 @@ from study_service import empty_service, figures_alone, without
 
 from fe_contact import LoadDistribution
 from lineofaction.client import JobState, LineOfActionClient
-from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.gear import FlankPoint
@@ -55,7 +55,8 @@ def test_flank_results_are_those_of_python(served: tuple[LineOfActionClient, Tes
     file = client.flank.submit(PLANE, torque_n_m=30.0).file(seen.append)
     found = LoadDistribution.from_netcdf(file)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
-    here = flanks_of(case_at(validated(Case, PLANE), FlankPoint(torque_n_m=30.0)), data / "compliance")
+    case = CheckedCase(case_at(validated(Case, PLANE), FlankPoint(torque_n_m=30.0)))
+    here = flanks_of(case, data / "compliance")
     assert np.array_equal(found.force, here.force)
     assert found.metadata.content_hash == here.metadata.content_hash
     assert [state.progress for state in seen] == sorted(state.progress for state in seen)
@@ -112,7 +113,8 @@ def test_the_root_stress_is_that_of_python(served: tuple[LineOfActionClient, Tes
     found = client.root_stress.submit(PLANE, torque_n_m=30.0).figures()
     point = FlankPoint(torque_n_m=30.0)
     means = Means(data, lambda *_: None)
-    here = ROOT_STRESS.figures(ROOT_STRESS.compute(case_at(validated(Case, PLANE), point), Inputs(), means))
+    case = CheckedCase(case_at(validated(Case, PLANE), point))
+    here = ROOT_STRESS.figures(ROOT_STRESS.compute(case, Inputs(), means))
     costs = ("receipt", "warnings")
     assert without(costs, figures_alone(found)) == without(costs, here)
     assert found["receipt"]["cpu_seconds"] > 0.0

@@ -16,6 +16,7 @@ from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Figures
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.commands import app
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.studies.ablate import Inputs
 from lineofaction.gearbox.studies.ablate.run import RUN
@@ -162,7 +163,7 @@ def ablated(case: Json, home: Path, monkeypatch: pytest.MonkeyPatch) -> Json:
     figures = Figures(1e-5 * one, 1e-6 * one, 1.0, np.ones((one.size, 5)), 1.0)
     monkeypatch.setattr(ablation, "_figures", lambda *_: figures)
     means = Means(home, lambda *_: None)
-    found = RUN.compute(Case.model_validate_json(json.dumps(case)), Inputs(), means)
+    found = RUN.compute(CheckedCase(Case.model_validate_json(json.dumps(case))), Inputs(), means)
     rows = {row[0]: row for row in _look(found).table(found).rows}
     content = RUN.figures(found)
     for entry in content["effects"]:

@@ -160,6 +160,23 @@ def check_asked(request: Request, *, whole_table: bool = True, spare: bool = Tru
             request, neglected=_neglected_effects(request.scene, ledger, request.options.tolerance)
         )
         composed, ledger = _composed(request) if request.neglected else (composed, ledger)
+    return _held(request, composed, ledger, whole_table=whole_table)
+
+
+def without_spared(checked: Checked) -> Checked:
+    """Go on from `check_request` with `spare` false: decide which effects the tolerance does not need."""
+    request = checked.request
+    neglected = _neglected_effects(request.scene, checked.ledger, request.options.tolerance)
+    if not neglected:
+        return checked
+    spared = replace(request, neglected=neglected)
+    return _held(spared, *_composed(spared))
+
+
+def _held(
+    request: Request, composed: ContactModel, ledger: tuple[LedgerEntry, ...], *, whole_table: bool = True
+) -> Checked:
+    """Refuse what the composed model of a request cannot hold."""
     if composed.across_face:
         _refuse_thin_discs(request.pair, request.options.level)
     _refuse_distances(request)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
+from collections import OrderedDict
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
-from typing import Any, TypeVar
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from bounds import inside, warn_of
 from fe_contact.allowed_error import AllowedError
@@ -32,9 +35,14 @@ from lineofaction.gearbox.schemas.case import AccuracyInput, Case, ErrorsInput, 
 from lineofaction.gearbox.schemas.gear import FlankPoint, ToothingInput
 from lineofaction.gearbox.units import MM, NM, UM
 
+if TYPE_CHECKING:
+    from fe_contact.analysis.request.request import Checked
+
 Json = dict[str, Any]
 
 Toothed = TypeVar("Toothed", bound=Toothing)
+Inputs = TypeVar("Inputs")
+Requested = TypeVar("Requested")
 
 
 def gear_pair(case: Case) -> ParallelAxes:
@@ -104,9 +112,9 @@ def analysis_options(case: Case) -> AnalysisOptions:
         return AnalysisOptions(**in_si(AnalysisOptions, accuracy) | own)
 
 
-def study_options(case: Case) -> AnalysisOptions:
+def study_options(options: AnalysisOptions) -> AnalysisOptions:
     """Return the options of a case for a study, which measures its errors and repeats what it must."""
-    return replace(analysis_options(case), receipt="full", on_violation="repeat")
+    return replace(options, receipt="full", on_violation="repeat")
 
 
 def case_at(case: Case, point: FlankPoint) -> Case:
@@ -164,20 +172,106 @@ THICK = 10.0
 tenth of what it allows."""
 
 
-def check_case(case: Case, *, whole_table: bool = True) -> ParallelAxes:
-    """Return the pair of a case that can be computed; `whole_table` as for `check_request`.
+@dataclass(frozen=True)
+class CheckedCase:
+    """A case on its way to the contact solver: converted once and checked once, each when first needed.
+
+    A process makes one of the validated model and hands it on. A worker is another process: it reads the
+    stored inputs once, and makes its own.
+    """
+
+    case: Case
+    _requests: dict[Any, tuple[Any, Any]] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    @cached_property
+    def pair(self) -> ParallelAxes:
+        """As `gear_pair`."""
+        return gear_pair(self.case)
+
+    @cached_property
+    def axes(self) -> TableAxes:
+        """As `table_axes`."""
+        return table_axes(self.case)
+
+    @cached_property
+    def options(self) -> AnalysisOptions:
+        """As `analysis_options`."""
+        return analysis_options(self.case)
+
+    @property
+    def converted(self) -> tuple[ParallelAxes, TableAxes, AnalysisOptions]:
+        """All three, as the library takes them."""
+        return self.pair, self.axes, self.options
+
+    @cached_property
+    def feasible(self) -> Checked:
+        """The request with all its effects: what is refused on submission. Raises `BadInput`."""
+        return self._checked(spare=False)
+
+    @cached_property
+    def checked(self) -> Checked:
+        """The request as it is solved, without the effects that its tolerance does not need."""
+        from fe_contact.analysis.request.request_check import without_spared  # noqa: PLC0415 (start-up time)
+
+        if "feasible" not in self.__dict__:
+            return self._checked()
+        with boundary_errors():
+            return without_spared(self.feasible)
+
+    @cached_property
+    def at_point(self) -> Checked:
+        """The request of the case's one load and one alignment: its table may be of any size."""
+        return self._checked(whole_table=False, spare=False)
+
+    def _checked(self, *, whole_table: bool = True, spare: bool = True) -> Checked:
+        from fe_contact.analysis.request.request_check import check_request  # noqa: PLC0415 (start-up time)
+
+        converted = self.converted
+        with boundary_errors():
+            return check_request(*converted, whole_table=whole_table, spare=spare)
+
+    def request(self, make: Callable[[CheckedCase, Inputs], Requested], inputs: Inputs) -> Requested:
+        """Return what a study requests of the library: made once, for its check and for its work."""
+        known = self._requests.get(make)
+        if known is None or known[0] != inputs:
+            known = self._requests[make] = inputs, make(self, inputs)
+        made: Requested = known[1]
+        return made
+
+
+class CheckedCases:
+    """The cases of a scene, or the last ones of a process; equal ones are converted and checked once."""
+
+    def __init__(self, most: int = 256) -> None:
+        self._most, self._kept = most, OrderedDict[str, CheckedCase]()
+
+    def of(self, case: Case) -> CheckedCase:
+        """Return a validated case."""
+        return self._of(case_json(case), lambda: case)
+
+    def of_json(self, inputs: Json) -> CheckedCase:
+        """Return a normalized case; one that is not kept is validated."""
+        return self._of(inputs, lambda: Case.model_validate_json(json.dumps(inputs)))
+
+    def _of(self, inputs: Json, case: Callable[[], Case]) -> CheckedCase:
+        name = json.dumps(inputs, sort_keys=True)
+        kept = self._kept.get(name)
+        if kept is None:
+            kept = self._kept[name] = CheckedCase(case())
+            while len(self._kept) > self._most:
+                self._kept.popitem(last=False)
+        return kept
+
+
+def check_case(case: Case) -> ParallelAxes:
+    """Return the pair of a case that can be computed.
 
     Raises
     ------
     BadInput
         No such pair, or a request that no plan can meet.
     """
-    from fe_contact.analysis.request.request_check import check_request  # noqa: PLC0415 (start-up time)
-
-    pair = gear_pair(case)
-    with boundary_errors():
-        check_request(pair, table_axes(case), analysis_options(case), whole_table=whole_table, spare=False)
-    return pair
+    return CheckedCase(case).feasible.request.pair
 
 
 def check_plain_case(case: Case) -> ParallelAxes:

@@ -21,7 +21,7 @@ from fe_contact.microgeometry.linearized_design import CurveDerivatives, FlankDe
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.answers import curve_json
-from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair, table_axes
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, gear_pair
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.problems import BadInput, Fault, NotAnalyzed, NotFound
 from lineofaction.gearbox.schemas import Case
@@ -30,7 +30,7 @@ from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.units import DEGREE, MM, UM, factor, in_um
 
 
-def plan_of(case: Case, time_budget_s: float | None, cache: Path | None) -> RunPlan:
+def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) -> RunPlan:
     """Plan a case; `time_budget_s` stands beside a tolerance of the case.
 
     Raises
@@ -38,10 +38,9 @@ def plan_of(case: Case, time_budget_s: float | None, cache: Path | None) -> RunP
     BadInput
         No such pair, or a request that no plan can meet.
     """
-    pair = gear_pair(case)
-    axes, options = table_axes(case), analysis_options(case)
+    converted = case.converted
     with boundary_errors():
-        return plan_run(pair, axes, options, time_budget=time_budget_s, cache=cache)
+        return plan_run(*converted, time_budget=time_budget_s, cache=cache)
 
 
 def plan_json(plan: RunPlan) -> Json:

@@ -13,7 +13,7 @@ from dynamics.plausibility import scene_findings
 from dynamics.scene import Scene
 from fe_contact.plausibility import pair_findings
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.case import gear_pair, table_axes
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.errors import case_field, named, scene_field
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.plan import left_out_warnings
@@ -23,7 +23,7 @@ from lineofaction.gearbox.units import factor, unit_name
 Json = dict[str, Any]
 
 
-def case_warnings(case: Case) -> list[Json]:
+def case_warnings(checked: CheckedCase) -> list[Json]:
     """Return what is implausible about a case, before anything is computed.
 
     Raises
@@ -31,10 +31,10 @@ def case_warnings(case: Case) -> list[Json]:
     BadInput
         No such pair.
     """
-    pair, axes = gear_pair(case), table_axes(case)
+    pair, axes = checked.pair, checked.axes
     alignments = axes.misalignment, axes.center_distance_change
     found = pair_findings(pair, axes.load(pair), *alignments, loads_as=axes.loads_as)
-    return phrased_for(case, [finding.to_json() for finding in found])
+    return phrased_for(checked.case, [finding.to_json() for finding in found])
 
 
 def scene_warnings(

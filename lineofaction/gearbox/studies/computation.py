@@ -15,8 +15,8 @@ from bounds.types import Json
 from dynamics.results import RunResult
 from dynamics.results.array_file import ArrayFile
 from fe_contact.workers import InProcess, Workers
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.scene import TabledScene
-from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.figures import Figures
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -105,8 +105,9 @@ class Means:
 class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
     """The work of a study.
 
-    What is studied is `Written` in its units, and for `compute` a `Subject`: a case as it is, a scene with
-    the tables of its meshes (`TabledScene`), or only with its housings (`HousedScene`).
+    What is studied is `Written` in its units, and for `compute` a `Subject`: a case as it is
+    (`CheckedCase`), a scene with the tables of its meshes (`TabledScene`), or only with its housings
+    (`HousedScene`).
 
     Attributes
     ----------
@@ -177,7 +178,7 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
         raise NotImplementedError
 
 
-class CaseStudy(Computation[Case, Case, Inputs, Answer, Result]):
+class CaseStudy(Computation[CheckedCase, CheckedCase, Inputs, Answer, Result]):
     """The work of a study of a case."""
 
 

@@ -22,13 +22,15 @@ def inputs(torque_n_m: float) -> AnalyzeInputs:
 
 
 def test_a_case_is_checked_until_its_table_is_stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(_case: object) -> None:
-        raise BadInput.of("case", None, "never checked")
+    class Refused:
+        @property
+        def feasible(self) -> None:
+            raise BadInput.of("case", None, "never checked")
 
     store, known = stored_results(tmp_path), inputs(100.0)
     normalized = prepare_analyze(known, store)
     assert normalized == known.model_dump(mode="json")
-    monkeypatch.setattr(preparations, "check_case", refuse)
+    monkeypatch.setattr(preparations.CASES, "of", lambda _case: Refused())
     with pytest.raises(BadInput):
         prepare_analyze(known, store)
     (tmp_path / "table.nc").write_bytes(b"a table")

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from lineofaction.gearbox.convert.case import check_case
+from lineofaction.gearbox.convert.case import CheckedCase, check_case
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated
@@ -215,7 +215,7 @@ def test_nonsense_is_refused_or_warned_of_by_name(
         return
     case = changed(changes)
     check_case(case)
-    found = {(warning["check"], warning["field"]): warning for warning in case_warnings(case)}
+    found = {(warning["check"], warning["field"]): warning for warning in case_warnings(CheckedCase(case))}
     warning = found[check, field]
     assert warning["message"].startswith(f"{field} = ")
     question = warning["message"].partition("Did you give ")[2]
@@ -228,18 +228,18 @@ def test_at_least_25_cases_are_nonsense() -> None:
 
 def test_a_case_in_meters_is_one_warning_for_all_its_lengths() -> None:
     """Loads and faces follow from the lengths: they would hide the cause."""
-    (warning,) = case_warnings(changed(METRES))
+    (warning,) = case_warnings(CheckedCase(changed(METRES)))
     assert warning["message"].endswith("Did you give meters, here and in all other lengths?")
     assert (warning["value"], warning["unit"]) == (0.004, "mm")
 
 
 def test_the_spur_pair_itself_is_plausible() -> None:
-    assert case_warnings(changed({})) == []
+    assert case_warnings(CheckedCase(changed({}))) == []
 
 
 @pytest.mark.parametrize("file", CASE_FILES, ids=lambda file: file.stem)
 def test_examples_are_plausible(file: Path) -> None:
-    assert case_warnings(read_model(Case, file)) == []
+    assert case_warnings(CheckedCase(read_model(Case, file))) == []
 
 
 def ordinary(
@@ -282,17 +282,22 @@ def ordinary(
 def test_ordinary_pairs_are_plausible(module: float, stress: float) -> None:
     """From module 0.3 to 25, spur and helical, nearly idle, rated and raced."""
     for helix, ratio in ((0.0, 10.0), (15.0, 20.0), (30.0, 35.0)):
-        assert case_warnings(ordinary(module, (23, 61), ratio=ratio, helix=helix, stress=stress)) == []
+        assert (
+            case_warnings(CheckedCase(ordinary(module, (23, 61), ratio=ratio, helix=helix, stress=stress)))
+            == []
+        )
 
 
 @pytest.mark.parametrize(("modulus", "stress"), [(1.2, 4.0), (3.0, 12.0), (10.0, 20.0), (110.0, 40.0)])
 def test_plastics_and_bronze_are_plausible(modulus: float, stress: float) -> None:
-    assert case_warnings(ordinary(1.0, (25, 40), ratio=8.0, stress=stress, modulus=modulus)) == []
+    assert (
+        case_warnings(CheckedCase(ordinary(1.0, (25, 40), ratio=8.0, stress=stress, modulus=modulus))) == []
+    )
 
 
 @pytest.mark.parametrize("stress", [0.2, 100.0])
 def test_internal_pairs_are_plausible(stress: float) -> None:
-    assert case_warnings(ordinary(2.0, (36, 96), ratio=10.0, stress=stress, internal=True)) == []
+    assert case_warnings(CheckedCase(ordinary(2.0, (36, 96), ratio=10.0, stress=stress, internal=True))) == []
 
 
 def test_fine_modifications_and_deviations_are_plausible() -> None:
@@ -308,4 +313,4 @@ def test_fine_modifications_and_deviations_are_plausible() -> None:
         tip_relief_length_mm=6.0,
         thickness_allowance_um=200.0,
     )
-    assert case_warnings(small) == case_warnings(large) == []
+    assert case_warnings(CheckedCase(small)) == case_warnings(CheckedCase(large)) == []

@@ -12,7 +12,7 @@ from spur_case import SPUR
 from typer.testing import CliRunner, Result
 
 from lineofaction.cli.commands import app
-from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.root_stress import Inputs
@@ -67,7 +67,7 @@ def test_table_csv_json_and_picture_say_the_same(case: Path, tmp_path: Path) -> 
         0.5 * found["pinion"]["tension"]["stress_mpa"], rel=0.02
     )
     assert picture.read_bytes().startswith(b"\x89PNG")
-    alone = case_at(read_model(Case, case), Inputs())
+    alone = CheckedCase(case_at(read_model(Case, case), Inputs()))
     means = Means(tmp_path / "cache", lambda *_: None)
     figure = _root_stress_figure(RUN.figures(RUN.compute(alone, Inputs(), means)))
     for gear, panel in zip(("pinion", "wheel"), figure.content, strict=True):

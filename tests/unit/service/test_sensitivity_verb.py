@@ -20,6 +20,7 @@ from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import TableAxes
 from lineofaction.cli.commands import app
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.studies.computation import Means
@@ -235,7 +236,7 @@ def test_the_examples_run_at_every_deviation(file: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(f"{STUDY}.study_sensitivity", study_nothing)
     case = read_model(Case, file)
     varied = Inputs(misalignment_um=(0.0, 60.0), center_distance_change_percent=(-0.2, 0.0, 0.2))
-    (found,) = RUN.compute(case, varied, MEANS)
+    (found,) = RUN.compute(CheckedCase(case), varied, MEANS)
     assert found.normal_force in (6000.0, 13300.0)
     assert studied[0].center_distance_changes[0] == pytest.approx(-0.002 * found.center_distance)
 
@@ -244,7 +245,7 @@ def test_the_highest_torque_is_the_load(small: Path, monkeypatch: pytest.MonkeyP
     """20 teeth of module 4 mm: base radius 37.588 mm."""
     monkeypatch.setattr(f"{STUDY}.study_sensitivity", lambda *_, **__: ())
     small.write_text(SMALL.replace("normal_force_n = [500, 1000]", "torque_n_m = [10, 100]"))
-    (found,) = RUN.compute(read_model(Case, small), Inputs(), MEANS)
+    (found,) = RUN.compute(CheckedCase(read_model(Case, small)), Inputs(), MEANS)
     assert found.normal_force == pytest.approx(100.0 / 37.5877e-3, rel=1e-5)
 
 

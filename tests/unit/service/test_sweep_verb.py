@@ -14,6 +14,7 @@ from spur_case import SPUR
 from typer.testing import CliRunner
 
 from lineofaction.cli.commands import app
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
@@ -41,8 +42,8 @@ def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def case(file: Path) -> Case:
-    return read_model(Case, InputFile(file))
+def case(file: Path) -> CheckedCase:
+    return CheckedCase(read_model(Case, InputFile(file)))
 
 
 def output(*arguments: object) -> str:
@@ -52,19 +53,19 @@ def output(*arguments: object) -> str:
 
 
 @pytest.mark.parametrize("name", SWEEPABLE)
-def test_every_spelling_means_one_thing(name: str, case: Case) -> None:
+def test_every_spelling_means_one_thing(name: str, case: CheckedCase) -> None:
     for spelling in SWEEPABLE[name].spellings:
         assert axis_of(case, f"{spelling}=1:3:1").name == name
 
 
-def test_a_name_without_a_gear_means_both_and_its_unit_may_be_left_out(case: Case) -> None:
+def test_a_name_without_a_gear_means_both_and_its_unit_may_be_left_out(case: CheckedCase) -> None:
     axis = axis_of(case, "tip_relief_um=0:40:20")
     assert axis.values == pytest.approx((0.0, 20e-6, 40e-6))
     assert axis.variables == ("pinion.tip_relief", "wheel.tip_relief")
     assert axis_of(case, "pair.pinion.tip_relief_um=0:40:20").variables == ("pinion.tip_relief",)
 
 
-def test_ranges_that_are_not_given_are_about_the_case(case: Case) -> None:
+def test_ranges_that_are_not_given_are_about_the_case(case: CheckedCase) -> None:
     usual = {name: axis_of(case, name).values for name in ("torque", "pinion.tip_relief", "misalignment")}
     assert usual["torque"][0] == pytest.approx(40.0) and usual["torque"][-1] == 200.0
     assert (usual["pinion.tip_relief"][0], usual["pinion.tip_relief"][-1]) == pytest.approx((0.0, 30e-6))
@@ -82,7 +83,7 @@ def test_ranges_that_are_not_given_are_about_the_case(case: Case) -> None:
         ("torque=300:100:50", "rises"),
     ],
 )
-def test_what_is_no_axis_is_refused(case: Case, text: str, said: str) -> None:
+def test_what_is_no_axis_is_refused(case: CheckedCase, text: str, said: str) -> None:
     with pytest.raises(BadInput, match=said):
         axis_of(case, text)
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.stages import TableFraction
 from service.worker.order import WorkOrder
@@ -45,7 +46,9 @@ def reports_of(case: Case, folder: Path) -> list[Report]:
     begun = cpu_seconds()
     order = WorkOrder("", {}, "", folder, folder)
     database_of(
-        case, order, lambda stage, _, whole=0.0, /: reports.append((cpu_seconds() - begun, stage, whole))
+        CheckedCase(case),
+        order,
+        lambda stage, _, whole=0.0, /: reports.append((cpu_seconds() - begun, stage, whole)),
     )
     return [*reports, (cpu_seconds() - begun, "end", 1.0)]
 

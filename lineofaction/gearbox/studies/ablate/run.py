@@ -12,15 +12,8 @@ from fe_contact.analysis.studies.ablation import Ablation, ablate
 from fe_contact.effects import EFFECTS
 from fe_contact.errors import chosen
 from fe_contact.options import Run
-from lineofaction.gearbox.convert.case import (
-    analysis_options,
-    boundary_errors,
-    check_case,
-    gear_pair,
-    table_axes,
-)
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
-from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.ablate import AblateFigures, Inputs
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
@@ -28,24 +21,28 @@ from lineofaction.gearbox.units import in_um
 
 
 class AblateStudy(
-    Computation[Case | SceneInput, Case | TabledScene, Inputs, AblateFigures, Ablation | SceneAblation]
+    Computation[
+        CheckedCase | SceneInput, CheckedCase | TabledScene, Inputs, AblateFigures, Ablation | SceneAblation
+    ]
 ):
     """All effects, each toggled by itself; of a case the loads, of a scene its meshes and bearings."""
 
     inputs, answer = Inputs, AblateFigures
     file = record_file(("ablation of a case", Ablation), ("ablation of a scene", SceneAblation))
 
-    def check(self, subject: Case | SceneInput, inputs: Inputs) -> None:
+    def check(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> None:
         """Refuse a case that cannot be, and an effect that there is not."""
-        if isinstance(subject, Case):
-            check_case(subject)
-        _requested(inputs.only, of_scene=not isinstance(subject, Case))
+        if isinstance(subject, CheckedCase):
+            _ = subject.feasible
+        _requested(inputs.only, of_scene=not isinstance(subject, CheckedCase))
 
-    def normalized(self, subject: Case | SceneInput, inputs: Inputs) -> Json:
+    def normalized(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> Json:
         """Return the effects in the order of their registry."""
-        return {"only": _requested(inputs.only, of_scene=not isinstance(subject, Case))}
+        return {"only": _requested(inputs.only, of_scene=not isinstance(subject, CheckedCase))}
 
-    def compute(self, subject: Case | TabledScene, inputs: Inputs, means: Means) -> Ablation | SceneAblation:
+    def compute(
+        self, subject: CheckedCase | TabledScene, inputs: Inputs, means: Means
+    ) -> Ablation | SceneAblation:
         """Toggle the effects of a case, at its nominal center distance, or of a scene.
 
         Raises
@@ -59,8 +56,7 @@ class AblateStudy(
             if isinstance(subject, TabledScene):
                 return ablate_scene(subject.scene, inputs.only, means.report)
             run = Run(cache=means.home / "compliance", progress=means.report)
-            axes, options = table_axes(subject), analysis_options(subject)
-            return ablate(gear_pair(subject), axes, options, run, only=inputs.only)
+            return ablate(*subject.converted, run, only=inputs.only)
 
     def figures(self, ablation: Ablation | SceneAblation) -> Json:
         """Return an ablation with lengths in um."""

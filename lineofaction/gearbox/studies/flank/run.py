@@ -10,23 +10,20 @@ from fe_contact.analysis.flanks.flank_file import FORMAT, flank_results
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import (
-    analysis_options,
+    CheckedCase,
     boundary_errors,
     case_at,
     case_json,
-    check_case,
-    gear_pair,
     operating_point,
 )
 from lineofaction.gearbox.convert.plausibility import phrased_for
-from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile
 from lineofaction.gearbox.studies.flank import FlankFigures, Inputs
 from lineofaction.gearbox.units import MM, UM, as_typed
 from model_studies import Progress, silent
 
 
-def flanks_of(case: Case, cache: Path | None, progress: Progress = silent) -> LoadDistribution:
+def flanks_of(checked: CheckedCase, cache: Path | None, progress: Progress = silent) -> LoadDistribution:
     """Return what happens on the flanks of a case of one load and one alignment, over a mesh cycle.
 
     Its warnings are in the fields and units of the case.
@@ -38,11 +35,10 @@ def flanks_of(case: Case, cache: Path | None, progress: Progress = silent) -> Lo
     JobFailed
         No mesh, or positions without a solution.
     """
-    run = Run(cache=cache, progress=progress)
+    run, case = Run(cache=cache, progress=progress), checked.case
     with boundary_errors():
-        results = flank_results(
-            gear_pair(case), operating_point(case), analysis_options(case), run, case=case_json(case)
-        )
+        point = operating_point(case)
+        results = flank_results(checked.pair, point, checked.options, run, case=case_json(case))
     warnings = phrased_for(case, results.metadata.warnings)
     return replace(results, metadata=replace(results.metadata, warnings=warnings))
 
@@ -55,19 +51,19 @@ class FlankStudy(CaseStudy[Inputs, FlankFigures, LoadDistribution]):
         "format", (FORMAT,), LoadDistribution.to_netcdf, LoadDistribution.from_netcdf, LoadDistribution
     )
 
-    def narrowed(self, case: Case, inputs: Inputs) -> Case:
+    def narrowed(self, case: CheckedCase, inputs: Inputs) -> CheckedCase:
         """Return the case at one load and one alignment."""
-        return case_at(case, inputs)
+        return CheckedCase(case_at(case.case, inputs))
 
-    def check(self, case: Case, _inputs: Inputs) -> None:
+    def check(self, case: CheckedCase, _inputs: Inputs) -> None:
         """Refuse a case that cannot be."""
-        check_case(case, whole_table=False)
+        _ = case.at_point
 
-    def normalized(self, _case: Case, _inputs: Inputs) -> Json:
+    def normalized(self, _case: CheckedCase, _inputs: Inputs) -> Json:
         """Return nothing: the case has all of it."""
         return {}
 
-    def compute(self, case: Case, _inputs: Inputs, means: Means) -> LoadDistribution:
+    def compute(self, case: CheckedCase, _inputs: Inputs, means: Means) -> LoadDistribution:
         """Return what happens on the flanks."""
         return flanks_of(case, means.home / "compliance", means.report)
 

@@ -10,16 +10,9 @@ from dynamics.accuracy import Frontier as SceneFrontier
 from dynamics.accuracy import frontier as frontier_of_scene
 from fe_contact.analysis.studies.frontier import FIDELITIES, Frontier, frontier
 from fe_contact.errors import chosen
-from lineofaction.gearbox.convert.case import (
-    boundary_errors,
-    check_case,
-    gear_pair,
-    study_options,
-    table_axes,
-)
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, study_options
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
 from lineofaction.gearbox.studies.frontier import FrontierFigures, Inputs
@@ -29,29 +22,33 @@ LEAST = 2
 
 
 class FrontierStudy(
-    Computation[Case | SceneInput, Case | TabledScene, Inputs, FrontierFigures, Frontier | SceneFrontier]
+    Computation[
+        CheckedCase | SceneInput, CheckedCase | TabledScene, Inputs, FrontierFigures, Frontier | SceneFrontier
+    ]
 ):
     """Error against time; the reference is the finest fidelity, the knee where time buys least."""
 
     inputs, answer = Inputs, FrontierFigures
     file = record_file(("accuracy study of a case", Frontier), ("accuracy study of a scene", SceneFrontier))
 
-    def check(self, subject: Case | SceneInput, inputs: Inputs) -> None:
+    def check(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> None:
         """Refuse a case that cannot be, a fidelity that there is not, and full contact of a scene."""
-        if isinstance(subject, Case):
-            check_case(subject)
+        if isinstance(subject, CheckedCase):
+            _ = subject.feasible
         else:
             for name in ("full_contact", "up_to"):
                 if (value := getattr(inputs, name)) != Inputs.model_fields[name].default:
                     raise BadInput.of(name, value, "left out for a scene", "Give it with a case.")
-        _requested(inputs, of_scene=not isinstance(subject, Case))
+        _requested(inputs, of_scene=not isinstance(subject, CheckedCase))
 
-    def normalized(self, subject: Case | SceneInput, inputs: Inputs) -> Json:
+    def normalized(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> Json:
         """Return the fidelities in their order, and full contact if it is requested."""
         beside = {} if inputs.full_contact is None else {"full_contact": inputs.full_contact}
-        return {"rungs": _requested(inputs, of_scene=not isinstance(subject, Case)), **beside}
+        return {"rungs": _requested(inputs, of_scene=not isinstance(subject, CheckedCase)), **beside}
 
-    def compute(self, subject: Case | TabledScene, inputs: Inputs, means: Means) -> Frontier | SceneFrontier:
+    def compute(
+        self, subject: CheckedCase | TabledScene, inputs: Inputs, means: Means
+    ) -> Frontier | SceneFrontier:
         """Study a case, over all pitches that differ and with the whole receipt, or a scene.
 
         Raises
@@ -61,15 +58,15 @@ class FrontierStudy(
         JobFailed
             Fewer than two fidelities came to their end.
         """
-        names = _requested(inputs, of_scene=not isinstance(subject, Case))
+        names = _requested(inputs, of_scene=not isinstance(subject, CheckedCase))
         with boundary_errors():
             if isinstance(subject, TabledScene):
                 return frontier_of_scene(subject.scene, fidelities=names, progress=means.report)
-            axes = replace(table_axes(subject), pitches=None)
+            axes = replace(subject.axes, pitches=None)
             return frontier(
-                gear_pair(subject),
+                subject.pair,
                 axes,
-                study_options(subject),
+                study_options(subject.options),
                 fidelities=names,
                 full_contact=inputs.full_contact,
                 progress=means.report,

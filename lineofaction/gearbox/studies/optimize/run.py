@@ -26,7 +26,7 @@ from fe_contact.microgeometry.search import (
 )
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
-from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.toml import toml_text
@@ -44,9 +44,9 @@ from lineofaction.gearbox.units import UM, factor, in_um
 MPA = 1e6
 
 
-def _write_case(result: Optimization, case: Case, target: Path) -> None:
+def _write_case(result: Optimization, checked: CheckedCase, target: Path) -> None:
     """Write the case with the best design as a case file: what was given of the case, and the best flanks."""
-    content = case.model_dump(mode="json", exclude_unset=True)
+    content = checked.case.model_dump(mode="json", exclude_unset=True)
     for gear, fields in _at_boundary(result.optimum.values).items():
         content["pair"][gear] |= {name: float(f"{value:.6g}") for name, value in fields.items()}
     target.write_text(f"# {result.reason}\n\n{toml_text(content)}", encoding="utf-8")
@@ -59,16 +59,16 @@ class OptimizeStudy(CaseStudy[Inputs, OptimizeFigures, Optimization]):
     interruptible = True
     writers = MappingProxyType({".toml": _write_case})
 
-    def check(self, case: Case, study: Inputs) -> None:
+    def check(self, case: CheckedCase, study: Inputs) -> None:
         """Raise `BadInput` for what `compute` would, without computing anything."""
         with boundary_errors():
-            _library_request(case, study).check()
+            _ = case.request(_library_request, study).checked
 
-    def normalized(self, case: Case, study: Inputs) -> Json:
+    def normalized(self, case: CheckedCase, study: Inputs) -> Json:
         """Return all inputs, with the usual variables if none are named."""
-        return super().normalized(case, _with_variables(case, study))
+        return super().normalized(case, _with_variables(case.case, study))
 
-    def compute(self, case: Case, study: Inputs, means: Means) -> Optimization:
+    def compute(self, case: CheckedCase, study: Inputs, means: Means) -> Optimization:
         """Optimize the modifications of a case; when it is cancelled, end with the best so far.
 
         Designs are remembered: another attempt, or another deadline, goes on from them.
@@ -83,7 +83,7 @@ class OptimizeStudy(CaseStudy[Inputs, OptimizeFigures, Optimization]):
         with boundary_errors():
             run = Run(means.workers, means.home / "compliance", means.report)
             return optimize(
-                _library_request(case, study),
+                case.request(_library_request, study),
                 run,
                 cancel=means.cancel or never,
                 memory=means.home / "searches",
@@ -132,8 +132,9 @@ def _with_variables(case: Case, study: Inputs) -> Inputs:
     return study.model_copy(update={"variables": variables.model_copy(update=gears)})
 
 
-def _library_request(case: Case, study: Inputs) -> OptimizationRequest:
-    pair, study = gear_pair(case), _with_variables(case, study)
+def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest:
+    pair, case = checked.pair, checked.case
+    study = _with_variables(case, study)
     torques = study.torque_n_m or case.load.torque_n_m
     if torques is None:
         torques = tuple(float(pair.torque(force)) for force in case.load.normal_force_n or ())
@@ -147,7 +148,7 @@ def _library_request(case: Case, study: Inputs) -> OptimizationRequest:
         objective,
         _limits(study),
         _search(study.search),
-        analysis_options(case),
+        checked.options,
     )
 
 

@@ -15,15 +15,12 @@ from fe_contact.analysis.flanks.root_stress import (
 from fe_contact.options import Run
 from fe_contact.plausibility.pair_checks import nominal_root_stresses
 from lineofaction.gearbox.convert.case import (
-    analysis_options,
+    CheckedCase,
     boundary_errors,
     case_at,
-    check_case,
-    gear_pair,
     operating_point,
 )
 from lineofaction.gearbox.convert.plausibility import phrased_for
-from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
 from lineofaction.gearbox.studies.root_stress import Inputs, RootStressFigures
 from model_studies import in_unit
@@ -77,19 +74,19 @@ class RootStressStudy(CaseStudy[Inputs, RootStressFigures, Roots]):
 
     inputs, answer, file = Inputs, RootStressFigures, record_file(("tooth-root stress", Roots))
 
-    def narrowed(self, case: Case, inputs: Inputs) -> Case:
+    def narrowed(self, case: CheckedCase, inputs: Inputs) -> CheckedCase:
         """Return the case at one load and one alignment."""
-        return case_at(case, inputs)
+        return CheckedCase(case_at(case.case, inputs))
 
-    def check(self, case: Case, _inputs: Inputs) -> None:
+    def check(self, case: CheckedCase, _inputs: Inputs) -> None:
         """Refuse a case that cannot be."""
-        check_case(case)
+        _ = case.feasible
 
-    def normalized(self, _case: Case, _inputs: Inputs) -> Json:
+    def normalized(self, _case: CheckedCase, _inputs: Inputs) -> Json:
         """Return nothing: the case has all of it."""
         return {}
 
-    def compute(self, case: Case, _inputs: Inputs, means: Means) -> Roots:
+    def compute(self, case: CheckedCase, _inputs: Inputs, means: Means) -> Roots:
         """Return the peaks over a mesh cycle, the passage of a tooth of each gear, receipt and warnings.
 
         Raises
@@ -99,9 +96,9 @@ class RootStressStudy(CaseStudy[Inputs, RootStressFigures, Roots]):
         JobFailed
             No mesh, or positions without a solution.
         """
-        run, pair = Run(cache=means.home / "compliance", progress=means.report), gear_pair(case)
+        run, pair = Run(cache=means.home / "compliance", progress=means.report), case.pair
         with boundary_errors():
-            stress = root_stress(pair, operating_point(case), analysis_options(case), run)
+            stress = root_stress(pair, operating_point(case.case), case.options, run)
         helical = bool(pair.pinion.helix_angle)
         nominal = (None, None) if helical else nominal_root_stresses(pair, stress.normal_force)
         return Roots(
@@ -112,7 +109,7 @@ class RootStressStudy(CaseStudy[Inputs, RootStressFigures, Roots]):
             stress.misalignment,
             stress.center_distance_change,
             stress.receipt,
-            phrased_for(case, stress.warnings),
+            phrased_for(case.case, stress.warnings),
         )
 
     def figures(self, roots: Roots) -> Json:

@@ -5,16 +5,15 @@ from __future__ import annotations
 from bounds.types import Json
 from fe_contact.microgeometry.tolerance_study import (
     Sampling,
+    ToleranceRequest,
     ToleranceStudy,
     iso1328_tolerances,
-    scatter,
-    toleranced,
+    sampled,
 )
 from fe_contact.options import Run
-from lineofaction.gearbox.convert.case import analysis_options, boundary_errors, gear_pair
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
 from lineofaction.gearbox.studies.scatter import Inputs, ScatterFigures
 from lineofaction.gearbox.units import UM, in_um
@@ -29,21 +28,19 @@ class ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
 
     inputs, answer, file = Inputs, ScatterFigures, record_file(("tolerance study", ToleranceStudy))
 
-    def check(self, case: Case, inputs: Inputs) -> None:
+    def check(self, case: CheckedCase, inputs: Inputs) -> None:
         """Raise `BadInput` for what `compute` would."""
         with boundary_errors():
-            drawn = _drawn(case, inputs)
-            torques = drawn.pop("torques")
-            toleranced(**drawn).check(torques)
+            _ = case.request(_drawn, inputs).checked
 
-    def normalized(self, case: Case, inputs: Inputs) -> Json:
+    def normalized(self, case: CheckedCase, inputs: Inputs) -> Json:
         """Return all inputs; refuse a sample too large for a job."""
         if inputs.samples > MOST_SAMPLES:
             advice = "For more use loa scatter."
             raise BadInput.of("samples", inputs.samples, f"at most {MOST_SAMPLES}", advice)
         return super().normalized(case, inputs)
 
-    def compute(self, case: Case, inputs: Inputs, means: Means) -> ToleranceStudy:
+    def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> ToleranceStudy:
         """Sample the pairs of a case; in a plane model helix slopes do not deviate.
 
         Raises
@@ -55,7 +52,7 @@ class ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         """
         with boundary_errors():
             run = Run(means.workers, means.home / "compliance", means.report)
-            return scatter(**_drawn(case, inputs), run=run)
+            return sampled(case.request(_drawn, inputs), run)
 
     def _derived(self, study: ToleranceStudy) -> Json:
         widths = study.asked["tolerances"]
@@ -70,8 +67,8 @@ class ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         }
 
 
-def _drawn(case: Case, inputs: Inputs) -> Json:
-    pair, load = gear_pair(case), case.load
+def _drawn(checked: CheckedCase, inputs: Inputs) -> ToleranceRequest:
+    pair, case, load = checked.pair, checked.case, checked.case.load
     tolerances = iso1328_tolerances(
         pair,
         inputs.tolerance_class,
@@ -80,14 +77,8 @@ def _drawn(case: Case, inputs: Inputs) -> Json:
         distribution=inputs.distribution,
     )
     torques = load.torque_n_m or [float(pair.torque(force)) for force in load.normal_force_n or ()]
-    return {
-        "pair": pair,
-        "torques": list(torques),
-        "tolerances": tolerances,
-        "sampling": Sampling(inputs.samples, inputs.seed),
-        "options": analysis_options(case),
-        "misalignment": case.errors.misalignment_um[0] * UM,
-    }
+    sampling, misalignment = Sampling(inputs.samples, inputs.seed), case.errors.misalignment_um[0] * UM
+    return ToleranceRequest(pair, list(torques), tolerances, sampling, checked.options, misalignment)
 
 
 RUN = ScatterStudy()

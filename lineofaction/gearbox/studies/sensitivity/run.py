@@ -16,7 +16,7 @@ from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity, st
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run, TableAxes
 from fe_contact.ste.netcdf import FileFormat, digest, json_attribute
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, study_options
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, study_options
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.stages import TableFraction
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile
@@ -143,13 +143,15 @@ class SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
     file = ResultFile("format", (FORMAT,), write_studies, read_studies, tuple[PairStudy, ...])
     resumed = True
 
-    def narrowed(self, case: Case, _inputs: Inputs) -> Case:
+    def narrowed(self, checked: CheckedCase, _inputs: Inputs) -> CheckedCase:
         """Return a case in three dimensions: no model of the plane knows a misalignment."""
-        if case.accuracy.model not in ("plane_strain", "plane_stress"):
-            return case
-        return case.model_copy(update={"accuracy": case.accuracy.model_copy(update={"model": "3d"})})
+        accuracy = checked.case.accuracy
+        if accuracy.model not in ("plane_strain", "plane_stress"):
+            return checked
+        across = accuracy.model_copy(update={"model": "3d"})
+        return CheckedCase(checked.case.model_copy(update={"accuracy": across}))
 
-    def check(self, case: Case, inputs: Inputs) -> None:
+    def check(self, case: CheckedCase, inputs: Inputs) -> None:
         """Refuse what a study cannot compute, without computing anything.
 
         Raises
@@ -157,12 +159,12 @@ class SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         BadInput
             No such pair, or a deviation at which it cannot run.
         """
-        pair, options = gear_pair(case), study_options(case)
+        pair, options = case.pair, study_options(case.options)
         model = "3d" if options.model == "auto" else options.model
         with boundary_errors():
-            check_request(pair, _axes(case, pair, inputs), replace(options, model=model))
+            check_request(pair, _axes(case.case, pair, inputs), replace(options, model=model))
 
-    def compute(self, case: Case, inputs: Inputs, means: Means) -> Studies:
+    def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> Studies:
         """Study a case at its highest load; its own misalignments and center distances are left aside.
 
         Raises
@@ -172,13 +174,13 @@ class SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         JobFailed
             No mesh, or points without a solution.
         """
-        pair = gear_pair(case)
+        pair, gears = case.pair, case.case.pair
         tables = _TableByTable(means.report)
         run = Run(means.workers, means.home / "compliance", tables.progress, tables.plan)
         with boundary_errors():
-            axes = _axes(case, pair, inputs)
-            curves = study_sensitivity(pair, axes, study_options(case), run)
-        name = f"{case.pair.pinion.teeth}/{case.pair.wheel.teeth}"
+            axes = _axes(case.case, pair, inputs)
+            curves = study_sensitivity(pair, axes, study_options(case.options), run)
+        name = f"{gears.pinion.teeth}/{gears.wheel.teeth}"
         return (PairStudy(name, float(axes.load(pair)[0]), pair.center_distance, curves),)
 
     def joined(self, studies: Mapping[str, Studies]) -> Studies:

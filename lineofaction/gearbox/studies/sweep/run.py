@@ -27,15 +27,13 @@ from fe_contact.microgeometry.variables import GEARS, figure
 from fe_contact.options import Run
 from fe_contact.types import BoolArray, FloatArray
 from lineofaction.gearbox.convert.case import (
-    analysis_options,
+    CheckedCase,
     boundary_errors,
     case_at,
-    gear_pair,
     operating_point,
 )
 from lineofaction.gearbox.input_file import number_list
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.declared import Figure, figures
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
@@ -118,7 +116,7 @@ SWEEPABLE = {
 """By the name of their `SweepAxis`."""
 
 
-def axis_of(case: Case, text: str) -> SweepAxis:
+def axis_of(case: CheckedCase, text: str) -> SweepAxis:
     """Return the axis that ``NAME`` or ``NAME=FIRST:LAST:STEP`` says.
 
     Raises
@@ -147,9 +145,9 @@ def _named(text: str, name: str) -> Swept:
     raise BadInput.of("over", text, bound, advice)
 
 
-def _usual(case: Case, swept: Swept) -> list[float]:
+def _usual(checked: CheckedCase, swept: Swept) -> list[float]:
     """Return the values of an axis of which only the name is given, in the unit of the boundary."""
-    pair = gear_pair(case)
+    pair, case = checked.pair, checked.case
     if swept.what is not None:
         return _flank_range(pair, swept, swept.what)
     if swept.name == TORQUE:
@@ -272,12 +270,12 @@ class SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
     inputs, answer, file = Inputs, SweepFigures, record_file(("sweep", SweepResult))
     resumed = True
 
-    def check(self, case: Case, inputs: Inputs) -> None:
+    def check(self, case: CheckedCase, inputs: Inputs) -> None:
         """Raise `BadInput` for what `compute` would, without computing anything."""
         with boundary_errors():
-            _request(case, inputs).check()
+            _ = case.request(_request, inputs).checked
 
-    def compute(self, case: Case, inputs: Inputs, means: Means) -> SweepResult:
+    def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> SweepResult:
         """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero.
 
         Raises
@@ -289,7 +287,7 @@ class SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
         """
         with boundary_errors():
             run = Run(means.workers, means.home / "compliance", means.report)
-            result = sweep(_request(case, inputs), run)
+            result = sweep(case.request(_request, inputs), run)
         known = {quantity.name for quantity in result.quantities}
         return SweepResult(result, tuple(name for name in inputs.show if name in known))
 
@@ -318,10 +316,10 @@ class SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
         return "" if result.sweep.usable else f"No point has figures: {result.sweep.reason[0]}."
 
 
-def _request(case: Case, inputs: Inputs) -> SweepRequest:
+def _request(case: CheckedCase, inputs: Inputs) -> SweepRequest:
     axes = tuple(axis_of(case, text) for text in inputs.over)
-    point = operating_point(case_at(case, FlankPoint()))
-    return SweepRequest(gear_pair(case), axes, point, analysis_options(case))
+    point = operating_point(case_at(case.case, FlankPoint()))
+    return SweepRequest(case.pair, axes, point, case.options)
 
 
 def _not_swept(swept: Sweep) -> Iterator[tuple[str, float]]:

@@ -1,0 +1,171 @@
+"""A process validates, converts and checks a case once on its way from the body to the contact solver."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from typer.testing import CliRunner
+
+import lineofaction as loa
+from fe_contact.analysis.request import request_check
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.convert import case as conversion
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas.toml import toml_text
+from service.app import create_app
+from service.settings import Settings
+from service.worker import preparations
+from service.worker.input_warnings import stamp_products
+from service.worker.order import WorkOrder
+from service.worker.predicted_cost import predicted_seconds
+from service.worker.simulation_work import analyze_case
+
+GEAR = {"teeth": 20, "face_width_mm": 2.0, "bore_diameter_mm": 10.0}
+CASE: dict[str, Any] = {
+    "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": GEAR, "wheel": GEAR},
+    "load": {"torque_n_m": [0.1]},
+    "accuracy": {"level": "draft", "positions": 8, "model": "plane_strain"},
+}
+STUDY = {
+    "variables": {"pinion": {"tip_relief_um": [0.0, 2.0], "tip_relief_length_mm": [0.2, 0.6]}},
+    "search": {"starts": 1, "evaluations": 4, "positions": 16},
+}
+
+
+class Calls:
+    """What a process did to its cases: validated from JSON, converted, checked."""
+
+    def __init__(self) -> None:
+        self.validated, self.converted = 0, 0
+        self.checked: list[str] = []
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """Numbers of the three."""
+        return self.validated, self.converted, len(self.checked)
+
+
+@pytest.fixture
+def calls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Calls]:
+    """Count from a process that knows no case yet."""
+    calls = Calls()
+    convert, check, validate = conversion.gear_pair, request_check.check_request, Case.model_validate_json
+
+    def converted(case: Case) -> Any:
+        calls.converted += 1
+        return convert(case)
+
+    def checked(*request: Any, **limits: Any) -> Any:
+        calls.checked.append(repr(request))
+        return check(*request, **limits)
+
+    def read(text: str) -> Case:
+        calls.validated += 1
+        return validate(text)
+
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(Case, "model_validate_json", read)
+    monkeypatch.setattr(preparations.CASES, "_kept", type(preparations.CASES)()._kept)
+    _replace(monkeypatch, "gear_pair", convert, converted)
+    _replace(monkeypatch, "check_request", check, checked)
+    yield calls
+
+
+def _replace(
+    monkeypatch: pytest.MonkeyPatch, name: str, function: Callable[..., Any], other: Callable[..., Any]
+) -> None:
+    """Replace a function wherever it was imported."""
+    for module in list(sys.modules.values()):
+        if getattr(module, "__dict__", {}).get(name) is function:
+            monkeypatch.setattr(module, name, other)
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    file = tmp_path / "case.toml"
+    file.write_text(toml_text(CASE), encoding="utf-8")
+    return file
+
+
+def invoked(*arguments: object) -> None:
+    done = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    assert done.exit_code == 0, done.output
+
+
+def _planned(_order: object) -> Future[bytes]:
+    """Answer as the live worker, a process of its own."""
+    answer: Future[bytes] = Future()
+    answer.set_result(json.dumps({"prediction": {"stages": {"contact": 1.0}}}).encode())
+    return answer
+
+
+def test_a_submission_with_a_cost_limit_checks_once_in_the_server(
+    calls: Calls, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its warnings and its predicted cost are of that check; the plan is made in a process of its own."""
+    app = create_app(Settings(data_directory=tmp_path))
+    body = {"inputs": {"case": CASE}, "max_cost_s": 1e4}
+    with ExitStack() as end:
+        end.callback(app.state.context.close)
+        end.callback(app.state.context.stop_waiting)
+        monkeypatch.setattr(app.state.context.live, "ask", _planned)
+        client = TestClient(app)
+        status = client.post("/v1/processes/analyze/execution", json=body)
+        assert status.status_code == 201, status.text
+        assert client.get(f"/v1/jobs/{status.json()['jobID']}").json()["warnings"] == []
+    assert calls.counts == (0, 1, 1)
+    assert predicted_seconds({"case": validated(Case, CASE).model_dump(mode="json")})
+    assert calls.counts == (0, 1, 1)
+
+
+def test_a_worker_reads_and_checks_its_case_once(calls: Calls, tmp_path: Path) -> None:
+    inputs = {"case": validated(Case, CASE).model_dump(mode="json")}
+    order = WorkOrder("", inputs, "key", tmp_path, tmp_path)
+    stamp_products(order, analyze_case(order, lambda *_: None))
+    assert calls.counts == (1, 1, 1)
+
+
+def test_the_command_line_checks_once(calls: Calls, file: Path, tmp_path: Path) -> None:
+    invoked("analyze", file, "-o", tmp_path / "ste.nc")
+    assert calls.counts == (0, 1, 1)
+
+
+def test_python_checks_once(calls: Calls) -> None:
+    loa.analyze(validated(Case, CASE))
+    assert calls.counts == (0, 1, 1)
+
+
+def test_a_plan_checks_once(calls: Calls, file: Path) -> None:
+    invoked("plan", file)
+    assert calls.counts == (0, 1, 1)
+
+
+def test_a_tolerance_goes_on_from_the_check_of_the_submission(calls: Calls) -> None:
+    """What it does not need is decided as where the request is checked at once."""
+    table = CASE | {"accuracy": {"tolerance": 0.3}}
+    submitted, direct = (conversion.CheckedCase(validated(Case, table)) for _ in range(2))
+    assert submitted.feasible.request.neglected == {}
+    assert submitted.checked.request.neglected == direct.checked.request.neglected
+    assert submitted.checked.ledger == direct.checked.ledger
+    assert calls.counts == (0, 2, 2)
+
+
+def test_an_optimization_checks_each_of_its_requests_once(calls: Calls, file: Path, tmp_path: Path) -> None:
+    """That of its torques, and that of its maps, which have further torques."""
+    (tmp_path / "study.json").write_text(json.dumps(STUDY))
+    invoked("optimize", file, tmp_path / "study.json", "-o", tmp_path / "best")
+    assert calls.converted == 1
+    assert len(calls.checked) == len(set(calls.checked)) == 2
+
+
+def test_a_sweep_checks_once(calls: Calls, file: Path, tmp_path: Path) -> None:
+    invoked("sweep", file, "--over", "torque=0.1:0.2:0.1", "-o", tmp_path / "map.nc")
+    assert calls.counts == (0, 1, 1)
