@@ -3,9 +3,9 @@
     python scripts/manual.py        runs tutorials and how-to guides and renews docs/images/manual
 
 Blocks of a page are run in order. `toml` whose first line is ``# NAME.toml`` is saved under that name, `sh`
-has one `loa` command a line, `python` is executed. Every line of `text` is the beginning of a line that the
-command before it printed: same words, numbers within 2 %. Pages share a folder, so that a guide can go on
-with the files of a tutorial.
+has one `loa` command a line (a backslash continues it), `python` is executed. Every line of `text` is the
+beginning of a line that the command before it printed: same words, numbers within 2 %. Pages share a folder,
+so that a guide can go on with the files of a tutorial.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def run_page(page: Path) -> None:
             assert name, f"{page.name}: a file without its name: {text.splitlines()[0]}"
             Path(name[1]).write_text(text, encoding="utf-8")
         elif language == "sh":
-            output = "".join(_command(line) for line in text.splitlines())
+            output = "".join(_command(line) for line in text.replace("\\\n", "").splitlines())
         elif language == "python":
             output = _python(text, page)
         else:
