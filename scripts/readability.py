@@ -16,7 +16,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "lab" / "readability.md"
-FOLDERS = ("tutorials", "how-to", "effects", "theory", "decisions", "lab")
+FOLDERS = ("tutorials", "how-to", "theory", "decisions", "lab")
 _NOT_TEXT = (
     r"```.*?```",
     r"<!--.*?-->",
