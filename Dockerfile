@@ -2,7 +2,7 @@
 # The service in a container; compose.yaml has it with PostgreSQL and workers of their own. Without access keys it listens on
 # loopback only, so one container alone runs on the host's network:
 #   docker build -t lineofaction . && docker run --rm --network host -v lineofaction:/data lineofaction
-# BASE may name a digest (docs/docker.md); VERSION and REVISION are what the labels say.
+# BASE may name a digest (docs/operations.md); VERSION and REVISION are what the labels say.
 ARG BASE=python:3.13-slim-trixie
 ARG VERSION=unknown
 ARG REVISION=unknown
@@ -10,7 +10,7 @@ ARG REVISION=unknown
 # ---- build: a virtual environment from the lock file -------------------------------------------------------------
 FROM ${BASE} AS build
 ENV PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_CACHE_DIR=1 PYTHONDONTWRITEBYTECODE=1
-RUN test "$(uname -m)" = x86_64 || { echo "gmsh and pymetis have no wheels for Linux on $(uname -m): docs/docker.md" >&2; exit 1; }
+RUN test "$(uname -m)" = x86_64 || { echo "gmsh and pymetis have no wheels for Linux on $(uname -m): docs/operations.md" >&2; exit 1; }
 RUN python -m venv /opt/lineofaction
 ENV PATH=/opt/lineofaction/bin:$PATH
 WORKDIR /source

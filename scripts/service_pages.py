@@ -1,0 +1,90 @@
+"""Write the tables of verbs, routes and processes in docs/cli.md and docs/service.md from the program.
+
+Usage: service_pages.py PAGE...
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from typer.main import get_command
+
+from lineofaction.cli.commands import app
+from lineofaction.gearbox.registry import STUDIES
+from service.app import create_app
+from service.settings import Settings
+
+TABLE = re.compile(r"(<!-- table of (\w+) -->\n\n)(.*?)(\n\n<!-- end of table -->)", re.DOTALL)
+EXECUTION = re.compile(r"/v1/processes/([a-z-]+)/execution")
+
+
+def page(text: str, api: dict[str, Any]) -> str:
+    """Return the page with its tables anew."""
+    tables = {"verbs": verbs(text), "routes": routes(api), "processes": processes(api)}
+    return TABLE.sub(lambda found: f"{found[1]}{tables[found[2]]}{found[4]}", text)
+
+
+def table(titles: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
+    """Return a table."""
+    return "\n".join(f"| {' | '.join(line)} |" for line in (titles, ("---",) * len(titles), *rows))
+
+
+def verbs(text: str) -> str:
+    """Return what each verb does; those with a section of the page link to it."""
+    told = dict(commands(get_command(app), "loa"))
+    for name, study in STUDIES.items():
+        told.setdefault(f"loa {name}", study.description)
+    linked = {verb: f"[`{verb}`](#{verb.replace(' ', '-')})" for verb in re.findall(r"\n## `(.+)`\n", text)}
+    return table(("verb", "what it does"), ((linked.get(verb, f"`{verb}`"), told[verb]) for verb in told))
+
+
+def commands(group: Any, name: str) -> Iterator[tuple[str, str]]:
+    """Yield the verbs of a group and the first line of their help."""
+    for verb, command in group.commands.items():
+        if hasattr(command, "commands"):
+            yield from commands(command, f"{name} {verb}")
+        else:
+            yield f"{name} {verb}", command.help.partition("\n")[0]
+
+
+def routes(api: dict[str, Any]) -> str:
+    """Return what each route does, those of executions once."""
+    rows = {"`POST /v1/processes/{id}/execution`": "Submit a job; 201 with its status and `Location`."}
+    for path, operations in api["paths"].items():
+        short = re.sub(r"\{\w+_id\}", "{id}", path).replace("{key}", "{hash}")
+        for method, operation in () if EXECUTION.fullmatch(path) else operations.items():
+            first = operation["description"].partition("\n\n")[0].replace("\n", " ")
+            rows[f"`{method.upper()} {short}`"] = first
+    return table(("route", "what it does"), rows.items())
+
+
+def processes(api: dict[str, Any]) -> str:
+    """Return the inputs of each process, with the defaults that are one value."""
+    rows, schemas = [], api["components"]["schemas"]
+    for path, operations in api["paths"].items():
+        if found := EXECUTION.fullmatch(path):
+            body = operations["post"]["requestBody"]["content"]["application/json"]["schema"]
+            execute = schemas[body["$ref"].rpartition("/")[2]]["properties"]["inputs"]
+            fields = schemas[execute["$ref"].rpartition("/")[2]]["properties"]
+            texts = {name: f"`{name}`{default(told)}" for name, told in fields.items()}
+            subject = " or ".join(texts.pop(name) for name in ("case", "scene") if name in texts)
+            rows.append((f"`{found[1]}`", subject, ", ".join(texts.values())))
+    return table(("process", "of a", "further inputs, with their defaults"), rows)
+
+
+def default(told: dict[str, Any]) -> str:
+    """Return the default of a field if it is one value."""
+    value = told.get("default")
+    return f" ({str(value).lower()})" if isinstance(value, bool | int | float | str) else ""
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as folder:
+        described = create_app(Settings(data_directory=Path(folder))).openapi()
+    for file in map(Path, sys.argv[1:]):
+        file.write_text(page(file.read_text("utf-8"), described), "utf-8")
