@@ -15,18 +15,18 @@ structure = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(structure)
 
 BUDGETS = {
-    ("fe_contact",): (40_150, 915),
-    ("dynamics",): (42_350, 1005),
-    ("lineofaction.gearbox",): (24_550, 700),
-    ("lineofaction.report",): (11_950, 285),
-    ("service",): (16_400, 415),
-    ("lineofaction.client",): (2_850, 65),
-    ("lineofaction.cli",): (5_050, 110),
-    ("lineofaction.hardcases",): (4_150, 55),
-    ("bounds", "host", "model_studies"): (3_500, 135),
+    ("fe_contact",): (38_150, 655),
+    ("dynamics",): (41_350, 860),
+    ("lineofaction.gearbox",): (22_550, 575),
+    ("lineofaction.report",): (10_850, 206),
+    ("service",): (15_550, 340),
+    ("lineofaction.client",): (2_850, 58),
+    ("lineofaction.cli",): (4_900, 68),
+    ("lineofaction.hardcases",): (4_100, 35),
+    ("bounds", "host", "model_studies"): (3_500, 130),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 962
+MOST_FILES = 765
 LONGEST = 500
 LONGER = {
     "lineofaction/hardcases/dynamics/stepping.py": 510,
