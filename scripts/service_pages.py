@@ -54,12 +54,11 @@ def commands(group: Any, name: str) -> Iterator[tuple[str, str]]:
 
 def routes(api: dict[str, Any]) -> str:
     """Return what each route does, those of executions once."""
-    rows = {"`POST /v1/processes/{id}/execution`": "Submit a job; 201 with its status and `Location`."}
+    rows = {"`POST /v1/processes/{id}/execution`": "Submit a job: 201 with its status and `Location`"}
     for path, operations in api["paths"].items():
         short = re.sub(r"\{\w+_id\}", "{id}", path).replace("{key}", "{hash}")
         for method, operation in () if EXECUTION.fullmatch(path) else operations.items():
-            first = operation["description"].partition("\n\n")[0].replace("\n", " ")
-            rows[f"`{method.upper()} {short}`"] = first
+            rows[f"`{method.upper()} {short}`"] = operation["summary"]
     return table(("route", "what it does"), rows.items())
 
 
