@@ -225,7 +225,7 @@ def _over_time(
 def _figures_over_time(sound: SoundOverTime | None) -> Json | None:
     if sound is None:
         return None
-    return figures_of(SoundOverTimeFigures, sound, third_octave=sound_power_level(sound.power.T))
+    return figures_of(SoundOverTimeFigures, sound, third_octave_db=sound_power_level(sound.power.T))
 
 
 def _radiation(

@@ -118,12 +118,12 @@ def test_a_misaligned_pair_is_computed_over_the_face(pair: GearPair, compliances
 )
 def test_what_makes_no_map_is_refused(pair: GearPair, axes: tuple[SweepAxis, ...], name: str) -> None:
     with pytest.raises(InputError, match=name):
-        request(pair, axes).check()
+        _ = request(pair, axes).checked
 
 
 def test_a_relief_without_a_length_is_refused(pair: GearPair) -> None:
     with pytest.raises(InputError, match="tip_relief_length"):
-        request(pair).check()
+        _ = request(pair).checked
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from spur_case import spur_case
 from dynamics.simulation import simulate
 from dynamics.study import Design, Levels, Response, StudyTask, responses_of, study
 from lineofaction.cli.analyze import analyzed
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -48,7 +49,7 @@ def scenes(
 ) -> VariedScene:
     case = written.meshes[0].case
     assert case is not None
-    database = analyzed(case, lambda _stage, _fraction: None)
+    database = analyzed(CheckedCase(case), lambda _stage, _fraction: None)
     places = {PATH: places_of(written, "path", PATH)}
     home = str(tmp_path_factory.mktemp("caches"))
     return VariedScene(written.model_dump_json(), {"mesh": database}, places, home)
