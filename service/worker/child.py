@@ -159,7 +159,7 @@ def _out_of_memory(limit_mb: int) -> str:
 
 def _stamp(order: WorkOrder, products: tuple[Product, ...]) -> None:
     """Write into the files what is implausible about what they were made from."""
-    from service.worker.input_warnings import stamp_products  # noqa: PLC0415 (start-up time)
+    from service.worker.product_warnings import stamp_products  # noqa: PLC0415 (start-up time)
 
     stamp_products(order, products)
 

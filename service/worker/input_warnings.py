@@ -1,9 +1,8 @@
-"""Warnings about implausible inputs of a job, before it is done and in the files that it makes."""
+"""Warnings about implausible inputs of a job."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -15,9 +14,7 @@ from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
-from service.worker.order import Product, WorkOrder
 from service.worker.preparations import CASES
-from service.worker.process import on_demand
 
 Json = dict[str, Any]
 
@@ -38,11 +35,11 @@ def _warnings(inputs: Json) -> list[Json]:
     if inputs.get("scene") is not None:
         return _of_scene(SceneInput.model_validate_json(json.dumps(inputs["scene"])))
     if inputs.get("case") is not None:
-        return _warnings_of_case(inputs["case"])
+        return warnings_of_case(inputs["case"])
     return []
 
 
-def _warnings_of_case(case: Json) -> list[Json]:
+def warnings_of_case(case: Json) -> list[Json]:
     """Assess a normalized case."""
     return case_warnings(CASES.of_json(case))
 
@@ -60,17 +57,3 @@ def _of_scene(scene: SceneInput) -> list[Json]:
         return warnings
     moving = check_scene(scene, {name: facts_of(CASES.of(case).pair) for name, case in cases.items()})
     return unique([*warnings, *scene_warnings(scene, moving)])
-
-
-stamp = on_demand("lineofaction.gearbox.convert.result_files:stamp")
-
-
-def stamp_products(order: WorkOrder, products: Sequence[Product]) -> None:
-    """Write into each file what is implausible about what it was made from; a database says so itself."""
-    others = any(product.kind != "database" for product in products)
-    case = list(_warnings_of_case(order.inputs["case"])) if others and "case" in order.inputs else None
-    for product in products:
-        of_case = None if product.kind == "database" else case
-        if product.warnings is not None or of_case is not None:
-            warnings = (*(of_case or ()), *(product.warnings or ()))
-            stamp(product.file, list({warning["message"]: warning for warning in warnings}.values()))

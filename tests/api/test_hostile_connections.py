@@ -11,7 +11,7 @@ import uvicorn
 from running_service import PATIENCE_S, until
 from service_fakes import REGISTRY
 
-from lineofaction.cli import serve as bounded_http
+from lineofaction.cli import connections
 from lineofaction.cli.connections import BoundedHttp
 from service.access.capacity import Capacity
 from service.app import create_app
@@ -60,7 +60,7 @@ def answered(port: int, *pieces: bytes) -> bytes:
 
 
 def test_a_head_that_does_not_end_is_not_waited_for(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bounded_http, "HEAD_WITHIN_S", 0.5)
+    monkeypatch.setattr(connections, "HEAD_WITHIN_S", 0.5)
     for begun in (b"", b"GET /health HTT", WHOLE[:-2]):
         assert answered(port, begun).startswith(b"HTTP/1.1 408 ")
 
@@ -71,7 +71,7 @@ def test_nor_is_that_of_a_later_request(port: int, monkeypatch: pytest.MonkeyPat
         found = b""
         while not found.endswith(b'{"status":"ok"}'):
             found += connection.recv(65536)
-        monkeypatch.setattr(bounded_http, "HEAD_WITHIN_S", 0.5)
+        monkeypatch.setattr(connections, "HEAD_WITHIN_S", 0.5)
         connection.sendall(WHOLE[:-2])
         assert connection.recv(65536).startswith(b"HTTP/1.1 408 ")
         assert connection.recv(65536) == b""

@@ -23,9 +23,9 @@ from lineofaction.gearbox.schemas.toml import toml_text
 from service.app import create_app
 from service.settings import Settings
 from service.worker import preparations
-from service.worker.input_warnings import stamp_products
 from service.worker.order import WorkOrder
 from service.worker.predicted_cost import predicted_seconds
+from service.worker.product_warnings import stamp_products
 from service.worker.simulation_work import analyze_case
 
 GEAR = {"teeth": 20, "face_width_mm": 2.0, "bore_diameter_mm": 10.0}
