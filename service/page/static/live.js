@@ -44,7 +44,7 @@ export class Live {
     if (known) {
       this.controls();
       this.plots();
-    } else byId("live-plots").replaceChildren();
+    } else for (const id of ["sliders", "live-plots"]) byId(id).replaceChildren();
   }
 
   /** The sliders and the reference stand where the address left them: draw that. */
