@@ -155,7 +155,7 @@ def test_a_job_of_the_list_takes_the_page_with_its_design(
     load = {"torque_n_m": [0.9, 1.1]}
     entered(address, "flank", case=CASE | {"load": load})
     page.reload()
-    expect(page.locator("#live-plots .plot").first).to_have_attribute("data-drawn", "yes")  # sliders are there
+    expect(page.locator("#live-plots .plot").first).to_have_attribute("data-drawn", "yes")  # with its sliders
     page.get_by_role("button", name=re.compile("^Open flank")).first.press("Enter")
     expect(page.locator("#jobs-result .plot").first).to_have_attribute("data-drawn", "yes")
     expect(page.locator("#f-load-torque_n_m")).to_have_value("0.9, 1.1")
