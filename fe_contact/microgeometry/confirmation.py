@@ -15,7 +15,7 @@ from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import check_asked, check_request
+from fe_contact.analysis.request.request_check import check_request, checked_request
 from fe_contact.errors import InputError, finite, integer, within
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.design_problem import DesignProblem
@@ -185,7 +185,7 @@ class DesignSpace:
             modified(self.pair, acting),
             TableAxes(np.union1d(loads.torque, further_torques), misalignments=skews),
             replace(self.options, positions=None, receipt="full", on_violation="report"),
-            spare=False,
+            neglect=False,
         )
         _refuse_off(checked, self.varied, self.scatter)
         return checked
@@ -238,7 +238,7 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Decided:
     request = decided.checked.request
     options = replace(request.options, effects=decided.checked.decided)
     fixed = replace(request, options=options, neglected={}, turned_on={})
-    return replace(decided, checked=check_asked(fixed, spare=False))
+    return replace(decided, checked=checked_request(fixed, neglect=False))
 
 
 def _refuse_off(checked: Checked, varied: Mapping[str, float], scatter: Scatter) -> None:
@@ -387,7 +387,7 @@ def full_table(
         misalignment=skews,
         options=replace(request.options.at_level(decided.mesh.level), effects=dict(search.choices)),
     )
-    checked = check_asked(full, spare=False)
+    checked = checked_request(full, neglect=False)
     table = compute_database(checked, full.to_json(), Run(cache=cache), replace(decided, checked=checked))
     table.require_complete()
     return table

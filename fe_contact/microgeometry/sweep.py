@@ -145,7 +145,7 @@ class SweepRequest:
             center_distance_changes=over.get(CENTER_DISTANCE, (self.point.center_distance_change,)),
         )
         options = replace(self.options, positions=None, receipt="full", on_violation="report")
-        return check_request(self.flanks(acting), axes, options, whole_table=False, spare=False)
+        return check_request(self.flanks(acting), axes, options, whole_table=False, neglect=False)
 
     def _check_axes(self) -> None:
         names = [axis.name for axis in self.axes]

@@ -13,7 +13,7 @@ from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.pairs.contact_lines import assemble_remotely
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedRun
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution
@@ -341,4 +341,6 @@ def with_effects(checked: Checked, needed: Mapping[str, str], *, whole_table: bo
     reasons = {name: f"on after a run without it: {reason}" for name, reason in needed.items()}
     neglected = {name: reason for name, reason in request.neglected.items() if name not in needed}
     turned_on = {**request.turned_on, **reasons}
-    return check_asked(replace(request, neglected=neglected, turned_on=turned_on), whole_table=whole_table)
+    return checked_request(
+        replace(request, neglected=neglected, turned_on=turned_on), whole_table=whole_table
+    )

@@ -9,7 +9,7 @@ from pathlib import Path
 from bounds import engineering
 from fe_contact.analysis.checks.assumptions import Assumption
 from fe_contact.analysis.request.request import Checked, Influences, estimated_influences
-from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.effects import LedgerEntry
 from fe_contact.effects.composer import flipped
 from fe_contact.effects.influence.estimate import Influence
@@ -125,4 +125,6 @@ def toggled(checked: Checked, name: str, choice: str) -> Checked:
     plane_stress = request.options.model == "plane_stress" and choices[face] == "off"
     options = replace(request.options, model="plane_stress" if plane_stress else "auto", effects=choices)
     neglected = {other: reason for other, reason in request.neglected.items() if other != name}
-    return check_asked(replace(request, options=options, neglected=neglected, turned_on={}), spare=False)
+    return checked_request(
+        replace(request, options=options, neglected=neglected, turned_on={}), neglect=False
+    )

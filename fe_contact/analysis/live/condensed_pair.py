@@ -30,7 +30,7 @@ from fe_contact.analysis.estimates.position_errors import errors_by_halves
 from fe_contact.analysis.live.condensed_contacts import CondensedContacts
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact, operating_points
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint, SolvedRun
 from fe_contact.analysis.tables import PositionNodes, assembled_table, unmeasured_nodes
 from fe_contact.errors import InputError
@@ -334,7 +334,7 @@ class CondensedPair:
         # always on: what a tip edge does is then in every curve, and one compliance serves them all
         corners = "on" if choice == "auto" else choice
         effects = {**request.options.effects, name: corners}
-        return check_asked(
+        return checked_request(
             replace(
                 request,
                 pair=pair,
@@ -344,7 +344,7 @@ class CondensedPair:
                 options=replace(request.options, effects=effects),
             ),
             whole_table=False,
-            spare=False,
+            neglect=False,
         )
 
     def _laid_out(self, checked: Checked) -> tuple[PositionNodes, Plan]:

@@ -13,7 +13,7 @@ from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.pairs.pair_contact import bodies_are_kept, pair_contact
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked, Request
-from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.effects import EFFECTS
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions
@@ -83,7 +83,7 @@ def _as_computed(
         np.zeros(1),
         database.period if database.period > 1 else None,
     )
-    checked = check_asked(request, whole_table=False, spare=False)
+    checked = checked_request(request, whole_table=False, neglect=False)
     return checked, make_plan(pair, request.load, options, checked.model, choice["level"], choice["slices"])
 
 
@@ -129,5 +129,5 @@ def condense(pair: ParallelAxes, acting: Checked, cache: Path | None) -> Condens
     changes = request.center_distance_change
     own, coarse = (pair_contact(pair, decided.plan, cache, rough, changes) for rough in (False, True))
     return CondensedPair(
-        check_asked(bound, whole_table=False, spare=False), CondensedContacts.of(own, coarse)
+        checked_request(bound, whole_table=False, neglect=False), CondensedContacts.of(own, coarse)
     )

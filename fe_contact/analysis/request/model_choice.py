@@ -17,7 +17,7 @@ from bounds import engineering
 from fe_contact.analysis.pairs.pair_contact import operating_points
 from fe_contact.analysis.pairs.slice_springs import SliceLaw, SpringContact, parabolic_stiffness
 from fe_contact.analysis.request.request import Checked, Request
-from fe_contact.analysis.request.request_check import check_asked
+from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.effects.influence.estimate import estimate_influence
 from fe_contact.options import LEVELS, AnalysisOptions
 from fe_contact.planning.cost_model import Prediction, effort, predict_run
@@ -264,7 +264,7 @@ def _width_is_small(checked: Checked) -> bool:
 
 
 def _again(request: Request) -> Checked:
-    return check_asked(request, spare=False)
+    return checked_request(request, neglect=False)
 
 
 def _mesh(

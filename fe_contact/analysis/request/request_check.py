@@ -115,7 +115,7 @@ def check_request(
     options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     *,
     whole_table: bool = True,
-    spare: bool = True,
+    neglect: bool = True,
 ) -> Checked:
     """Check all inputs of a table, without computing anything.
 
@@ -123,7 +123,7 @@ def check_request(
     ----------
     whole_table : bool
         False leaves out the limit on the size of a table.
-    spare : bool
+    neglect : bool
         False leaves out the decision about effects that a tolerance does not need, which takes some
         milliseconds of solving.
 
@@ -137,7 +137,7 @@ def check_request(
     InputError
         A value that cannot be used, by field name.
     """
-    checked = check_asked(Request.over(pair, axes, options), whole_table=whole_table, spare=spare)
+    checked = checked_request(Request.over(pair, axes, options), whole_table=whole_table, neglect=neglect)
     warn_of(checked.request.findings)
     return checked
 
@@ -145,17 +145,17 @@ def check_request(
 def check_point(pair: ParallelAxes, point: OperatingPoint, options: AnalysisOptions) -> Checked:
     """Check the inputs of one load and one alignment, as `check_request` does."""
     # what does not show in the transmission error may show in pressures and stresses
-    return check_request(pair, point.axes, options, whole_table=False, spare=False)
+    return check_request(pair, point.axes, options, whole_table=False, neglect=False)
 
 
-def check_asked(request: Request, *, whole_table: bool = True, spare: bool = True) -> Checked:
+def checked_request(request: Request, *, whole_table: bool = True, neglect: bool = True) -> Checked:
     """Compose the model of a request and refuse what it cannot hold; parameters of `check_request`.
 
     With a tolerance, automatic effects that it does not need are then neglected.
     """
     composed, ledger = _composed(request)
     _refuse_beyond_plane(request.scene, composed, ledger)
-    if spare and not (request.neglected or request.turned_on):
+    if neglect and not (request.neglected or request.turned_on):
         request = replace(
             request, neglected=_neglected_effects(request.scene, ledger, request.options.tolerance)
         )
@@ -163,14 +163,14 @@ def check_asked(request: Request, *, whole_table: bool = True, spare: bool = Tru
     return _held(request, composed, ledger, whole_table=whole_table)
 
 
-def without_spared(checked: Checked) -> Checked:
-    """Go on from `check_request` with `spare` false: decide which effects the tolerance does not need."""
+def neglecting(checked: Checked) -> Checked:
+    """Go on from `check_request` with `neglect` false: decide which effects the tolerance does not need."""
     request = checked.request
     neglected = _neglected_effects(request.scene, checked.ledger, request.options.tolerance)
     if not neglected:
         return checked
-    spared = replace(request, neglected=neglected)
-    return _held(spared, *_composed(spared))
+    remaining = replace(request, neglected=neglected)
+    return _held(remaining, *_composed(remaining))
 
 
 def _held(

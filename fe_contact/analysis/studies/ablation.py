@@ -13,7 +13,7 @@ from fe_contact.analysis.checks.effect_ledger import toggled
 from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked, estimated_influences
-from fe_contact.analysis.request.request_check import check_asked, check_request
+from fe_contact.analysis.request.request_check import check_request, checked_request
 from fe_contact.effects import EFFECTS, LedgerEntry
 from fe_contact.effects.influence.estimate import Influence
 from fe_contact.errors import InputError, MeshError, SolveError, chosen
@@ -169,7 +169,9 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:
     """Return the request with the model and the level that its accuracy asks for: all tables compare."""
     decided = decide(checked, cache)
     request = decided.checked.request
-    return check_asked(replace(request, options=request.options.at_level(decided.mesh.level)), spare=False)
+    return checked_request(
+        replace(request, options=request.options.at_level(decided.mesh.level)), neglect=False
+    )
 
 
 def _figures(checked: Checked, run: Run) -> Figures:

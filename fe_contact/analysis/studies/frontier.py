@@ -22,7 +22,7 @@ from fe_contact.analysis.pairs.slice_springs import (
 )
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import check_asked, check_request
+from fe_contact.analysis.request.request_check import check_request, checked_request
 from fe_contact.analysis.studies.measured_full_contact import (
     NAME,
     ORIGIN,
@@ -241,7 +241,7 @@ class _FiniteElementFidelity:
             effects |= {face: "off", width: "on"}
         options = request.options.at_level(self.level)
         options = replace(options, model=self.model, effects=effects, receipt="full")
-        return check_asked(replace(request, options=options))
+        return checked_request(replace(request, options=options))
 
     def run(self, checked: Checked) -> SteDatabase:
         """Compute the table."""

@@ -206,29 +206,29 @@ class CheckedCase:
     @cached_property
     def feasible(self) -> Checked:
         """The request with all its effects: what is refused on submission. Raises `BadInput`."""
-        return self._checked(spare=False)
+        return self._checked(neglect=False)
 
     @cached_property
     def checked(self) -> Checked:
         """The request as it is solved, without the effects that its tolerance does not need."""
-        from fe_contact.analysis.request.request_check import without_spared  # noqa: PLC0415 (start-up time)
+        from fe_contact.analysis.request.request_check import neglecting  # noqa: PLC0415 (start-up time)
 
         if "feasible" not in self.__dict__:
             return self._checked()
         with boundary_errors():
-            return without_spared(self.feasible)
+            return neglecting(self.feasible)
 
     @cached_property
     def at_point(self) -> Checked:
         """The request of the case's one load and one alignment: its table may be of any size."""
-        return self._checked(whole_table=False, spare=False)
+        return self._checked(whole_table=False, neglect=False)
 
-    def _checked(self, *, whole_table: bool = True, spare: bool = True) -> Checked:
+    def _checked(self, *, whole_table: bool = True, neglect: bool = True) -> Checked:
         from fe_contact.analysis.request.request_check import check_request  # noqa: PLC0415 (start-up time)
 
         converted = self.converted
         with boundary_errors():
-            return check_request(*converted, whole_table=whole_table, spare=spare)
+            return check_request(*converted, whole_table=whole_table, neglect=neglect)
 
     def request(self, make: Callable[[CheckedCase, Inputs], Requested], inputs: Inputs) -> Requested:
         """Return what a study requests of the library: made once, for its check and for its work."""
