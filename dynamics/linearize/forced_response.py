@@ -12,6 +12,7 @@ from dynamics.assembly.references import drive_springs
 from dynamics.bearings.seat import SEAT
 from dynamics.errors import InputError
 from dynamics.forces.laws import Law
+from dynamics.integrators import StaticSolution
 from dynamics.linearize.flank_cycles import FlankCycle
 from dynamics.linearize.harmonic_response import HarmonicResponse, excited_harmonics, response_of
 from dynamics.linearize.linear_system import HELD_BY, LinearSystem, natural_modes
@@ -349,14 +350,6 @@ def forced_response(
     response, other = (response_of(at, speeds, each) for each in (steady, blocked))
     power = _power_balance(at, speeds, steady)
     seconds["response"] = cpu_seconds() - began
-    facts: Json = {
-        "leading_shaft": system.scene.references[leading_law(system)].shaft,
-        "time": time,
-        "equilibrium": {"status": start.status.name, "residual": start.residual},
-        "seconds": seconds,
-        "effect_ledger": ledger,
-        **system.corrections,
-    }
     return ForcedResponse(
         **{f.name: getattr(response, f.name) for f in fields(response)},
         excitation_difference=_difference(response, other),
@@ -366,8 +359,21 @@ def forced_response(
         power_sink=power.sink,
         power_sink_kind=power.kind,
         power_loss=power.loss,
-        facts=facts,
+        facts=_facts(system, start, time, seconds, ledger),
     )
+
+
+def _facts(
+    system: System, start: StaticSolution, time: float, seconds: dict[str, float], ledger: Json
+) -> Json:
+    return {
+        "leading_shaft": system.scene.references[leading_law(system)].shaft,
+        "time": time,
+        "equilibrium": {"status": start.status.name, "residual": start.residual},
+        "seconds": seconds,
+        "effect_ledger": ledger,
+        **system.corrections,
+    }
 
 
 def _halves(progress: Callable[[float], None] | None) -> Callable[[float], Callable[[float], None] | None]:
