@@ -1,4 +1,4 @@
-"""Levels of a run over its speed: maps, orders, the Campbell diagram, the loudest moment."""
+"""Levels of a run over its speed: orders, maps, the Campbell diagram and its modes, the loudest moment."""
 
 from __future__ import annotations
 
@@ -26,13 +26,20 @@ from lineofaction.report.drawing.figure import (
     unit_of,
 )
 from lineofaction.report.drawing.placing import placed
-from lineofaction.report.response.modes import MODES_CAPTION, ModeLine, mode_lines, mode_table, whirling
+from lineofaction.report.response.modes import (
+    MODES_CAPTION,
+    ModeLine,
+    mode_bars,
+    mode_lines,
+    mode_table,
+    whirling,
+)
 from lineofaction.report.run.view import SCALES, Signal, along_direction, decibels, run_axis, validity
 
 LINES, MAP_DEPTH = 220, 60.0
 
 
-def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: float) -> HeatMap:
+def _level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: float) -> HeatMap:
     """Return levels below the largest on an even grid of the axis; the loudest of the lines in each cell.
 
     `along` (B,) is speed or time of the blocks, rising or falling; `line` (K,) are frequencies or orders,
@@ -147,6 +154,30 @@ def _table(
     return Table("Largest value of each line", head, tuple(rows))
 
 
+def order_map(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
+    """Draw spectra over mesh orders side by side: what follows the mesh lies level."""
+    valid = highest_valid_order(run, signal.mesh)
+    last = max(min(MAPPED, valid), 1)
+    amplitude = signal.amplitude(made.amplitude)[:, made.line <= last]
+    axis, along = run_axis(run, made.time, signal.mesh)
+    shade = _level_map(along, made.line[made.line <= last], amplitude, float(last))
+    names = tuple((float(order), f"{order}×") for order in range(1, last + 1))
+    orders = Axis("mesh order", limits=(0.0, float(made.line[-1])), names=names)
+    block, line = np.unravel_index(int(np.argmax(amplitude[:, 1:])), amplitude[:, 1:].shape)
+    largest = number(float(amplitude[block, line + 1]), 3)
+    where = f"{number(float(along[block]), 3)} {unit_of(axis.label)}"
+    return Figure(
+        key="order_map",
+        title=f"Order map of the {signal.name}",
+        caption=f"Color: {signal.scale} amplitude of each block's spectrum over mesh orders, in dB below the "
+        f"largest, down to −{MAP_DEPTH:g} dB. "
+        f"{validity(valid, float(run.mesh_frequency[signal.mesh].max()))}",
+        alternative=f"Largest: {largest} {signal.unit} at order "
+        f"{number(float(made.line[line + 1]), 4)} and {where}.",
+        content=(Panel(Axis.over(axis.label, shade.x), orders, shade=shade),),
+    )
+
+
 BLOCKS, ORDERS = 90, 8
 ORDER_COLOUR = "#9FB3C8"  # seen on the dark of the map and on paper
 
@@ -162,7 +193,7 @@ def campbell(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
     amplitude = signal.amplitude(made.amplitude)
     axis, along = run_axis(run, made.time, signal.mesh)
     valid = highest_valid_order(run, signal.mesh)
-    top = top_frequency(run, signal, made)
+    top = _top_frequency(run, signal, made)
     modes = mode_lines(run, made.mesh_frequency, top)
     return Figure(
         key="campbell",
@@ -176,7 +207,7 @@ def campbell(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
     )
 
 
-def top_frequency(run: RunResult, signal: Signal, made: Waterfall) -> float:
+def _top_frequency(run: RunResult, signal: Signal, made: Waterfall) -> float:
     """Return the upper end of the diagram, Hz: above the highest order that the run resolves."""
     last = max(min(ORDERS, highest_valid_order(run, signal.mesh)), 1)
     return min((last + 0.5) * float(made.mesh_frequency.max()), float(made.line[-1]))
@@ -185,7 +216,7 @@ def top_frequency(run: RunResult, signal: Signal, made: Waterfall) -> float:
 def _panel(
     made: Waterfall, amplitude: FloatArray, axis: Axis, along: FloatArray, top: float, modes: list[ModeLine]
 ) -> Panel:
-    shade = level_map(along, made.line, amplitude, top)
+    shade = _level_map(along, made.line, amplitude, top)
     lines = [_order(made, along, order, top) for order in range(1, ORDERS + 1)]
     lines += [Line(mode.name, along, mode.frequency, mode.color, "dash", 1.4) for mode in modes]
     notes = [*_order_notes(made, along, top), *_mode_notes(along, modes)]
@@ -237,6 +268,29 @@ def _campbell_words(
         near = min(there, key=lambda value: abs(value - frequency))
         text += f" The nearest natural frequency is {number(near, 4)} Hz."
     return text
+
+
+def mode_shares(run: RunResult, signal: Signal, made: Waterfall) -> Figure | None:
+    """Draw the shares of the parts in the kinetic energy of each mode of the diagram; None without modes."""
+    modes = mode_lines(run, made.mesh_frequency, _top_frequency(run, signal, made))
+    shown = [mode for mode in modes if mode.shares]
+    if not shown:
+        return None
+    names = [f"{number(float(mode.frequency[0]), 4)} Hz" for mode in shown]
+    where = "whirl modes at the highest speed of the run" if whirling(run) else "natural modes"
+    return Figure(
+        key="mode_shares",
+        title="What moves in the modes of the Campbell diagram",
+        caption=f"Kinetic energy of the {where} by shaft and kind of motion, named by their frequency "
+        "at the start of the run. Parts below a twentieth are among the others.",
+        alternative=_mode_words(shown[0], names[0]),
+        content=(mode_bars(names, [mode.shares for mode in shown], "kinetic energy"),),
+    )
+
+
+def _mode_words(mode: ModeLine, name: str) -> str:
+    part, share = max(mode.shares.items(), key=lambda item: item[1])
+    return f"In the lowest mode, {name}, {number(100.0 * share, 2)} % of the kinetic energy are of {part}."
 
 
 LEAST_PITCHES = 64  # of a run whose orders are shown

@@ -9,7 +9,7 @@ import numpy as np
 
 from bounds import leftover
 from dynamics.errors import InputError
-from dynamics.orders import Waterfall, highest_valid_order, sidebands
+from dynamics.orders import highest_valid_order, sidebands
 from dynamics.results import RunResult
 from dynamics.results.mesh_figures import (
     PlanetLoadSharing,
@@ -22,18 +22,15 @@ from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number, unit_of
 from lineofaction.report.drawing.page import Headline, Part, Section
 from lineofaction.report.drawing.placing import envelope
-from lineofaction.report.drawing.tables import facts, ledger_section, peak_table, sampling_table
-from lineofaction.report.response.modes import ModeLine, mode_bars, mode_lines, whirling
-from lineofaction.report.run.levels import MAP_DEPTH as DEPTH
+from lineofaction.report.drawing.tables import facts, ledger_section
 from lineofaction.report.run.levels import (
-    MAPPED,
     campbell,
     frequency_blocks,
     has_orders,
-    level_map,
     levels_over_speed,
+    mode_shares,
     order_blocks,
-    top_frequency,
+    order_map,
 )
 from lineofaction.report.run.signals import (
     TOO_SHORT,
@@ -50,7 +47,6 @@ from lineofaction.report.run.view import (
     along_direction,
     run_axis,
     shown_signal,
-    validity,
 )
 
 
@@ -83,29 +79,6 @@ def _panel(run: RunResult, sharing: PlanetLoadSharing) -> Panel:
         lines.append(Line(f"planet {index + 1}", *envelope_of, palette.category(index), width=1.0))
     time = Axis.over("time, s", run.time)
     return Panel(time, Axis("load sharing ratio"), tuple(lines), title=sharing.central)
-
-
-def _order_map(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
-    """Draw spectra over mesh orders side by side: what follows the mesh lies level."""
-    valid = highest_valid_order(run, signal.mesh)
-    last = max(min(MAPPED, valid), 1)
-    amplitude = signal.amplitude(made.amplitude)[:, made.line <= last]
-    axis, along = run_axis(run, made.time, signal.mesh)
-    shade = level_map(along, made.line[made.line <= last], amplitude, float(last))
-    names = tuple((float(order), f"{order}×") for order in range(1, last + 1))
-    orders = Axis("mesh order", limits=(0.0, float(made.line[-1])), names=names)
-    block, line = np.unravel_index(int(np.argmax(amplitude[:, 1:])), amplitude[:, 1:].shape)
-    loudest = number(float(amplitude[block, line + 1]), 3)
-    where = f"{number(float(along[block]), 3)} {unit_of(axis.label)}"
-    return Figure(
-        key="order_map",
-        title=f"Order map of the {signal.name}",
-        caption=f"Color: {signal.scale} amplitude of each block's spectrum over mesh orders, in dB below the "
-        f"largest, down to −{DEPTH:g} dB. {validity(valid, float(run.mesh_frequency[signal.mesh].max()))}",
-        alternative=f"Largest: {loudest} {signal.unit} at order "
-        f"{number(float(made.line[line + 1]), 4)} and {where}.",
-        content=(Panel(Axis.over(axis.label, shade.x), orders, shade=shade),),
-    )
 
 
 PITCHES = 16
@@ -155,29 +128,6 @@ def _sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
     }
     caption = f"Sidebands of the {signal.name}, once per revolution of a gear and its multiples"
     return (Table.of(caption, beside[:ROWS], columns),)
-
-
-def _mode_shares(run: RunResult, signal: Signal, made: Waterfall) -> Figure | None:
-    """Draw the shares of the parts in the kinetic energy of each mode of the diagram; None without modes."""
-    modes = mode_lines(run, made.mesh_frequency, top_frequency(run, signal, made))
-    shown = [mode for mode in modes if mode.shares]
-    if not shown:
-        return None
-    names = [f"{number(float(mode.frequency[0]), 4)} Hz" for mode in shown]
-    where = "whirl modes at the highest speed of the run" if whirling(run) else "natural modes"
-    return Figure(
-        key="mode_shares",
-        title="What moves in the modes of the Campbell diagram",
-        caption=f"Kinetic energy of the {where} by shaft and kind of motion, named by their frequency "
-        "at the start of the run. Parts below a twentieth are among the others.",
-        alternative=_words(shown[0], names[0]),
-        content=(mode_bars(names, [mode.shares for mode in shown], "kinetic energy"),),
-    )
-
-
-def _words(mode: ModeLine, name: str) -> str:
-    part, share = max(mode.shares.items(), key=lambda item: item[1])
-    return f"In the lowest mode, {name}, {number(100.0 * share, 2)} % of the kinetic energy are of {part}."
 
 
 _ERRORS = {
@@ -232,7 +182,7 @@ def dynamic_making(run: RunResult) -> tuple[Section, ...]:
     """Show how exact the run is, what it cost, and what it was made from."""
     accuracy = Section(
         "Accuracy of the run",
-        tables=(_accuracy(run), sampling_table(run), peak_table(run)),
+        tables=(_accuracy(run), _sampling(run), _peaks(run)),
         folded=(_energy(run),),
         part=Part.ACCURACY,
     )
@@ -248,12 +198,12 @@ def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
         return ()
     seen = along_direction(run, signal)
     orders, frequencies = order_blocks(seen, signal), frequency_blocks(seen, signal)
-    of_orders = _order_map(run, signal, orders)
+    of_orders = order_map(run, signal, orders)
     figures = (
         levels_over_speed(run, signal, orders),
         replace(of_orders, sound=sound_of((Heard(signal.name, run, signal),), of_orders.content[0].x)),
         campbell(run, signal, frequencies),
-        _mode_shares(run, signal, frequencies),
+        mode_shares(run, signal, frequencies),
         octave_bands(run, signal, frequencies),
     )
     shown = tuple(figure for figure in figures if figure is not None)
@@ -300,6 +250,50 @@ def _errors(title: str, unit: str, error: dict[str, Any]) -> list[tuple[str, str
         worst = max(float(value) for value in error["bearing_force_orders"])
         rows.append((f"{title}, N at the worst mesh order of a bearing force", number(worst, 2)))
     return rows
+
+
+def _sampling(run: RunResult) -> Table:
+    """Tabulate rate, filter, highest valid order and the sampling error of the mesh forces."""
+    sampling, error = run.receipt["sampling"], run.receipt["error"].get("sampling", {})
+    of = "mesh" if run.mesh else "shaft"
+    rows = [
+        ("rate, samples per second", number(float(sampling["rate"]), 6)),
+        ("chosen by", str(sampling["chosen"])),
+        ("passed up to, Hz", number(float(sampling["pass_frequency"]), 6)),
+        *_filter(sampling),
+        (f"highest valid {of} order at the highest speed", str(highest_valid_order(run))),
+    ]
+    for mesh, part in error.get("mesh_force", {}).items():
+        rows.append((f"mesh force of {mesh} above the pass band, N rms", number(float(part["removed"]), 3)))
+        rows.append((f"mesh force of {mesh} that may have folded, N rms", number(float(part["folded"]), 3)))
+    return Table("Sampling of the output", ("quantity", "value"), tuple(rows))
+
+
+def _filter(sampling: dict[str, Any]) -> list[tuple[str, str]]:
+    if not sampling["stop_band"]:
+        return [("anti-alias filter", "none: unfiltered samples")]
+    stop = (
+        f"{number(float(sampling['stop_band']), 3)} dB from {number(float(sampling['stop_frequency']), 6)} Hz"
+    )
+    edge = f"{number(1e3 * float(sampling['edge']), 3)} ms"
+    return [
+        ("anti-alias filter stops", stop),
+        ("continued beyond start and end for the filter", edge),
+    ]
+
+
+def _peaks(run: RunResult) -> Table:
+    """Tabulate largest magnitude and rms of the forces, between the samples and before the filter."""
+    rows = []
+    for title, parts in run.receipt.get("peaks", {}).items():
+        for name, part in parts.items():
+            peaks, rms = np.atleast_1d(part["peak"]), np.atleast_1d(part["rms"])
+            axes = ("",) if peaks.size == 1 else (" x", " y", " z")[: peaks.size]
+            rows += [
+                (f"{title.replace('_', ' ')}, {name}{axis}", number(float(p), 5), number(float(r), 5))
+                for axis, p, r in zip(axes, peaks, rms, strict=True)
+            ]
+    return Table("Peaks of the whole run, unfiltered", ("force", "peak, N", "rms, N"), tuple(rows))
 
 
 def _seconds(run: RunResult) -> Table:

@@ -13,10 +13,15 @@ from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from lineofaction.report.drawing.figure import HeatMap, Panel
 from lineofaction.report.run.levels import MAP_DEPTH as DEPTH
-from lineofaction.report.run.levels import campbell, frequency_blocks, levels_over_speed, order_blocks
+from lineofaction.report.run.levels import (
+    campbell,
+    frequency_blocks,
+    levels_over_speed,
+    order_blocks,
+    order_map,
+)
 from lineofaction.report.run.page import (
     _dynamic_factor_figure,
-    _order_map,
     _planet_sharing,
     _sideband_tables,
     dynamic_results,
@@ -125,7 +130,7 @@ def test_the_largest_orders_are_cut_unless_named(run: RunResult) -> None:
 
 def test_an_order_map_has_its_lines_at_the_orders_of_the_run(run: RunResult) -> None:
     signal = shown_signal(run, RunView())
-    shade = panel(_order_map(run, signal, order_blocks(run, signal))).shade
+    shade = panel(order_map(run, signal, order_blocks(run, signal))).shade
     assert isinstance(shade, HeatMap)
     np.testing.assert_allclose(shade.y[np.argmax(shade.z, axis=0)], 2.0, atol=1.0 / 16)
 
