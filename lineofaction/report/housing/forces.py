@@ -1,20 +1,17 @@
-"""What a housing's sound rests on: forces, radiation models, regions, and its course over a run."""
+"""Forces behind the vibration and the sound of a housing, and the sound of a run's forces over time."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from dynamics.acoustics.levels import a_weighting
-from dynamics.noise import RadiatedSound, loudest
 from dynamics.noise.sound_over_time import BLOCK
 from dynamics.types import FloatArray
 from lineofaction.gearbox.schemas.figures import LINEAR
-from lineofaction.gearbox.units import MM, RPM
+from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing.figure import Axis, Figure, Panel, Table, number, shaded_levels
-from lineofaction.report.drawing.tables import amount, gigabytes
 
 Json = dict[str, Any]
 COARSE = 10.0 ** (1.0 / 20.0) - 1.0
@@ -80,11 +77,11 @@ DEPTH, LABEL = 60.0, "sound power level, dB(A)"
 
 def third_octaves_over_time(facts: Json) -> Figure:
     """Draw the A-weighted bands over the run: impacts, sidebands and free vibration are among them."""
-    told = facts["over_time"]
-    center = np.array(told["third_octave_hz"])
-    level = np.array(told["third_octave_db"]) + a_weighting(center)[:, None]
-    total = np.array(told["total_level_db_a"])
-    time = np.array(told["time_s"])
+    course = facts["over_time"]
+    center = np.array(course["third_octave_hz"])
+    level = np.array(course["third_octave_db"]) + a_weighting(center)[:, None]
+    total = np.array(course["total_level_db_a"])
+    time = np.array(course["time_s"])
     place = np.arange(center.size, dtype=float)
     at, x = int(total.argmax()), Axis.over("time, s", time)
     names = tuple((float(k), f"{center[k]:g}") for k in range(0, center.size, 3))
@@ -93,15 +90,15 @@ def third_octaves_over_time(facts: Json) -> Figure:
         key="sound_over_time",
         title="Sound power in third octaves over the run",
         caption="All that the forces on the bearings hold, impacts and sidebands too, from "
-        f"{number(told['lowest_hz'], 3)} to {number(told['highest_hz'], 4)} Hz; A-weighted at the centers of "
-        f"bands. Blocks of {BLOCK:g} s overlap by half.",
+        f"{number(course['lowest_hz'], 3)} to {number(course['highest_hz'], 4)} Hz; A-weighted at the "
+        f"centers of bands. Blocks of {BLOCK:g} s overlap by half.",
         alternative=f"Loudest at {number(float(time[at]), 3)} s: {total[at]:.1f} dB(A) in all.",
         content=(Panel(x, y, shade=shaded_levels(time, place, level, LABEL, DEPTH)),),
-        table=_over_time_table(told),
+        table=_over_time_table(course),
     )
 
 
-def _over_time_table(told: Json) -> Table:
+def _over_time_table(course: Json) -> Table:
     columns = {
         "time, s": lambda row: f"{row[0]:.3f}",
         "speed, rpm": lambda row: number(row[1], 5),
@@ -109,82 +106,15 @@ def _over_time_table(told: Json) -> Table:
         "dB(A)": lambda row: f"{row[3]:.1f}",
     }
     names = ("time_s", "speed_rpm", "total_level_db", "total_level_db_a")
-    return Table.of("Sound power over the run", zip(*(told[name] for name in names), strict=True), columns)
+    return Table.of("Sound power over the run", zip(*(course[name] for name in names), strict=True), columns)
 
 
 def total_line(speed: FloatArray, facts: Json) -> tuple[FloatArray, FloatArray] | None:
     """Return where on the axis of the orders the run's total lies, and its levels, dB(A); None without."""
-    told = facts.get("over_time")
-    if told is None:
+    course = facts.get("over_time")
+    if course is None:
         return None
     by_time = row_axis(speed, facts)[0].label == "time, s"
-    along = np.array(told["time_s" if by_time else "speed_rpm"])
+    along = np.array(course["time_s" if by_time else "speed_rpm"])
     rising = np.argsort(along, kind="stable")
-    return along[rising], np.array(told["total_level_db_a"])[rising]
-
-
-MODEL_HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predicted", "GB predicted")
-
-
-def model_tables(sound: RadiatedSound) -> Iterator[Table]:
-    """Yield the models of each housing where it is loudest."""
-    for housing in sound.housing:
-        compared = sound.facts["models"][housing]
-        if compared.get("predicted"):
-            yield _models(housing, compared)
-
-
-def _models(housing: str, compared: Json) -> Table:
-    speed = number(compared["speed"] / RPM, 4)
-    caption = f"Radiation models of {housing} at order {compared['order']:.4g}, {speed} rpm"
-    return Table(caption, MODEL_HEAD, tuple(_model(name, compared) for name in compared["predicted"]))
-
-
-def _model(name: str, compared: Json) -> tuple[str, ...]:
-    level, spent = compared["level"].get(name), compared["seconds"].get(name)
-    low, high = compared["error_band"][name]
-    predicted = compared["predicted"][name]
-    return (
-        name.replace("_", " "),
-        "not computed" if level is None else f"{level:.1f}",
-        f"{low:+.1f} to {high:+.1f}",
-        amount(spent),
-        amount(predicted["seconds"]),
-        gigabytes(predicted["bytes"]),
-    )
-
-
-REGION_POINTS = 3
-"""Loudest points whose regions are listed."""
-
-
-def _place(region: Mapping[str, Any]) -> str:
-    """Name a region: its housing, the axis that it faces, the named points next to it."""
-    named = f" ({', '.join(region['points'])})" if region["points"] else ""
-    return f"{region['housing']} at {region['facing']}{named}"
-
-
-def most(sound: RadiatedSound) -> str:
-    """Say through which region most of the loudest point leaves."""
-    region = sound.facts["regions"][0][0]
-    return f"{100.0 * region['share']:.0f} % leaves {_place(region)}"
-
-
-def region_table(sound: RadiatedSound) -> Table:
-    """List the regions of the loudest points."""
-    listed = [
-        {"point": point, **region}
-        for point, regions in zip(loudest(sound, REGION_POINTS), sound.facts["regions"], strict=False)
-        for region in regions
-    ]
-    columns = {
-        "order": lambda region: f"{region['point'].order:.4g}",
-        "speed, rpm": lambda region: number(region["point"].speed / RPM, 5),
-        "region": _place,
-        "share, %": lambda region: f"{100.0 * region['share']:.1f}",
-        "mW/m²": lambda region: number(1e3 * region["power"] / region["area"], 3),
-        "center, mm": lambda region: ", ".join(f"{round(value / MM)}" for value in region["center"]),
-        "outward normal": lambda region: ", ".join(f"{round(v, 2) + 0.0:g}" for v in region["normal"]),
-        "area, cm²": lambda region: f"{1e4 * region['area']:.1f}",
-    }
-    return Table.of("Regions through which the loudest points radiate", listed, columns)
+    return along[rising], np.array(course["total_level_db_a"])[rising]

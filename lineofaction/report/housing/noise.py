@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from dynamics.acoustics import OrderPower, a_weighting, sound_power_level
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
-from lineofaction.gearbox.units import RPM
+from lineofaction.gearbox.units import MM, RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -28,14 +28,12 @@ from lineofaction.report.drawing.figure import (
 )
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import surface_panels
+from lineofaction.report.drawing.tables import amount, gigabytes
 from lineofaction.report.housing.forces import (
     DEPTH,
     LABEL,
     force_words,
-    model_tables,
-    most,
     of_run,
-    region_table,
     row_axis,
     third_octaves_over_time,
     total_line,
@@ -296,7 +294,7 @@ def _sentences(sound: RadiatedSound) -> tuple[str, ...]:
     return tuple(
         f"{_where(point)}: {point.weighted_level:.1f} dB(A) through mode {point.mode} of "
         f"{point.mode_housing} ({number(point.natural_frequency, 4)} Hz); bearing {point.bearing} alone "
-        f"{point.bearing_level:.1f} dB(A); {most(sound)}"
+        f"{point.bearing_level:.1f} dB(A); {_main_region(sound)}"
         for point in loudest(sound, 1)
     )
 
@@ -325,9 +323,76 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
     return tuple(shown)
 
 
+_MODEL_HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predicted", "GB predicted")
+
+
+def _model_tables(sound: RadiatedSound) -> Iterator[Table]:
+    """Yield the models of each housing where it is loudest."""
+    for housing in sound.housing:
+        compared = sound.facts["models"][housing]
+        if compared.get("predicted"):
+            yield _models(housing, compared)
+
+
+def _models(housing: str, compared: Json) -> Table:
+    speed = number(compared["speed"] / RPM, 4)
+    caption = f"Radiation models of {housing} at order {compared['order']:.4g}, {speed} rpm"
+    return Table(caption, _MODEL_HEAD, tuple(_model(name, compared) for name in compared["predicted"]))
+
+
+def _model(name: str, compared: Json) -> tuple[str, ...]:
+    level, spent = compared["level"].get(name), compared["seconds"].get(name)
+    low, high = compared["error_band"][name]
+    predicted = compared["predicted"][name]
+    return (
+        name.replace("_", " "),
+        "not computed" if level is None else f"{level:.1f}",
+        f"{low:+.1f} to {high:+.1f}",
+        amount(spent),
+        amount(predicted["seconds"]),
+        gigabytes(predicted["bytes"]),
+    )
+
+
+_REGION_POINTS = 3
+"""Loudest points whose regions are listed."""
+
+
+def _place(region: Mapping[str, Any]) -> str:
+    """Name a region: its housing, the axis that it faces, the named points next to it."""
+    named = f" ({', '.join(region['points'])})" if region["points"] else ""
+    return f"{region['housing']} at {region['facing']}{named}"
+
+
+def _main_region(sound: RadiatedSound) -> str:
+    """Say through which region most of the loudest point leaves."""
+    region = sound.facts["regions"][0][0]
+    return f"{100.0 * region['share']:.0f} % leaves {_place(region)}"
+
+
+def _region_table(sound: RadiatedSound) -> Table:
+    """List the regions of the loudest points."""
+    listed = [
+        {"point": point, **region}
+        for point, regions in zip(loudest(sound, _REGION_POINTS), sound.facts["regions"], strict=False)
+        for region in regions
+    ]
+    columns = {
+        "order": lambda region: f"{region['point'].order:.4g}",
+        "speed, rpm": lambda region: number(region["point"].speed / RPM, 5),
+        "region": _place,
+        "share, %": lambda region: f"{100.0 * region['share']:.1f}",
+        "mW/m²": lambda region: number(1e3 * region["power"] / region["area"], 3),
+        "center, mm": lambda region: ", ".join(f"{round(value / MM)}" for value in region["center"]),
+        "outward normal": lambda region: ", ".join(f"{round(v, 2) + 0.0:g}" for v in region["normal"]),
+        "area, cm²": lambda region: f"{1e4 * region['area']:.1f}",
+    }
+    return Table.of("Regions through which the loudest points radiate", listed, columns)
+
+
 def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
     points = loudest(sound, 1)
-    panels = _panel_intensity(sound, _where(points[0]), region_table(sound)) if points else None
+    panels = _panel_intensity(sound, _where(points[0]), _region_table(sound)) if points else None
     figures = (
         _sound_map(sound, _loudest_table(sound), _sentences(sound)),
         _level_over_speed(sound),
@@ -372,10 +437,10 @@ def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str,
 
 def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield _loudest_table(sound)
-    yield region_table(sound)
+    yield _region_table(sound)
     yield from _sentences(sound)
     yield from (f"{what}: {words}" for what, words in _limits(sound))
-    yield from model_tables(sound)
+    yield from _model_tables(sound)
     yield from _uncertainty_tables(sound.facts)
     yield from (f"no sensitivity to {name}: {why}" for name, why in _missing(sound))
     yield from model_text(sound.facts)
@@ -394,7 +459,7 @@ def _page(sound: RadiatedSound) -> Page:
         tables += (Table("No sensitivity", ("to", "because"), missing),)
     bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
     rests = Table("Radiation models, and what the levels do not hold", ("what", "how"), tuple(_limits(sound)))
-    accuracy = Section("Accuracy of the levels", tables=(rests, *model_tables(sound)), part=Part.ACCURACY)
+    accuracy = Section("Accuracy of the levels", tables=(rests, *_model_tables(sound)), part=Part.ACCURACY)
     return replace(whole, sections=(*whole.sections, *bands, accuracy))
 
 

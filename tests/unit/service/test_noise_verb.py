@@ -27,8 +27,7 @@ from lineofaction.cli.commands import app
 from lineofaction.gearbox.studies.noise import run
 from lineofaction.report.drawing import surface_view
 from lineofaction.report.housing import noise as page
-from lineofaction.report.housing.forces import model_tables
-from lineofaction.report.housing.noise import _limits
+from lineofaction.report.housing.noise import _limits, _model_tables
 
 BANDS = ("--speed-rpm", "300:6000:600", "--orders", 4)
 SPEEDS = (*BANDS, "--no-band")
@@ -104,7 +103,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     for what, words in rows:
         assert f"{what}: {words}" in result.stdout
         assert f'<th scope="row">{what}</th><td>{words}</td>' in report
-    for row in (row for table in model_tables(found) for row in table.rows):
+    for row in (row for table in _model_tables(found) for row in table.rows):
         assert re.search(r"\s+".join(map(re.escape, row)), result.stdout)
         assert all(f">{escape(cell)}</td>" in report for cell in row[1:])
     check_effects_shown(found.facts["effect_ledger"], result.stdout, report)
@@ -138,7 +137,7 @@ def test_regions_and_panels_add_up_to_the_power_of_their_point(scene: Path, tmp_
         assert sum(region["share"] for region in point["regions"]) == pytest.approx(1.0, rel=1e-9)
     first = points[0]["regions"][0]
     assert f"{100.0 * first['share']:.0f} % leaves case at {first['facing']}" in page._sentences(found)[0]
-    assert len(page.region_table(found).rows) == sum(len(point["regions"]) for point in points[:3])
+    assert len(page._region_table(found).rows) == sum(len(point["regions"]) for point in points[:3])
     loud = loudest(found, 1)[0]
     surface = meshlane.read(tmp_path / "noise.vtu")
     (triangles,) = (cells.data for cells in surface.cells)
