@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from pkgutil import iter_modules
 from typing import Any
 
 from fe_contact.ste import SteDatabase
@@ -32,22 +35,15 @@ class Presentation:
     beside: Callable[[Any, SteDatabase], Page] | None = None
 
 
-_STUDIES_OF = {
-    "flank": ("flank", "root_stress"),
-    "effects": ("ablate", "frontier"),
-    "design": ("sensitivity", "optimize", "scatter", "sweep", "study"),
-    "response": ("modes", "response", "steady"),
-    "housing": ("noise", "vibration", "listen"),
-    "deflection": ("deflect",),
-}
-"""By the subject in whose folder they are shown."""
+_SUBJECTS = [entry.name for entry in iter_modules([str(Path(__file__).parent)]) if entry.ispkg]
+"""Folders of the report."""
 
 
 def presentation_of(study: Study) -> Presentation:
-    """Return how a study shows its result; the module of its name is loaded on demand."""
-    subject = next(subject for subject, names in _STUDIES_OF.items() if study.package in names)
+    """Return how a study shows its result; its file, in the folder of its subject, is loaded on demand."""
     with LOADING:
-        shown: Presentation = import_module(f"lineofaction.report.{subject}.{study.package}").PAGE
+        files = (f"{__package__}.{subject}.{study.package}" for subject in _SUBJECTS)
+        shown: Presentation = import_module(next(filter(find_spec, files))).PAGE
     return shown
 
 
