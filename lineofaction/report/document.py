@@ -68,12 +68,12 @@ def _undamaged(study: Study, file: Path) -> Iterator[None]:
         raise BadInput.of("file", str(file), f"an undamaged {study.kind}", advice) from None
 
 
-def page_beside(study: Study, found: object, database: SteDatabase | None) -> Page:
+def page_beside(study: Study, result: object, database: SteDatabase | None) -> Page:
     """Return the page of a study's result; beside a database, if there is one."""
     presentation = presentation_of(study)
     if database is None or presentation.beside is None:
-        return presentation.page(found)
-    return presentation.beside(found, database)
+        return presentation.page(result)
+    return presentation.beside(result, database)
 
 
 _BOUND = f"an STE database, a run, or the result of a study ({', '.join(STUDIES)})"
@@ -319,7 +319,7 @@ def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | Non
     Parameters
     ----------
     inputs : Path or sequence of Path
-        STE databases, flank results and runs, at most one of each; the file says which it is.
+        STE databases, runs and results of studies, at most one of each kind; the file says which it is.
     output : Path
         The page.
     images : Path, optional
@@ -370,8 +370,8 @@ def _write(path: Path, data: bytes) -> None:
 
 def facts(result: Any) -> dict[str, Any]:
     """Return the figures of a study's result in the units of their names, as its verb prints them as JSON."""
-    found: dict[str, Any] = _study_of(result).run.figures(result)
-    return found
+    figures: dict[str, Any] = _study_of(result).run.figures(result)
+    return figures
 
 
 def write(result: Any, file: Path | str) -> Path:

@@ -255,7 +255,7 @@ class Names:
         self._names: dict[int, str] = {}
 
     def of(self, part: Part, suffix: str = "") -> str:
-        """Return the name of a part; the same whenever it is asked for again without a suffix."""
+        """Return the name of a part; without a suffix the same each time."""
         if not suffix and part.id in self._names:
             return self._names[part.id]
         name = (" ".join(part.name.split()) or part.type) + suffix

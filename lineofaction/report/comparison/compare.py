@@ -73,14 +73,14 @@ def _compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredO
     highest = int(min(side.blocks.line[-1] for side in sides))
     chosen = signal.orders or largest_orders(signal, sides[0].blocks)
     orders = tuple(order for order in chosen if order <= highest)
-    found = tuple(_differences(sides, orders)) if len(sides) == 2 else ()
+    differences = tuple(_differences(sides, orders)) if len(sides) == 2 else ()
     figures = (_levels(sides, orders), _spectra(sides, measured))
-    listed = (differences_table(found, tuple(runs)),) if found else ()
+    listed = (differences_table(differences, tuple(runs)),) if differences else ()
     sections = [Section(signal.heading, figures=figures, tables=listed)]
     differing = changed_fields({name: run.case for name, run in runs.items()})
     if differing.rows:
         sections.append(Section("Scenes", tables=(differing,)))
-    headlines = tuple(Headline(one.name, one.written, one.finding) for one in found[:3])
+    headlines = tuple(Headline(one.name, one.written, one.finding) for one in differences[:3])
     lead = f"{signal.name}; {', '.join(f'{run.time[-1]:g} s' for run in runs.values())} of motion"
     return Page(f"{' and '.join(runs)} compared", lead, headlines, tuple(sections))
 
@@ -198,8 +198,8 @@ def _read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | Measur
     fitting = [each for each in datasets if each["type"] == 58 and _fits(each, unit)]
     if len(fitting) != 1:
         names = ", ".join(str(each["id1"]).strip() for each in fitting[:8])
-        found = f"{len(fitting)} in {path.name}" + (f": {names}" if names else "")
-        raise BadInput.of("measured", found, _FORM.format(unit=unit), _AXIS_ADVICE)
+        present = f"{len(fitting)} in {path.name}" + (f": {names}" if names else "")
+        raise BadInput.of("measured", present, _FORM.format(unit=unit), _AXIS_ADVICE)
     (function,) = fitting
     over, label = np.asarray(function["x"], dtype=np.float64), _label(function)
     values = _values(function, scale)

@@ -216,8 +216,8 @@ def averaged(path: Path, position: FloatArray, values: FloatArray) -> MeasuredCu
     pitches = int(np.floor(position[-1] - position[0]))
     if pitches < 1 or position.size < _FEWEST * (position[-1] - position[0]):
         bound = f"at least one base pitch with {_FEWEST} samples in each"
-        found = f"{position.size} samples over {position[-1] - position[0]:.3g} base pitches"
-        raise BadInput.of("measured", found, bound, f"Check the first column of {path}.")
+        sampled = f"{position.size} samples over {position[-1] - position[0]:.3g} base pitches"
+        raise BadInput.of("measured", sampled, bound, f"Check the first column of {path}.")
     grid = np.ceil(position[0] * PER_PITCH) + np.arange(pitches * PER_PITCH)
     folded = np.interp(grid / PER_PITCH, position, values).reshape(pitches, PER_PITCH)
     folded = np.roll(folded, int(grid[0]) % PER_PITCH, axis=1)

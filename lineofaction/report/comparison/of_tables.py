@@ -45,21 +45,21 @@ def compare_tables(
     torques = _common(tuple(tables.values()))
     shown = torques[len(torques) // 2] if torque is None else _inside(torque, tables)
     curves = {load: _curves(tables, load) for load in torques}
-    found = tuple(_differences(curves))
+    differences = tuple(_differences(curves))
     orders = measured if isinstance(measured, MeasuredOrders) else None
     figures = [
         _ripples(_curves(tables, shown), shown, measured if isinstance(measured, MeasuredCurve) else None),
         *([_over_torque(curves)] if len(torques) > 1 else []),
         _harmonics(_curves(tables, shown), shown, orders),
     ]
-    listed = (differences_table(found, tuple(tables)),) if found else ()
+    listed = (differences_table(differences, tuple(tables)),) if differences else ()
     sections = [Section("Transmission errors", figures=tuple(figures), tables=listed)]
     differing = changed_fields({name: table.metadata.case for name, table in tables.items()})
     if differing.rows:
         sections.append(Section("Cases", tables=(differing,)))
     headlines = tuple(
         Headline(f"{one.name} at {one.where}", one.written, one.finding)
-        for one in found
+        for one in differences
         if one.name == "peak to peak"
     )
     titles = dict.fromkeys(pair_title(table.facts) for table in tables.values())
@@ -71,9 +71,9 @@ def _common(tables: Sequence[SteDatabase]) -> list[float]:
     low, high = _limits(tables)
     torques = [float(t) for t in tables[0].torque if low * (1 - 1e-9) <= t <= high * (1 + 1e-9)]
     if not torques:
-        found = f"{tables[0].torque[0]:g} to {tables[0].torque[-1]:g} N m of the first"
+        covered = f"{tables[0].torque[0]:g} to {tables[0].torque[-1]:g} N m of the first"
         bound = f"within {tables[-1].torque[0]:g} to {tables[-1].torque[-1]:g} N m of the second"
-        raise BadInput.of("torques", found, bound, "Compute both for the same torques.")
+        raise BadInput.of("torques", covered, bound, "Compute both for the same torques.")
     return [min(max(torque, low), high) for torque in torques]
 
 
@@ -203,10 +203,10 @@ def _harmonics(curves: dict[str, Curve], torque: float, measured: MeasuredOrders
     order = np.arange(1.0, SHOWN_HARMONICS + 1.0)
     lines, columns = [], {}
     for index, (name, curve) in enumerate(curves.items()):
-        found = [_um(one) for one in curve.harmonics[:SHOWN_HARMONICS]]
-        value = np.array([one.value for one in found])
+        amplitudes = [_um(one) for one in curve.harmonics[:SHOWN_HARMONICS]]
+        value = np.array([one.value for one in amplitudes])
         lines.append(Line(name, order + 0.16 * index - 0.08, value, COLORS[index], width=0.0, markers=True))
-        columns[f"{name}, µm"] = [f"{one.value:.3f} ± {one.error:.3f}" for one in found]
+        columns[f"{name}, µm"] = [f"{one.value:.3f} ± {one.error:.3f}" for one in amplitudes]
     caption = "Amplitudes of the mesh harmonics of STE."
     if measured is not None:
         measured.require("µm")

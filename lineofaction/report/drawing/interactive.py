@@ -199,14 +199,14 @@ def _upright(panel: Panel) -> Axis:
 
 
 def _line_labels(panel: Panel, suffix: str) -> list[Json]:
-    found = []
+    annotations = []
     for label in line_labels(panel, _LABEL_ROW / _PANEL_HEIGHT):
         at = {"xref": f"x{suffix} domain", "yref": f"y{suffix} domain", "x": 1, "y": label.end}
         tail = {"ax": _LEADER, "ay": round((label.end - label.middle) * _PANEL_HEIGHT, 1)}
         look = {"arrowhead": 0, "arrowwidth": 1.4, "arrowcolor": label.color, "font": {"size": 12}}
         text = {"text": label.text.replace("\n", "<br>"), "align": "left", "xanchor": "left"}
-        found.append({"showarrow": True} | at | tail | look | text)
-    return found
+        annotations.append({"showarrow": True} | at | tail | look | text)
+    return annotations
 
 
 def _bars(bars: Bars, suffix: str, *, show: bool) -> Json:

@@ -38,8 +38,8 @@ _LARGEST_HEAD = (
 )  # fmt: skip
 
 
-def _where(found: VibrationAnalysis) -> str:
-    vibration, s, h = found.vibration, found.at_speed, found.at_order
+def _where(analysis: VibrationAnalysis) -> str:
+    vibration, s, h = analysis.vibration, analysis.at_speed, analysis.at_order
     speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(float(vibration.frequency[s, h]), 4)
     return f"order {vibration.order[h]:.4g} at {speed} rpm, {hertz} Hz"
 
@@ -63,13 +63,13 @@ def _largest_table(result: HousingVibrationResult) -> Table:
 
 
 def _contribution_table(result: HousingVibrationResult) -> Table:
-    found = result.analysis
-    head = ["part", "frequency, Hz", *(f"{point}, %" for point in found.vibration.point)]
-    with_surface = found.deflection is not None
-    rows = [*_rows(found.bearings, with_surface), *_rows(found.modes, with_surface)]
+    analysis = result.analysis
+    head = ["part", "frequency, Hz", *(f"{point}, %" for point in analysis.vibration.point)]
+    with_surface = analysis.deflection is not None
+    rows = [*_rows(analysis.bearings, with_surface), *_rows(analysis.modes, with_surface)]
     if with_surface:
         head.append("outer hull, %")
-    return Table(f"Contributions to the mean square velocity at {_where(found)}", tuple(head), tuple(rows))
+    return Table(f"Contributions to the mean square velocity at {_where(analysis)}", tuple(head), tuple(rows))
 
 
 def _rows(shares: Shares, with_surface: bool) -> list[tuple[str, ...]]:
@@ -87,8 +87,8 @@ def _rows(shares: Shares, with_surface: bool) -> list[tuple[str, ...]]:
 
 def _series(result: HousingVibrationResult) -> Table:
     """Return every velocity: a row for each speed and order, rms along x, y, z in mm/s."""
-    found = result.analysis
-    vibration = found.vibration
+    analysis = result.analysis
+    vibration = analysis.vibration
     head = ["speed_rpm", "order", "frequency_hz", "valid"]
     head += [f"{name}_{axis}_mm_per_s" for name in vibration.point for axis in "xyz"]
     columns = [
@@ -98,7 +98,7 @@ def _series(result: HousingVibrationResult) -> Table:
         vibration.valid.ravel().astype(float),
         *(np.abs(vibration.velocity) / np.sqrt(2.0) / MM_PER_S).reshape(-1, vibration.frequency.size),
     ]
-    if found.deflection is not None:
+    if analysis.deflection is not None:
         head.append("surface_mm_per_s")
         columns.append(np.sqrt(vibration.mean_square_velocity).ravel() / MM_PER_S)
     rows = tuple(tuple(f"{value:.9g}" for value in row) for row in zip(*columns, strict=True))
@@ -111,28 +111,28 @@ DRAWN = 0.06
 
 
 def _velocity_figure(result: HousingVibrationResult) -> Figure:
-    found = result.analysis
-    vibration = found.vibration
+    analysis = result.analysis
+    vibration = analysis.vibration
     size = {f"velocity of {name}": vibration.rms[k] for k, name in enumerate(vibration.point)}
     size = dict(sorted(size.items(), key=lambda pair: -float(pair[1].max()))[:SHOWN_POINTS])
-    if found.deflection is not None:
+    if analysis.deflection is not None:
         size["velocity normal to the outer hull"] = np.sqrt(vibration.mean_square_velocity)
     return Figure(
         key="housing_velocity",
-        title=f"Vibration of {found.housing} by order",
+        title=f"Vibration of {analysis.housing} by order",
         caption="Root mean square velocity under the forces of the bearings: of points all directions "
         "together, of the outer hull (no walls of cavities) its mean square normal to it. Dashed: above "
         f"{number(vibration.highest_valid_frequency, 4)} Hz, 0.7 of the highest mode kept.",
         alternative=_words(result),
-        content=tuple(_velocity_panel(found, name, rms / MM_PER_S) for name, rms in size.items()),
+        content=tuple(_velocity_panel(analysis, name, rms / MM_PER_S) for name, rms in size.items()),
         table=_largest_table(result),
     )
 
 
-def _velocity_panel(found: VibrationAnalysis, name: str, rms: FloatArray) -> Panel:
+def _velocity_panel(analysis: VibrationAnalysis, name: str, rms: FloatArray) -> Panel:
     """Draw one velocity (S, H) in mm/s by its largest orders."""
-    vibration = found.vibration
-    x, speed = row_axis(vibration.speed, found.facts)
+    vibration = analysis.vibration
+    x, speed = row_axis(vibration.speed, analysis.facts)
     lines = []
     for k, h in enumerate(largest(rms.max(axis=0), SHOWN_ORDERS)):
         valid, color, order = vibration.valid[:, h], palette.category(k), f"order {vibration.order[h]:.4g}"
@@ -145,12 +145,12 @@ def _velocity_panel(found: VibrationAnalysis, name: str, rms: FloatArray) -> Pan
 
 
 def _transfer_figure(result: HousingVibrationResult) -> Figure:
-    found = result.analysis
-    mobilities = found.mobilities
-    hertz, force = mobilities.frequency, found.vibration.seat_force[found.at_speed, found.at_order]
+    analysis = result.analysis
+    mobilities = analysis.mobilities
+    hertz, force = mobilities.frequency, analysis.vibration.seat_force[analysis.at_speed, analysis.at_order]
     x = Axis("frequency, Hz", limits=(0.0, float(hertz[-1])))
-    at = float(found.vibration.frequency[found.at_speed, found.at_order])
-    named = (("shown order", at), ("valid to", found.vibration.highest_valid_frequency))
+    at = float(analysis.vibration.frequency[analysis.at_speed, analysis.at_order])
+    named = (("shown order", at), ("valid to", analysis.vibration.highest_valid_frequency))
     marks = tuple(Reference(name, value) for name, value in named if value <= hertz[-1])
     nearest = int(np.argmin(np.abs(hertz - at)))
     per_force = Axis("velocity per force, m/(N s)", "log")
@@ -159,21 +159,21 @@ def _transfer_figure(result: HousingVibrationResult) -> Figure:
     def curves(gain: FloatArray, seats: IntArray) -> tuple[Line, ...]:
         return category_lines(hertz, [mobilities.seat[s] for s in seats], gain.T[seats], width=1.2)
 
-    if found.vibration.point:
-        point, axis = _fastest(found)
-        title = f"{found.vibration.point[point]} along {'xyz'[axis]}"
+    if analysis.vibration.point:
+        point, axis = _fastest(analysis)
+        title = f"{analysis.vibration.point[point]} along {'xyz'[axis]}"
         gain = mobilities.point[point, axis]
         most = np.argsort(-np.abs(gain[nearest] * force), kind="stable")[:SHOWN_SEATS]
         panels.append(Panel(x, per_force, curves(np.abs(gain), most), marks, title=title))
         phase = curves(np.degrees(np.angle(gain)), most)
         panels.append(Panel(x, Axis("phase, °", limits=(-180.0, 180.0)), phase))
-    if found.deflection is not None:
+    if analysis.deflection is not None:
         gain = np.sqrt(mobilities.surface)
         most = np.argsort(-gain[nearest] * np.abs(force), kind="stable")[:SHOWN_SEATS]
         panels.append(Panel(x, per_force, curves(gain, most), title="root mean square of the outer hull"))
     return Figure(
         key="housing_transfer",
-        title=f"Transfer functions of {found.housing}",
+        title=f"Transfer functions of {analysis.housing}",
         caption="Velocity per force on a seat (per moment in N m for tilts), along the seat's own axes: the "
         "seats that act most in the order shown.",
         alternative=f"From the seats to {title}, up to {number(float(hertz[-1]), 4)} Hz.",
@@ -181,25 +181,25 @@ def _transfer_figure(result: HousingVibrationResult) -> Figure:
     )
 
 
-def _fastest(found: VibrationAnalysis) -> tuple[int, int]:
-    size = np.abs(found.vibration.velocity[:, :, found.at_speed, found.at_order])
+def _fastest(analysis: VibrationAnalysis) -> tuple[int, int]:
+    size = np.abs(analysis.vibration.velocity[:, :, analysis.at_speed, analysis.at_order])
     point, axis = np.unravel_index(int(np.argmax(size)), size.shape)
     return int(point), int(axis)
 
 
 def _contribution_figure(result: HousingVibrationResult) -> Figure:
-    found = result.analysis
-    of_surface = found.deflection is not None
-    point = 0 if of_surface else _fastest(found)[0]
-    what = "of the outer hull" if of_surface else f"of {found.vibration.point[point]}"
+    analysis = result.analysis
+    of_surface = analysis.deflection is not None
+    point = 0 if of_surface else _fastest(analysis)[0]
+    what = "of the outer hull" if of_surface else f"of {analysis.vibration.point[point]}"
     both = [
         (shares, shares.surface if of_surface else shares.point[point])
-        for shares in (found.bearings, found.modes)
+        for shares in (analysis.bearings, analysis.modes)
     ]
     return Figure(
         key="housing_contributions",
         title=f"Contributions to the mean square velocity {what}",
-        caption=f"At {_where(found)}. Bars of a panel add up to 100 %; below zero: against the sum.",
+        caption=f"At {_where(analysis)}. Bars of a panel add up to 100 %; below zero: against the sum.",
         alternative=" ".join(
             f"Most comes from {shares.name[int(np.argmax(part))]}, {number(100.0 * float(part.max()), 3)} %."
             for shares, part in both
@@ -254,9 +254,9 @@ def _shape_figure(result: HousingVibrationResult) -> Figure | None:
 
 
 def _words(result: HousingVibrationResult) -> str:
-    found, vibration = result.analysis, result.analysis.vibration
+    analysis, vibration = result.analysis, result.analysis.vibration
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
-    text = f"Shown in detail: {_where(found)}."
+    text = f"Shown in detail: {_where(analysis)}."
     if beyond.size:
         orders = ", ".join(f"{order:.4g}" for order in beyond[:SHOWN_ORDERS])
         text += f" Orders {orders} reach above what the modes kept carry."
@@ -279,19 +279,19 @@ def _page(result: HousingVibrationResult) -> Page:
 
 
 def _headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
-    found = result.analysis
-    vibration, at = found.vibration, (found.at_speed, found.at_order)
-    surface = found.deflection is not None
+    analysis = result.analysis
+    vibration, at = analysis.vibration, (analysis.at_speed, analysis.at_order)
+    surface = analysis.deflection is not None
     if vibration.point:
         rms = vibration.rms[(slice(None), *at)]
         fastest = int(np.argmax(rms))
         name = f"velocity of {vibration.point[fastest]}"
-        first = Headline(name, _speed(float(rms[fastest])), _where(found))
+        first = Headline(name, _speed(float(rms[fastest])), _where(analysis))
     else:
         rms_of_hull = float(vibration.mean_square_velocity[at]) ** 0.5
         first = Headline("velocity of the outer hull", _speed(rms_of_hull))
     most = []
-    for what, shares in (("bearing", found.bearings), ("mode", found.modes)):
+    for what, shares in (("bearing", analysis.bearings), ("mode", analysis.modes)):
         part = shares.surface if surface else shares.point[0]
         p = int(np.argmax(part))
         hertz = f"{number(float(shares.frequency[p]), 4)} Hz, " if np.isfinite(shares.frequency[p]) else ""
@@ -305,7 +305,7 @@ def _speed(rms: float) -> str:
 
 
 def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
-    found, vibration = result.analysis, result.analysis.vibration
+    analysis, vibration = result.analysis, result.analysis.vibration
     yield _largest_table(result)
     yield _contribution_table(result)
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
@@ -313,8 +313,8 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
         orders = ", ".join(f"{order:.4g}" for order in beyond)
         limit = number(vibration.highest_valid_frequency, 4)
         yield f"orders {orders} go beyond {limit} Hz, 0.7 of the highest mode kept: keep more modes"
-    yield from (f"{what}: {words}" for what, words in force_words(found.facts))
-    yield from model_text(found.facts)
+    yield from (f"{what}: {words}" for what, words in force_words(analysis.facts))
+    yield from model_text(analysis.facts)
 
 
 PAGE = Presentation(_figure, _page, _text, series=_series)

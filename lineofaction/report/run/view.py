@@ -21,19 +21,21 @@ from lineofaction.report.drawing.figure import Axis, FloatArray, number
 MONOTONE = 0.2  # least change of speed over the run, of the highest, for a speed axis
 SCALES = {"rms": float(np.sqrt(0.5)), "peak": 1.0}
 """Of an amplitude."""
-"""Along which a quantity of bearings is taken; the principal one is that in which it varies most."""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A series of a run that is shown: its field, where it is taken, its noun, and its unit over SI."""
+    """A series of a run that is shown: its field, where it is taken, its noun, and its unit over SI.
+
+    `setting` is that of the scenes whose runs hold it; empty: all do.
+    """
 
     series: str
     part: Literal["bearing", "mesh"]
     noun: str
     unit: str = "N"
     factor: float = 1.0
-    asked_for: str = ""
+    setting: str = ""
 
 
 QUANTITIES = {
@@ -56,8 +58,9 @@ class RunView:
     - `mesh`, whose orders are shown, and where quantities of meshes are taken: the first
     - `orders`, whole mesh orders of the order cuts: the five largest
     - `window` of the spectra; `scale`: whether amplitudes are effective or peak values
-    - `direction`, one of `DIRECTIONS`, along which a quantity of bearings is taken for orders and sound:
-      orders of all three components in power, sound along the principal one
+    - `direction`, one of `DIRECTIONS`, along which a quantity of bearings is taken for orders and sound (the
+      principal one is that in which it varies most): orders of all three components in power, sound along
+      the principal one
     """
 
     quantity: str = ""
@@ -141,7 +144,7 @@ def shown_signal(run: RunResult, view: RunView) -> Signal:
     quantity = QUANTITIES[name]
     values = getattr(run, quantity.series)
     if not values.shape[0]:
-        advice = f"Run with {quantity.asked_for}." if quantity.asked_for else "Show another quantity."
+        advice = f"Run with {quantity.setting}." if quantity.setting else "Show another quantity."
         raise BadInput.of("quantity", name, "one that the run holds", advice)
     mesh = _index("mesh", view.mesh, run.mesh) if view.mesh else 0
     parts, row = run.mesh, mesh

@@ -144,16 +144,16 @@ def deviation_curves(database: SteDatabase) -> Figure:
 def _deviations(database: SteDatabase) -> list[_Deviation]:
     misalignment, change = aligned(database)
     skew, distance = database.misalignment, database.center_distance_change
-    found = []
+    deviations = []
     if skew.size > 1:
         axis = Axis("misalignment over the common face width, µm")
         curves = tuple(_curves(database, float(m), change) for m in skew)
-        found.append(_Deviation("misalignment", axis, 1e6 * skew, curves))
+        deviations.append(_Deviation("misalignment", axis, 1e6 * skew, curves))
     if distance.size > 1:
         axis = Axis("change of the center distance, mm")
         curves = tuple(_curves(database, misalignment, float(d)) for d in distance)
-        found.append(_Deviation("change of the center distance", axis, 1e3 * distance, curves))
-    return found
+        deviations.append(_Deviation("change of the center distance", axis, 1e3 * distance, curves))
+    return deviations
 
 
 def _curves(database: SteDatabase, misalignment: float, change: float) -> tuple[Curve, ...]:
