@@ -238,34 +238,6 @@ def rounded(value: float) -> float:
     return float(f"{value:.12g}") + 0.0
 
 
-# Names of a scene's parts: those of the file, made unlike each other.
-
-
-LONGEST = 64
-"""Characters of a name in a scene."""
-
-
-class Names:
-    """Gives each part of one kind its name.
-
-    A name that is too long, or that another part has, ends in the component's id.
-    """
-
-    def __init__(self) -> None:
-        self._names: dict[int, str] = {}
-
-    def of(self, part: Part, suffix: str = "") -> str:
-        """Return the name of a part; without a suffix the same each time."""
-        if not suffix and part.id in self._names:
-            return self._names[part.id]
-        name = (" ".join(part.name.split()) or part.type) + suffix
-        if len(name) > LONGEST or name in self._names.values():
-            ending = f" ({part.id}){suffix}"
-            name = name[: LONGEST - len(ending)].rstrip() + ending
-        self._names[part.id if not suffix else -len(self._names) - 1] = name
-        return name
-
-
 # What joins two components: couplings and bearings with an inner and an outer side.
 
 

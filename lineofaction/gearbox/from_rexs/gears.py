@@ -16,11 +16,11 @@ from bounds.types import FloatArray
 from dynamics.shafts import Inertia, hollow_cylinder
 from lineofaction.gearbox.from_rexs.account import mend
 from lineofaction.gearbox.from_rexs.case_table import case_of
-from lineofaction.gearbox.from_rexs.gear_unit import GearStage, GearUnit, Names, Part
+from lineofaction.gearbox.from_rexs.gear_unit import GearStage, GearUnit, Part
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.meshing import OTHER_STAGES, STAGES, LoadedFlank, Meshing
 from lineofaction.gearbox.from_rexs.placement import frame_of
-from lineofaction.gearbox.from_rexs.scene_shafts import SceneShaft, SceneShafts, inertia_table
+from lineofaction.gearbox.from_rexs.scene_shafts import Names, SceneShaft, SceneShafts, inertia_table
 from lineofaction.gearbox.from_rexs.toothing import ToothedPair, ToothingData, derived_shifts
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case

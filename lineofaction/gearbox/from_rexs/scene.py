@@ -14,7 +14,6 @@ from lineofaction.gearbox.from_rexs.gear_unit import (
     NO_STAGE,
     Connection,
     GearStage,
-    Names,
     Part,
     rounded,
 )
@@ -28,7 +27,7 @@ from lineofaction.gearbox.from_rexs.loads import AppliedTorque, SceneMotion
 from lineofaction.gearbox.from_rexs.placement import FIXED, SAME_PLACE, PlacedShaft, placement
 from lineofaction.gearbox.from_rexs.power_flow import FORCES, OperatingPoint, PowerFlow
 from lineofaction.gearbox.from_rexs.scene_bearings import SceneBearings
-from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
+from lineofaction.gearbox.from_rexs.scene_shafts import Names, SceneShafts
 from lineofaction.gearbox.units import MM
 
 # Which component each part of a scene is, and how its axes u, v, w lie in the scene.

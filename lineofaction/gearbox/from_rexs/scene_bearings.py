@@ -20,10 +20,10 @@ from lineofaction.gearbox.from_rexs.bearings import (
     operating_point,
     stated_stiffness,
 )
-from lineofaction.gearbox.from_rexs.gear_unit import Connection, Names, Part, rounded
+from lineofaction.gearbox.from_rexs.gear_unit import Connection, Part, rounded
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.placement import FIXED, placement
-from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
+from lineofaction.gearbox.from_rexs.scene_shafts import Names, SceneShafts
 from lineofaction.gearbox.schemas.declared import figures
 
 Table = dict[str, Any]

@@ -1,4 +1,4 @@
-"""The shafts of the scene: those of the file, rigid planet carriers, and stubs of planetary sets."""
+"""The shafts of the scene: those of the file, planet carriers, stubs of planetary sets; names of parts."""
 
 from __future__ import annotations
 
@@ -8,10 +8,35 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from dynamics.shafts import BeamSection, Inertia, hollow_cylinder
-from lineofaction.gearbox.from_rexs.gear_unit import GearStage, Names, Part
+from lineofaction.gearbox.from_rexs.gear_unit import GearStage, Part
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.placement import PlacedShaft, placement
 from lineofaction.gearbox.units import MM
+
+LONGEST = 64
+"""Characters of a name in a scene."""
+
+
+class Names:
+    """Gives each part of one kind its name.
+
+    A name that is too long, or that another part has, ends in the component's id.
+    """
+
+    def __init__(self) -> None:
+        self._names: dict[int, str] = {}
+
+    def of(self, part: Part, suffix: str = "") -> str:
+        """Return the name of a part; without a suffix the same each time."""
+        if not suffix and part.id in self._names:
+            return self._names[part.id]
+        name = (" ".join(part.name.split()) or part.type) + suffix
+        if len(name) > LONGEST or name in self._names.values():
+            ending = f" ({part.id}){suffix}"
+            name = name[: LONGEST - len(ending)].rstrip() + ending
+        self._names[part.id if not suffix else -len(self._names) - 1] = name
+        return name
+
 
 # The rigid body of a planet carrier: the inertia of its shafts, pins and side plates together.
 
