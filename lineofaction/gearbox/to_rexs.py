@@ -127,9 +127,7 @@ def _contact_ratios(pair: ParallelAxes) -> tuple[Attribute, ...]:
     )
 
 
-def _mesh(
-    curve: Curve, stiffness: np.ndarray[tuple[int, ...], np.dtype[np.float64]]
-) -> tuple[Attribute, ...]:
+def _mesh(curve: Curve, stiffness: FloatArray) -> tuple[Attribute, ...]:
     """Return tangent stiffness and transmission error over the mesh at the curve's load."""
     harmonics = [estimate.value / UM for estimate in curve.harmonics]
     return (

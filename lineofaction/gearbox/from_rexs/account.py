@@ -170,7 +170,7 @@ class Account:
     def __init__(self, model: Model) -> None:
         self._places = {id(part): place for place, part in model.all_components()}
         self._parts = {id(part): part for _, part in model.all_components()}
-        self._said: dict[tuple[int, str], tuple[Fate, str]] = {}
+        self._said: dict[int, dict[str, tuple[Fate, str]]] = {number: {} for number in self._parts}
 
     def place(self, component: Component) -> str:
         """Return where a component stands: its id, and its load case."""
@@ -178,11 +178,11 @@ class Account:
 
     def say(self, component: Component, item: str, fate: Fate, words: str) -> None:
         """State what becomes of an attribute that a component has or lacks; `item` "" is the component."""
-        self._said[id(component), item] = (fate, words)
+        self._said[id(component)][item] = (fate, words)
 
     def is_stated(self, component: Component) -> bool:
         """Return whether something was said of the component itself."""
-        return (id(component), "") in self._said
+        return "" in self._said[id(component)]
 
     def lines(self) -> tuple[Line, ...]:
         """Return a line for each component, each attribute, and each value stated that the file lacks.
@@ -194,7 +194,7 @@ class Account:
 
     def _lines(self, part: Component) -> Iterator[Line]:
         """Lines of a component, its own first."""
-        said = {item: what for (owner, item), what in self._said.items() if owner == id(part)}
+        said = dict(self._said[id(part)])
         own = said.pop("", None)
         for attribute in part.attributes:
             fate, words = said.setdefault(attribute.id, ("ignored", UNUSED))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import overload
 
 from bounds import Bound, Declared
@@ -207,22 +208,22 @@ class GearUnit:
             tuple(Part(part, self) for part in case.components) for each in spectra for case in each.cases
         )
 
-    @property
+    @cached_property
     def bearings(self) -> tuple[Connection, ...]:
         """The bearings, in the order of the file."""
         return tuple(_connections(self, BEARINGS))
 
-    @property
+    @cached_property
     def couplings(self) -> tuple[Connection, ...]:
         """The couplings that are engaged, in the order of the file."""
         return tuple(entry for entry in _connections(self, COUPLINGS) if _engaged(entry.part))
 
-    @property
+    @cached_property
     def stages(self) -> tuple[GearStage, ...]:
         """The stages whose gears, teeth and shafts the file states, in the order of their relations."""
         return tuple(_gear_stages(self))
 
-    @property
+    @cached_property
     def planetary_sets(self) -> tuple[PlanetarySet, ...]:
         """The planetary sets that have a carrier and planets; the account says what the others lack."""
         return tuple(_planetary_sets(self))
