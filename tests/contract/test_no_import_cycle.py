@@ -30,7 +30,7 @@ def imported(tree: ast.AST, modules: Collection[str]) -> Iterator[str]:
 
 def test_imports_have_no_cycle() -> None:
     paths = {module_name(path): path for kind in PACKAGES for path in (ROOT / kind).rglob("*.py")}
-    assert len(paths) > 600  # all of them were looked at
+    assert len(paths) > 700  # all of them were looked at
     trees = ((name, ast.parse(path.read_text())) for name, path in paths.items())
     arrows = {name: set(imported(tree, paths)) & set(paths) for name, tree in trees}
     TopologicalSorter(arrows).prepare()  # raises CycleError, which names the cycle
