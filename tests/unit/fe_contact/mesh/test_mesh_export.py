@@ -18,7 +18,8 @@ def export(mesh: GearMesh, path: Path) -> None:
     bore = np.zeros(len(mesh.points))
     bore[mesh.bore_nodes] = 1.0
     points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
-    write_cells(path, points, mesh.triangles, {"bore": bore}, {"tooth": cell_teeth(mesh).astype(float)})
+    of_points = {"bore": bore, "height": mesh.points[:, 1].copy()}
+    write_cells(path, points, mesh.triangles, of_points, {"tooth": cell_teeth(mesh).astype(float)})
 
 
 def test_round_trip(tmp_path: Path, gear_and_mesh: tuple[Gear, GearMesh]) -> None:
@@ -27,6 +28,7 @@ def test_round_trip(tmp_path: Path, gear_and_mesh: tuple[Gear, GearMesh]) -> Non
     back = meshlane.read(tmp_path / "gear.vtu")
     assert np.array_equal(back.points[:, :2], mesh.points)
     assert np.array_equal(back.cells_dict["triangle6"], mesh.triangles)
+    assert np.array_equal(back.point_data["height"], mesh.points[:, 1])
     assert np.flatnonzero(back.point_data["bore"]).tolist() == sorted(mesh.bore_nodes.tolist())
     teeth = set(np.unique(back.cell_data["tooth"][0]).astype(int).tolist())
     assert teeth == set(mesh.teeth.tolist()) | ({HUB} if mesh.hub is not None else set())
