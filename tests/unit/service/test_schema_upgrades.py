@@ -177,8 +177,10 @@ def test_a_step_that_fails_leaves_the_old_schema(tmp_path: Path, monkeypatch: py
 def test_steps_that_other_programs_live_through_only_add() -> None:
     """Programs from `USABLE_SINCE` on read and write what they did: tables and columns stay."""
     taking = re.compile(r"\.(?:drop_|alter_column|rename_)\w*|DROP|RENAME")
-    for number in REVISIONS[REVISIONS.index(USABLE_SINCE) + 1 :]:
-        assert taking.findall(inspect_source(STEPS[number])) == [], number
+    source = inspect_source(migrations)
+    for former in REVISIONS[: REVISIONS.index(USABLE_SINCE) + 1]:
+        source = source.replace(inspect_source(STEPS[former]), "")
+    assert taking.findall(source) == []
 
 
 @both
