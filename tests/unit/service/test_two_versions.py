@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from named_run import put_named_run
-from running_service import Bench, bench
+from running_service import Bench, bench, until
 from service_fakes import REGISTRY
 from sqlalchemy import update
 
@@ -58,9 +58,12 @@ def test_a_scheduler_ends_what_an_older_version_left_and_goes_on(machine: Bench)
     with writing(machine.engine) as connection:
         mine = computations.c.id == old.computation
         connection.execute(update(computations).where(mine).values(program=""))
+    left = machine.settings.data_directory / "work" / old.computation
+    left.mkdir(parents=True)
     machine.scheduler.start()
     assert machine.ended(old).message == "The job was entered by version 0.2.0 or older; submit it again."
     assert machine.ended(new).status == "successful" and machine.starts(old) == []
+    until(lambda: not left.exists())
 
 
 def test_an_older_version_leaves_newer_work(machine: Bench) -> None:
