@@ -182,3 +182,4 @@ def running(tmp_path: Path) -> Iterator[TestClient]:
 def test_ended_jobs_are_found_by_their_status(running: TestClient) -> None:
     submit(running, 1)
     until(lambda: len(running.get("/v1/jobs", params={"status": "successful"}).json()["jobs"]) == 1)
+    assert running.get("/v1/jobs", params={"status": ["accepted", "running"]}).json()["jobs"] == []
