@@ -1,4 +1,9 @@
-"""Analytic contact of elastic half-planes and wedges: pure functions of load, curvature and modulus."""
+"""Analytic contact of elastic half-planes and wedges: pure functions of load, curvature and modulus.
+
+References
+----------
+.. [1] K. L. Johnson, Contact Mechanics, Cambridge University Press 1985, sections 4.2 and 5.6.
+"""
 
 from __future__ import annotations
 

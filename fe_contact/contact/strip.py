@@ -15,8 +15,8 @@ curvature b_k, a tip edge is an end. On the strip c - h .. c + h, with x = c + h
     approach = mean(g) + k p [ln(a/h) - 1/4]       beyond a patch of half-width a; k = 2/(pi E*).
 
 A strip between two edges is a flat punch. The approach is stationary in c and h, so that its slope in the
-load is k [ln(a/h) - 1/4]. Without breaks and edges this is Hertz; with an edge alone it is the law of
-`fe_contact.hertz`. `docs/theory/hertz.md` has the derivation.
+load is k [ln(a/h) - 1/4]. Without breaks and edges this is Hertz. `docs/theory/hertz.md` has the
+derivation, and the closed form with an edge alone.
 
 References
 ----------

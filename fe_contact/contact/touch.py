@@ -132,7 +132,7 @@ _REACH = 0.5
 _ROUNDEST = 0.25
 """Least curvature of the gap over that of plain involutes."""
 _NEAR = 1e-4
-"""Of `_STEP`: step of differences of the exact gap, whose slope is nowhere _rounded."""
+"""Of `_STEP`: step of differences of the exact gap, whose slope is nowhere rounded."""
 _SIDES: tuple[Side, Side] = ("exit", "approach")
 """Where the tips of the pinion and of the wheel leave contact."""
 

@@ -18,7 +18,7 @@ _ALONG_FLANK = 401
 
 @dataclass(frozen=True)
 class CornerContact(Effect):
-    """Tip edges on the mating flanks, with exact rigid gaps and the edge law of `hertz.edge_contact`."""
+    """Tip edges on the mating flanks, with exact rigid gaps and as soft as a wedge (`wedge_softness`)."""
 
     name: ClassVar[str] = "corner_contact"
     brings: ClassVar[str] = "corner_contact"

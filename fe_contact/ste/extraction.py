@@ -174,7 +174,7 @@ def force_table(database: SteFields) -> ForceTable:
 
     Level 0 is lift-off: the no-load transmission error with zero stiffness. Every stored load is a level,
     with the inverse of the stored tangent compliance as stiffness; between loads where a further pair comes
-    into contact there are more (`load_refinement`). Normal forces become transverse, F_bt = F_bn cos(beta_b).
+    into contact there are more (`_refined`). Normal forces become transverse, F_bt = F_bn cos(beta_b).
 
     Raises
     ------

@@ -1,4 +1,9 @@
-"""Closed forms of contact that the compiled laws are held against: tip edges, patches, cylinders."""
+"""Closed forms of contact that the compiled laws are held against: tip edges, patches, cylinders.
+
+References
+----------
+.. [1] K. L. Johnson, Contact Mechanics, Cambridge University Press 1985, sections 5.5 and 5.6.
+"""
 
 from __future__ import annotations
 

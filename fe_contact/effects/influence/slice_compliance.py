@@ -8,7 +8,7 @@ logarithm of the distance, as that of a half plane:
     u_j = body + k ln(2 D/(j p)),    k = 2 (1 - nu^2)/(pi E),
 
 j pitches p away on a body of depth D. Finite elements of 17 to 60 teeth give the same within 10 %. The axial
-part of a helical tooth's force moves the body too (`axial_compliance`).
+part of a helical tooth's force moves the body too (`_axial_shear`).
 """
 
 from __future__ import annotations
