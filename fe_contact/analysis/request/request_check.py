@@ -23,7 +23,6 @@ from fe_contact.planning.plan import CycleCost, make_plan
 
 # Automatic effects that a requested tolerance does not need.
 
-
 SHARE = 0.1
 """Part of the tolerance that all neglected effects together may change by their estimates, which are right
 within a factor of two in most cases (docs/accuracy.md): what is neglected stays below it."""
@@ -155,22 +154,27 @@ def checked_request(request: Request, *, whole_table: bool = True, neglect: bool
     """
     composed, ledger = _composed(request)
     _refuse_beyond_plane(request.scene, composed, ledger)
-    if neglect and not (request.neglected or request.turned_on):
-        request = replace(
-            request, neglected=_neglected_effects(request.scene, ledger, request.options.tolerance)
-        )
-        composed, ledger = _composed(request) if request.neglected else (composed, ledger)
+    if neglect:
+        request, composed, ledger = _without_neglected(request, composed, ledger)
     return _held(request, composed, ledger, whole_table=whole_table)
 
 
 def neglecting(checked: Checked) -> Checked:
     """Go on from `check_request` with `neglect` false: decide which effects the tolerance does not need."""
-    request = checked.request
-    neglected = _neglected_effects(request.scene, checked.ledger, request.options.tolerance)
-    if not neglected:
-        return checked
-    remaining = replace(request, neglected=neglected)
-    return _held(remaining, *_composed(remaining))
+    request, composed, ledger = _without_neglected(checked.request, checked.model, checked.ledger)
+    return checked if request is checked.request else _held(request, composed, ledger)
+
+
+def _without_neglected(
+    request: Request, composed: ContactModel, ledger: tuple[LedgerEntry, ...]
+) -> tuple[Request, ContactModel, tuple[LedgerEntry, ...]]:
+    """Neglect what the tolerance does not need, unless that is decided, and compose what is left."""
+    if not (request.neglected or request.turned_on):
+        neglected = _neglected_effects(request.scene, ledger, request.options.tolerance)
+        if neglected:
+            request = replace(request, neglected=neglected)
+            return request, *_composed(request)
+    return request, composed, ledger
 
 
 def _held(
