@@ -106,10 +106,18 @@ def plan_run(
     InputError
         A value that cannot be used, by field name.
     """
+    return plan_of_checked(check_request(pair, axes, options), time_budget=time_budget, cache=cache)
+
+
+def plan_of_checked(
+    checked: Checked, *, time_budget: float | None = None, cache: Path | None = None
+) -> RunPlan:
+    """Plan a request that `check_request` has checked; the rest as `plan_run`."""
+    options = checked.request.options
     budget = options.time_budget if time_budget is None else time_budget
     if options.level is None:
         options = replace(options, time_budget=budget)
-    checked = check_request(pair, axes, options)
+        checked = replace(checked, request=replace(checked.request, options=options))
     decided = decide(checked, cache, tried=True)
     checked, choice = decided.checked, decided.mesh
     curves = expected_curves(checked)

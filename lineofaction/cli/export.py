@@ -15,7 +15,7 @@ from dynamics.engines.fmu import export_fmu
 from dynamics.export import FUNCTIONS, write_universal_file
 from dynamics.mechanism.flanks import DAMPING_REACH
 from dynamics.meshes import CoastFlank
-from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pairs
+from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pairs_of_checked
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
@@ -24,7 +24,7 @@ from lineofaction.cli.analyze import assessed_case
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
 from lineofaction.cli.ste import open_ste, positions
-from lineofaction.gearbox.convert.case import boundary_errors, operating_point
+from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
@@ -71,16 +71,10 @@ def _export_deformed(
     if len(where) > _MOST_POSITIONS:
         raise BadInput.of("--at", f"{len(where)} positions", f"at most {_MOST_POSITIONS} positions")
     _refuse_output(output)
-    pair = case.at_point.request.pair
+    checked = case.at_point
     with progress_bar() as report, boundary_errors():
-        pairs = deformed_pairs(
-            pair,
-            operating_point(case.case),
-            case.options,
-            Run(cache=cache_home() / "compliance", progress=report),
-            at=where,
-            beside=beside,
-        )
+        run = Run(cache=cache_home() / "compliance", progress=report)
+        pairs = deformed_pairs_of_checked(checked, run, at=where, beside=beside)
     written = _written(pairs, output)
     if as_json:
         print_json({"written": [str(path) for path in written], "positions": _figures(pairs)})

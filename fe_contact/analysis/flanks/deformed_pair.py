@@ -13,6 +13,7 @@ from fe_contact.analysis.flanks.solved_operating_point import (
     checked_positions,
     solve_operating_point,
 )
+from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_point
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance.deformation_3d import deformed_solids
@@ -114,7 +115,17 @@ def deformed_pairs(
     MeshError, SolveError
         No acceptable mesh, or positions without a solution.
     """
-    checked = check_point(pair, point, options)
+    return deformed_pairs_of_checked(check_point(pair, point, options), run, at=at, beside=beside)
+
+
+def deformed_pairs_of_checked(
+    checked: Checked,
+    run: Run = Run(),  # noqa: B008 (frozen)
+    *,
+    at: ArrayLike = 0.0,
+    beside: int = 1,
+) -> tuple[DeformedPair, ...]:
+    """Solve a request that `check_point` has checked; the rest as `deformed_pairs`."""
     integer("beside", beside, 0, 100)
     solved = solve_operating_point(checked, checked_positions(at), StageClock(run.workers.cost), run)
     gears = _deformed_gears(solved, beside)

@@ -15,6 +15,7 @@ from fe_contact.analysis.database.compute_database import software_versions
 from fe_contact.analysis.flanks.load_distribution import FlankScene, LoadDistribution, load_distribution
 from fe_contact.analysis.flanks.solved_operating_point import solved_point
 from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request_check import check_point
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.plausibility import flank_findings, merged, unexpected
@@ -222,10 +223,22 @@ def flank_results(
     ------
     InputError
         A value that cannot be used, by field name.
-    MeshError, SolveError No acceptable mesh, positions without a solution, or a violated assumption if
-    `on_violation` is "fail".
+    MeshError, SolveError
+        No acceptable mesh, positions without a solution, or a violated assumption if `on_violation` is
+        "fail".
     """
-    solved, receipt = solved_point(pair, point, options, at, StageClock(run.workers.cost), run)
+    return flanks_of_checked(check_point(pair, point, options), run, at=at, case=case)
+
+
+def flanks_of_checked(
+    checked: Checked,
+    run: Run = Run(),  # noqa: B008 (frozen)
+    *,
+    at: ArrayLike | None = None,
+    case: Json | None = None,
+) -> LoadDistribution:
+    """Solve a request that `check_point` has checked; the rest as `flank_results`."""
+    solved, receipt = solved_point(checked, at, StageClock(run.workers.cost), run)
     checked, request = solved.checked, solved.checked.request
     results = load_distribution(
         solved.contact.pair,

@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike
 
 from bounds import Finding, warn_of
 from fe_contact.analysis.flanks.solved_operating_point import solved_point
+from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request_check import check_point
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance import PlaneHypothesis, UnitRootStress, unit_root_stresses, unit_root_stresses_3d
 from fe_contact.contact import face_flank_forces, plane_flank_forces
@@ -305,8 +307,18 @@ def root_stress(
 
     Parameters and errors are those of `flank_results`.
     """
+    return root_stress_of_checked(check_point(pair, point, options), run, at=at)
+
+
+def root_stress_of_checked(
+    checked: Checked,
+    run: Run = Run(),  # noqa: B008 (frozen)
+    *,
+    at: ArrayLike | None = None,
+) -> RootStress:
+    """Solve a request that `check_point` has checked; the rest as `root_stress`."""
     clock = StageClock(run.workers.cost)
-    solved, receipt = solved_point(pair, point, options, at, clock, run)
+    solved, receipt = solved_point(checked, at, clock, run)
     with clock.stage("root stress"):
         pinion, wheel = _histories(solved, _root_meshes(solved.contact.plan.discretization), run.cache)
     run.progress("root stress", 1.0)
@@ -322,8 +334,8 @@ def root_stress(
         wheel,
         torque=float(request.torque[0]),
         normal_force=float(request.load[0]),
-        misalignment=point.misalignment,
-        center_distance_change=point.center_distance_change,
+        misalignment=float(request.misalignment[0]),
+        center_distance_change=float(request.center_distance_change[0]),
         receipt=receipt | clock.to_json(),
         warnings=[finding.to_json() for finding in (*_not_root(request.findings), *findings)],
     )

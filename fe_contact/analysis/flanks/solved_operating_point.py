@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_contact.analysis.checks.assumptions import check_one_place, settled, with_effects
-from fe_contact.analysis.pairs.pair_contact import (
-    operating_points,
-    pair_contact,
-)
+from fe_contact.analysis.pairs.pair_contact import operating_points, pair_contact
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import check_point
+from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.contact import ContactSolution
 from fe_contact.errors import InputError, SolveError, finite
-from fe_contact.geometry import ParallelAxes
-from fe_contact.options import AnalysisOptions, OperatingPoint, Run
+from fe_contact.options import Run
 from fe_contact.planning.planned import planned
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json, Status
@@ -29,19 +26,14 @@ POSITIONS = 64
 
 
 def solved_point(
-    pair: ParallelAxes,
-    point: OperatingPoint,
-    options: AnalysisOptions,
-    at: ArrayLike | None,
-    clock: StageClock,
-    run: Run,
+    checked: Checked, at: ArrayLike | None, clock: StageClock, run: Run
 ) -> tuple[SolvedOperatingPoint, Json]:
     """Solve an operating point at positions, check what that took for granted, and repeat it if needed.
 
     Parameters
     ----------
-    pair, point, options, run
-        As `flank_results` takes them.
+    checked : Checked
+        Of `check_point`.
     at : array_like, optional
         Positions in base pitches; default: 64 over one mesh cycle.
 
@@ -59,7 +51,6 @@ def solved_point(
     MeshError, SolveError
         As `solve_operating_point`, or an assumption does not hold and `on_violation` is "fail".
     """
-    checked = check_point(pair, point, options)
     position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
 
     def repeat(made: SolvedOperatingPoint, needed: Mapping[str, str]) -> SolvedOperatingPoint:
@@ -78,13 +69,17 @@ def solve_operating_point(
 ) -> SolvedOperatingPoint:
     """Solve the one load and the one alignment of a request at positions (P,).
 
-    Beyond the first base pitch pairs are counted from the one that is then at the place of pair 0.
+    Beyond the first base pitch pairs are counted from the one that is then at the place of pair 0. All teeth
+    have their own deviations, however few `pitches` of the request a table would cover.
 
     Raises
     ------
     MeshError, SolveError
         No acceptable mesh, or positions without a solution.
     """
+    if checked.request.pitches is not None:
+        request = replace(checked.request, pitches=None)
+        checked = checked_request(request, whole_table=False, neglect=False)
     request = checked.request
     plan = planned(request.pair, request.load, request.options, checked.model, cache=run.cache)
     run.progress("compliance", 0.0)

@@ -18,6 +18,7 @@ import lineofaction as loa
 from fe_contact.analysis.request import request_check
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert import case as conversion
+from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.toml import toml_text
 from service.app import create_app
@@ -168,4 +169,21 @@ def test_an_optimization_checks_each_of_its_requests_once(calls: Calls, file: Pa
 
 def test_a_sweep_checks_once(calls: Calls, file: Path, tmp_path: Path) -> None:
     invoked("sweep", file, "--over", "torque=0.1:0.2:0.1", "-o", tmp_path / "map.nc")
+    assert calls.counts == (0, 1, 1)
+
+
+@pytest.mark.parametrize(
+    ("verb", "target"), [("flank", "flanks.nc"), ("root-stress", "roots.json"), ("export", "bodies")]
+)
+def test_results_at_a_point_check_once(
+    calls: Calls, file: Path, tmp_path: Path, verb: str, target: str
+) -> None:
+    """Flanks, roots and deformed gears go on from the check that refuses what cannot be."""
+    invoked(verb, file, "-o", tmp_path / target)
+    assert calls.counts == (0, 1, 1)
+
+
+def test_a_plan_goes_on_from_the_check_of_the_submission(calls: Calls) -> None:
+    case = conversion.CheckedCase(validated(Case, CASE))
+    assert case.feasible.request.pair == plan_of(case, None, None).checked.request.pair
     assert calls.counts == (0, 1, 1)

@@ -6,16 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from bounds.types import Json
-from fe_contact.analysis.flanks.flank_file import FORMAT, flank_results
+from fe_contact.analysis.flanks.flank_file import FORMAT, flanks_of_checked
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.options import Run
-from lineofaction.gearbox.convert.case import (
-    CheckedCase,
-    boundary_errors,
-    case_at,
-    case_json,
-    operating_point,
-)
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, case_at, case_json
 from lineofaction.gearbox.convert.plausibility import phrased_for
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile
 from lineofaction.gearbox.studies.flank import FlankFigures, Inputs
@@ -35,10 +29,9 @@ def flanks_of(checked: CheckedCase, cache: Path | None, progress: Progress = sil
     JobFailed
         No mesh, or positions without a solution.
     """
-    run, case = Run(cache=cache, progress=progress), checked.case
+    run, case, point = Run(cache=cache, progress=progress), checked.case, checked.at_point
     with boundary_errors():
-        point = operating_point(case)
-        results = flank_results(checked.pair, point, checked.options, run, case=case_json(case))
+        results = flanks_of_checked(point, run, case=case_json(case))
     warnings = phrased_for(case, results.metadata.warnings)
     return replace(results, metadata=replace(results.metadata, warnings=warnings))
 

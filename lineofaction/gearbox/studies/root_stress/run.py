@@ -10,16 +10,11 @@ from fe_contact.analysis.flanks.root_stress import (
     RootPassage,
     RootPeak,
     RootStressHistory,
-    root_stress,
+    root_stress_of_checked,
 )
 from fe_contact.options import Run
 from fe_contact.plausibility.pair_checks import nominal_root_stresses
-from lineofaction.gearbox.convert.case import (
-    CheckedCase,
-    boundary_errors,
-    case_at,
-    operating_point,
-)
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, case_at
 from lineofaction.gearbox.convert.plausibility import phrased_for
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
 from lineofaction.gearbox.studies.root_stress import Inputs, RootStressFigures
@@ -80,7 +75,7 @@ class RootStressStudy(CaseStudy[Inputs, RootStressFigures, Roots]):
 
     def check(self, case: CheckedCase, _inputs: Inputs) -> None:
         """Refuse a case that cannot be."""
-        _ = case.feasible
+        _ = case.at_point
 
     def normalized(self, _case: CheckedCase, _inputs: Inputs) -> Json:
         """Return nothing: the case has all of it."""
@@ -97,8 +92,9 @@ class RootStressStudy(CaseStudy[Inputs, RootStressFigures, Roots]):
             No mesh, or positions without a solution.
         """
         run, pair = Run(cache=means.home / "compliance", progress=means.report), case.pair
+        checked = case.at_point
         with boundary_errors():
-            stress = root_stress(pair, operating_point(case.case), case.options, run)
+            stress = root_stress_of_checked(checked, run)
         helical = bool(pair.pinion.helix_angle)
         nominal = (None, None) if helical else nominal_root_stresses(pair, stress.normal_force)
         return Roots(
