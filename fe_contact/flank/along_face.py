@@ -11,7 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from bounds import Direction
-from fe_contact.flank.part import FlankPart, Polynomial, Tooth
+from fe_contact.flank.part import Polynomial, Tooth
 from fe_contact.flank.relief import FaceRelief, Shape, amount, length, shape, slope
 from fe_contact.types import FloatArray
 
@@ -116,7 +116,7 @@ class _EndReliefNonDatumFace(_OneSidedRelief):
     )
 
 
-ALONG_FACE: tuple[type[FlankPart], ...] = (
+class AlongFace(
     _HelixCrowning,
     _HelixCrowningDatumFace,
     _HelixCrowningNonDatumFace,
@@ -124,5 +124,5 @@ ALONG_FACE: tuple[type[FlankPart], ...] = (
     _EndRelief,
     _EndReliefDatumFace,
     _EndReliefNonDatumFace,
-)
-"""In the order of their figures."""
+):
+    """All modifications along the face, in the order of their figures."""

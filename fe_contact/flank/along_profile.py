@@ -236,7 +236,7 @@ class _CutTip(FlankPart):
         return (ReliefStart(start, True, math.tan(self.tip_chamfer_angle), -gear.sign / start, True),)
 
 
-ALONG_PROFILE: tuple[type[FlankPart], ...] = (
+class AlongProfile(
     _ProfileCrowning,
     _ProfileCrowningTip,
     _ProfileCrowningRoot,
@@ -244,5 +244,5 @@ ALONG_PROFILE: tuple[type[FlankPart], ...] = (
     _TipRelief,
     _RootRelief,
     _CutTip,
-)
-"""In the order of their figures."""
+):
+    """All modifications along the profile, in the order of their figures."""

@@ -6,29 +6,35 @@ action).
 
 from __future__ import annotations
 
-from dataclasses import Field, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from functools import cached_property, reduce
 from operator import or_
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, dataclass_transform
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import Direction, Kind, declarations, described
-from fe_contact.flank.along_face import ALONG_FACE
-from fe_contact.flank.along_profile import ALONG_PROFILE
-from fe_contact.flank.over_flank import OVER_FLANK
+from fe_contact.flank.along_face import AlongFace
+from fe_contact.flank.along_profile import AlongProfile
+from fe_contact.flank.over_flank import OverFlank
 from fe_contact.flank.part import FlankPart, ReliefStart, Tooth, involute
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-PARTS = (*ALONG_PROFILE, *ALONG_FACE, *OVER_FLANK)
+    class _Figures(AlongProfile, AlongFace, OverFlank):
+        """The fields that `_of_all_parts` gives a class."""
+else:
+    _Figures = object
+
+PARTS: tuple[type[FlankPart], ...] = (*AlongProfile.__bases__, *AlongFace.__bases__, *OverFlank.__bases__)
 """The modifications that there are, each a line of these lists, in the order of their figures."""
 Flank = TypeVar("Flank")
 
 
+@dataclass_transform(frozen_default=True, kw_only_default=True)
 def _of_all_parts(kind: type[Flank]) -> type[Flank]:
     """Make a dataclass with the fields of all parts, which declare them."""
     for entry in (entry for part in PARTS for entry in fields(part)):
@@ -39,18 +45,11 @@ def _of_all_parts(kind: type[Flank]) -> type[Flank]:
 
 @described
 @_of_all_parts
-class FlankModification:
+class FlankModification(_Figures):
     """Intended departures of one gear's flanks from the involute helicoid: the sum of all its parts.
 
     Every part declares its fields, in m and rad, with their bounds; all are 0 by default and then neutral.
     """
-
-    if TYPE_CHECKING:  # figures of the parts, by name
-        __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
-
-        def __init__(self, **figures: Any) -> None: ...
-
-        def __getattr__(self, name: str) -> Any: ...
 
     def __post_init__(self) -> None:
         _ = self.parts  # each checks its own fields

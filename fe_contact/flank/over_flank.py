@@ -154,10 +154,10 @@ def _check_reach(axis: str, nodes: tuple[float, ...], low: float, high: float) -
         raise InputError(f"modification.flank_grid.{axis}", [nodes[0], nodes[-1]], bound, advice)
 
 
-OVER_FLANK: tuple[type[FlankPart], ...] = (
+class OverFlank(
     _FlankTwist,
     _TriangularTipRelief,
     _TriangularRootRelief,
     _FreeForm,
-)
-"""In the order of their figures."""
+):
+    """All modifications over the whole flank, in the order of their figures."""
