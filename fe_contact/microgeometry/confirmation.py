@@ -28,9 +28,6 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate, FloatArray, IntArray
 from model_studies import NOT_STORED, in_unit
 
-# The start of every study of a pair's micro-geometry: one model, one compliance, one evaluator.
-
-
 # The loads at which designs are assessed: torques, each with the misalignment of the mesh under it.
 
 SAME = 1e-12
@@ -106,6 +103,9 @@ def _misalignments(given: Misalignments, loads: int) -> FloatArray:
     ends, advice = (-LARGEST_DEVIATION, LARGEST_DEVIATION), SiNote("In m: 10 um is 1e-5.")
     names = [f"misalignment[{i}]" for i in range(len(values))] if np.ndim(given) else ["misalignment"]
     return np.array([within(*each, *ends, advice) for each in zip(names, values, strict=True)])
+
+
+# The start of every study of a pair's micro-geometry: one model, one compliance, one evaluator.
 
 
 @dataclass(frozen=True)

@@ -38,9 +38,6 @@ from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray
 from fe_contact.workers import InProcess
 
-# The best design of all searches, assessed by full analyses of it and of the design to begin with.
-
-
 # Assessed designs on disk: a search that was killed, or may use more evaluations, continues.
 
 
@@ -135,6 +132,8 @@ def _prune(directory: Path) -> None:
     for file in files[:-KEPT_FILES]:
         file.unlink(missing_ok=True)
 
+
+# The best design of all searches, assessed by full analyses of it and of the design to begin with.
 
 SLACK = 0.005
 """Limits exceeded by less, in parts of them, are kept: the full analysis has more positions than a search."""

@@ -19,9 +19,6 @@ from fe_contact.microgeometry.objective import LinearMerit
 from fe_contact.types import FloatArray, Json
 from host import cpu_seconds
 
-# Ways to search the unit cube for the design of least merit.
-
-
 # The merit of designs as a search sees it: counted, ended when enough are evaluated, the best remembered.
 
 
@@ -53,7 +50,7 @@ class _Budget:
 
         Raises
         ------
-        BudgetUsed, Cancelled
+        _BudgetUsed, Cancelled
         """
         if self._cancel():
             raise Cancelled
@@ -126,6 +123,8 @@ FIRST_REGION = 0.2
 POOR, GOOD, POORER = 0.25, 0.75, 0.4
 """Parts of the promised fall by which the region shrinks or grows; to what part of the step it shrinks."""
 
+# Ways to search the unit cube for the design of least merit.
+
 TRIED = 7
 """Steps of every start before the best of them is followed to its end."""
 
@@ -145,7 +144,7 @@ class Method(Protocol):
 
         Raises
         ------
-        BudgetUsed, Cancelled
+        _BudgetUsed, Cancelled
             By the merit: the search is over.
         """
         ...

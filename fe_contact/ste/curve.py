@@ -16,9 +16,6 @@ from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.ste.mesh_force import MeshForce
 from fe_contact.types import Estimate, FloatArray
 
-# Errors of mean, peak-to-peak and harmonics by source, as a table stores them.
-
-
 # The load, misalignment and center distance of a query.
 
 
@@ -88,6 +85,8 @@ def _inside(name: str, value: float | None, axis: FloatArray) -> float:
     hint = "The table has no such axis; add values to the case." if axis.size == 1 else "Add it to the case."
     return within(name, default_value(value, axis), float(axis[0]), float(axis[-1]), hint)
 
+
+# Errors of mean, peak-to-peak and harmonics by source, as a table stores them.
 
 AT_NODES = ("discretisation", "slices", "contact_solver", "finite_width", "position", "model")
 """Sources that act at stored loads and alignments as well."""

@@ -30,17 +30,6 @@ from fe_contact.ste.curve_quantities import (
 )
 from fe_contact.types import FloatArray, IntArray, Json, Status
 
-# Errors of a table, by source.
-#
-# The finite-element error comes from a second, coarser discretization solved at the same points; with
-# quadratic elements and Galerkin patches the error falls at least with the square of the element size,
-# which bounds what is left of the difference (`Discretization.remaining`). The table's error is measured
-# at the middles between its nodes. Where the plane stands in for three dimensions, a part of what it was
-# corrected by is its error; it is measured against three-dimensional solutions
-# (docs/effects.md#finite_width). A plane that is not corrected, requested by name or not, errs by what it
-# leaves out of the finite width.
-
-
 # A table solved again at some of its points, on the rougher discretizations that measure its errors.
 #
 # Bodies, slices and corrections change; where teeth touch does not, so that the candidates of the run serve
@@ -144,6 +133,16 @@ class TableSample:
             return None
         return [own.contact.candidates(own.model, self.position).rows(self.rows) for own in known]
 
+
+# Errors of a table, by source.
+#
+# The finite-element error comes from a second, coarser discretization solved at the same points; with
+# quadratic elements and Galerkin patches the error falls at least with the square of the element size,
+# which bounds what is left of the difference (`Discretization.remaining`). The table's error is measured
+# at the middles between its nodes. Where the plane stands in for three dimensions, a part of what it was
+# corrected by is its error; it is measured against three-dimensional solutions
+# (docs/effects.md#finite_width). A plane that is not corrected, requested by name or not, errs by what it
+# leaves out of the finite width.
 
 CORRECTION_ERROR = 0.03
 """Error of the correction for a finite width in parts of the correction itself. The largest seen of mean,

@@ -58,9 +58,6 @@ from model_studies.frontier import Errors
 # The accuracy study: ways to the transmission error from a closed form to fine finite elements.
 
 
-# A fidelity of the accuracy study.
-
-
 class _Fidelity(model_studies.Fidelity[Checked], Protocol):
     """One way to a table of transmission error; those of one family differ by their mesh only.
 

@@ -33,9 +33,6 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 # Six-node triangles in plane strain: their stiffness, and the order that eliminates their nodes.
 
 
-# Order of elimination of the nodes of a plane mesh: METIS' nested dissection of their graph.
-
-
 def mesh_graph(triangles: IntArray, count: int) -> sp.csr_array:
     """Return which of `count` nodes share six-node triangles (e, 6), a node with itself too."""
     rows = np.repeat(triangles, triangles.shape[1], axis=1).ravel()
@@ -44,7 +41,7 @@ def mesh_graph(triangles: IntArray, count: int) -> sp.csr_array:
 
 
 def dissected(graph: sp.csr_array, nodes: IntArray) -> IntArray:
-    """Return nodes in an order that fills little."""
+    """Return nodes in an order that fills little: METIS' nested dissection of their graph."""
     import pymetis  # noqa: PLC0415 - only the factorisation needs it
 
     inner = sp.csr_array(graph[nodes][:, nodes])
@@ -204,9 +201,6 @@ def _trailing_product(factor: SuperLU, count: int) -> FloatArray:
     return np.asarray(0.5 * (product + product.T))
 
 
-# All weak gaps of a pair in plane strain, undeformed or deformed, as one contact system.
-
-
 # Laws that a solution must keep, checked on the displacements of all nodes: reactions and energy.
 
 
@@ -248,6 +242,9 @@ def _moment(body: _CondensedBody, forces: FloatArray) -> float:
     """Return the moment of forces (2 k,) on the strips' nodes about the gear's center, counter-clockwise."""
     arms = body.points - body.body.center
     return float(arms[:, 0] @ forces[1::2] - arms[:, 1] @ forces[0::2])
+
+
+# All weak gaps of a pair in plane strain, undeformed or deformed, as one contact system.
 
 
 @dataclass(frozen=True)

@@ -38,9 +38,6 @@ from fe_contact.full_contact.validity import refusal_over_face
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
 
-# All weak gaps of a pair over its face under one misalignment, as one contact system.
-
-
 # Weak gap of one tooth pair over the face: that of its sections, against hats along the face.
 
 
@@ -97,6 +94,9 @@ def _over_functions(sections: FloatArray, products: FloatArray, functions: int) 
     points, rows, hats = sections.shape
     total = (sections.reshape(points, -1).T @ products).reshape(rows, hats, functions, -1)
     return np.asarray(total.transpose(0, 2, 1, 3).reshape(rows * functions, -1))
+
+
+# All weak gaps of a pair over its face under one misalignment, as one contact system.
 
 
 @dataclass(frozen=True)
