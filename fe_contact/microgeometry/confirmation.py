@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache as cached
 from functools import partial
@@ -197,7 +197,7 @@ def design_study(
     further_torques: Levels,
     clock: StageClock,
     run: Run,
-    check: Callable[[], Checked] | None = None,
+    checked: Checked | None = None,
 ) -> DesignStudy:
     """Choose the model and condense the gears.
 
@@ -207,8 +207,8 @@ def design_study(
         Those that count, and those that only maps show, N m.
     run : Run
         Only this process works.
-    check : callable, optional
-        Returns what `space.check` does, of a request that keeps it.
+    checked : Checked, optional
+        Of `DesignSpace.check`, where that is done.
 
     Raises
     ------
@@ -218,8 +218,7 @@ def design_study(
     own = DesignLoads.of(torques, space.misalignment)
     loads, counted = own.with_torques(further_torques)
     with clock.stage("planning"):
-        checked = check() if check else space.check(torques, further_torques)
-        decided = _on_one_mesh(checked, run.cache)
+        decided = _on_one_mesh(checked or space.check(torques, further_torques), run.cache)
     run.progress("compliance", 0.0)
     with clock.stage("compliance"):
         report = partial(run.progress, "compliance")

@@ -355,7 +355,7 @@ class ToleranceRequest:
 def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
     """Sample pairs within tolerances; see `scatter`."""
     clock, tolerances, sampling = StageClock(run.workers.cost), request.tolerances, request.sampling
-    study = design_study(request.space, request.torques, [], clock, run, lambda: request.checked)
+    study = design_study(request.space, request.torques, [], clock, run, request.checked)
     deviation = tolerances.sample(sampling.samples, sampling.seed)
     names, nominal = tuple(tolerances.widths), replace(study.evaluator, nodes=ONE_NODE)
     with clock.stage("first order"):
