@@ -39,10 +39,10 @@ crowned = dataclasses.replace(pinion, modification=FlankModification(helix_crown
 start = cpu()
 analyze(GearPair(crowned, wheel, 134.5e-3), normal_forces=[6000.0], **common)
 fresh = cpu() - start
-from fe_contact.analysis import check_request
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning import make_plan
+from fe_contact.planning.plan import make_plan
 import numpy as np
 axes, options = TableAxes(normal_forces=[6000.0]), AnalysisOptions(level={level!r})
 asked = check_request(GearPair(crowned, wheel, 134.5e-3), axes, options)

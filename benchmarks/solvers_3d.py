@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 from fe_contact import Gear
 from fe_contact.compliance import flank_compliance_3d
-from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
+from fe_contact.compliance.sector_stiffness import sector_stiffness
 from fe_contact.compliance.elimination_tree import sector_tree
 from fe_contact.compliance.ring_2d import factorise
 from fe_contact.compliance.substructure import condense
