@@ -7,7 +7,7 @@ looked at. What is right is validated as before.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import islice
@@ -118,18 +118,23 @@ def refuse(field: str, value: object, bound: str, suggestion: str = "") -> NoRet
     )
 
 
-# Types that the tables of a scene file share.
+# Types that tables of case and scene files, and inputs of studies, share.
 
 T = TypeVar("T")
 Listed = Annotated[tuple[T, ...], Strict(False)]
 """A list, which Python has as a tuple."""
+if TYPE_CHECKING:
+    Row = Sequence
+else:
+    Row = Listed
+    """A `Listed` of a model that Python users fill in: a checker of types lets them write any sequence."""
 Name = Annotated[str, Field(min_length=1, max_length=64)]
 Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
 Point = Annotated[Listed[Coordinate], Field(min_length=3, max_length=3)]
 Acceleration = Annotated[Listed[Annotated[float, Field(ge=-1e6, le=1e6)]], Field(min_length=3, max_length=3)]
 Number = Annotated[float, Field(ge=-1e9, le=1e9)]
 _MANY = Field(min_length=1, max_length=100_000)
-Times = Annotated[tuple[Annotated[float, Field(ge=0.0, le=1e9)], ...], Strict(False), _MANY]
+Times = Annotated[Listed[Annotated[float, Field(ge=0.0, le=1e9)]], _MANY]
 Numbers = Annotated[Listed[Number], _MANY]
 Course = Literal["linear", "smooth"]
 Stiffness = Annotated[float, Field(ge=-1e15, le=1e15)]

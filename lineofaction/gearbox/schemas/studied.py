@@ -11,6 +11,7 @@ from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.model import (
     HASH,
     BoundaryModel,
+    Row,
     Spelling,
     both,
     exactly_one_of,
@@ -19,7 +20,6 @@ from lineofaction.gearbox.schemas.model import (
     refuse,
     stated,
 )
-from lineofaction.gearbox.schemas.row import Row
 from lineofaction.gearbox.schemas.scene import SceneInput
 
 MOST_SPEEDS = 10_000

@@ -11,8 +11,7 @@ from dynamics.settings.load_case import CaseForce
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
 from lineofaction.gearbox.schemas.loads import ACTING, Vector
-from lineofaction.gearbox.schemas.model import BoundaryModel, Name, own_or_factor, refuse, stated
-from lineofaction.gearbox.schemas.row import Row
+from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row, own_or_factor, refuse, stated
 
 MOST_CASES = 64
 MOST_FORCES = 256

@@ -7,8 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
-from lineofaction.gearbox.schemas.model import BoundaryModel, Name
-from lineofaction.gearbox.schemas.row import Row
+from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row
 
 MOST_FULL_CONTACT = 64
 

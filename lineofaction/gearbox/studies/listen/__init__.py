@@ -7,8 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
-from lineofaction.gearbox.schemas.model import BoundaryModel, Coordinate, exactly_one_of, refuse, stated
-from lineofaction.gearbox.schemas.row import Row
+from lineofaction.gearbox.schemas.model import BoundaryModel, Coordinate, Row, exactly_one_of, refuse, stated
 from lineofaction.gearbox.schemas.studied import RunHash
 
 Position = Annotated[Row[Coordinate], Field(min_length=3, max_length=3)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Ledger, Part, ReductionCosts, Seconds
-from lineofaction.gearbox.schemas.row import Row
+from lineofaction.gearbox.schemas.model import Row
 from lineofaction.gearbox.schemas.studied import MOST_SPEEDS, Orders, OverSpeeds, Speed
 
 

@@ -8,8 +8,7 @@ from typing import Annotated, Self
 from pydantic import Field, model_validator
 
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
-from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
-from lineofaction.gearbox.schemas.row import Row
+from lineofaction.gearbox.schemas.model import BoundaryModel, Row, refuse
 
 Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
 Percent = Annotated[float, Field(ge=-10.0, le=10.0)]

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Figures, Ledger, Part, ReductionCosts, Seconds
-from lineofaction.gearbox.schemas.row import Row
+from lineofaction.gearbox.schemas.model import Row
 from lineofaction.gearbox.schemas.studied import MOST_SPEEDS, OverSpeeds, TurningSpeed
 
 

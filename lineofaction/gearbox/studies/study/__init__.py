@@ -7,8 +7,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
-from lineofaction.gearbox.schemas.model import BoundaryModel, Name, exactly_one_of, refuse, stated
-from lineofaction.gearbox.schemas.row import Row
+from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row, exactly_one_of, refuse, stated
 
 Value = Annotated[float, Field(ge=-1e20, le=1e20)]
 Values = Row[Value]

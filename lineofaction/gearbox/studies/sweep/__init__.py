@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
-from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.schemas.row import Row
+from lineofaction.gearbox.schemas.model import BoundaryModel, Row
 
 Axis = Annotated[str, Field(min_length=1, max_length=1000)]
 Shown = Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"]
