@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial, reduce
@@ -42,9 +43,10 @@ def figures_of(model: type[Part], *sources: Any, **own: Any) -> Json:
     """Return a result as a model of figures has it.
 
     A figure ``speed_rpm`` is the member ``speed_rpm`` of the first source that has one, or its member
-    ``speed``, which is in SI; or what its `Source` says. A part is made of its own source, or of several and
-    a mapping of its own members as a tuple. A number that is not finite is None where None may stand; a
-    figure that may be missing is left out where it is None.
+    ``speed``, which is in SI; or what its `Source` says. A name without unit that several figures share is
+    none of theirs. A part is made of its own source, or of several and a mapping of its own members as a
+    tuple. A number that is not finite is None where None may stand; a figure that may be missing is left out
+    where it is None.
 
     Parameters
     ----------
@@ -58,46 +60,74 @@ def figures_of(model: type[Part], *sources: Any, **own: Any) -> Json:
     ------
     AttributeError
         No source has a figure.
+    TypeError
+        A member of `own` is none of the model's figures, or might be several.
     """
+    if unknown := ", ".join(sorted(own.keys() - _names(model))):
+        raise TypeError(f"not the name of one figure of {model.__name__}: {unknown}")
     document = {}
-    for name, (field, key, source) in _declared(model).items():
-        value = _found(name, source, own, sources, required=field.is_required())
-        figure = source.turned(value[0]) if source and source.document else _figure(field.annotation, *value)
-        if field.is_required() or figure is not None:
-            document[key] = figure
+    for figure in _declared(model):
+        value, convert = figure.found(own, sources)
+        source, kind = figure.source, figure.field.annotation
+        shown = source.turned(value) if source and source.document else _figure(kind, value, convert)
+        if figure.field.is_required() or shown is not None:
+            document[figure.key] = shown
     return document
 
 
+@dataclass(frozen=True)
+class _Declared:
+    """A figure of a model: its names here, without its unit (empty: others share it), and in the document."""
+
+    name: str
+    bare: str
+    key: str
+    field: FieldInfo
+    source: Source | None
+
+    def found(self, own: Json, sources: tuple[Any, ...]) -> tuple[Any, Callable[[Any], Any]]:
+        """Return the value of the figure, and what turns it into its unit."""
+        convert = _unit(self.name)[1]
+        if self.name in own:
+            return own[self.name], _same
+        if self.bare in own:
+            return own[self.bare], convert
+        for each in sources:
+            if self.source is None and (value := _member(each, self.name)) is not _MISSING:
+                return value, _same
+            value = _read(each, self.source) if self.source else _member(each, self.bare)
+            if value is not _MISSING:
+                return value, convert
+        if self.source and self.source.missing is not REQUIRED:
+            return self.source.missing, _same
+        if self.field.is_required():
+            raise AttributeError(self.name)
+        return None, _same
+
+
 @cache
-def _declared(model: type[Part]) -> dict[str, tuple[FieldInfo, str, Source | None]]:
-    """Return field, name in the document and source of every figure of a model, but for those of its file."""
+def _declared(model: type[Part]) -> tuple[_Declared, ...]:
+    """Return the figures of a model, but for those of its file."""
     of_file = Figures.model_fields if issubclass(model, Figures) else {}
-    return {
-        name: (field, field.alias or name, next((m for m in field.metadata if isinstance(m, Source)), None))
-        for name, field in model.model_fields.items()
-        if name not in of_file
-    }
+    fields = {name: field for name, field in model.model_fields.items() if name not in of_file}
+    bare = {name: _unit(name)[0] for name in fields}
+    shared = Counter(bare.values())
+    return tuple(
+        _Declared(
+            name,
+            bare[name] if shared[bare[name]] == 1 else "",
+            field.alias or name,
+            field,
+            next((each for each in field.metadata if isinstance(each, Source)), None),
+        )
+        for name, field in fields.items()
+    )
 
 
-def _found(
-    name: str, source: Source | None, own: Json, sources: tuple[Any, ...], *, required: bool
-) -> tuple[Any, Any]:
-    """Return the value of a figure, and what turns it into its unit."""
-    bare, convert = _unit(name)
-    if name in own:
-        return own[name], _same
-    if bare in own:
-        return own[bare], convert
-    for each in sources:
-        if source is None and (value := _member(each, name)) is not _MISSING:
-            return value, _same
-        if (value := _read(each, source) if source else _member(each, bare)) is not _MISSING:
-            return value, convert
-    if source and source.missing is not REQUIRED:
-        return source.missing, _same
-    if required:
-        raise AttributeError(name)
-    return None, _same
+@cache
+def _names(model: type[Part]) -> frozenset[str]:
+    """Return the names by which a model has its figures."""
+    return frozenset(name for figure in _declared(model) for name in (figure.name, figure.bare) if name)
 
 
 def _read(result: Any, source: Source) -> Any:

@@ -17,8 +17,10 @@ from lineofaction.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfAc
 from lineofaction.client.surface import Listing, Operation
 from lineofaction.gearbox.convert.answers import metadata_json
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.schemas.figures import Figures, RunFigures, TableFigures
+from lineofaction.gearbox.schemas.figures import Figures, Part, RunFigures, TableFigures
 from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, figures_model
+from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.units import RPM
 
 OF_FILE = {"hash": "ab" * 32, "sha256": "cd" * 32, "size": 3}
 ABLATION = OF_FILE | {
@@ -57,6 +59,25 @@ def test_what_a_later_service_adds_is_kept() -> None:
     later = ABLATION | {"moon": "full"}
     figures = figures_model("ablation").model_validate(later)
     assert document(figures) == later and figures["moon"] == "full"
+
+
+class Octaves(Part):
+    """Two figures of one name but for their units."""
+
+    band_hz: list[float]
+    band_db: list[float]
+    speed_rpm: float
+
+
+def test_a_name_that_figures_share_is_none_of_theirs() -> None:
+    figures = figures_of(Octaves, {"speed": 60.0 * RPM}, band_hz=[1.0], band_db=[2.0])
+    assert figures == {"band_hz": [1.0], "band_db": [2.0], "speed_rpm": 60.0}
+    with pytest.raises(TypeError, match="one figure of Octaves: band"):
+        figures_of(Octaves, {"speed": 1.0}, band=[1.0])
+    with pytest.raises(TypeError, match="one figure of Octaves: sped"):
+        figures_of(Octaves, band_hz=[1.0], band_db=[2.0], sped=1.0)
+    with pytest.raises(AttributeError, match="band_hz"):
+        figures_of(Octaves, {"speed": 1.0, "band": [1.0]})
 
 
 def test_no_call_returns_a_bare_dictionary() -> None:

@@ -57,7 +57,7 @@ class Tone(Part):
 class SoundPressure(Part):
     """What the ear makes of a sound pressure; loudness and sharpness need the extra `psychoacoustics`."""
 
-    level_db: float
+    level_db: Annotated[float, Source("level")]
     level_db_a: Annotated[float, Source("weighted_level")]
     steady: bool
     loudness_sone: Annotated[float | None, Source("loudness")]

@@ -90,7 +90,7 @@ class LoudPoint(Part):
     order: float
     speed_rpm: float
     frequency_hz: float
-    level_db: float
+    level_db: Annotated[float, Source("level")]
     level_db_a: Annotated[float, Source("weighted_level")]
     radiation_efficiency: Annotated[float, Source("efficiency")]
     housing: Annotated[str, Source("mode_housing")]
@@ -160,7 +160,7 @@ class SoundOverTimeFigures(Part):
     speed_rpm: list[float]
     third_octave_hz: Annotated[list[float], Source("nominal")]
     third_octave_db: list[list[float]]
-    total_level_db: list[float]
+    total_level_db: Annotated[list[float], Source("total_level")]
     total_level_db_a: Annotated[list[float], Source("total_weighted_level")]
     lowest_hz: float
     highest_hz: float
