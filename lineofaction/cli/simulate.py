@@ -25,11 +25,12 @@ from lineofaction.client import LineOfActionClient
 from lineofaction.client.client import ServiceTables
 from lineofaction.gearbox.convert.case import CheckedCases
 from lineofaction.gearbox.convert.effects import model_lines
-from lineofaction.gearbox.convert.result_files import run_json, staged, stamp
+from lineofaction.gearbox.convert.result_files import run_json, stamp
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.stages import staged
 from lineofaction.gearbox.subjects import MeshTables, finished
 from lineofaction.gearbox.tabled_scene import ComputedTables
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables

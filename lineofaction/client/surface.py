@@ -63,7 +63,7 @@ class BlockingDriver:
     transport : httpx2.BaseTransport, optional
         Replaces the network, for tests.
     options : dict
-        Of `address.http_options`.
+        Of the client of httpx2.
     """
 
     def __init__(self, transport: httpx2.BaseTransport | None, options: dict[str, Any]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 from model_studies.progress import Progress, by_cost, silent, stage_name
@@ -13,6 +13,11 @@ class Stage(NamedTuple):
 
     name: str
     share: float
+
+
+def staged(report: Progress) -> Callable[[float, str], None]:
+    """Return the progress callback of `dynamics.simulation` that feeds ``report(stage, fraction)``."""
+    return lambda fraction, _doing: report("integration", fraction)
 
 
 _PACE_KNOWN = 0.1

@@ -19,13 +19,12 @@ from lineofaction.gearbox.convert.answers import draft_line
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, case_json
 from lineofaction.gearbox.convert.housings import HousedScene, reduced_in
 from lineofaction.gearbox.convert.plausibility import scene_warnings
-from lineofaction.gearbox.convert.result_files import staged
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.stages import TableFraction
+from lineofaction.gearbox.stages import TableFraction, staged
 from lineofaction.gearbox.tabled_scene import checked_table
 from model_studies.progress import Report, by_cost
 from service.store import ResultStore, stored_results

@@ -29,6 +29,8 @@ from lineofaction.gearbox.schemas.live import LiveInput
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.units import DEGREE, MM, UM, factor, in_um
 
+Json = dict[str, Any]
+
 
 def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) -> RunPlan:
     """Plan a case; `time_budget_s` stands beside a tolerance of the case.
@@ -49,12 +51,7 @@ def plan_json(plan: RunPlan) -> Json:
     return plain
 
 
-# Live questions at the boundary: from a stored table and a change of its flanks to curves.
-
 # Derivatives of curves in boundary units: per um, per mm of a length, per N m.
-
-
-Json = dict[str, Any]
 
 
 def _derivatives_json(derivatives: CurveDerivatives) -> Iterator[Json]:
@@ -114,6 +111,9 @@ def _flanks_json(flanks: LoadDistribution) -> Json:
 def _short(values: FloatArray) -> list[float]:
     """Return numbers of five digits: they are drawn."""
     return [float(f"{value:.{_DIGITS}g}") for value in values]
+
+
+# Live questions: from a stored table and a change of its flanks to curves.
 
 
 _PLACES = ("pair.", "load.", "errors.")

@@ -44,7 +44,7 @@ def scene_warnings(
 
     Parameters
     ----------
-    given : SceneInput
+    inputs : SceneInput
         The scene file.
     scene : Scene
         The same with all its planets.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -34,14 +34,7 @@ def stamped(file: Path) -> list[Json]:
         return list(json.loads(content.attrs.get(WARNINGS, "[]")))
 
 
-# The attributes of a run's file.
-
 # The figures of a stored file, as JSON, by the kind of the result.
-
-
-def staged(report: Callable[[str, float], None]) -> Callable[[float, str], None]:
-    """Return the progress callback of `dynamics.simulation` that feeds ``report(stage, fraction)``."""
-    return lambda fraction, _doing: report("integration", fraction)
 
 
 def run_json(file: Path) -> dict[str, Any]:

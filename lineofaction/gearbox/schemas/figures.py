@@ -1,6 +1,6 @@
 """Figures of results: the documents that verbs print by ``--json`` and the service answers with.
 
-Each kind declares its own: a study in its module ``answer``, a table and a run here. Units are in the names;
+Each kind declares its own: a study in its package, a table and a run here. Units are in the names;
 what is not known is None.
 """
 

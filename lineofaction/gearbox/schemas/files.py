@@ -221,7 +221,7 @@ def _with_flank_grids(
         Returns where the CSV file of a name is.
     read_text : callable
         Returns the text of a file, given its name for errors, or raises `BadInput`.
-    place : str
+    prefix : str
         Where `table` stands in the file, for errors.
 
     Raises

@@ -37,9 +37,7 @@ def left_out_warnings(texts: Iterable[str]) -> list[dict[str, Any]]:
     ]
 
 
-# What a run will be and cost: the answer to a plan.
-
-# The effect ledger as answers have it.
+# What a run will be and cost: the answer to a plan, with the effect ledger as answers have it.
 
 
 class EffectInfluence(BaseModel):
