@@ -18,10 +18,10 @@ import httpx2
 from host.directories import cache_home
 from lineofaction.client.batch import AsyncBatch, Batch
 from lineofaction.client.cache import ResultCache
-from lineofaction.client.exchange import Exchange, libraries
+from lineofaction.client.exchange import Exchange
 from lineofaction.client.job import AsyncJob, Job
 from lineofaction.client.job_calls import JobCalls
-from lineofaction.client.offers import ANALYZE, reader_of, subject_inputs
+from lineofaction.client.offers import ANALYZE, libraries, reader_of, subject_inputs
 from lineofaction.client.process import obtained
 from lineofaction.client.processes import Processes
 from lineofaction.client.result_calls import ResultCalls

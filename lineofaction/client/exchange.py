@@ -5,8 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
@@ -65,29 +64,6 @@ _BY_TYPE = {
     if isinstance(kind, type) and issubclass(kind, ServiceError) and "type" in vars(kind)
     if kind is not ServiceError and kind not in _WITH_MORE
 }
-
-
-_ADVICE = (
-    "Results as objects need the libraries: pip uninstall lineofaction-client, pip install lineofaction. "
-    "job.figures(), job.report() and job.file() do not."
-)
-
-
-@contextmanager
-def libraries() -> Iterator[None]:
-    """Say what to install where the body imports what is not here.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        With the package to install; `host.extras.MissingExtra`, which names its extra, as it is.
-    """
-    try:
-        yield
-    except ModuleNotFoundError as error:
-        if type(error) is not ModuleNotFoundError:
-            raise
-        raise ModuleNotFoundError(f"{error.name} is not installed. {_ADVICE}", name=error.name) from None
 
 
 # The trace that a caller is in goes with every request.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache, partial
 from importlib import import_module
@@ -10,7 +11,6 @@ from inspect import Parameter, Signature
 from pathlib import Path
 from typing import Any
 
-from lineofaction.client.exchange import libraries
 from lineofaction.gearbox.registry import STUDIES, Study
 
 _SUBJECTS: Callable[[], Any] = partial(import_module, "lineofaction.gearbox.subjects")
@@ -61,6 +61,29 @@ def subject_inputs(kind: str, subject: Any) -> dict[str, Any]:
     name = {"case": "case_inputs", "scene": "scene_inputs", "case or scene": "inputs_of"}[kind]
     inputs: dict[str, Any] = getattr(_SUBJECTS(), name)(subject)
     return inputs
+
+
+_ADVICE = (
+    "Results as objects need the libraries: pip uninstall lineofaction-client, pip install lineofaction. "
+    "job.figures(), job.report() and job.file() do not."
+)
+
+
+@contextmanager
+def libraries() -> Iterator[None]:
+    """Say what to install where the body imports what is not here.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        With the package to install; `host.extras.MissingExtra`, which names its extra, as it is.
+    """
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        if type(error) is not ModuleNotFoundError:
+            raise
+        raise ModuleNotFoundError(f"{error.name} is not installed. {_ADVICE}", name=error.name) from None
 
 
 def _read_database(file: Path) -> Any:

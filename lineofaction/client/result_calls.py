@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 from lineofaction.client.cache import FIGURES
-from lineofaction.client.exchange import libraries
 from lineofaction.client.job_calls import pages
-from lineofaction.client.offers import ANALYZE
+from lineofaction.client.offers import ANALYZE, libraries
 from lineofaction.client.steps import Items, Steps
 from lineofaction.client.surface import Session, Surface, listing, operation
 from lineofaction.gearbox import schemas
