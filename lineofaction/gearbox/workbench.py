@@ -18,6 +18,7 @@ from fe_contact.workers import InProcess, Workers
 from fe_contact.workers.remembering import content_digest
 from host.directories import cache_home
 from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases
+from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.from_rexs.account import Assumption
@@ -235,13 +236,20 @@ class StudyCall(Generic[Result]):
         stated, files = self._stated(subject)
         chosen = study.run.narrowed(stated, varied)
         study.run.check(chosen, varied)
-        made = chosen if isinstance(chosen, CheckedCase) else _tabled(chosen, files, progress)
+        made = chosen if isinstance(chosen, CheckedCase) else self._made(chosen, files, progress)
         means = Means(cache_home(), progress, workers, folder=folder, run=run)
         result: Result = study.run.compute(made, varied, means)
         _warn(study.run.warnings(result) or ())
         if failure := study.run.failure(result):
             raise JobFailed(failure)
         return result
+
+    def _made(self, scene: SceneInput, folder: Path, progress: Progress) -> TabledScene | HousedScene:
+        """Return a scene with its tables, or only with its housings, as the study takes it."""
+        if STUDIES[self.name].run.tables:
+            return _tabled(scene, folder, progress)
+        _warn(left_out_warnings(scene.left_out))
+        return HousedScene(scene, housings_in(scene, cache_home(), folder, progress))
 
     def _stated(self, subject: Subject) -> tuple[CheckedCase | SceneInput, Path]:
         """Return what is studied as written, and the folder of its files."""

@@ -23,7 +23,9 @@ from dynamics.noise import pressure_recording, sound_limit, velocity_recording
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
 from lineofaction.cli.commands import app
+from lineofaction.gearbox import workbench
 from lineofaction.gearbox.studies.housings import other_housings
+from lineofaction.gearbox.studies.listen.run import HeardRun
 
 MICROPHONE = ("--microphone", "600,800,-200")
 
@@ -61,6 +63,16 @@ def moved(run: RunResult, housing: ReducedHousing) -> RunResult:
 def file(moved: RunResult, tmp_path: Path) -> Path:
     moved.to_netcdf(tmp_path / "run.nc")
     return tmp_path / "run.nc"
+
+
+def test_in_python_the_sound_needs_no_table(
+    moved: RunResult, housing: ReducedHousing, scene: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "mosqito", None)  # its figures take seconds
+    monkeypatch.setattr(workbench, "scene_by_tables", None)
+    heard: HeardRun = workbench.listen(scene, run=moved, microphone_mm=(600.0, 800.0, -200.0))
+    expected = pressure_recording(housing, moved, np.array([0.6, 0.8, -0.2]))
+    assert heard.recording.samples.tolist() == expected.samples.tolist()
 
 
 def test_the_sound_pressure_is_that_of_the_library_with_its_limits(
