@@ -68,59 +68,39 @@ if TYPE_CHECKING:
     from lineofaction.report.document import facts, write
 
 _HOME = {
-    "ablate": ("lineofaction.gearbox.workbench", "ablate"),
-    "analyze": ("lineofaction.gearbox.workbench", "analyze"),
     "AsyncClient": ("lineofaction.client", "AsyncLineOfActionClient"),
     "BadInput": ("lineofaction.gearbox.problems", "BadInput"),
     "BoreSeat": ("fe_contact", "BoreSeat"),
     "Bushing": ("dynamics.bearings.seat", "Bushing"),
     "Case": ("lineofaction.gearbox.schemas", "Case"),
     "Client": ("lineofaction.client", "LineOfActionClient"),
-    "deflect": ("lineofaction.gearbox.workbench", "deflect"),
     "Estimate": ("fe_contact.types", "Estimate"),
     "facts": ("lineofaction.report.document", "facts"),
-    "flank": ("lineofaction.gearbox.workbench", "flank"),
     "FlankGrid": ("fe_contact", "FlankGrid"),
     "FlankModification": ("fe_contact", "FlankModification"),
-    "frontier": ("lineofaction.gearbox.workbench", "frontier"),
     "Gear": ("fe_contact", "Gear"),
     "GearBlank": ("fe_contact", "GearBlank"),
     "GearPair": ("fe_contact", "GearPair"),
     "Housing": ("dynamics.joints.housing", "Housing"),
-    "InputWarning": ("lineofaction.gearbox.workbench", "InputWarning"),
     "Integration": ("dynamics.scene", "Integration"),
     "InternalGearPair": ("fe_contact", "InternalGearPair"),
     "JobFailed": ("lineofaction.gearbox.problems", "JobFailed"),
-    "listen": ("lineofaction.gearbox.workbench", "listen"),
     "Material": ("fe_contact", "Material"),
-    "modes": ("lineofaction.gearbox.workbench", "modes"),
-    "noise": ("lineofaction.gearbox.workbench", "noise"),
-    "open_unit": ("lineofaction.gearbox.workbench", "open_unit"),
-    "optimize": ("lineofaction.gearbox.workbench", "optimize"),
     "Outputs": ("dynamics.scene", "Outputs"),
     "PitchDeviation": ("fe_contact", "PitchDeviation"),
     "PlanetarySet": ("dynamics.scene", "PlanetarySet"),
-    "read": ("lineofaction.gearbox.workbench", "read"),
-    "response": ("lineofaction.gearbox.workbench", "response"),
     "RingGear": ("fe_contact", "RingGear"),
     "RollingBearing": ("dynamics.bearings.rolling_bearing", "RollingBearing"),
-    "root_stress": ("lineofaction.gearbox.workbench", "root_stress"),
     "RunResult": ("dynamics.results", "RunResult"),
-    "scatter": ("lineofaction.gearbox.workbench", "scatter"),
     "Scene": ("lineofaction.gearbox.schemas.scene", "SceneInput"),
-    "sensitivity": ("lineofaction.gearbox.workbench", "sensitivity"),
-    "simulate": ("lineofaction.gearbox.workbench", "simulate"),
     "Status": ("fe_contact.types", "Status"),
-    "steady": ("lineofaction.gearbox.workbench", "steady"),
     "SteDatabase": ("fe_contact", "SteDatabase"),
-    "study": ("lineofaction.gearbox.workbench", "study"),
-    "sweep": ("lineofaction.gearbox.workbench", "sweep"),
     "TimeLaw": ("dynamics.loads.time_law", "TimeLaw"),
     "Tolerances": ("fe_contact", "Tolerances"),
     "Unit": ("lineofaction.gearbox.from_rexs.opened", "OpenedUnit"),
-    "vibration": ("lineofaction.gearbox.workbench", "vibration"),
     "write": ("lineofaction.report.document", "write"),
 }
+"""Of the names that are not of the workbench: module, and name there."""
 
 __all__ = [
     "AsyncClient",
@@ -180,9 +160,9 @@ __all__ = [
 
 def __getattr__(name: str) -> object:
     """Load a name on first use."""
-    if name not in _HOME:
+    if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module, own = _HOME[name]
+    module, own = _HOME.get(name, ("lineofaction.gearbox.workbench", name))
     value = globals()[name] = getattr(import_module(module), own)
     return value
 
