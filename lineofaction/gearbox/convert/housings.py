@@ -63,8 +63,8 @@ FOLDER = "housings"
 
 _MOTIONS = 5
 """Of a seat that a bearing holds."""
-_ANY_STIFFNESS, _ANY_MASS = 1e8, 1.0
-"""N/m, kg; checks that need no reduction do not read them."""
+ANY_STIFFNESS, _ANY_MASS = 1e8, 1.0
+"""N/m, kg; checks that need no reduction and no table do not read them."""
 
 
 @dataclass(frozen=True)
@@ -122,8 +122,8 @@ def housing_of(index: int, housing: HousingInput, reduced: ReducedHousing | None
             raise InputError("feet", [foot.name for foot in housing.feet], bound, advice) from None
 
 
-def stand_in(index: int, housing: HousingInput) -> Housing:
-    """Return a housing on matrices that stand in for those of a solid, whose file is looked into."""
+def placeholder(index: int, housing: HousingInput) -> Housing:
+    """Return a housing on placeholders for the matrices of a solid, whose file is looked into."""
     if not housing.is_solid:
         return _of_matrices(index, housing)
     try:
@@ -131,7 +131,7 @@ def stand_in(index: int, housing: HousingInput) -> Housing:
     except BadInput as error:
         raise error.within(f"housings[{index}]") from None
     unit = np.eye(_MOTIONS * len(housing.bushings))
-    stiffness, mass = (tuple(map(tuple, (scale * unit).tolist())) for scale in (_ANY_STIFFNESS, _ANY_MASS))
+    stiffness, mass = (tuple(map(tuple, (scale * unit).tolist())) for scale in (ANY_STIFFNESS, _ANY_MASS))
     with named(f"housings[{index}]"):
         return Housing(housing.name, housing.bushings, stiffness, mass=mass)
 

@@ -26,7 +26,7 @@ from fe_contact.ste import PairFacts, SteDatabase
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.declared import in_si, part_of
 from lineofaction.gearbox.convert.errors import named
-from lineofaction.gearbox.convert.housings import housing_of, stand_in
+from lineofaction.gearbox.convert.housings import ANY_STIFFNESS, housing_of, placeholder
 from lineofaction.gearbox.convert.meshes import Teeth, check_center_distances, closed_forms, teeth_of
 from lineofaction.gearbox.schemas.bearings import BearingInput, BushingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.bodies import DiscInput, GearBodyInput, ShaftInput
@@ -213,7 +213,6 @@ def _has_bent_shafts(database: SteDatabase) -> bool:
     )
 
 
-ANY_STIFFNESS = 1e8  # N/m; checks that need no table do not read it
 NO_SOLIDS: Mapping[str, ReducedHousing] = {}
 
 
@@ -289,7 +288,7 @@ def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> Scene:
         No such system exists or moves.
     """
     tables = dict.fromkeys(facts, straight_table(ANY_STIFFNESS))
-    return _moving(scene, facts, tables, [stand_in(i, part) for i, part in enumerate(scene.housings)])
+    return _moving(scene, facts, tables, [placeholder(i, part) for i, part in enumerate(scene.housings)])
 
 
 def _moving(

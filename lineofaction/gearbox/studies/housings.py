@@ -87,7 +87,7 @@ def response_of(scene: Scene, inputs: OverOrders, means: Means) -> ForcedRespons
         )
 
 
-def silent(housings: list[str]) -> BadInput:
+def no_surface(housings: list[str]) -> BadInput:
     """Return the error of housings of which none has a surface, by their names."""
     return BadInput.of("housings", housings, "at least one with a surface", ADVICE)
 
@@ -95,7 +95,7 @@ def silent(housings: list[str]) -> BadInput:
 def require_surface(scene: SceneInput) -> None:
     """Refuse a scene of whose housings none can have a surface; raises `BadInput`."""
     if not any(part.is_solid or part.modes_file is not None for part in scene.housings):
-        raise silent([part.name for part in scene.housings])
+        raise no_surface([part.name for part in scene.housings])
 
 
 def other_housings(housings: Iterable[Housing], run: RunResult) -> tuple[str, ...]:

@@ -22,7 +22,7 @@ from lineofaction.gearbox.convert.housings import HousedScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
-from lineofaction.gearbox.studies.housings import other_housings, require_surface, silent
+from lineofaction.gearbox.studies.housings import no_surface, other_housings, require_surface
 from lineofaction.gearbox.studies.listen import Inputs, ListenFigures
 from lineofaction.gearbox.units import MM
 
@@ -133,7 +133,7 @@ class SceneHousings:
                 if body.surface is not None
             ]
         if not heard:
-            raise silent(list(self.bearings))
+            raise no_surface(list(self.bearings))
         quantity = "; ".join(dict.fromkeys(one.quantity for one in heard))
         return replace(heard[0], samples=np.sum([one.samples for one in heard], axis=0), quantity=quantity)
 

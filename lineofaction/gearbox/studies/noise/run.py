@@ -51,7 +51,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.housings import bearing_forces, reduction_costs, require_surface, silent
+from lineofaction.gearbox.studies.housings import bearing_forces, no_surface, reduction_costs, require_surface
 from lineofaction.gearbox.studies.noise import Inputs, NoiseFigures, SoundOverTimeFigures
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
 
@@ -100,7 +100,7 @@ class NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
                 if (body := subject.housings.get(part.name)) is not None and body.surface is not None
             ]
             if not housings:
-                raise silent([part.name for part in subject.inputs.housings])
+                raise no_surface([part.name for part in subject.inputs.housings])
             sounds = [_sound(response, housing) for housing in housings]
             compared = {
                 housing.name: _compared(response, housing, sound, inputs, means)
