@@ -115,29 +115,29 @@ class JobSurface(Followed, Generic[T, F]):
     @operation
     def file(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Path]:
         """Wait for the job and return its netCDF file in the cache; raises as `wait`."""
-        found = yield from JobSurface.wait(self, progress, timeout=timeout)
-        return (yield from self._patiently(lambda: ResultCalls.fetch_file(self, found.key, found.kind)))
+        result = yield from JobSurface.wait(self, progress, timeout=timeout)
+        return (yield from self._patiently(lambda: ResultCalls.fetch_file(self, result.key, result.kind)))
 
     @operation
     def dataset(
         self, progress: Watch | None = None, *, timeout: float | None = None
     ) -> Steps[xarray.Dataset]:
         """Wait for the job and return its result as arrays with units and names; raises as `wait`."""
-        found = yield from JobSurface.wait(self, progress, timeout=timeout)
-        return (yield from self._patiently(lambda: ResultCalls.fetch_dataset(self, found.key, found.kind)))
+        result = yield from JobSurface.wait(self, progress, timeout=timeout)
+        return (yield from self._patiently(lambda: ResultCalls.fetch_dataset(self, result.key, result.kind)))
 
     @operation
     def figures(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[F]:
         """Wait for the job and return the figures of its result, units in their names; raises as `wait`."""
-        found = yield from JobSurface.wait(self, progress, timeout=timeout)
-        fetch = partial(ResultCalls.fetch_figures, self, found.key, found.kind)
+        result = yield from JobSurface.wait(self, progress, timeout=timeout)
+        fetch = partial(ResultCalls.fetch_figures, self, result.key, result.kind)
         return cast("F", (yield from self._patiently(fetch)))
 
     @operation
     def report(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Report]:
         """Wait for the job and return the report on its result; notebooks show it; raises as `wait`."""
-        found = yield from JobSurface.wait(self, progress, timeout=timeout)
-        return (yield from self._patiently(lambda: ResultCalls.report(self, found.key)))
+        result = yield from JobSurface.wait(self, progress, timeout=timeout)
+        return (yield from self._patiently(lambda: ResultCalls.report(self, result.key)))
 
     def ending(self) -> Steps[Result | None]:
         """Wait until the job has ended and its file is cached; None without, and `result` raises why."""

@@ -71,10 +71,10 @@ class _Mapping:
             return self._job(JobState.cached(name), known)
         job = self._job((yield from self._submitted(inputs)), None)
         self._under_way.add(job.id)
-        found = yield from job.ending()
+        result = yield from job.ending()
         self._under_way.discard(job.id)
-        if found is not None:
-            cache.remember(service, name, inputs, found, self._version)
+        if result is not None:
+            cache.remember(service, name, inputs, result, self._version)
         return job
 
     def dismissed(self) -> Steps[None]:

@@ -291,9 +291,9 @@ def _source(subject: Any) -> Any:
     return Path(subject) if isinstance(subject, str) else subject
 
 
-def _warn(found: Iterable[Mapping[str, Any]]) -> None:
+def _warn(findings: Iterable[Mapping[str, Any]]) -> None:
     """Warn of what is implausible, each once."""
-    for warning in found:
+    for warning in findings:
         warnings.warn(warning["message"], InputWarning, stacklevel=4)
 
 

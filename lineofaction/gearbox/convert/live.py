@@ -152,7 +152,7 @@ def live_curves(case: Case, bodies: CondensedPair, change: LiveInput) -> Json:
         with boundary_errors():
             return _answer(bodies, pair, change)
     except BadInput as error:
-        raise BadInput(_as_asked(fault) for fault in error.faults) from None
+        raise BadInput(_by_question(fault) for fault in error.faults) from None
 
 
 def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Json:
@@ -221,7 +221,7 @@ def _changed_case(case: Case, change: LiveInput) -> Case:
     return validated(Case, facts)
 
 
-def _as_asked(fault: Fault) -> Fault:
+def _by_question(fault: Fault) -> Fault:
     """Name a fault by the field of the question, whose alignments are single values."""
     name = fault.field.removesuffix("[0]") if fault.field.startswith("errors.") else fault.field
     name = next((name.removeprefix(prefix) for prefix in _PLACES if name.startswith(prefix)), name)

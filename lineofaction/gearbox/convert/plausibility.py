@@ -33,8 +33,8 @@ def case_warnings(checked: CheckedCase) -> list[Json]:
     """
     pair, axes = checked.pair, checked.axes
     alignments = axes.misalignment, axes.center_distance_change
-    found = pair_findings(pair, axes.load(pair), *alignments, loads_as=axes.loads_as)
-    return phrased_for(checked.case, [finding.to_json() for finding in found])
+    findings = pair_findings(pair, axes.load(pair), *alignments, loads_as=axes.loads_as)
+    return phrased_for(checked.case, [finding.to_json() for finding in findings])
 
 
 def scene_warnings(

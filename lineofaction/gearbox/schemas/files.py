@@ -170,8 +170,8 @@ def _modes(file: Path, field: str) -> Content:
     matrices = {f"{name}_matrix": getattr(part, name) for name in ("stiffness", "damping", "mass")}
     places = [[as_typed(value, MM) for value in point] for point in part.seat_positions or ()]
     derived = {"bushings": list(part.bushings), "modal_coordinates": part.modal_coordinates}
-    given = {name: rows for name, rows in matrices.items() if rows is not None}
-    return derived | {"seat_positions_mm": places}, given
+    present = {name: rows for name, rows in matrices.items() if rows is not None}
+    return derived | {"seat_positions_mm": places}, present
 
 
 def _solid(file: Path, field: str) -> Content:

@@ -81,8 +81,8 @@ def sound_figures(recording: Recording, run: RunResult) -> SoundFigures:
         loudness = quality.loudness if steady else _exceeded(recording)
     except MissingExtra:
         return SoundFigures(level, weighted, steady)
-    found = zip(quality.tone_frequency.tolist(), quality.tone_to_noise.tolist(), strict=True)
-    return SoundFigures(level, weighted, steady, loudness, quality.sharpness, tuple(found) if steady else ())
+    tones = zip(quality.tone_frequency.tolist(), quality.tone_to_noise.tolist(), strict=True)
+    return SoundFigures(level, weighted, steady, loudness, quality.sharpness, tuple(tones) if steady else ())
 
 
 def _steady(run: RunResult) -> bool:
@@ -134,8 +134,10 @@ class SceneHousings:
             ]
         if not heard:
             raise no_surface(list(self.bearings))
-        quantity = "; ".join(dict.fromkeys(one.quantity for one in heard))
-        return replace(heard[0], samples=np.sum([one.samples for one in heard], axis=0), quantity=quantity)
+        quantity = "; ".join(dict.fromkeys(recording.quantity for recording in heard))
+        return replace(
+            heard[0], samples=np.sum([recording.samples for recording in heard], axis=0), quantity=quantity
+        )
 
     def velocity(self, run: RunResult, point: str, direction: str = "") -> Recording:
         """Return the velocity of a named point along one of `DIRECTIONS`, by default the principal one.
@@ -145,8 +147,8 @@ class SceneHousings:
         BadInput
             No housing or several have such a point, or there is no such direction.
         """
-        owners = [name for name, body in self.housings.items() for one in body.points if one.name == point]
-        _require_point(point, [one.name for body in self.housings.values() for one in body.points])
+        owners = [name for name, body in self.housings.items() for each in body.points if each.name == point]
+        _require_point(point, [each.name for body in self.housings.values() for each in body.points])
         if direction and direction not in DIRECTIONS:
             raise BadInput.of("direction", direction, f"one of {', '.join(DIRECTIONS)}")
         axis = None if direction in ("", PRINCIPAL) else np.eye(3)[DIRECTIONS.index(direction)]

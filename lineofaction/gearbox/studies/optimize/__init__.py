@@ -222,10 +222,10 @@ class Inputs(BoundaryModel):
     @model_validator(mode="after")
     def _loads(self) -> Self:
         """Refuse misalignments of other loads, torques that fall, and a load twice."""
-        torques, given = self.torque_n_m, self.misalignment_um
+        torques, stated_um = self.torque_n_m, self.misalignment_um
         if torques is None:
             return self
-        misalignments = given if isinstance(given, tuple) else (given,)
+        misalignments = stated_um if isinstance(stated_um, tuple) else (stated_um,)
         if len(misalignments) not in (1, len(torques)):
             bound = f"one value, or {len(torques)}, one for each torque"
             refuse("misalignment_um", f"{len(misalignments)} values", bound)

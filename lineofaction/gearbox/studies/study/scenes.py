@@ -229,9 +229,9 @@ class VariedScene:
     def _compliance_of(self, mesh: Any) -> CondensedPair:
         pair, effects = gear_pair(mesh.case), dict(mesh.case.effects)
         cache = Path(self.home) / "compliance"
-        found = condensed_pair(pair, self.databases[mesh.name], effects, cache, compute=True)
-        assert found is not None
-        return found
+        bodies = condensed_pair(pair, self.databases[mesh.name], effects, cache, compute=True)
+        assert bodies is not None
+        return bodies
 
     def _databases_of(self, inputs: SceneInput, values: Mapping[str, float]) -> Mapping[str, SteDatabase]:
         """Return the tables at values of the flanks; those made last are kept."""

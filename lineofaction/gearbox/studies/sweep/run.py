@@ -124,9 +124,9 @@ def axis_of(case: CheckedCase, text: str) -> SweepAxis:
     BadInput
         There is no such name, or no such values.
     """
-    typed, given, values = text.partition("=")
+    typed, equals, values = text.partition("=")
     swept = _named(text, typed.strip())
-    numbers = number_list(f"over {typed.strip()}", values) if given else _usual(case, swept)
+    numbers = number_list(f"over {typed.strip()}", values) if equals else _usual(case, swept)
     if any(later <= earlier for earlier, later in pairwise(numbers)):
         raise BadInput.of("over", text, "over increasing values", "For example torque=50:300:50.")
     return SweepAxis(swept.name, tuple(value * swept.factor for value in numbers))
