@@ -325,7 +325,7 @@ def assembled_table(
         torque=request.torque,
         misalignment=request.misalignment,
         center_distance_change=request.center_distance_change,
-        facts=pair_facts(request.pair),
+        facts=PairFacts.of(request.pair),
         period=points.period,
         error_estimate=np.full((position.size, request.load.size, *points.shape), np.nan),
         metadata=Metadata(),
@@ -335,21 +335,6 @@ def assembled_table(
 
 
 # From contact solutions to the arrays of the STE database.
-
-
-def pair_facts(pair: ParallelAxes) -> PairFacts:
-    """Closed-form facts of the pair that users of the table need."""
-    return PairFacts(
-        teeth=(pair.pinion.teeth, pair.wheel.teeth),
-        base_radius=(pair.pinion.base_radius, pair.wheel.base_radius),
-        base_pitch=pair.base_pitch,
-        base_helix_angle=abs(pair.base_helix_angle),
-        center_distance=pair.center_distance,
-        working_pressure_angle=pair.working_pressure_angle,
-        face_width=pair.face_width,
-        helix_hand=int(np.sign(pair.base_helix_angle)),
-        internal=pair.internal,
-    )
 
 
 def table_fields(

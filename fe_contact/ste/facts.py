@@ -6,12 +6,15 @@ import hashlib
 import json
 import math
 from dataclasses import MISSING, asdict, dataclass, field, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import rfc8785
 
 from fe_contact.errors import DatabaseError, InputError
 from fe_contact.types import Json
+
+if TYPE_CHECKING:
+    from fe_contact.geometry import ParallelAxes
 
 # The name of a result: a hash of everything that decides it.
 
@@ -75,6 +78,22 @@ class PairFacts:
     face_width: float
     helix_hand: int
     internal: bool = False
+
+    @classmethod
+    def of(cls, pair: ParallelAxes) -> PairFacts:
+        """Return the facts of a gear pair."""
+        hand = (pair.base_helix_angle > 0.0) - (pair.base_helix_angle < 0.0)
+        return cls(
+            teeth=(pair.pinion.teeth, pair.wheel.teeth),
+            base_radius=(pair.pinion.base_radius, pair.wheel.base_radius),
+            base_pitch=pair.base_pitch,
+            base_helix_angle=abs(pair.base_helix_angle),
+            center_distance=pair.center_distance,
+            working_pressure_angle=pair.working_pressure_angle,
+            face_width=pair.face_width,
+            helix_hand=hand,
+            internal=pair.internal,
+        )
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "teeth", (int(self.teeth[0]), int(self.teeth[1])))

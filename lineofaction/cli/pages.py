@@ -12,12 +12,12 @@ from pydantic import ValidationError
 
 from bounds import engineering
 from fe_contact.geometry import ParallelAxes
+from fe_contact.ste import PairFacts
 from host.directories import cache_home
 from lineofaction.cli.analyze import assessed_case
 from lineofaction.cli.guard import messages, warn
 from lineofaction.cli.output import Report, check_writable, console, print_json, progress_bar, table
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
-from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.result_files import stamped
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
@@ -75,7 +75,7 @@ def _write_sheet(pair: ParallelAxes, output: Path, implausible: list[str]) -> No
         raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(_ENDINGS)}")
     check_writable(output)
     if output.suffix == ".html":
-        facts = facts_of(pair)
+        facts = PairFacts.of(pair)
         page = Page(pair_title(facts), pair_lead(facts), (), (data_sheet_section(pair),))
         write_whole(page, output, warnings=implausible)
     else:
@@ -94,7 +94,7 @@ def _show_sheet(pair: ParallelAxes, output: Path | None) -> None:
 
 
 def _summary(pair: ParallelAxes) -> tuple[str, str]:
-    facts = facts_of(pair)
+    facts = PairFacts.of(pair)
     transverse, overlap = pair.active_contact_ratio, pair.overlap_ratio
     ratios = f"contact ratio {transverse:.3f} + {overlap:.3f} = {transverse + overlap:.3f}"
     backlash = f"circumferential backlash {number(pair.circumferential_backlash / UM, 3)} um"

@@ -17,7 +17,6 @@ from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, boundary_errors, case_json
 from lineofaction.gearbox.convert.housings import housings_in
-from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_database, scene_warnings, within
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput
@@ -137,7 +136,7 @@ def _facts(index: int, mesh: MeshInput, table_of: TableOf, cases: CheckedCases, 
     field, checked = f"meshes[{index}]", cases.of(mesh.case)
     try:
         warn(within(warning, field) for warning in case_warnings(checked))
-        return facts_of(checked.feasible.request.pair)
+        return PairFacts.of(checked.feasible.request.pair)
     except BadInput as error:
         raise error.within(f"{field}.case") from None
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from lineofaction.gearbox.convert.meshes import facts_of
+from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.plausibility import case_warnings, scene_warnings, unique, within
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
@@ -55,5 +55,5 @@ def _of_scene(scene: SceneInput) -> list[Json]:
     ]
     if len(cases) < len(scene.with_database):
         return warnings
-    moving = check_scene(scene, {name: facts_of(CASES.of(case).pair) for name, case in cases.items()})
+    moving = check_scene(scene, {name: PairFacts.of(CASES.of(case).pair) for name, case in cases.items()})
     return unique([*warnings, *scene_warnings(scene, moving)])

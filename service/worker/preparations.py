@@ -8,7 +8,6 @@ from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from lineofaction.gearbox.convert.case import CheckedCases
-from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.meshes import MeshInput
@@ -42,7 +41,7 @@ def _facts(field: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
     _check_source(field, mesh, store)
     if mesh.case is not None:
         try:
-            return facts_of(CASES.of(mesh.case).feasible.request.pair)
+            return PairFacts.of(CASES.of(mesh.case).feasible.request.pair)
         except BadInput as error:
             raise error.within(f"{field}.case") from None
     return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path).facts

@@ -22,7 +22,6 @@ from bounds import Kind
 from fe_contact.flank.modification import FlankModification
 from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.case import check_case
-from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput, Fault
 from lineofaction.gearbox.schemas import Case, read_model, validated
@@ -176,7 +175,7 @@ TABLES: dict[str, Table] = {
 @cache
 def pair_facts(case: str) -> PairFacts:
     """Return the facts of the pair of a case as JSON."""
-    return facts_of(check_case(Case.model_validate_json(case)))
+    return PairFacts.of(check_case(Case.model_validate_json(case)))
 
 
 def check(given: Case | SceneInput) -> None:

@@ -13,9 +13,9 @@ from fastapi.testclient import TestClient
 from typer.testing import CliRunner
 
 from dynamics.errors import InputError
+from fe_contact.ste import PairFacts
 from lineofaction.cli.commands import app as loa
 from lineofaction.gearbox.convert.case import check_case
-from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -93,4 +93,4 @@ def test_both_doors_of_a_scene_say_the_same(bad: BadScene, client: TestClient, t
 
 def test_a_scene_that_moves_is_not_refused() -> None:
     scene = validated(SceneInput, good_scene())
-    check_scene(scene, {mesh.name: facts_of(check_case(mesh.case)) for mesh in scene.meshes if mesh.case})
+    check_scene(scene, {mesh.name: PairFacts.of(check_case(mesh.case)) for mesh in scene.meshes if mesh.case})

@@ -8,8 +8,8 @@ import numpy as np
 
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
 from dynamics.scene import Scene
+from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.case import gear_pair
-from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.from_rexs.opened import SCENE_FILE, OpenedUnit, unit_files
 from lineofaction.gearbox.schemas import validated
@@ -25,7 +25,7 @@ POSITIONS = 3
 def scene_in_si(unit: OpenedUnit) -> Scene:
     """Return the unit's scene for dynamics."""
     assert unit.scene is not None
-    facts = {f"{case.name}.toml": facts_of(gear_pair(case.case)) for case in unit.cases}
+    facts = {f"{case.name}.toml": PairFacts.of(gear_pair(case.case)) for case in unit.cases}
     return check_scene(unit.scene, {mesh.name: facts[str(mesh.case_file)] for mesh in unit.scene.meshes})
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.case import gear_pair
-from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
 from lineofaction.gearbox.rexs.model import Document
@@ -16,7 +16,7 @@ def scene_of(document: Document) -> SceneInput:
     """Return the scene of a unit, which dynamics takes."""
     unit = opened(document)
     assert unit.scene is not None, [line for line in unit.lines if line.fate == "refused"]
-    facts = {f"{case.name}.toml": facts_of(gear_pair(case.case)) for case in unit.cases}
+    facts = {f"{case.name}.toml": PairFacts.of(gear_pair(case.case)) for case in unit.cases}
     check_scene(unit.scene, {mesh.name: facts[str(mesh.case_file)] for mesh in unit.scene.meshes})
     return unit.scene
 

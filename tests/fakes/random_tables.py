@@ -7,9 +7,8 @@ from dataclasses import asdict, replace
 
 import numpy as np
 
-from fe_contact.analysis.tables import pair_facts
 from fe_contact.geometry import FlankModification, Gear, GearPair
-from fe_contact.ste import Metadata, SteDatabase
+from fe_contact.ste import Metadata, PairFacts, SteDatabase
 
 POSITIONS = 48
 
@@ -18,7 +17,7 @@ def random_table(seed: int) -> SteDatabase:
     """Return the table of a pair that is drawn at random: 1 to 7 loads, 1 to 5 tooth pairs in contact."""
     rng = np.random.default_rng(seed)
     pair = _pair(rng)
-    facts, torque = pair_facts(pair), np.sort(np.round(rng.uniform(1.0, 900.0, rng.integers(1, 8)), 1))
+    facts, torque = PairFacts.of(pair), np.sort(np.round(rng.uniform(1.0, 900.0, rng.integers(1, 8)), 1))
     force = torque / (facts.base_radius[0] * math.cos(facts.base_helix_angle))
     skew = 1e-6 * np.array([-20.0, 0.0, 40.0]) if rng.random() < 0.5 else np.zeros(1)
     change = 1e-3 * np.array([0.0, 0.1]) if rng.random() < 0.3 else np.zeros(1)

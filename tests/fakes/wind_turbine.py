@@ -11,8 +11,8 @@ from typing import Any
 from small_table import small_table
 
 from dynamics.scene import Scene
+from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.case import check_case
-from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -33,7 +33,7 @@ def wind_turbine(change: Change = lambda _table: None) -> Scene:
     fields = {name: getattr(small, name) for name in small.__dataclass_fields__}
     databases = {}
     for mesh in table["meshes"]:
-        facts = facts_of(check_case(read_model(Case, EXAMPLES / mesh["case_file"])))
+        facts = PairFacts.of(check_case(read_model(Case, EXAMPLES / mesh["case_file"])))
         torque = small.force * math.cos(facts.base_helix_angle) * facts.base_radius[0]
         databases[mesh["name"]] = type(small)(**fields | {"facts": facts, "torque": torque})
     return dynamic_scene(validated(SceneInput, table), databases)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fe_contact.analysis.tables import pair_facts
 from fe_contact.contact import ContactProblem, ContactSolution, at_edges, contact_pressure
 from fe_contact.contact.touch import rolls_at
 from fe_contact.errors import DatabaseError
@@ -89,7 +88,7 @@ def _flank_scene(
         tip=(pair.pinion.tip_roll_length, pair.wheel.tip_roll_length),
         path_of_contact=path.points,
         common_face=pair.common_face,
-        facts=pair_facts(pair),
+        facts=PairFacts.of(pair),
     )
 
 

@@ -32,7 +32,7 @@ from fe_contact.analysis.studies.measured_full_contact import (
     known_full_contact,
     measure_full_contact,
 )
-from fe_contact.analysis.tables import pair_facts, table_fields, table_support
+from fe_contact.analysis.tables import table_fields, table_support
 from fe_contact.contact import ContactSolution
 from fe_contact.errors import InputError, MeshError, SolveError, chosen, integer
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
@@ -40,7 +40,7 @@ from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning.plan import PLANE_REFINEMENT, Plan, make_plan
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
-from fe_contact.ste import Metadata, SteDatabase
+from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray, Json
 from model_studies import (
@@ -164,7 +164,7 @@ class _ClosedFormFidelity:
             torque=request.torque,
             misalignment=request.misalignment,
             center_distance_change=request.center_distance_change,
-            facts=pair_facts(request.pair),
+            facts=PairFacts.of(request.pair),
             period=points.period,
             error_estimate=points.gathered(error),
             metadata=Metadata(),

@@ -5,22 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from dynamics.mechanism.base_pitches import PRINTED
 from dynamics.meshes import MeshTable
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table
-from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.meshes import PeriodicInput, StiffnessMeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import DEGREE, MM, UM
-
-if TYPE_CHECKING:
-    from lineofaction.gearbox.schemas.scene import SceneInput
-
 
 _SAME = 1e-6  # relative; lengths that are typed with a few digits agree to this
 
@@ -35,22 +29,6 @@ class Teeth:
     pitch_diameter: float
     face_width: float
     internal: bool = False
-
-
-def facts_of(pair: ParallelAxes) -> PairFacts:
-    """Return the facts that a database of `pair` will carry."""
-    pinion, wheel = pair.pinion, pair.wheel
-    return PairFacts(
-        teeth=(pinion.teeth, wheel.teeth),
-        base_radius=(pinion.base_radius, wheel.base_radius),
-        base_pitch=pair.base_pitch,
-        base_helix_angle=abs(pair.base_helix_angle),
-        center_distance=pair.center_distance,
-        working_pressure_angle=pair.working_pressure_angle,
-        face_width=min(pinion.face_width, wheel.face_width),
-        helix_hand=(pair.base_helix_angle > 0.0) - (pair.base_helix_angle < 0.0),
-        internal=pair.internal,
-    )
 
 
 def teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, Teeth]:

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from fe_contact.ste import PairFacts
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.case import gear_pair
-from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.from_rexs.opened import LOAD_CASES_FILE, OpenedUnit, opened, unit_files, unit_json
 from lineofaction.gearbox.problems import BadInput
@@ -58,7 +58,7 @@ def forces_of(document: Document) -> dict[str, Vectors]:
     """Return force and moment of each force of the scene, which dynamics takes."""
     unit = opened(document)
     assert unit.scene is not None
-    facts = {f"{case.name}.toml": facts_of(gear_pair(case.case)) for case in unit.cases}
+    facts = {f"{case.name}.toml": PairFacts.of(gear_pair(case.case)) for case in unit.cases}
     check_scene(unit.scene, {mesh.name: facts[str(mesh.case_file)] for mesh in unit.scene.meshes})
     return {force.name: (force.force_n, force.moment_n_m) for force in unit.scene.forces}
 

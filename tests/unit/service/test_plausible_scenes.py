@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
+from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.case import gear_pair
-from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.plausibility import scene_warnings
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
@@ -189,7 +189,7 @@ def scene_of(changes: dict[str, Any], case: dict[str, Any]) -> SceneInput:
 
 def warnings_of(scene: SceneInput) -> list[dict[str, Any]]:
     """Return the warnings of a scene, by the cases of its meshes: no table is computed."""
-    facts = {mesh.name: facts_of(gear_pair(mesh.case)) for mesh in scene.meshes if mesh.case is not None}
+    facts = {mesh.name: PairFacts.of(gear_pair(mesh.case)) for mesh in scene.meshes if mesh.case is not None}
     return scene_warnings(scene, check_scene(scene, facts))
 
 

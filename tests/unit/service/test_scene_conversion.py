@@ -13,7 +13,6 @@ import pytest
 from small_table import BASE_RADIUS, small_table
 
 from dynamics.scene import Scene
-from lineofaction.gearbox.convert.meshes import facts_of
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
@@ -70,14 +69,16 @@ def test_given_inertia_is_used_as_it_is() -> None:
         assert (inertia.mass, inertia.polar, inertia.transverse) == (1.0, 2.0, 3.0)
 
 
-def test_facts_of_a_pair_are_those_its_table_will_have() -> None:
-    from fe_contact.analysis.tables import pair_facts  # noqa: PLC0415
+def test_facts_of_a_pair_have_its_hand_and_its_common_face() -> None:
     from fe_contact.geometry import Gear, GearPair  # noqa: PLC0415
+    from fe_contact.ste import PairFacts  # noqa: PLC0415
 
     right = Gear(17, 4e-3, 25e-3, 20e-3, helix_angle=0.2)
     left = Gear(31, 4e-3, 20e-3, 20e-3, helix_angle=-0.2)
-    pair = GearPair(right, left)
-    assert facts_of(pair) == pair_facts(pair)
+    facts = PairFacts.of(GearPair(right, left, axial_offset=5e-3))
+    assert (facts.teeth, facts.helix_hand, facts.internal) == ((17, 31), 1, False)
+    assert math.isclose(facts.face_width, 17.5e-3)
+    assert PairFacts.of(GearPair(left, right)).helix_hand == -1
 
 
 WRONG: dict[str, tuple[Change, str]] = {
