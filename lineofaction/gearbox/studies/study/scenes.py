@@ -153,7 +153,7 @@ def _path_of(place: Place) -> str:
 
 @dataclass(frozen=True)
 class VariedScene:
-    """A scene whose numbers are replaced; `dynamics.study.Scenes`.
+    """A scene whose numbers are replaced; `dynamics.study.run_study.Scenes`.
 
     Attributes
     ----------
