@@ -7,6 +7,22 @@ from different modules at once: a request then fails with an `ImportError`.
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
 
 LOADING = threading.RLock()
 """Held while modules are loaded that handlers import when they are called."""
+
+
+def on_demand(entry: str) -> Callable[..., Any]:
+    """Return a function that calls ``"module:function"``, imported when it is called first."""
+
+    def call(*arguments: object) -> Any:
+        """Import, then call."""
+        module, _, name = entry.partition(":")
+        with LOADING:
+            function = getattr(import_module(module), name)
+        return function(*arguments)
+
+    return call

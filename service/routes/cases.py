@@ -9,6 +9,7 @@ from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field, Strict
 from starlette.responses import JSONResponse, Response
 
+from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, TooLarge, TooManyHeld
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.files import FileContentInput
@@ -25,7 +26,7 @@ from service.routes.media_types import JSON
 from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.answers import ExampleBody, UnitBody, UnitFile
-from service.worker.process import ANALYZE, on_demand
+from service.worker.process import ANALYZE
 
 _READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
 """What a reader of foreign bytes answers beside faults of the bytes."""

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Depends, Header, Query, Request
 from pydantic import Field
 from starlette.responses import JSONResponse, Response
 
+from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import (
     BadInput,
     DamagedFile,
@@ -54,7 +55,7 @@ from service.schemas.answers import (
 from service.schemas.execute import BatchResult, BatchResults, LabelChange, Tag, Title
 from service.store import Mark
 from service.webhooks.calls import Calls
-from service.worker.process import Registry, on_demand
+from service.worker.process import Registry
 
 # Parameters by which a list of jobs is filtered (OGC API - Processes 1.0, clause 12.2).
 

@@ -12,6 +12,7 @@ import structlog
 from fastapi import APIRouter, Header, Query, Response
 from pydantic import BaseModel, create_model
 
+from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import BadInput, Fault, LiveUnavailable, NoSuchProcess, QueueFull
 from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.model import MOST_FAULTS, BoundaryModel
@@ -44,7 +45,7 @@ from service.settings import Settings
 from service.store import now
 from service.webhooks.calls import Calls
 from service.webhooks.deliverer import Deliverer, Outbox
-from service.worker.process import Process, Registry, on_demand
+from service.worker.process import Process, Registry
 
 # Whom a request may have called, and what is told.
 

@@ -30,6 +30,7 @@ from fe_contact.cache_reads import COMPLIANCE_READS
 from host import cpu_seconds, kill_own_group, lock, lower_priority, peak_memory
 from lineofaction.gearbox.problems import ServiceError
 from service.worker.order import Product, WorkOrder
+from service.worker.product_warnings import stamp_products
 from service.worker.usage import BYTES_PER_MB, hold_to, machine_memory_mb, no_space
 
 _NICENESS = 10
@@ -134,7 +135,7 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
     try:
         module, _, name = order.entry.partition(":")
         products: tuple[Product, ...] = getattr(importlib.import_module(module), name)(order, progress)
-        _stamp(order, products)
+        stamp_products(order, products)
     except MemoryError:
         limit = order.memory_limit_mb
         return {"failure": _out_of_memory(machine_memory_mb() if limit is None else limit)}
@@ -155,13 +156,6 @@ def _out_of_memory(limit_mb: int) -> str:
         f"The computation ran out of memory: it may have {limit_mb} MB (LOA_MEMORY_LIMIT_MB). Select a "
         "coarser level or fewer positions, or start the service with a higher limit."
     )
-
-
-def _stamp(order: WorkOrder, products: tuple[Product, ...]) -> None:
-    """Write into the files what is implausible about what they were made from."""
-    from service.worker.product_warnings import stamp_products  # noqa: PLC0415 (start-up time)
-
-    stamp_products(order, products)
 
 
 def _translated(error: Exception) -> ServiceError | None:

@@ -6,12 +6,11 @@ import hashlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import rfc8785
 
-from lineofaction.gearbox.loading import LOADING
+from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import NoSuchProcess
 from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.gearbox.schemas.model import BoundaryModel
@@ -90,19 +89,6 @@ class Process:
         if self.name_result is not None:
             return self.name_result(inputs)
         return content_key(self.id, self.version, inputs)
-
-
-def on_demand(entry: str) -> Callable[..., Any]:
-    """Return a function that calls ``"module:function"``, imported when it is called first."""
-
-    def call(*arguments: object) -> Any:
-        """Import, then call."""
-        module, _, name = entry.partition(":")
-        with LOADING:
-            function = getattr(import_module(module), name)
-        return function(*arguments)
-
-    return call
 
 
 class Registry(Mapping[str, Process]):

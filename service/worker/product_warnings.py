@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from lineofaction.gearbox.loading import on_demand
 from service.worker.order import Product, WorkOrder
-from service.worker.process import on_demand
 
 stamp = on_demand("lineofaction.gearbox.convert.result_files:stamp")
 warnings_of_case = on_demand("service.worker.input_warnings:warnings_of_case")

@@ -9,8 +9,8 @@ from threading import Barrier
 
 import pytest
 
+from lineofaction.gearbox.loading import on_demand
 from service.routes.warm_up import warm_up
-from service.worker.process import on_demand
 
 MODULE = """
 import sys, time

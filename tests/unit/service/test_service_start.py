@@ -8,8 +8,9 @@ from importlib import import_module
 
 import pytest
 
+from lineofaction.gearbox.loading import on_demand
 from service.routes.warm_up import HEAVY, warm_up
-from service.worker.process import default_registry, on_demand
+from service.worker.process import default_registry
 
 HEAVY_PACKAGES = {"gmsh", "skfem", "numba", "scipy", "xarray", "h5py", "matplotlib", "plotly"}
 
