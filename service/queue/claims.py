@@ -126,7 +126,7 @@ class Claims:
             row = connection.execute(first.where(computations.c.program.not_in(self._newer))).one_or_none()
             if row is None or row.program == self.program:
                 return row
-            if _is_newer(row.program, self.program):
+            if is_newer(row.program, self.program):
                 self._newer.add(row.program)
             else:
                 _end_former(connection, row)
@@ -267,7 +267,7 @@ def _end_former(connection: Connection, row: Row[Any]) -> None:
     end_computations(connection, computations.c.id == row.id, {"state": "failed", "message": text})
 
 
-def _is_newer(program: str, than: str) -> bool:
+def is_newer(program: str, than: str) -> bool:
     """Whether a version of the program is newer than another; what is no version is old."""
     try:
         return Version(program) > Version(than)

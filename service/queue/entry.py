@@ -14,6 +14,7 @@ from sqlalchemy import ColumnElement, Connection, Engine, Update, func, insert, 
 from lineofaction.gearbox.problems import BadInput, QueueFull
 from service.access.keyring import Holder
 from service.project import COMMON, address_of
+from service.queue.claims import is_newer
 from service.queue.differences import NOT_COMPARED, differences_between, differences_column
 from service.queue.tables import computations, jobs
 from service.queue.terms import ANYBODY, AS_IT_IS, NO_LABEL, USUAL, Terms
@@ -133,6 +134,7 @@ class Entry:
             return _enter_computation(connection, process, work, self._terms)
         connection.execute(_raised(shared, self._terms.priority))
         connection.execute(_extended(shared, self._terms.max_cost_s))
+        _take_over(connection, shared)
         return shared
 
     @retried
@@ -309,6 +311,14 @@ def _enter_computation(connection: Connection, process: str, work: BatchCase, te
         row |= {"started": instant, "finished": instant}
     connection.execute(insert(computations).values(**row))
     return identifier
+
+
+def _take_over(connection: Connection, computation: str) -> None:
+    """Make work in flight of an older program this one's: ended as former it would end the new job too."""
+    mine = (computations.c.id == computation) & computations.c.state.in_(LIVE)
+    program = connection.execute(select(computations.c.program).where(mine)).scalar()
+    if program is not None and not is_newer(program, solver_version()):
+        connection.execute(update(computations).where(mine).values(program=solver_version()))
 
 
 def _raised(computation: str, priority: int) -> Update:

@@ -14,10 +14,13 @@ from sqlalchemy import update
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.reading import validated
 from service.queue.claims import Claims
+from service.queue.entry import BatchCase
+from service.queue.job import Job
 from service.queue.tables import computations
 from service.schemas.examples import INPUTS, SCENE
-from service.store import writing
+from service.store import now, writing
 from service.version import solver_version
+from service.webhooks.calls import Calls
 from service.worker.process import default_registry
 
 NEWER, OLDER = "9.0.0", "0.0.9"
@@ -55,9 +58,7 @@ def test_work_of_an_older_version_ends_with_the_reason(machine: Bench) -> None:
 
 def test_a_scheduler_ends_what_an_older_version_left_and_goes_on(machine: Bench) -> None:
     old, new = machine.submit(text="old"), machine.submit(text="new")
-    with writing(machine.engine) as connection:
-        mine = computations.c.id == old.computation
-        connection.execute(update(computations).where(mine).values(program=""))
+    entered_by(machine, old, "")
     left = machine.settings.data_directory / "work" / old.computation
     left.mkdir(parents=True)
     machine.scheduler.start()
@@ -66,12 +67,62 @@ def test_a_scheduler_ends_what_an_older_version_left_and_goes_on(machine: Bench)
     until(lambda: not left.exists())
 
 
+def entered_by(machine: Bench, job: Job, version: str) -> Job:
+    """Let a job be one that a version entered."""
+    with writing(machine.engine) as connection:
+        mine = computations.c.id == job.computation
+        connection.execute(update(computations).where(mine).values(program=version))
+    return job
+
+
+def test_what_a_lost_scheduler_of_an_older_version_ran_ends_with_the_reason(machine: Bench) -> None:
+    job = machine.submit(text="a")
+    assert claims_of(machine, solver_version()).claim() is not None
+    with writing(machine.engine) as connection:
+        connection.execute(update(computations).values(leased_until=0.0))
+    newer = claims_of(machine, NEWER)
+    (taken,) = newer.take_up()
+    newer.put_back(taken, "The scheduler that ran it was lost.", counted=True)
+    assert newer.claim() is None
+    found = machine.submissions.find(job.id)
+    text = f"The job was entered by version {solver_version()}; submit it again."
+    assert (found.status, found.message, found.attempts) == ("failed", text, 1)
+
+
+def test_a_batch_of_an_older_version_ends_with_its_jobs_and_who_subscribed_is_told(machine: Bench) -> None:
+    cases = [BatchCase(key * 64, {}) for key in "ab"]
+    batch = machine.submissions.entry().batch("fake", cases, now())
+    calls = Calls(machine.engine)
+    calls.enter(batch, dict.fromkeys(("inProgress", "success", "failed"), "https://hooks.example/"))
+    newer = claims_of(machine, NEWER)
+    assert newer.claim() is None
+    newer.advance_batches()
+    found = machine.submissions.find(batch)
+    assert (found.status, found.message) == ("failed", "2 of 2 jobs have ended, 2 failed.")
+    call = calls.claim()
+    assert call is not None and (call.job, call.event) == (batch, "failed")
+    assert calls.claim() is None
+
+
+def test_work_of_one_name_in_both_versions_goes_on_for_who_submits_it_to_the_newer(machine: Bench) -> None:
+    """A table has the same hash in all versions with one solver: its end would end the new job too."""
+    older = entered_by(machine, machine.submit(text="same"), OLDER)
+    newer = machine.submit(text="same")
+    assert newer.computation == older.computation
+    claim = claims_of(machine, solver_version()).claim()
+    assert claim is not None and claim.id == older.computation
+
+
+def test_work_of_a_newer_version_stays_so_whoever_shares_it(machine: Bench) -> None:
+    newer = entered_by(machine, machine.submit(text="same"), NEWER)
+    assert machine.submit(text="same").computation == newer.computation
+    assert claims_of(machine, solver_version()).claim() is None
+    assert claims_of(machine, NEWER).claim() is not None
+
+
 def test_an_older_version_leaves_newer_work(machine: Bench) -> None:
     newer = machine.submit(text="newer")
-    older = machine.submit(text="older")
-    with writing(machine.engine) as connection:
-        mine = computations.c.id == older.computation
-        connection.execute(update(computations).where(mine).values(program=OLDER))
+    older = entered_by(machine, machine.submit(text="older"), OLDER)
     claims = claims_of(machine, OLDER)
     claim = claims.claim()
     assert claim is not None and claim.id == older.computation
@@ -82,9 +133,7 @@ def test_an_older_version_leaves_newer_work(machine: Bench) -> None:
 def test_equal_work_of_an_older_version_is_computed_anew(machine: Bench) -> None:
     """The older version has another hash for it; its end keeps no job of the newer one waiting."""
     old, new = (machine.submissions.submit("fake", key * 64, {}, stored=False) for key in "ab")
-    with writing(machine.engine) as connection:
-        mine = computations.c.id == new.computation
-        connection.execute(update(computations).where(mine).values(program=NEWER))
+    entered_by(machine, new, NEWER)
     claim = claims_of(machine, NEWER).claim()
     assert claim is not None and claim.id == new.computation
     assert machine.submissions.find(old.id).status == "failed"
