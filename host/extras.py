@@ -1,4 +1,4 @@
-"""Extras of the installation: what it needs that a base install does not bring."""
+"""Extras of the installation, which a base install does not bring; what a system does not offer."""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ dependencies = {json.dumps(needs)}
 packages = {json.dumps(packages)}
 
 [tool.setuptools.package-data]
-"*" = ["py.typed", "*.pyi"]
+"*" = ["py.typed"]
 """,
         encoding="utf-8",
     )

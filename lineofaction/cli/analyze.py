@@ -71,9 +71,6 @@ def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
     return scene, folder
 
 
-# ``loa analyze``.
-
-
 # Lines of `loa analyze` about a tolerance: drafts while it refines, its passes, and whether it is met.
 
 
@@ -137,6 +134,9 @@ def _pass(number: int, entry: Json) -> str:
         f"pass {number}: {entry['model']}, {mesh}, "
         f"{engineering(entry['cpu_seconds'], 2)} CPU s, {used}{refined}"
     )
+
+
+# ``loa analyze``.
 
 
 _SHOWN_HARMONICS = 3

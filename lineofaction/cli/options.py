@@ -12,7 +12,7 @@ import typer
 from typer.models import OptionInfo
 
 from lineofaction.cli.guard import parameters_of, with_parameters
-from lineofaction.gearbox.input_file import InputFile, Override
+from lineofaction.gearbox.input_file import InputFile, Override, number_list
 
 DEFAULT_SERVICE = "http://127.0.0.1:8321"
 
@@ -138,8 +138,6 @@ def _with(files: InputFile | list[InputFile], overrides: tuple[Override, ...]) -
 
 def _overrides(typed: Mapping[str, Any]) -> tuple[Override, ...]:
     """Return what was typed as overrides, shorthands first."""
-    from lineofaction.gearbox.input_file import number_list  # noqa: PLC0415 (start-up time)
-
     made = []
     for name, (path, others) in _SHORTHANDS.items():
         value = typed.get(name)

@@ -37,9 +37,6 @@ from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.page import Headline
 
-# ``loa simulate``.
-
-
 # The main figures of a run: how far its forces swing.
 
 
@@ -83,6 +80,9 @@ def tabled_scene(scene: SceneInput, folder: Path, service: str | None, report: R
         return scene_by_tables(
             scene, folder, lambda index, mesh: run(there.of(index, mesh)), cache_home(), report, warn, cases
         )
+
+
+# ``loa simulate``.
 
 
 def run_simulate(file: InputFile, output: Path, service: str | None, *, resume: bool, as_json: bool) -> None:

@@ -142,9 +142,6 @@ LEAST = {"highest_priority": -9}
 """Of limits; of others 1."""
 
 
-# Look-up of a presented key: in constant time, from a file that may change while the service runs.
-
-
 # The record of an access key.
 
 
@@ -352,6 +349,9 @@ def _scopes(names: Iterable[str]) -> tuple[Scope, ...]:
         bound = f"some of {', '.join(Scope)}"
         raise BadInput.of("scopes", ",".join(unknown), bound, "For example: read,submit,dismiss")
     return tuple(scope for scope in Scope if scope in names)
+
+
+# Look-up of a presented key: in constant time, from a file that may change while the service runs.
 
 
 logger = structlog.get_logger(__name__)

@@ -1,4 +1,4 @@
-"""The scheduler's side of the job table: claim, renew, progress, end, put back, take up.
+"""The scheduler's side of the job table: claim, renew, progress, end, put back, take up; and its leases.
 
 Every step names the lease it works under, so that a computation dismissed or taken up by another scheduler
 meanwhile stays as it is. Leases end by the clock of the database, which all schedulers share.

@@ -1,7 +1,7 @@
 """A deployment: one database and one store of files that belong together; each names the other.
 
 A deployment is known by a random identifier. It stands in the database and in a note beside the files. Where
-the two differ nothing is served and nothing is removed.
+the two differ nothing is served and nothing is removed. Whether both can be written is tried by `WriteCheck`.
 """
 
 from __future__ import annotations

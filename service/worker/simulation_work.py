@@ -1,4 +1,4 @@
-"""The work of the process simulate, done in a child process of its own."""
+"""The work of the processes analyze and simulate, done in a child process of its own."""
 
 from __future__ import annotations
 
@@ -32,9 +32,6 @@ from service.worker.cluster import table_workers
 from service.worker.order import Product, Progress, WorkOrder
 from service.worker.preparations import CASES
 from service.worker.process import ANALYZE
-
-# The work of the process analyze, done in a child process of its own.
-
 
 # Progress of an analysis: its fraction by predicted cost, and the figures of the last draft.
 

@@ -342,8 +342,6 @@ def _pitch_error_beyond_deflection() -> Sequence[Measured]:
     teeth[5] = _STEP
     case = posed(_with_pitch(tuple(teeth)), pitches=20, bodies=plain.contact)
     problem, solution = case.solve(position, case.plan.load, np.repeat(np.arange(20), 48))
-    every = posed(_with_pitch((_STEP,) * 20), pitches=1, bodies=plain.contact)
-    shifted = every.ste(position)
     shift = _STEP * np.cos(plain.pair.pinion.transverse_pressure_angle)
     every = posed(_with_pitch((_STEP,) * 20), pitches=1, bodies=plain.contact)
     shifted = every.ste(position) - alone.deflection + shift
