@@ -14,6 +14,7 @@ import pytest
 from coarse_sectors import coarse_sectors
 from compiled_once import compile_once
 from condensed_once import condensed_bodies, condensed_once
+from cpu_seconds import CpuRecorder
 from hypothesis import settings
 from quick_tests import is_quick
 
@@ -32,12 +33,14 @@ settings.register_profile("nightly", deadline=None, max_examples=640)
 settings.load_profile("suite")
 
 
-def pytest_configure() -> None:
-    """Share what is compiled, and heed interrupts again, which may have been ignored for good.
+def pytest_configure(config: pytest.Config) -> None:
+    """Share what is compiled, record costs, and heed interrupts again, which may have been ignored for good.
 
     A shell ignores them for what it starts with ``&``, and all its children inherit it; tests that interrupt
     a program would wait for ever.
     """
+    if record := config.getoption("record_cpu"):
+        config.pluginmanager.register(CpuRecorder(record))
     if "PYTEST_XDIST_WORKER" in os.environ:
         compile_once()
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -48,6 +51,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """Let `scripts/test --quick` choose."""
     what = "tests whose file imports nothing that meshes, marches in time, draws or serves"
     parser.addoption("--quick", action="store_true", help=what)
+    parser.addoption("--record-cpu", type=Path, metavar="FILE", help="write what each test costs in CPU time")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

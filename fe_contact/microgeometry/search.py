@@ -63,7 +63,7 @@ class _Budget:
         self._report(self.used / self.total)
 
 
-class CountedMerit:
+class _CountedMerit:
     """Merit of a point (d,) in the unit cube.
 
     Parameters
@@ -136,7 +136,7 @@ class Method(Protocol):
     """A way to search the unit cube."""
 
     def minimize(
-        self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
+        self, merit: _CountedMerit, rough: _CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search from `start` (d,) until converged; the merits remember the best.
 
@@ -162,7 +162,7 @@ class NelderMead:
     """
 
     def minimize(
-        self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
+        self, merit: _CountedMerit, rough: _CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search; nothing is random, and nothing is rough."""
         bounds = Bounds(np.zeros(start.size), np.ones(start.size))
@@ -215,7 +215,7 @@ class SequentialLinearProgramming:
         integer("method.trials", self.trials, 0, 64)
 
     def minimize(
-        self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
+        self, merit: _CountedMerit, rough: _CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search; the sequence and the points beside an end are random."""
         walks = [_Walk(merit, start)]
@@ -233,7 +233,7 @@ class SequentialLinearProgramming:
             misses = 0 if other.value < (1.0 - LEAST_GAIN) * best.value else misses + 1
             best = min(best, other, key=lambda walk: walk.value)
 
-    def _best(self, rough: CountedMerit, dimensions: int, seed: np.random.SeedSequence) -> list[FloatArray]:
+    def _best(self, rough: _CountedMerit, dimensions: int, seed: np.random.SeedSequence) -> list[FloatArray]:
         """Return the best points of the sequence, as far as the designs reach."""
         explored: list[tuple[float, FloatArray]] = []
         with suppress(_BudgetUsed):
@@ -259,7 +259,7 @@ class _Walk:
         Its merit.
     """
 
-    def __init__(self, merit: CountedMerit, start: FloatArray, region: float = FIRST_REGION) -> None:
+    def __init__(self, merit: _CountedMerit, start: FloatArray, region: float = FIRST_REGION) -> None:
         self._merit, self.place, self._region = merit, start, region
         self.value, self._linear = merit.linearize(start)
 
@@ -303,7 +303,7 @@ class DifferentialEvolution:
         integer("method.population", self.population, 3, 50)
 
     def minimize(
-        self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
+        self, merit: _CountedMerit, rough: _CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search; the start is one of the first population."""
         merit(start)
@@ -436,8 +436,8 @@ def search_from(
     """
     begun = cpu_seconds()
     budget = _Budget(search.evaluations, cancel or never, report or _silent)
-    merit = CountedMerit(problem, budget, search.evaluations)
-    rough = CountedMerit(problem.rough(search.exploration), budget, int(EXPLORED * search.evaluations))
+    merit = _CountedMerit(problem, budget, search.evaluations)
+    rough = _CountedMerit(problem.rough(search.exploration), budget, int(EXPLORED * search.evaluations))
     ended = Ended.CONVERGED
     try:
         search.method.minimize(merit, rough, start, np.random.SeedSequence((search.seed, index)))
@@ -452,7 +452,7 @@ def search_from(
 
 
 def _best(
-    problem: DesignProblem, merit: CountedMerit, rough: CountedMerit, start: FloatArray
+    problem: DesignProblem, merit: _CountedMerit, rough: _CountedMerit, start: FloatArray
 ) -> tuple[Assessed, FloatArray]:
     """Return the best design; where exploration was cut short its best has yet to be assessed in full."""
     known = [] if merit.best is None else [merit.best]
