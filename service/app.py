@@ -13,8 +13,7 @@ from prometheus_client import CollectorRegistry
 
 from service.access import open_identities
 from service.access.capacity import capacity
-from service.live.kept_answers import KeptAnswers
-from service.live.pool import LivePool
+from service.live.pool import KeptAnswers, LivePool
 from service.management.figures import Metrics, process_registry
 from service.queue.machinery import job_machinery
 from service.queue.watcher import Watcher

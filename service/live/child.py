@@ -11,38 +11,38 @@ import importlib
 import json
 import os
 import queue
-import signal
 import sys
 import threading
 import traceback
-import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import BinaryIO, TypeAlias
+from typing import TypeAlias
 
 from host import kill_own_group, lower_priority
+from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import ServiceError
 from service.live.order import AnswerHead, LiveOrder, LiveWork
-from service.worker.usage import hold_to
+from service.worker.usage import begin_work, hold_to
 
 Note: TypeAlias = Callable[[], None]
 _NICENESS = 5
 """Less than that of jobs: somebody waits for the answer."""
+translated = on_demand("lineofaction.gearbox.convert.errors:translated")
 
 
 def main() -> None:
     """Answer until the service is gone or memory is out."""
-    warnings.filterwarnings(
-        "ignore", message="implausible"
-    )  # answers say it in the caller's fields and units
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C in the terminal is the service's to handle
+    begin_work()
     lower_priority(_NICENESS)
     orders: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(orders,), daemon=True).start()
     hold_to(int(sys.argv[2]))
     with os.fdopen(int(sys.argv[1]), "wb") as channel:
-        while _answer(LiveOrder.from_line(orders.get()), channel):
-            pass
+        head = AnswerHead("")
+        while head.kind != "memory":
+            head, body = worked(LiveOrder.from_line(orders.get()))
+            channel.write(head.line() + body)
+            channel.flush()
 
 
 def _listen(orders: queue.SimpleQueue[bytes]) -> None:
@@ -51,13 +51,6 @@ def _listen(orders: queue.SimpleQueue[bytes]) -> None:
         for line in stream:
             orders.put(line)
     kill_own_group()
-
-
-def _answer(order: LiveOrder, channel: BinaryIO) -> bool:
-    head, body = worked(order)
-    channel.write(head.line() + body)
-    channel.flush()
-    return head.kind != "memory"
 
 
 def worked(order: LiveOrder, *further: Path, note: Note = traceback.print_exc) -> tuple[AnswerHead, bytes]:
@@ -78,7 +71,7 @@ def worked(order: LiveOrder, *further: Path, note: Note = traceback.print_exc) -
     except MemoryError:
         return AnswerHead("memory"), b""
     except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
-        known = error if isinstance(error, ServiceError) else _translated(error)
+        known = error if isinstance(error, ServiceError) else translated(error)
         if known is None:
             note()
             return AnswerHead("defect"), b""
@@ -90,12 +83,6 @@ def problem(error: ServiceError) -> tuple[AnswerHead, bytes]:
     """Return head and body of an answer that is an error."""
     body = json.dumps(error.as_json()).encode()
     return AnswerHead("problem", len(body)), body
-
-
-def _translated(error: Exception) -> ServiceError | None:
-    from lineofaction.gearbox.convert.errors import translated  # noqa: PLC0415 (start-up time; failures are rare)
-
-    return translated(error)
 
 
 if __name__ == "__main__":

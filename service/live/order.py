@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 from lineofaction.gearbox.problems import ServiceError, last_part
 
@@ -17,8 +17,21 @@ Json = dict[str, Any]
 LiveWork = Callable[..., Json]
 
 
+class _Message:
+    """A dataclass that is sent as a line of JSON."""
+
+    def line(self) -> bytes:
+        """Return the line."""
+        return json.dumps(vars(self)).encode() + b"\n"
+
+    @classmethod
+    def from_line(cls, line: bytes) -> Self:
+        """Read a line."""
+        return cls(**json.loads(line))
+
+
 @dataclass(frozen=True)
-class LiveOrder:
+class LiveOrder(_Message):
     """One question for the live worker.
 
     Attributes
@@ -32,18 +45,9 @@ class LiveOrder:
     entry: str
     inputs: Json
 
-    def line(self) -> bytes:
-        """Return the order as one line of JSON."""
-        return json.dumps({"entry": self.entry, "inputs": self.inputs}).encode() + b"\n"
-
-    @classmethod
-    def from_line(cls, line: bytes) -> LiveOrder:
-        """Read the line of an order."""
-        return cls(**json.loads(line))
-
 
 @dataclass(frozen=True)
-class AnswerHead:
+class AnswerHead(_Message):
     """The header before the bytes of an answer.
 
     Attributes
@@ -58,15 +62,6 @@ class AnswerHead:
     kind: str
     length: int = 0
 
-    def line(self) -> bytes:
-        """Return the head as one line of JSON."""
-        return json.dumps({"kind": self.kind, "length": self.length}).encode() + b"\n"
-
-    @classmethod
-    def from_line(cls, line: bytes) -> AnswerHead:
-        """Read the line of a head."""
-        return cls(**json.loads(line))
-
 
 # An error of another process, reported as that process reported it.
 
@@ -80,11 +75,9 @@ class _PropagatedError(ServiceError):
 
     @property
     def kind(self) -> str:
-        """Last part of the type of the problem that came."""
         return last_part(str(self._facts["type"]))
 
     def as_json(self) -> dict[str, Any]:
-        """Return the problem details as they came."""
         return self._facts
 
 

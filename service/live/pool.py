@@ -1,4 +1,4 @@
-"""The pool of the live worker: questions that are answered while their caller waits, one at a time.
+"""The pool of the live worker: questions that are answered while their caller waits, and answers kept.
 
 A question under the name of a caller makes the caller's earlier one obsolete if that has not begun: a slider
 that moves on asks for where it is now. The worker starts with the first question, is replaced when it dies or
@@ -8,6 +8,7 @@ takes too long, and ends when nothing was requested for a while.
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import select
 import subprocess
@@ -25,9 +26,10 @@ import structlog
 
 from host import child_environment, kill_group
 from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, Superseded, Unexpected
-from service.folders import own_folder, remove_left
+from service.folders import evict, own_folder, remove_left
 from service.live.order import AnswerHead, LiveOrder, propagated
 from service.settings import LEAST_MEMORY_MB, Settings
+from service.store.files import PARTIAL
 from service.worker.usage import machine_memory_mb
 
 # The live worker seen from the service: start, ask, end.
@@ -314,3 +316,51 @@ class LivePool:
 def _refuse(question: _Question, error: Exception) -> None:
     if question.future.set_running_or_notify_cancel():
         question.future.set_exception(error)
+
+
+# Answers that are kept: they depend on stored results and on this program only.
+
+
+MOST_BYTES = 200_000_000
+
+
+class KeptAnswers:
+    """Bodies of answers in a folder, by tag; what was not used for longest goes first.
+
+    Parameters
+    ----------
+    folder : Path
+        Made with the first answer. Several processes may use it at once.
+    most_bytes : int
+        What it holds at most.
+    """
+
+    def __init__(self, folder: Path, most_bytes: int = MOST_BYTES) -> None:
+        self._folder, self._most_bytes = folder, most_bytes
+
+    def find(self, tag: str) -> bytes | None:
+        """Return the body of a tag, None if it is not kept."""
+        path = self._path(tag)
+        try:
+            body = path.read_bytes()
+            os.utime(path)
+        except OSError:
+            return None
+        return body
+
+    def keep(self, tag: str, body: bytes) -> None:
+        """Keep a body; where that is impossible it is computed again."""
+        path = self._path(tag)
+        draft = path.with_name(f"{path.name}.{uuid.uuid4().hex[:8]}{PARTIAL}")
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            draft.write_bytes(body)
+            draft.replace(path)
+            evict(self._folder, self._most_bytes)
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                draft.unlink()
+            logger.warning("answer not kept", error=str(error))
+
+    def _path(self, tag: str) -> Path:
+        return self._folder / f"{hashlib.sha256(tag.encode()).hexdigest()}.json"

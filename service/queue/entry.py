@@ -15,9 +15,17 @@ from lineofaction.gearbox.problems import BadInput, QueueFull
 from service.access.keyring import Holder
 from service.project import COMMON, address_of
 from service.queue.claims import is_newer
-from service.queue.differences import NOT_COMPARED, differences_between, differences_column
 from service.queue.tables import computations, jobs
-from service.queue.terms import ANYBODY, AS_IT_IS, NO_LABEL, USUAL, Terms
+from service.queue.terms import (
+    ANYBODY,
+    AS_IT_IS,
+    NO_LABEL,
+    NOT_COMPARED,
+    USUAL,
+    Terms,
+    differences_between,
+    differences_column,
+)
 from service.queue.workload import FOR_EVER, HELD, batch_steps
 from service.schemas.answers import Differences
 from service.store import now, retried, writing

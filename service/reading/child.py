@@ -9,16 +9,15 @@ Standard error is the log.
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import traceback
-import warnings
 from pathlib import Path
 
 from host import READING, confine, end_after, lower_priority
 from lineofaction.gearbox.problems import TooLarge
 from service.live.child import problem, worked
 from service.live.order import AnswerHead, LiveOrder
+from service.worker.usage import begin_work
 
 LONGEST_S = 30
 """Time after which it ends, whatever it waits for."""
@@ -28,10 +27,7 @@ _NICENESS = 5
 
 def work(descriptor: int) -> None:
     """Read what the order says; the answer goes to the descriptor."""
-    warnings.filterwarnings(
-        "ignore", message="implausible"
-    )  # answers say it in the caller's fields and units
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C in the terminal is the service's to handle
+    begin_work()
     end_after(LONGEST_S)
     lower_priority(_NICENESS)
     confine(Path.cwd(), READING)

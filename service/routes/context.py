@@ -13,8 +13,7 @@ from sqlalchemy import Engine
 
 from lineofaction.gearbox.loading import LOADING
 from service.access import Holder
-from service.live.kept_answers import KeptAnswers
-from service.live.pool import LivePool
+from service.live.pool import KeptAnswers, LivePool
 from service.project import COMMON
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions

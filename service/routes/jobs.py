@@ -146,7 +146,7 @@ def _instant(text: str) -> str:
 
 
 router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
-input_warnings = on_demand("service.worker.input_warnings:input_warnings")
+input_warnings = on_demand("service.worker.preparations:input_warnings")
 
 
 @router.get("", summary="Jobs")

@@ -20,9 +20,16 @@ from lineofaction.gearbox.schemas.reading import validated
 from service.access import Holder, Scope
 from service.live.order import LiveOrder
 from service.origin import Origin
-from service.queue.differences import differences_between
 from service.queue.entry import BatchCase
-from service.queue.terms import Label, Terms, check_priority, cost_limit, delivery, refuse_beyond
+from service.queue.terms import (
+    Label,
+    Terms,
+    check_priority,
+    cost_limit,
+    delivery,
+    differences_between,
+    refuse_beyond,
+)
 from service.routes.context import Context, Ctx, From
 from service.routes.jobs import batch_results, problem_of, reference_of, status_info
 from service.routes.media_types import Limit, described_headers
@@ -330,7 +337,7 @@ Json = dict[str, Any]
 _PREDICTING_S = 1.0
 """CPU time for the predicted costs of one batch: 6 ms a case in the plane, 0.1 s over the face."""
 router = APIRouter(prefix="/batches", tags=["jobs"], route_class=ScopedRoute)
-predicted_seconds = on_demand("service.worker.predicted_cost:predicted_seconds")
+predicted_seconds = on_demand("service.worker.preparations:predicted_seconds")
 
 
 @router.post(

@@ -15,38 +15,37 @@ import logging
 import os
 import select
 import shutil
-import signal
 import sys
 import tempfile
 import threading
 import time
 import traceback
-import warnings
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TextIO
 
 from fe_contact.cache_reads import COMPLIANCE_READS
 from host import cpu_seconds, kill_own_group, lock, lower_priority, peak_memory
+from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import ServiceError
 from service.worker.order import Product, WorkOrder
-from service.worker.product_warnings import stamp_products
-from service.worker.usage import BYTES_PER_MB, hold_to, machine_memory_mb, no_space
+from service.worker.usage import BYTES_PER_MB, begin_work, hold_to, machine_memory_mb, no_space
 
 _NICENESS = 10
 _SHORTEST_INTERVAL_S = 0.1
+stamp = on_demand("lineofaction.gearbox.convert.result_files:stamp")
+translated = on_demand("lineofaction.gearbox.convert.errors:translated")
+warnings_of_case = on_demand("service.worker.preparations:warnings_of_case")
 
 
 def work(descriptor: int) -> None:
     """Run one order; messages go to the descriptor."""
-    warnings.filterwarnings(
-        "ignore", message="implausible"
-    )  # results say it in the caller's fields and units
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C in the terminal is the service's to handle
+    begin_work()
     line, renewals = _first_line()
     order = WorkOrder.from_line(line)
     threading.Thread(target=_watch_parent, args=(order.lease_until, renewals), daemon=True).start()
-    _alone_in(order.workspace)
+    lock(os.open(order.workspace, os.O_RDONLY), wait=True)  # open, and so locked, until we end
     _draft_in(order.workspace / "drafts")
     lower_priority(_NICENESS)
     if order.memory_limit_mb is not None:
@@ -83,10 +82,6 @@ def _watch_parent(until: float | None, rest: bytes) -> None:
         if not select.select([0], [], [], left)[0] or not (piece := os.read(0, 4096)):
             kill_own_group()
         rest += piece
-
-
-def _alone_in(workspace: Path) -> None:
-    lock(os.open(workspace, os.O_RDONLY), wait=True)  # open, and so locked, until we end
 
 
 def _draft_in(folder: Path) -> None:
@@ -137,12 +132,14 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
         products: tuple[Product, ...] = getattr(importlib.import_module(module), name)(order, progress)
         stamp_products(order, products)
     except MemoryError:
-        limit = order.memory_limit_mb
-        return {"failure": _out_of_memory(machine_memory_mb() if limit is None else limit)}
+        limit = order.memory_limit_mb or machine_memory_mb()
+        text = f"The computation ran out of memory: it may have {limit} MB (LOA_MEMORY_LIMIT_MB). Select a "
+        text += "coarser level or fewer positions, or start the service with a higher limit."
+        return {"failure": text}
     except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
         if isinstance(error, OSError) and (full := no_space(error)):
             return {"failure": full}
-        known = error if isinstance(error, ServiceError) else _translated(error)
+        known = error if isinstance(error, ServiceError) else translated(error)
         if known is None:
             traceback.print_exc(file=sys.stderr)
             return {"failure": "unexpected", "unexpected": True}
@@ -150,18 +147,15 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
     return {"products": [{"key": p.key, "kind": p.kind, "file": str(p.file)} for p in products]}
 
 
-def _out_of_memory(limit_mb: int) -> str:
-    """Return the message of a job that needed more."""
-    return (
-        f"The computation ran out of memory: it may have {limit_mb} MB (LOA_MEMORY_LIMIT_MB). Select a "
-        "coarser level or fewer positions, or start the service with a higher limit."
-    )
-
-
-def _translated(error: Exception) -> ServiceError | None:
-    from lineofaction.gearbox.convert.errors import translated  # noqa: PLC0415 (start-up time; failures are rare)
-
-    return translated(error)
+def stamp_products(order: WorkOrder, products: Sequence[Product]) -> None:
+    """Write into each file what is implausible about what it was made from; a database says so itself."""
+    others = any(product.kind != "database" for product in products)
+    case = list(warnings_of_case(order.inputs["case"])) if others and "case" in order.inputs else None
+    for product in products:
+        of_case = None if product.kind == "database" else case
+        if product.warnings is not None or of_case is not None:
+            warnings = (*(of_case or ()), *(product.warnings or ()))
+            stamp(product.file, list({warning["message"]: warning for warning in warnings}.values()))
 
 
 if __name__ == "__main__":

@@ -1,14 +1,22 @@
-"""What work uses of the machine: CPU time, memory, disk."""
+"""How work begins in a process of its own, and what it uses of the machine: CPU time, memory, disk."""
 
 from __future__ import annotations
 
 import errno
+import signal
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
 from host import limit_memory, physical_memory
 
 BYTES_PER_MB = float(1 << 20)
+
+
+def begin_work() -> None:
+    """Leave a Ctrl-C in the terminal to the service; what is implausible is said in the caller's fields."""
+    warnings.filterwarnings("ignore", message="implausible")
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @dataclass(frozen=True)

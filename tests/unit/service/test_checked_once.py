@@ -24,9 +24,8 @@ from lineofaction.gearbox.schemas.toml import toml_text
 from service.app import create_app
 from service.settings import Settings
 from service.worker import preparations
+from service.worker.child import stamp_products
 from service.worker.order import WorkOrder
-from service.worker.predicted_cost import predicted_seconds
-from service.worker.product_warnings import stamp_products
 from service.worker.simulation_work import analyze_case
 
 GEAR = {"teeth": 20, "face_width_mm": 2.0, "bore_diameter_mm": 10.0}
@@ -123,7 +122,7 @@ def test_a_submission_with_a_cost_limit_checks_once_in_the_server(
         assert status.status_code == 201, status.text
         assert client.get(f"/v1/jobs/{status.json()['jobID']}").json()["warnings"] == []
     assert calls.counts == (0, 1, 1)
-    assert predicted_seconds({"case": validated(Case, CASE).model_dump(mode="json")})
+    assert preparations.predicted_seconds({"case": validated(Case, CASE).model_dump(mode="json")})
     assert calls.counts == (0, 1, 1)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from service.live.kept_answers import KeptAnswers
+from service.live.pool import KeptAnswers
 from service.version import modules_digest
 
 

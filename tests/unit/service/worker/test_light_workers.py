@@ -26,5 +26,5 @@ def test_the_worker_of_a_small_job_loads_no_library_that_computes(
     assert [product.kind for product in worker.finish().products] == ["database"]
     lines = (line for line in log.read_text().splitlines() if line.startswith("import time:"))
     imported = {line.rpartition("|")[2].strip() for line in lines}
-    assert {"service.worker.product_warnings", "fe_contact.errors"} <= imported  # by the worker, by its work
+    assert {"service.worker.usage", "fe_contact.errors"} <= imported  # by the worker, by its work
     assert HEAVY & {name.partition(".")[0] for name in imported} == set()
