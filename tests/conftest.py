@@ -14,9 +14,10 @@ import pytest
 from coarse_sectors import coarse_sectors
 from compiled_once import compile_once
 from condensed_once import condensed_bodies, condensed_once
-from cpu_seconds import CpuRecorder
 from hypothesis import settings
 from quick_tests import is_quick
+from suite_records import SuiteRecords
+from suite_selection import add_options, heed_named_files, select
 
 TESTS = Path(__file__).parent
 FIGURES = TESTS.parent / "out" / "validation"
@@ -39,8 +40,11 @@ def pytest_configure(config: pytest.Config) -> None:
     A shell ignores them for what it starts with ``&``, and all its children inherit it; tests that interrupt
     a program would wait for ever.
     """
-    if record := config.getoption("record_cpu"):
-        config.pluginmanager.register(CpuRecorder(record))
+    heed_named_files(config)
+    if config.getoption("record"):
+        if config.getoption("keyword") or config.getoption("markexpr"):
+            raise pytest.UsageError("--record renews whole files: with -m '' and without -k")
+        config.pluginmanager.register(SuiteRecords())
     if "PYTEST_XDIST_WORKER" in os.environ:
         compile_once()
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -48,10 +52,11 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Let `scripts/test --quick` choose."""
+    """Let the command line choose."""
     what = "tests whose file imports nothing that meshes, marches in time, draws or serves"
     parser.addoption("--quick", action="store_true", help=what)
-    parser.addoption("--record-cpu", type=Path, metavar="FILE", help="write what each test costs in CPU time")
+    parser.addoption("--record", action="store_true", help="renew tests/records by this run")
+    add_options(parser)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -59,6 +64,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if config.getoption("quick"):
         config.hook.pytest_deselected(items=[item for item in items if not is_quick(item)])
         items[:] = filter(is_quick, items)
+    select(items, config)
     items.sort(key=_turn)
 
 

@@ -1,0 +1,94 @@
+"""What each test costs in CPU time, and what it rested on when it passed: `pytest --all --record`.
+
+Counted is the time of this process, of its children and of theirs, from set-up to tear-down. Set-up that
+tests share (a fixture of a file or of the run) counts for none of them: it would only move to the next.
+"""
+
+from __future__ import annotations
+
+import csv
+import time
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from suite_selection import COSTS, PASSED, ROOT, SLOW, digest, read_costs, read_passed
+
+LEAST = 0.5
+"""Tests below this (s) are not on record: they are as good as free."""
+_PROPERTY = "cpu_seconds"
+
+
+class SuiteRecords:
+    """Measures each test, in the worker that runs it, and renews the records where the run is led."""
+
+    def __init__(self) -> None:
+        self.shared = self.start = 0.0
+        self.seconds: dict[str, float] = {}
+        self.failed: set[str] = set()
+
+    @pytest.hookimpl(hookwrapper=True)
+    def pytest_fixture_setup(self, fixturedef: pytest.FixtureDef[Any]) -> Iterator[None]:
+        """Take what is shared apart."""
+        start = _cpu_seconds()
+        yield
+        if fixturedef.scope != "function":
+            self.shared += _cpu_seconds() - start
+
+    @pytest.hookimpl(hookwrapper=True, tryfirst=True)
+    def pytest_runtest_protocol(self) -> Iterator[None]:
+        """Note the time at which a test begins."""
+        self.shared, self.start = 0.0, _cpu_seconds()
+        yield
+
+    @pytest.hookimpl(hookwrapper=True)
+    def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Iterator[None]:
+        """Give the last report of a test its cost."""
+        if call.when == "teardown":
+            item.user_properties.append((_PROPERTY, _cpu_seconds() - self.start - self.shared))
+        yield
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Keep what a worker measured, and which files have a test that failed."""
+        if report.when == "teardown":
+            self.seconds[report.nodeid] = float(str(dict(report.user_properties)[_PROPERTY]))
+        if report.failed:
+            self.failed.add(_file(report.nodeid))
+
+    def pytest_sessionfinish(self, session: pytest.Session) -> None:
+        """Renew the records of the files that were run, where the run is led."""
+        if hasattr(session.config, "workerinput") or not self.seconds:
+            return
+        ran = set(map(_file, self.seconds))
+        costs = {test: s for test, s in read_costs().items() if _file(test) not in ran}
+        costs |= {test: s for test, s in self.seconds.items() if s >= LEAST}
+        _write(COSTS, ("test", "cpu_seconds"), ((test, f"{s:.1f}") for test, s in costs.items()))
+        slow = {_file(test) for test, s in costs.items() if s > SLOW}
+        passed = read_passed() | {file: digest(ROOT / file) for file in ran & slow - self.failed}
+        there = {file: sums for file, sums in passed.items() if file in slow and (ROOT / file).exists()}
+        _write(PASSED, ("file", "rested_on"), there.items())
+
+
+def _file(test: str) -> str:
+    return test.partition("::")[0]
+
+
+def _write(file: Path, head: tuple[str, str], rows: Iterable[tuple[str, str]]) -> None:
+    file.parent.mkdir(exist_ok=True)
+    with file.open("w", encoding="utf-8", newline="") as stream:
+        csv.writer(stream, lineterminator="\n").writerows([head, *sorted(rows)])
+
+
+def _cpu_seconds() -> float:
+    """Return the CPU time (s) of this process and of all below it, those that ended included."""
+    here = psutil.Process()
+    own = here.cpu_times()
+    total: float = time.process_time() + own.children_user + own.children_system
+    for below in here.children(recursive=True):
+        try:
+            total += sum(below.cpu_times()[:4])
+        except psutil.Error:  # ended since
+            continue
+    return total

@@ -1,0 +1,164 @@
+"""Which tests a run has.
+
+By default: all that are quick, those marked `law`, and of the others, which are slow, those that rest on
+what changed since they last passed. A test rests on its file, on the fakes that file imports, and on the
+houses both import; one that starts processes rests on all houses. `tests/records` holds what each slow test
+costs and what it rested on when it passed; the nightly run renews it. Files that are named on the command
+line run whole, and with `--all` everything does.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import importlib.util
+import os
+from collections.abc import Iterator, Sequence
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+TESTS = Path(__file__).parents[1]
+ROOT = TESTS.parent
+RECORDS = TESTS / "records"
+COSTS, PASSED = RECORDS / "cpu_seconds.csv", RECORDS / "passed.csv"
+SLOW = 1.0
+"""CPU seconds of a test from which on it is slow."""
+STARTS_PROCESSES = ("subprocess", "multiprocessing")
+
+
+def _structure() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("structure", ROOT / "scripts" / "structure.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+structure = _structure()
+
+
+def add_options(parser: pytest.Parser) -> None:
+    """Let the command line choose."""
+    parser.addoption("--all", action="store_true", help="slow tests too, whatever changed")
+    parser.addoption(
+        "--day", action="store_true", help="no slow tests but laws, whatever changed or is named"
+    )
+    parser.addoption("--house", help="tests of a house and of what stands on it: gearbox, dynamics ...")
+
+
+def heed_named_files(config: pytest.Config) -> None:
+    """Let what the command line names run whole; the workers have this option from the process that leads."""
+    if "PYTEST_XDIST_WORKER" in os.environ or config.getoption("day"):
+        return
+    if config.args_source is pytest.Config.ArgsSource.ARGS:
+        config.option.all = True
+
+
+def select(items: list[pytest.Item], config: pytest.Config) -> None:
+    """Take from `items` what this run leaves to others."""
+    kept = items
+    if house := config.getoption("house"):
+        above = houses_from(house)
+        kept = [item for item in kept if above & rests_on(item.path)[1]]
+    if not config.getoption("all"):
+        kept = _of_the_day(kept, None if config.getoption("day") else read_passed())
+    if len(kept) < len(items):
+        staying = set(map(id, kept))
+        config.hook.pytest_deselected(items=[item for item in items if id(item) not in staying])
+        items[:] = kept
+
+
+def _of_the_day(items: Sequence[pytest.Item], passed: dict[str, str] | None) -> list[pytest.Item]:
+    """Return those that are quick, state a law, or rest on what changed; without `passed` nothing has."""
+    costs = read_costs()
+
+    def stays(item: pytest.Item) -> bool:
+        if costs.get(item.nodeid, 0.0) <= SLOW or item.get_closest_marker("law"):
+            return True
+        return passed is not None and passed.get(name_of(item.path)) != digest(item.path)
+
+    return [item for item in items if stays(item)]
+
+
+def houses_from(name: str) -> frozenset[str]:
+    """Return a house and those above it; `name` is that of its folder."""
+    for number, floor in enumerate(structure.FLOORS):
+        for house in floor:
+            if name in (house, house.removeprefix("lineofaction.")):
+                return frozenset({house}.union(*structure.FLOORS[:number]))
+    known = ", ".join(house.removeprefix("lineofaction.") for house in structure.HOUSES)
+    raise pytest.UsageError(f"--house {name}: no house; there are {known}")
+
+
+def name_of(file: Path) -> str:
+    """Return the name that records have of a test file."""
+    return file.relative_to(ROOT).as_posix()
+
+
+def read_costs() -> dict[str, float]:
+    """Return the CPU time (s) of each test that has one on record."""
+    return {test: float(seconds) for test, seconds in _rows(COSTS)}
+
+
+def read_passed() -> dict[str, str]:
+    """Return the digest of what each file of slow tests rested on when it passed."""
+    return dict(_rows(PASSED))
+
+
+def _rows(file: Path) -> list[tuple[str, str]]:
+    if not file.exists():
+        return []
+    with file.open(encoding="utf-8", newline="") as stream:
+        return [(name, value) for name, value in list(csv.reader(stream))[1:]]
+
+
+@cache
+def digest(file: Path) -> str:
+    """Return a hash of all that a test file rests on."""
+    own, houses = rests_on(file)
+    sums = hashlib.sha256()
+    for path in sorted(own):
+        sums.update(path.read_bytes() + b"\0")
+    for house in sorted(houses):
+        sums.update(_of_house(house))
+    return sums.hexdigest()[:16]
+
+
+@cache
+def rests_on(file: Path) -> tuple[frozenset[Path], frozenset[str]]:
+    """Return the files of the tests, `file` first of all, and the houses that a test file rests on."""
+    files, houses, waiting = set[Path](), set[str](), [file, *_conftests(file)]
+    while waiting:
+        path = waiting.pop()
+        files.add(path)
+        for module in structure.imported(path):
+            fake = TESTS / "fakes" / f"{module.split('.')[0]}.py"
+            if fake.exists() and fake not in files:
+                waiting.append(fake)
+            elif module.split(".")[0] in STARTS_PROCESSES or module == "lineofaction":
+                houses.update(structure.HOUSES)
+            elif house := structure.house_of(module):
+                houses.add(house)
+    return frozenset(files), frozenset(houses)
+
+
+def _conftests(file: Path) -> Iterator[Path]:
+    """Yield those of the folders of a test file, but for that of all tests."""
+    folder = file.parent
+    while folder not in (TESTS, folder.parent):
+        if (path := folder / "conftest.py").exists():
+            yield path
+        folder = folder.parent
+
+
+@cache
+def _of_house(house: str) -> bytes:
+    """Return a hash of the files of a house, its pages and tables included."""
+    sums = hashlib.sha256()
+    for path in sorted((ROOT / house.replace(".", "/")).rglob("*")):
+        if path.is_file() and "__pycache__" not in path.parts:
+            sums.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+    return sums.digest()

@@ -1,0 +1,101 @@
+"""What a run of the tests has, and what it leaves to the nightly run."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+import suite_selection
+from suite_selection import ROOT, TESTS, digest, houses_from, rests_on, select
+
+HERE = Path(__file__)
+SLOW_TEST = "tests/unit/scripts/test_suite_selection.py::slow"
+
+
+class _Item(SimpleNamespace):
+    def get_closest_marker(self, name: str) -> bool:
+        return name in self.marks
+
+
+def _item(name: str, *marks: str) -> Any:
+    return _Item(nodeid=f"tests/unit/scripts/test_suite_selection.py::{name}", path=HERE, marks=marks)
+
+
+def _left(items: list[Any], **options: Any) -> list[str]:
+    """Return the names of what a run leaves out."""
+    left: list[Any] = []
+    hook = SimpleNamespace(pytest_deselected=lambda items: left.extend(items))  # noqa: PLW0108
+    config: Any = SimpleNamespace(
+        getoption={"all": False, "day": False, "house": None, **options}.__getitem__, hook=hook
+    )
+    everything = list(items)
+    select(items, config)
+    assert [item for item in everything if item not in left] == items
+    return [item.nodeid.partition("::")[2] for item in left]
+
+
+@pytest.fixture
+def on_record(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
+    """Have a slow test on record, and what it rested on; the caller may change that."""
+    passed = {"tests/unit/scripts/test_suite_selection.py": digest(HERE)}
+    monkeypatch.setattr(suite_selection, "read_costs", lambda: {SLOW_TEST: 1.1})
+    monkeypatch.setattr(suite_selection, "read_passed", lambda: passed)
+    return passed
+
+
+@pytest.mark.usefixtures("on_record")
+def test_a_slow_test_that_passed_is_left_and_all_others_run() -> None:
+    assert _left([_item("slow"), _item("quick"), _item("new")]) == ["slow"]
+
+
+@pytest.mark.usefixtures("on_record")
+def test_a_slow_law_runs() -> None:
+    assert _left([_item("slow", "law")]) == []
+
+
+@pytest.mark.usefixtures("on_record")
+def test_everything_runs_on_request() -> None:
+    assert _left([_item("slow")], all=True) == []
+
+
+def test_a_slow_test_runs_when_what_it_rests_on_changed(on_record: dict[str, str]) -> None:
+    on_record.update(dict.fromkeys(on_record, "another"))
+    assert _left([_item("slow")]) == []
+    assert _left([_item("slow")], day=True) == ["slow"]
+    on_record.clear()
+    assert _left([_item("slow")]) == []
+
+
+@pytest.mark.usefixtures("on_record")
+def test_a_house_has_the_tests_of_itself_and_of_what_stands_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    houses = frozenset({"lineofaction.report"})
+    monkeypatch.setattr(suite_selection, "rests_on", lambda _file: (frozenset({HERE}), houses))
+    assert _left([_item("quick")], house="gearbox") == []
+    assert _left([_item("quick")], house="service") == ["quick"]
+    assert "lineofaction.cli" in houses_from("dynamics") and "fe_contact" not in houses_from("dynamics")
+    with pytest.raises(pytest.UsageError, match="gearboxes: no house; there are cli, hardcases"):
+        houses_from("gearboxes")
+
+
+def test_a_test_rests_on_what_it_and_its_fakes_import() -> None:
+    files, houses = rests_on(TESTS / "unit" / "dynamics" / "bearings" / "test_matrix.py")
+    assert houses == {"dynamics"}
+    assert {file.name for file in files} >= {"test_matrix.py"}
+    assert rests_on(HERE)[1] == set()
+
+
+def test_a_test_that_starts_processes_rests_on_all_houses() -> None:
+    assert rests_on(TESTS / "flow" / "test_readme.py")[1] == set(suite_selection.structure.HOUSES)
+
+
+def test_the_digest_follows_every_file_of_a_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    of_house = suite_selection._of_house.__wrapped__
+    before = of_house("bounds")
+    shutil.copytree(ROOT / "bounds", tmp_path / "bounds", ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(suite_selection, "ROOT", tmp_path)
+    copied = of_house("bounds")
+    (tmp_path / "bounds" / "page.html").write_text("new")
+    assert copied == before != of_house("bounds")
