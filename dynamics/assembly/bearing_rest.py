@@ -14,14 +14,13 @@ from dynamics.bearings.matrix import congruent, matrix_rows
 from dynamics.bearings.seat import SEAT, seat_matrix
 from dynamics.errors import SolveError
 from dynamics.forces.elements import Elements, potential
-from dynamics.forces.laws import OF_BEARINGS
+from dynamics.forces.laws import OF_BEARINGS, STATED
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
 from dynamics.kernels.local_state import LocalState
 from dynamics.mechanism.bearing_elements import BearingElement
 from dynamics.motion.force_balance import at_mean_loads, mean_loads, stiffness_across
 from dynamics.motion.observation import local_state
-from dynamics.parts import LAWS_OF_BEARINGS
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray
 
@@ -167,7 +166,7 @@ def linear_scene(
         )
         linear[name] = _with_tangent(linear[name], at, *state)
     parts = [linear[part.name] for part in (*scene.ground_bearings, *scene.planet_bearings)]
-    none: dict[str, Any] = dict.fromkeys(LAWS_OF_BEARINGS, ())
+    none: dict[str, Any] = dict.fromkeys(STATED, ())
     return replace(
         scene,
         bushings=tuple(part for part in parts if isinstance(part, Bushing)),

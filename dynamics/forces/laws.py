@@ -2,19 +2,26 @@
 
 An element has p local coordinates y = G q + y0 in meters and gives p local forces f(y, y', x) in newtons,
 which act on the freedoms as -G^T f. To add a law: its file (what a scene holds, packed arrays, compiled
-functions), and here its number, its arrays and its row of `COMPILED`.
+functions), and here its number, its arrays and its row of `COMPILED`; of a bearing also its field of
+`StatedLaws`, and its table at the boundary.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args, get_type_hints
 
 from dynamics.bearings.ball_elements import BallElements, axial_seat, balls, balls_energy
 from dynamics.bearings.linear_bearing import LinearBearingLaws, linear_bearing, linear_bearing_energy
 from dynamics.bearings.roller_elements import RollerElements, rollers, rollers_energy
-from dynamics.bearings.rolling_contact import RollingContactLaws, rolling_contact, rolling_contact_energy
-from dynamics.bearings.spring_curve import SpringCurveLaws, spring_curve, spring_curve_energy
+from dynamics.bearings.rolling_contact import (
+    RollingContact,
+    RollingContactLaws,
+    rolling_contact,
+    rolling_contact_energy,
+)
+from dynamics.bearings.spring_curve import SpringCurve, SpringCurveLaws, spring_curve, spring_curve_energy
 from dynamics.forces.frames import (
     FrameCouplingLaws,
     RotatingFrameLaws,
@@ -114,6 +121,19 @@ COMPILED = {
     Law.LINEAR_BEARING: Compiled(linear_bearing, linear_bearing_energy),
 }
 
+
+@dataclass(frozen=True, kw_only=True)
+class StatedLaws:
+    """What a scene states of bearings that is not linear, by kind: each law names its bearing."""
+
+    rolling_contacts: tuple[RollingContact, ...] = ()
+    spring_curves: tuple[SpringCurve, ...] = ()
+
+
+STATED: dict[str, type[Any]] = {
+    kind: get_args(parts)[0] for kind, parts in get_type_hints(StatedLaws).items()
+}
+"""The kinds of `StatedLaws`, by name."""
 STATED_OF_BEARINGS: dict[Any, Law] = {
     RollingContactLaws: Law.ROLLING_CONTACT,
     SpringCurveLaws: Law.SPRING_CURVE,

@@ -11,9 +11,9 @@ from typing import Any, TypeVar
 from dynamics.bearings import PlanetBearing
 from dynamics.checks import integer, one_of
 from dynamics.errors import InputError
+from dynamics.forces.laws import STATED
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
 from dynamics.meshes import GearMesh
-from dynamics.parts import LAWS_OF_BEARINGS
 from dynamics.scene.scene import Scene, on_axis
 from dynamics.shafts import DiscBody, GearBody, Shaft
 
@@ -63,7 +63,7 @@ def with_planets(
         for part in scene.planet_bearings
         if part.shaft == shaft
     }
-    laws: dict[str, Any] = {kind: _on_copies(getattr(scene, kind), copied) for kind in LAWS_OF_BEARINGS}
+    laws: dict[str, Any] = {kind: _on_copies(getattr(scene, kind), copied) for kind in STATED}
     return replace(
         scene,
         shafts=(

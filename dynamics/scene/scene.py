@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass
 from itertools import chain
-from typing import Protocol
+from typing import Any, Protocol, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -18,15 +18,15 @@ from dynamics.bearings.row_law import row_law
 from dynamics.bearings.seat import SEAT
 from dynamics.checks import distinct, finite, not_negative, one_of, positive, within
 from dynamics.errors import InputError, SolveError
-from dynamics.forces import RollingContact, SpeedTorque, SpringCurve
+from dynamics.forces import SpeedTorque
+from dynamics.forces.laws import STATED, StatedLaws
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.joints.housing import DEFINITE
 from dynamics.loads import AngleLaw, AppliedForce, LoadTorque, TimeLaw, Unbalance
 from dynamics.meshes import GearMesh
-from dynamics.parts import KINDS, LAWS_OF_BEARINGS, ON_A_SHAFT
 from dynamics.settings import Integration, Outputs
 from dynamics.shafts import DiscBody, GearBody, Shaft
-from dynamics.shafts.shaft import OnShaft, on_length
+from dynamics.shafts.shaft import on_length
 from dynamics.types import FloatArray
 
 # Housings and bushings with matrices: what they can carry, and where.
@@ -37,53 +37,47 @@ SEAT_AGREEMENT = 1e-3  # m; a bearing acts at its middle, which need not be that
 IRRATIONAL = 1.0  # rad; what this turn leaves alone any turn does
 
 
-def _check_housings(
-    shafts: tuple[Shaft, ...],
-    bushings: tuple[Bushing, ...],
-    housings: tuple[Housing, ...],
-    lawful: frozenset[str],
-) -> None:
+def _check_housings(scene: Scene) -> None:
     """Each bushing sits in one housing at most; what a rotating frame holds is alike in all directions.
 
-    A housing under a bearing that is not linear, of those named in `lawful`, is held in all directions.
+    A housing under a bearing that is not linear is held in all directions.
     """
-    by_name = {bushing.name: bushing for bushing in bushings}
-    frames = {shaft.name: shaft.frame for shaft in shafts}
+    bushings = {bushing.name: bushing for bushing in scene.ground_bearings}
+    lawful = {law.bushing for law in scene.bearing_laws}
     taken: dict[str, str] = {}
-    for index, housing in enumerate(housings):
+    for index, housing in enumerate(scene.housings):
         for position, name in enumerate(housing.bushings):
             field = f"housings[{index}].bushings[{position}]"
-            one_of(field, name, list(by_name))
+            one_of(field, name, list(bushings))
             if name in taken:
                 raise InputError(field, name, f'in one housing only; "{taken[name]}" has it')
-            if frames[by_name[name].shaft] is not None:
+            if scene.shaft(bushings[name].shaft).frame is not None:
                 bound = "a bushing of a shaft described in the fixed frame"
                 raise InputError(field, name, bound, "A planetary set's frame turns against the housing.")
             taken[name] = housing.name
-        _check_seat_positions(index, housing, shafts, by_name)
+        for seat, (name, at) in enumerate(zip(housing.bushings, housing.seat_positions or (), strict=False)):
+            bearing = bushings[name]
+            origin = scene.shaft(bearing.shaft).origin
+            _check_seat_position(f"housings[{index}].seat_positions[{seat}]", at, bearing, origin)
         if not lawful.isdisjoint(housing.bushings) and least_share(housing.matrices()[0]) <= DEFINITE:
             bound = "positive definite under bearings that are not linear"
             advice = "Hold the housing at its feet, or on mounts, in every direction that has a row."
             raise InputError(f"housings[{index}].stiffness", housing.name, bound, advice)
-    for index, bushing in enumerate(bushings):
-        if frames[bushing.shaft] is not None:
+    for index, bushing in enumerate(scene.ground_bearings):
+        if scene.shaft(bushing.shaft).frame is not None:
             _check_isotropic(f"bushings[{index}]", bushing)
 
 
-def _check_seat_positions(
-    index: int, housing: Housing, shafts: tuple[Shaft, ...], bushings: dict[str, Bushing]
+def _check_seat_position(
+    field: str, at: Sequence[float], bearing: Bushing, origin: tuple[float, float, float]
 ) -> None:
-    origins = {shaft.name: shaft.origin for shaft in shafts}
-    for seat, (name, at) in enumerate(zip(housing.bushings, housing.seat_positions or (), strict=False)):
-        bearing = bushings[name]
-        expected = np.add(origins[bearing.shaft], (0.0, 0.0, bearing.position))
-        off = np.subtract(at, expected)
-        if float(np.max(np.abs(off))) > SEAT_AGREEMENT:
-            x, y, z = (Quantity(float(value), "m", digits=3) for value in off)
-            limit = Quantity(SEAT_AGREEMENT, "m")
-            bound = Text.of("within ", limit, f' of "{name}"; it is off by ', x, ", ", y, ", ", z)
-            advice = "Move and turn the mesh so that it stands as the scene does, z along the shafts."
-            raise InputError(f"housings[{index}].seat_positions[{seat}]", at, bound, advice)
+    off = np.subtract(at, np.add(origin, (0.0, 0.0, bearing.position)))
+    if float(np.max(np.abs(off))) > SEAT_AGREEMENT:
+        x, y, z = (Quantity(float(value), "m", digits=3) for value in off)
+        limit = Quantity(SEAT_AGREEMENT, "m")
+        bound = Text.of("within ", limit, f' of "{bearing.name}"; it is off by ', x, ", ", y, ", ", z)
+        advice = "Move and turn the mesh so that it stands as the scene does, z along the shafts."
+        raise InputError(field, at, bound, advice)
 
 
 def _check_isotropic(field: str, bushing: Bushing) -> None:
@@ -113,51 +107,46 @@ def _alike_across(matrix: FloatArray) -> bool:
 AXIS_AGREEMENT = 1e-9  # of a shaft's length: shafts nearer than this share an axis
 
 
-def _check_frames(shafts: tuple[Shaft, ...], planet_bearings: tuple[PlanetBearing, ...]) -> None:
-    """Frames are those of carriers, pins turn with the planet's own carrier."""
-    by_name = {shaft.name: shaft for shaft in shafts}
-    for index, shaft in enumerate(shafts):
+def _check_frames(scene: Scene) -> None:
+    """Frames are those of carriers, pins turn with the planet's own carrier, planets rest on pins alone."""
+    shafts = [shaft.name for shaft in scene.shafts]
+    for index, shaft in enumerate(scene.shafts):
         if shaft.frame is None:
             continue
-        one_of(f"shafts[{index}].frame", shaft.frame, list(by_name))
-        if by_name[shaft.frame].frame != shaft.frame:
+        one_of(f"shafts[{index}].frame", shaft.frame, shafts)
+        if scene.shaft(shaft.frame).frame != shaft.frame:
             bound = "a carrier: a shaft described in its own frame"
             raise InputError(f"shafts[{index}].frame", shaft.frame, bound, "Let the carrier name itself.")
-    for index, bearing in enumerate(planet_bearings):
-        field = f"planet_bearings[{index}].carrier"
-        one_of(
-            field, bearing.carrier, [by_name[bearing.shaft].frame or ""], "The frame of its planet's shaft."
-        )
+    for index, bearing in enumerate(scene.planet_bearings):
+        field, frame = f"planet_bearings[{index}].carrier", scene.shaft(bearing.shaft).frame
+        one_of(field, bearing.carrier, [frame or ""], "The frame of its planet's shaft.")
         if bearing.carrier == bearing.shaft:
             raise InputError(field, bearing.carrier, "another shaft than the planet's")
+    for kind in ("bushings", "rolling_bearings"):
+        for index, part in enumerate(getattr(scene, kind)):
+            if not _on_own_axis(scene, scene.shaft(part.shaft)):
+                bound, advice = "a shaft on the carrier's axis", "Planets rest on planet bearings."
+                raise InputError(f"{kind}[{index}].shaft", part.shaft, bound, advice)
 
 
-def _check_on_axis(
-    shafts: tuple[Shaft, ...], kind: str, bearings: Sequence[Bushing | RollingBearing]
-) -> None:
-    """Planets have no bearings to the ground; `kind` is what a scene calls these."""
-    by_name = {shaft.name: shaft for shaft in shafts}
-    for index, bearing in enumerate(bearings):
-        shaft = by_name[bearing.shaft]
-        if shaft.frame is not None and not on_axis(shaft, by_name[shaft.frame]):
-            bound = "a shaft on the carrier's axis"
-            raise InputError(f"{kind}[{index}].shaft", shaft.name, bound, "Planets rest on planet bearings.")
+def _on_own_axis(scene: Scene, shaft: Shaft) -> bool:
+    """Whether a shaft lies on the axis of its carrier, if it has one."""
+    return shaft.frame is None or on_axis(shaft, scene.shaft(shaft.frame))
 
 
-def _check_gravity(shafts: tuple[Shaft, ...], gravity: tuple[float, float, float]) -> None:
+def _check_gravity(scene: Scene) -> None:
     """Gravity turns against rotating frames, unless it lies along the axis."""
-    for axis, value in zip("xyz", gravity, strict=True):
+    for axis, value in zip("xyz", scene.gravity, strict=True):
         finite(f"gravity.{axis}", value)
-    if any(gravity[:2]) and any(shaft.frame is not None for shaft in shafts):
+    if any(scene.gravity[:2]) and any(shaft.frame is not None for shaft in scene.shafts):
         bound = "zero in x and y where shafts are described in a carrier's frame, which turns against it"
-        raise InputError("gravity", gravity, bound)
+        raise InputError("gravity", scene.gravity, bound)
 
 
-def _check_couplings(shafts: tuple[Shaft, ...], couplings: tuple[Coupling, ...]) -> None:
+def _check_couplings(scene: Scene) -> None:
     """Couplings with matrices join coaxial shafts, those across frames alike in all directions."""
-    by_name = {shaft.name: shaft for shaft in shafts}
-    for index, coupling in enumerate(couplings):
-        first, second = by_name[coupling.first], by_name[coupling.second]
+    for index, coupling in enumerate(scene.couplings):
+        first, second = scene.shaft(coupling.first), scene.shaft(coupling.second)
         if coupling.stiffness is None and coupling.damping is None:
             continue
         if not on_axis(first, second):
@@ -166,7 +155,7 @@ def _check_couplings(shafts: tuple[Shaft, ...], couplings: tuple[Coupling, ...])
         if not crosses_frames(first, second, coupling):
             continue
         for side, shaft in (("first", first), ("second", second)):
-            if shaft.frame is not None and not on_axis(shaft, by_name[shaft.frame]):
+            if not _on_own_axis(scene, shaft):
                 bound = f"on the axis of its carrier {shaft.frame}, as it joins shafts of different frames"
                 raise InputError(f"couplings[{index}].{side}", shaft.name, bound)
         for name, matrix in (("stiffness", coupling.stiffness), ("damping", coupling.damping)):
@@ -187,76 +176,74 @@ def on_axis(shaft: Shaft, carrier: Shaft) -> bool:
     return apart <= AXIS_AGREEMENT * max(shaft.length, carrier.length)
 
 
-# Laws of bearings that are not linear: what they can act on.
-
-
-def _check_bearing_laws(
-    bearings: Sequence[str],
-    laws: Mapping[str, Sequence[BearingLaw]],
-    rolling: Sequence[RollingBearing],
-    rotating: frozenset[str],
-) -> None:
-    """Every law, by kind, has its own direction of one of `bearings`.
-
-    `rotating` names the bearings of shafts described in a rotating frame.
-    """
-    for kind, parts in laws.items():
+def _check_bearing_laws(scene: Scene) -> None:
+    """Every law, by kind, has its own direction of a bearing that can have it."""
+    bearings = {bearing.name: bearing for bearing in (*scene.bushings, *scene.planet_bearings)}
+    stated = {kind: getattr(scene, kind) for kind in STATED}
+    for kind, parts in stated.items():
         for index, part in enumerate(parts):
-            one_of(f"{kind}[{index}].bushing", part.bushing, bearings)
-    for kind, parts in laws.items():
+            one_of(f"{kind}[{index}].bushing", part.bushing, list(bearings))
+    for kind, parts in stated.items():
         distinct(kind, [part.acts_at for part in parts])
-    for index, curve in enumerate(laws["spring_curves"]):
-        if isinstance(curve, SpringCurve) and curve.bushing in rotating and curve.direction != "z":
+    for index, curve in enumerate(scene.spring_curves):
+        bearing = bearings[curve.bushing]
+        turns = isinstance(bearing, Bushing) and scene.shaft(bearing.shaft).frame is not None
+        if turns and curve.direction != "z":
             bound = '"z" on a shaft described in a carrier\'s frame, which turns against the bushing'
             raise InputError(f"spring_curves[{index}].direction", curve.direction, bound)
-    for index, bearing in enumerate(rolling):
-        _check_preload(f"rolling_bearings[{index}].axial_preload", bearing)
+    for index, row in enumerate(scene.rolling_bearings):
+        try:
+            row_law(row).shift  # noqa: B018 (computed and kept)
+        except SolveError as error:
+            field, bound = f"rolling_bearings[{index}].axial_preload", "a force that the row carries"
+            raise InputError(field, row.axial_preload, bound, "Lower it.") from error
 
 
-def _check_preload(field: str, bearing: RollingBearing) -> None:
-    """Refuse an axial preload that no displacement of the rings makes."""
-    try:
-        row_law(bearing).shift  # noqa: B018 (computed and kept)
-    except SolveError as error:
-        raise InputError(field, bearing.axial_preload, "a force that the row carries", "Lower it.") from error
+def _check_positions(scene: Scene) -> None:
+    """Refuse a part that is off its shaft."""
+    for kind in PLACED:
+        for index, part in enumerate(getattr(scene, kind)):
+            length = scene.shaft(part.shaft).length
+            if not on_length(part.position, length):
+                ends = from_to(0.0, length, "m")
+                bound = Text.of(f'on the shaft "{part.shaft}", ', ends, " from its left end")
+                advice = "Lengthen the shaft, or move what sits on it."
+                raise InputError(f"{kind}[{index}].position", part.position, bound, advice)
 
 
-# Check of the positions of gears and bearings on their shafts.
-
-
-def _check_positions(shafts: Sequence[Shaft], kind: str, parts: Sequence[OnShaft]) -> None:
-    """Refuse a part of a `kind` ("gears", "bushings", "planet_bearings") that is off its shaft.
-
-    Raises
-    ------
-    InputError
-    """
-    length = {shaft.name: shaft.length for shaft in shafts}
-    for index, part in enumerate(parts):
-        if not on_length(part.position, length[part.shaft]):
-            ends = from_to(0.0, length[part.shaft], "m")
-            bound = Text.of(f'on the shaft "{part.shaft}", ', ends, " from its left end")
-            advice = "Lengthen the shaft, or move what sits on it."
-            raise InputError(f"{kind}[{index}].position", part.position, bound, advice)
-
-
-def _check_force_shafts(forces: Sequence[AppliedForce], shafts: Sequence[str]) -> None:
-    for index, force in enumerate(forces):
+def _check_names(scene: Scene) -> None:
+    """Parts have names of their own, and name shafts and gears that are there."""
+    for kind, parts in scene.parts.items():
+        if kind in NAMED:
+            distinct(kind, [part.name for part in parts])
+    bearings = (*scene.ground_bearings, *scene.planet_bearings)
+    distinct("planet_bearings", [bearing.name for bearing in bearings])
+    shafts, gears = ([part.name for part in parts] for parts in (scene.shafts, scene.gears))
+    for kind, parts in scene.parts.items():
+        for index, part in enumerate(parts):
+            if kind in ON_A_SHAFT:
+                one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
+    for index, force in enumerate(scene.forces):
         if force.turns_with is not None:
             one_of(f"forces[{index}].turns_with", force.turns_with, shafts)
         if not isinstance(force.course, TimeLaw):
             one_of(f"forces[{index}].course.shaft", force.course.shaft, shafts)
+    _check_positions(scene)
+    for kind, sides, names in (
+        ("meshes", ("driver", "driven"), gears),
+        ("couplings", ("first", "second"), shafts),
+    ):
+        for index, part in enumerate(getattr(scene, kind)):
+            for side in sides:
+                one_of(f"{kind}[{index}].{side}", getattr(part, side), names)
 
 
+PLACED = ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings", "forces", "unbalances")
+"""Kinds whose parts lie within the length of their shaft."""
 ON_VIOLATION = ("repeat", "fail", "report")
 TOLERANCES = (1e-6, 0.5)
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
 LEAST_RATE = 1000.0  # Hz, of an output whose rate is chosen
-
-
-class _Named(Protocol):
-    @property
-    def name(self) -> str: ...
 
 
 class _MotionLaw(Protocol):
@@ -271,7 +258,7 @@ class _MotionLaw(Protocol):
 
 
 @dataclass(frozen=True)
-class Scene:
+class Scene(StatedLaws):
     """A geared system and its run.
 
     Attributes
@@ -314,8 +301,6 @@ class Scene:
     couplings: tuple[Coupling, ...] = ()
     speed_torques: tuple[SpeedTorque, ...] = ()
     housings: tuple[Housing, ...] = ()
-    rolling_contacts: tuple[RollingContact, ...] = ()
-    spring_curves: tuple[SpringCurve, ...] = ()
     discs: tuple[DiscBody, ...] = ()
     rolling_bearings: tuple[RollingBearing, ...] = ()
     forces: tuple[AppliedForce, ...] = ()
@@ -336,42 +321,10 @@ class Scene:
         if self.highest_frequency is not None:
             positive("highest_frequency", self.highest_frequency)
         check_samples(self.duration, self.outputs.sample_rate or LEAST_RATE)
-        for kind in KINDS:
-            distinct(kind, [part.name for part in getattr(self, kind)])
-        shafts, gears = _names(self.shafts), _names(self.gears)
-        distinct("planet_bearings", _names((*self.ground_bearings, *self.planet_bearings)))
-        for kind in ON_A_SHAFT:
-            for index, part in enumerate(getattr(self, kind)):
-                one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
-        _check_force_shafts(self.forces, shafts)
-        placed = ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings")
-        for kind in (*placed, "forces", "unbalances"):
-            _check_positions(self.shafts, kind, getattr(self, kind))
-        for index, mesh in enumerate(self.meshes):
-            one_of(f"meshes[{index}].driver", mesh.driver, gears)
-            one_of(f"meshes[{index}].driven", mesh.driven, gears)
-        for index, coupling in enumerate(self.couplings):
-            for side in ("first", "second"):
-                one_of(f"couplings[{index}].{side}", getattr(coupling, side), shafts)
+        _check_names(self)
         self._check_references()
-        _check_frames(self.shafts, self.planet_bearings)
-        for kind in ("bushings", "rolling_bearings"):
-            _check_on_axis(self.shafts, kind, getattr(self, kind))
-        _check_gravity(self.shafts, self.gravity)
-        _check_couplings(self.shafts, self.couplings)
-        _check_housings(
-            self.shafts,
-            self.ground_bearings,
-            self.housings,
-            frozenset(law.bushing for law in self.bearing_laws),
-        )
-        rotating = {shaft.name for shaft in self.shafts if shaft.frame is not None}
-        _check_bearing_laws(
-            [bearing.name for bearing in (*self.bushings, *self.planet_bearings)],
-            {kind: getattr(self, kind) for kind in LAWS_OF_BEARINGS},
-            self.rolling_bearings,
-            frozenset(bushing.name for bushing in self.bushings if bushing.shaft in rotating),
-        )
+        for check in (_check_frames, _check_gravity, _check_couplings, _check_housings, _check_bearing_laws):
+            check(self)
 
     def _check_references(self) -> None:
         """Something turns."""
@@ -381,6 +334,11 @@ class Scene:
         if not self.free_rotations and all(drive.speed.extreme == 0.0 for drive in self.drives):
             suggestion = "Its sign sets the driving flank. If torques move it, add a free rotation."
             raise InputError("drives[0].speed", 0.0, "not zero all the time", suggestion)
+
+    @property
+    def parts(self) -> dict[str, tuple[Any, ...]]:
+        """All parts, by the names of the fields that hold them."""
+        return {kind: getattr(self, kind) for kind in KINDS}
 
     @property
     def references(self) -> tuple[_MotionLaw, ...]:
@@ -400,11 +358,15 @@ class Scene:
     def laws_with(self, passing: frozenset[str]) -> tuple[BearingLaw, ...]:
         """Return all that bearings do which is not linear; the elements of those `passing` one by one."""
         rows = (row_law(bearing, bearing.name in passing) for bearing in self.rolling_bearings)
-        return (*chain.from_iterable(getattr(self, kind) for kind in LAWS_OF_BEARINGS), *rows)
+        return (*chain.from_iterable(getattr(self, kind) for kind in STATED), *rows)
 
     def gear(self, name: str) -> GearBody:
         """Return the gear called `name`."""
         return next(gear for gear in self.gears if gear.name == name)
+
+    def shaft(self, name: str) -> Shaft:
+        """Return the shaft called `name`."""
+        return next(shaft for shaft in self.shafts if shaft.name == name)
 
     def mounted(self, shaft: str) -> tuple[GearBody | DiscBody, ...]:
         """Return the rigid bodies on the shaft called `shaft`: gears, then discs."""
@@ -418,7 +380,21 @@ class Scene:
 
     def shaft_index(self, name: str) -> int:
         """Return the index of the shaft called `name`."""
-        return _names(self.shafts).index(name)
+        return [shaft.name for shaft in self.shafts].index(name)
+
+
+_KIND_OF = {
+    kind: get_args(hint)[0]
+    for kind, hint in get_type_hints(Scene).items()
+    if get_origin(hint) is tuple and is_dataclass(get_args(hint)[0])
+}
+KINDS = tuple(_KIND_OF)
+"""Kinds of parts: the fields of `Scene` that hold them."""
+NAMED, ON_A_SHAFT = (
+    tuple(kind for kind, part in _KIND_OF.items() if name in {field.name for field in fields(part)})
+    for name in ("name", "shaft")
+)
+"""Kinds whose parts have a name, and those whose parts name the shaft that they are on."""
 
 
 def check_samples(duration: float, rate: float) -> None:
@@ -433,7 +409,3 @@ def check_samples(duration: float, rate: float) -> None:
         bound = at_most(SAMPLE_LIMIT / rate, "s", note=f", {SAMPLE_LIMIT:g} samples at {rate:g} Hz")
         suggestion = "Shorten the run, or lower outputs.mesh_orders or outputs.sample_rate."
         raise InputError("duration", duration, bound, suggestion)
-
-
-def _names(parts: Iterable[_Named]) -> list[str]:
-    return [part.name for part in parts]

@@ -12,7 +12,8 @@ from bounds import inside
 from dynamics.bearings import BallBearing, Bushing, CatalogLine, PlanetBearing, RollerBearing, RollingBearing
 from dynamics.bearings.catalog import from_catalog
 from dynamics.effects.ledger import mechanism_of
-from dynamics.forces import RollingContact, SpeedTorque, SpringCurve
+from dynamics.forces import SpeedTorque
+from dynamics.forces.laws import STATED
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.loads import AngleLaw, AppliedForce, BySpeed, LoadTorque, Orders, SpeedCurve, TimeLaw, Unbalance
 from dynamics.loads.load_course import CONSTANT, Course
@@ -33,7 +34,7 @@ from lineofaction.gearbox.schemas.bodies import DiscInput, GearBodyInput, ShaftI
 from lineofaction.gearbox.schemas.loads import DriveInput, ForceInput, LoadTorqueInput, SpeedTorqueInput
 from lineofaction.gearbox.schemas.meshes import CoastFlankInput, MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.units import DEGREE, MM, MRAD, RPM, UM
+from lineofaction.gearbox.units import DEGREE, MM, RPM, UM
 
 if TYPE_CHECKING:
     from dynamics.housings import ReducedHousing
@@ -74,26 +75,12 @@ def rolling_bearing_of(table: RollingBearingInput) -> RollingBearing:
     return RollingBearing(**in_si(RollingBearing, table), row=row)
 
 
-def rolling_contacts_of(scene: SceneInput) -> Iterator[RollingContact]:
-    """Yield the rolling contacts of all bearings."""
+def laws_of(kind: str, scene: SceneInput) -> Iterator[Any]:
+    """Yield what all bearings do that is not linear, of a kind of `StatedLaws`."""
     for path, bearing in _bearings(scene):
-        law = bearing.rolling_contact
-        if law is not None:
-            with named(f"{path}.rolling_contact"):
-                clearance = law.radial_clearance_um * UM
-                yield RollingContact(bearing.name, **in_si(RollingContact, law), clearance=clearance)
-
-
-def spring_curves_of(scene: SceneInput) -> Iterator[SpringCurve]:
-    """Yield the curves of all bearings."""
-    for path, bearing in _bearings(scene):
-        for number, curve in enumerate(bearing.spring_curves):
-            ways = tuple(value * UM for value in curve.displacement_um or ())
-            ways = ways or tuple(value * MRAD for value in curve.tilt_mrad or ())
-            with named(f"{path}.spring_curves[{number}]"):
-                yield SpringCurve(
-                    bearing.name, curve.direction, ways, tuple(curve.force_n or curve.moment_n_m or ())
-                )
+        for name, table in bearing.laws[kind].items():
+            with named(f"{path}.{name}"):
+                yield STATED[kind](bushing=bearing.name, **in_si(STATED[kind], table) | table.renamed)
 
 
 def _bearings(scene: SceneInput) -> Iterator[tuple[str, BearingInput]]:
@@ -330,6 +317,7 @@ def _assembled(
         outputs = Outputs(**in_si(Outputs, scene.outputs))
     with named("integration"):
         integration = Integration(**in_si(Integration, scene.integration))
+    laws: dict[str, Any] = {kind: tuple(laws_of(kind, scene)) for kind in STATED}
     with named(""):
         return Scene(
             **in_si(Scene, scene, scene.run, scene.accuracy),
@@ -345,8 +333,7 @@ def _assembled(
             free_rotations=_all(scene, "free_rotations", _plain(FreeRotation)),
             housings=tuple(housings),
             rolling_bearings=_all(scene, "rolling_bearings", rolling_bearing_of),
-            rolling_contacts=tuple(rolling_contacts_of(scene)),
-            spring_curves=tuple(spring_curves_of(scene)),
+            **laws,
             loads=_all(scene, "loads", _load_torque),
             forces=_all(scene, "forces", _force),
             unbalances=_all(scene, "unbalances", _plain(Unbalance)),

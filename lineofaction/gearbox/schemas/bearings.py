@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -24,6 +25,7 @@ from lineofaction.gearbox.schemas.model import (
     refuse,
     stated,
 )
+from lineofaction.gearbox.units import MRAD, UM
 
 ROWS = ("ball", "roller", "catalog")
 
@@ -76,7 +78,16 @@ class RollingBearingInput(BoundaryModel):
         return self
 
 
-class RollingContactInput(BoundaryModel):
+class BearingLawInput(BoundaryModel):
+    """What a bearing does that is not linear."""
+
+    @property
+    def renamed(self) -> dict[str, Any]:
+        """Fields of the law, in SI, that are called otherwise here."""
+        return {}
+
+
+class RollingContactInput(BearingLawInput):
     """The radial force of a rolling bearing with clearance."""
 
     stiffness_n_per_m_n: float = Field(
@@ -110,6 +121,11 @@ class RollingContactInput(BoundaryModel):
         default=0.05, ge=0.0, le=10.0, description="Damping ratio in full contact", examples=[0.05]
     )
 
+    @property
+    def renamed(self) -> dict[str, Any]:
+        """The clearance."""
+        return {"clearance": self.radial_clearance_um * UM}
+
 
 _TILTS_OR_NOT = {
     "if": {"properties": {"direction": {"enum": ["x", "y", "z"]}}},
@@ -121,7 +137,7 @@ _TILTS_OR_NOT = {
 _Curve = Annotated[Listed[Number], Field(min_length=2, max_length=1000)]
 
 
-class SpringCurveInput(BoundaryModel):
+class SpringCurveInput(BearingLawInput):
     """A bearing's force by displacement in one direction."""
 
     model_config = ConfigDict(json_schema_extra=stated(_TILTS_OR_NOT))
@@ -164,6 +180,13 @@ class SpringCurveInput(BoundaryModel):
                 refuse(field, list(values), "strictly increasing")
         return self
 
+    @property
+    def renamed(self) -> dict[str, Any]:
+        """Tilts and moments."""
+        if self.tilt_mrad is None:
+            return {}
+        return {"displacement": tuple(tilt * MRAD for tilt in self.tilt_mrad), "force": self.moment_n_m}
+
 
 class BearingInput(BoundaryModel):
     """Springs and dampers of a bearing, and what it does that is not linear."""
@@ -203,6 +226,13 @@ class BearingInput(BoundaryModel):
             if direction in directions[:index]:
                 refuse(f"spring_curves[{index}].direction", direction, "a direction that no other curve has")
         return self
+
+    @property
+    def laws(self) -> Mapping[str, Mapping[str, BearingLawInput]]:
+        """What it does that is not linear, by kind and by field."""
+        contact = {} if self.rolling_contact is None else {"rolling_contact": self.rolling_contact}
+        curves = {f"spring_curves[{index}]": curve for index, curve in enumerate(self.spring_curves)}
+        return {"rolling_contacts": contact, "spring_curves": curves}
 
 
 @with_fields(declared_in(Bushing))

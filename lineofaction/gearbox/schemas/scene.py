@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_origin
 
-from pydantic import Field, Strict, model_validator
+from pydantic import BaseModel, Field, Strict, model_validator
 
-from dynamics.parts import KINDS, ON_A_SHAFT
 from dynamics.settings.run import Integration, Outputs
 from lineofaction.gearbox.schemas.bearings import BushingInput, PlanetBearingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.bodies import (
@@ -19,6 +18,7 @@ from lineofaction.gearbox.schemas.bodies import (
 )
 from lineofaction.gearbox.schemas.case import EffectName, Switch
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
+from lineofaction.gearbox.schemas.faults import model_in
 from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.loads import (
     DriveInput,
@@ -126,7 +126,7 @@ class SceneInput(BoundaryModel):
     def _tables(cls, data: Any) -> Any:
         """Say how a part is written when a single table stands where a list is meant."""
         if isinstance(data, dict):
-            for kind in (*KINDS, "planets"):
+            for kind in _KINDS:
                 if isinstance(data.get(kind), dict):
                     refuse(kind, data[kind], "a list of tables", f"Write [[{kind}]] with two brackets.")
         return data
@@ -134,10 +134,10 @@ class SceneInput(BoundaryModel):
     @model_validator(mode="after")
     def _parts_exist(self) -> Self:
         """Names are unique, and every part names parts that exist."""
-        for kind in KINDS:
+        for kind in _with_field("name"):
             _refuse_repeated(kind, [part.name for part in getattr(self, kind)])
         shafts = [shaft.name for shaft in self.shafts]
-        for kind in ON_A_SHAFT:
+        for kind in _with_field("shaft"):
             for index, part in enumerate(getattr(self, kind)):
                 _refuse_unknown(f"{kind}[{index}].shaft", part.shaft, shafts)
         for field, name in _further_shafts(self):
@@ -151,6 +151,18 @@ class SceneInput(BoundaryModel):
             _refuse_unknown(f"meshes[{index}].driver", mesh.driver, gears)
             _refuse_unknown(f"meshes[{index}].driven", mesh.driven, [g for g in gears if g != mesh.driver])
         return self
+
+
+_KINDS: dict[str, type[BaseModel]] = {
+    kind: part
+    for kind, field in SceneInput.model_fields.items()
+    if get_origin(field.annotation) is tuple and (part := model_in(field.annotation)) is not None
+}
+"""Kinds of parts, by the names of their tables in a scene file."""
+
+
+def _with_field(name: str) -> Iterator[str]:
+    yield from (kind for kind, part in _KINDS.items() if name in part.model_fields)
 
 
 def _further_shafts(scene: SceneInput) -> Iterator[tuple[str, str]]:
