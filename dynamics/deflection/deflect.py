@@ -16,7 +16,6 @@ from dynamics.bearings.row_law import row_law
 from dynamics.checks import distinct, integer
 from dynamics.deflection.loaded_scene import (
     ForceUnderCase,
-    as_records,
     leader_of,
     leading_torque,
     loaded_scene,
@@ -180,7 +179,7 @@ def equivalent_load(
 
 
 @dataclass(frozen=True)
-class ShaftLines(Record):
+class _ShaftLines(Record):
     """The axes of all shafts under a load case, mean over the mesh cycle, P points of all shafts in a row.
 
     Attributes
@@ -198,7 +197,7 @@ class ShaftLines(Record):
     motion: FloatArray = field(metadata=in_unit("m", "point", "freedom"))
 
 
-def _shaft_lines(system: System, motion: FloatArray) -> ShaftLines:
+def _shaft_lines(system: System, motion: FloatArray) -> _ShaftLines:
     """Return the lines at `motion` (N,): at the nodes of an elastic shaft, at what is on a rigid one."""
     shaft, position, moved = [], [], []
     for index, rotor in enumerate(system.rotors):
@@ -207,7 +206,7 @@ def _shaft_lines(system: System, motion: FloatArray) -> ShaftLines:
             shaft.append(index)
             position.append(along)
             moved.append(section_rows(system.rotors, index, z) @ motion)
-    return ShaftLines(np.array(shaft, dtype=np.int64), np.array(position), np.array(moved).reshape(-1, 6))
+    return _ShaftLines(np.array(shaft, dtype=np.int64), np.array(position), np.array(moved).reshape(-1, 6))
 
 
 def _points(system: System, index: int) -> list[float]:
@@ -274,7 +273,7 @@ class CaseDeflection(Record):
     residual: float
     meshes: tuple[MeshAlignment, ...]
     bearings: tuple[BearingLoad, ...]
-    shafts: ShaftLines
+    shafts: _ShaftLines
     forces: tuple[ForceUnderCase, ...] = ()
 
 
@@ -355,5 +354,8 @@ def _deflected(loaded: Scene, case: LoadCase, positions: int) -> CaseDeflection:
         tuple(mesh_alignment(system, k, rest, strain) for k in range(len(loaded.meshes))),
         _bearing_loads(system, rest, strain),
         _shaft_lines(system, motion),
-        as_records(loaded.forces),
+        tuple(
+            ForceUnderCase(part.name, part.shaft, np.array(part.force), np.array(part.moment))
+            for part in loaded.forces
+        ),
     )

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-
-import numpy as np
 
 from bounds import above
 from dynamics.effects import EFFECTS
@@ -40,20 +38,10 @@ class ForceUnderCase(Record):
     moment: FloatArray = field(metadata=in_unit("n_m", "axis"))
 
 
-def as_records(forces: Sequence[AppliedForce]) -> tuple[ForceUnderCase, ...]:
-    """Return the forces of a loaded scene as they are kept with its deflection."""
-    return tuple(
-        ForceUnderCase(part.name, part.shaft, np.array(part.force), np.array(part.moment)) for part in forces
-    )
-
-
-def _forces_under(forces: Sequence[AppliedForce], stated: Sequence[CaseForce]) -> tuple[AppliedForce, ...]:
-    """Return the forces of a scene with what a load case states of some of them."""
-    by_name = {part.name: part for part in stated}
-    return tuple(_stated(force, by_name[force.name]) if force.name in by_name else force for force in forces)
-
-
-def _stated(force: AppliedForce, own: CaseForce) -> AppliedForce:
+def _stated(force: AppliedForce, own: CaseForce | None) -> AppliedForce:
+    """Return a force with what a load case states of it."""
+    if own is None:
+        return force
     factor = 1.0 if own.factor is None else own.factor
     return replace(
         force,
@@ -116,11 +104,15 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
         raise InputError("speed", 0.0, above(0.0, "rad/s"), "The scene starts from rest: give the speed.")
     turned = 1.0 if case.direction == DRIVE else -1.0
     scale = turned * (speed / abs(leader.speed) if leader.speed else speed)
+    drives = (
+        replace(drive, speed=TimeLaw.constant(scale * float(drive.speed.extreme))) for drive in scene.drives
+    )
+    stated = {part.name: part for part in case.forces}
     driven = replace(
         scene,
-        drives=(*_drives(scene, scale), *_held_trains(scene, leader, scale)),
+        drives=(*drives, *_held_trains(scene, leader, scale)),
         free_rotations=(),
-        forces=_forces_under(scene.forces, case.forces),
+        forces=tuple(_stated(force, stated.get(force.name)) for force in scene.forces),
     )
     factor = case.factor if case.torque is None else _factor(driven, speed, case.torque)
     return replace(
@@ -151,12 +143,6 @@ def _effects_at_rest(scene: Scene) -> dict[str, str]:
     }
     stated = scene.effects.items()
     return known | {name: choice for name, choice in stated if choice == "off" or name not in known}
-
-
-def _drives(scene: Scene, scale: float) -> Iterator[ImposedRotation]:
-    """Yield the drives at constant speeds in the proportion of their extreme ones."""
-    for drive in scene.drives:
-        yield replace(drive, speed=TimeLaw.constant(scale * float(drive.speed.extreme)))
 
 
 def _held_trains(scene: Scene, leader: _Leader, scale: float) -> Iterator[ImposedRotation]:

@@ -57,20 +57,15 @@ def _clearance_of(system: System, strain: FloatArray, coordinate: FloatArray) ->
         Local coordinates of all elements at these strains.
     """
     elements, free = system.arrays.elements, np.zeros_like(strain)
+    supports, names = supports_by_name(system.rotors), system.supports.name
     first = len(system.elements) - len(system.bearings)
     for e, at in enumerate(system.bearings, start=first):
         along = np.linalg.pinv(at.way) @ at.way
-        if np.any(np.abs(_springs(system, at.support) @ along) > 0.0):
+        if np.any(np.abs(supports[names[at.support]][1].seat_stiffness @ along) > 0.0):
             continue
         rows = slice(elements.first[e], elements.first[e + 1])
         free[at.support] += _free_fraction(system.arrays, e, coordinate[rows]) * along @ strain[at.support]
     return free
-
-
-def _springs(system: System, support: int) -> FloatArray:
-    """Stiffness matrix (5, 5) of the linear part of a bearing."""
-    known = {part.name: part for rotor in system.rotors for part in rotor.supports}
-    return known[system.supports.name[support]].seat_stiffness
 
 
 def _free_fraction(arrays: SystemArrays, element: int, coordinate: FloatArray) -> float:

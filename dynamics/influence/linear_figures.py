@@ -77,13 +77,12 @@ def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[
     parts = [np.arange(time.size)]
     if _loads_vary(scene, time):
         parts = np.array_split(np.arange(time.size), min(LOADS, time.size))
-    return tuple(_condition(time[part], speed[part], rate[part], time.size) for part in parts)
-
-
-def _condition(time: FloatArray, speed: FloatArray, rate: FloatArray, count: int) -> _OperatingCondition:
-    """Look at some moments of `count` together, their loads taken at the middle one."""
-    once, first, times = np.unique(speed, return_index=True, return_counts=True)
-    return _OperatingCondition(float(time[time.size // 2]), once, rate[first], times / count)
+    conditions = []
+    for part in parts:  # moments together, their loads taken at the middle one
+        once, first, times = np.unique(speed[part], return_index=True, return_counts=True)
+        middle = float(time[part][part.size // 2])
+        conditions.append(_OperatingCondition(middle, once, rate[part][first], times / time.size))
+    return tuple(conditions)
 
 
 def _loads_vary(scene: Scene, time: FloatArray) -> bool:
@@ -163,9 +162,9 @@ def linear_figures(system: System, conditions: Sequence[_OperatingCondition]) ->
     for some in conditions:
         at = excited(system, some.time, ORDERS, POSITIONS)
         condition = some.passing(_resonances(at)) if some.speed.size > 1 else some
-        answer = parametric_response(at, condition.speed, condition.rate, ORDERS, rotating)
-        harmonics, static = answer.harmonics, [float(np.mean(cycle.static_error)) for cycle in at.cycles]
-        rest = np.array(static)[:, None] + answer.mean_shift
+        harmonics, shift = parametric_response(at, condition.speed, condition.rate, ORDERS, rotating)
+        static = [float(np.mean(cycle.static_error)) for cycle in at.cycles]
+        rest = np.array(static)[:, None] + shift
         least, most = extremes(harmonics.dynamic_transmission_error, harmonics.order)
         low = np.minimum(low, np.min(rest + least, axis=1))
         high = np.maximum(high, np.max(rest + most, axis=1))
@@ -193,13 +192,8 @@ def _resonances(at: Excited) -> FloatArray:
     reported = modes.frequency[np.argsort(-height)[:MODES]]
     per_speed = np.unique(mesh_frequencies(at.system, np.ones(1)).ravel())
     order = np.arange(1, MET + 1)[:, None] * per_speed[per_speed > 0.0]
-    return np.unique(reported[:, None] / np.concatenate([order.ravel(), _load_frequencies(at)]))
-
-
-def _load_frequencies(at: Excited) -> FloatArray:
-    """Return the frequencies of loads per speed of the leading law, Hz per rad/s."""
-    multiples = load_multiples(at.system, at.period, 1.0, at.time)
-    return np.asarray(multiples / at.period.duration(1.0))
+    of_loads = load_multiples(at.system, at.period, 1.0, at.time) / at.period.duration(1.0)
+    return np.unique(reported[:, None] / np.concatenate([order.ravel(), of_loads]))
 
 
 def _by_loads(at: Excited, condition: _OperatingCondition, response: HarmonicResponse) -> FloatArray:

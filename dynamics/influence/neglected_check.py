@@ -161,7 +161,8 @@ def _influence_of(system: System, on: bool, whole: LinearFigures, without: Linea
     orders = without.orders - whole.orders
     bearing_orders = without.bearing_orders - whole.bearing_orders
     if whole.coasting and not without.coasting:
-        ripple = np.maximum(ripple, _through(system, whole.parted))
+        room = [np.inf if mesh.coast is None else mesh.coast.backlash for mesh in system.scene.meshes]
+        ripple = np.maximum(ripple, np.maximum(whole.parted - np.array(room), 0.0))
     return Influence(
         mean,
         ripple,
@@ -177,12 +178,6 @@ def _influence_of(system: System, on: bool, whole: LinearFigures, without: Linea
         _by_order(orders, whole.orders),
         _by_order(bearing_orders, whole.bearing_orders),
     )
-
-
-def _through(system: System, parted: FloatArray) -> FloatArray:
-    """Travel of flanks beyond the backlash (m,), m; 0 where none is given."""
-    room = [np.inf if mesh.coast is None else mesh.coast.backlash for mesh in system.scene.meshes]
-    return np.asarray(np.maximum(parted - np.array(room), 0.0))
 
 
 def _by_order(change: FloatArray, value: FloatArray) -> FloatArray:

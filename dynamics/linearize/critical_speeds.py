@@ -100,9 +100,9 @@ def critical_speeds(
     Meshes that share a mesh frequency count once, under the name of the first. Between two speeds Newton's
     method finds eigenvector, damping and speed together.
     """
-    turns = float(np.max(branches.speed))
+    turns = float(np.max(branches.speed, initial=0.0))
     matrices = _speed_matrices(system, linear, turns) if turns > 0.0 else None
-    per_speed = mesh_frequencies(system, np.ones(1))[:, 0]
+    per_speed = mesh_frequencies(system, np.ones(1))[:, 0] if branches.speed.size else np.empty(0)
     rows: list[tuple[float, ...]] = []
     for mesh, rate in enumerate(per_speed):
         if rate == 0.0 or np.any(np.isclose(per_speed[:mesh], rate, rtol=1e-9, atol=0.0)):

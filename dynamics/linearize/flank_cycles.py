@@ -67,11 +67,13 @@ def flank_cycles(
     probe = by_address(_by_coordinates(arrays))  # laid out once for thousands of look-ups
     origin = local_state(probe, time, *_states(probe, np.zeros(at_rest.coordinate.size), 0.0)).position
     force = linear.equilibrium.mesh_force
-    grids = [_positions(mesh.table.period, orders, samples) for mesh in system.scene.meshes]
-    return tuple(
-        _cycle(system, probe, time, at_rest, origin, index, float(force[index]), position)
-        for index, position in enumerate(grids)
-    )
+    cycles = []
+    for index, mesh in enumerate(system.scene.meshes):
+        period = mesh.table.period
+        count = max(min(samples, MOST_POSITIONS // period), min(samples, LEAST_SAMPLES), 4 * orders)
+        position = np.arange(count * period) / count
+        cycles.append(_cycle(system, probe, time, at_rest, origin, index, float(force[index]), position))
+    return tuple(cycles)
 
 
 def averaged(
@@ -136,12 +138,6 @@ def _cycle(
     held[:, -origin.size :] = (position - origin[index])[:, None]
     seen = observe(probe, np.full(position.size, time), held, np.zeros_like(held))
     return FlankCycle(rows, coordinate, force_here, tangent, seen.force[rows].T, tangents[:, 0, 0])
-
-
-def _positions(period: int, orders: int, most: int = SAMPLES) -> FloatArray:
-    """Return uniform positions over `period` base pitches, enough of them for `orders` per pitch."""
-    samples = max(min(most, MOST_POSITIONS // period), min(most, LEAST_SAMPLES), 4 * orders)
-    return np.arange(samples * period) / samples
 
 
 def _held(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from dynamics.assembly.references import drive_springs
 from dynamics.bearings.seat import SEAT
 from dynamics.errors import InputError
 from dynamics.forces.laws import Law
-from dynamics.integrators import StaticSolution
 from dynamics.linearize.flank_cycles import FlankCycle
 from dynamics.linearize.harmonic_response import HarmonicResponse, excited_harmonics, response_of
 from dynamics.linearize.linear_system import HELD_BY, LinearSystem, natural_modes
@@ -42,7 +41,7 @@ FLANKS = (Law.FLANK, Law.SPATIAL_FLANK)
 
 
 @dataclass(frozen=True)
-class Absorber:
+class _Absorber:
     """A part with k coordinates y = rows q, whose force against its motion is stiffness y + damping y'.
 
     Attributes
@@ -63,7 +62,7 @@ class Absorber:
 
 def _absorbers(
     system: System, linear: LinearSystem, cycles: tuple[FlankCycle, ...], time: float
-) -> tuple[Absorber, ...]:
+) -> tuple[_Absorber, ...]:
     """Return all parts with damping about the equilibrium of `linear`, driving flanks by their mean tangents.
 
     Their sum is the damping of `LinearSystem`. What gyroscopic and frame terms do is not among them.
@@ -79,7 +78,7 @@ def _absorbers(
 
 def _elements(
     system: System, linear: LinearSystem, cycles: tuple[FlankCycle, ...], time: float
-) -> Iterator[Absorber]:
+) -> Iterator[_Absorber]:
     """Yield the force elements but those of rotating frames."""
     arrays, elements = system.arrays, system.arrays.elements
     rest = np.zeros(arrays.mass.shape[0])
@@ -91,7 +90,7 @@ def _elements(
         own = slice(first, end)
         tangent = cycles[e].tangent if e < len(cycles) else tangents[own, : end - first]
         damping = local.viscous[own, : end - first]
-        yield Absorber(*_element_part(system, e), arrays.direction[own], tangent, damping)
+        yield _Absorber(*_element_part(system, e), arrays.direction[own], tangent, damping)
 
 
 def _element_part(system: System, element: int) -> tuple[str, str]:
@@ -111,7 +110,7 @@ def _element_part(system: System, element: int) -> tuple[str, str]:
     return loads[entry].name, "load"
 
 
-def _bearings(system: System) -> Iterator[Absorber]:
+def _bearings(system: System) -> Iterator[_Absorber]:
     """Yield linear bearings: those that are springs, and groups with matrices, on a massless housing one."""
     supports, seats, keep = system.supports, system.seats, system.freedoms.keep
     held = ~supports.carried
@@ -123,7 +122,7 @@ def _bearings(system: System) -> Iterator[Absorber]:
         yield _damper(name, "bearing", keep(seats.motion[at]), seats.damping[at, at] * on[at])
 
 
-def _couplings(system: System) -> Iterator[Absorber]:
+def _couplings(system: System) -> Iterator[_Absorber]:
     """Yield couplings, as far as no frame turns them, and elastic drives."""
     couplings, keep = system.couplings, system.freedoms.keep
     for name, motion, damping in zip(couplings.name, couplings.motion, couplings.damping, strict=True):
@@ -132,7 +131,7 @@ def _couplings(system: System) -> Iterator[Absorber]:
         yield _damper(drive.name, "drive", row[None, :], np.array([[drive.damping]]))
 
 
-def _bodies(system: System) -> Iterator[Absorber]:
+def _bodies(system: System) -> Iterator[_Absorber]:
     """Yield the shafts that bend and the housings that move."""
     rotors, dampers = system.rotors, elastic_terms(system.rotors)[1]
     columns = [(rotor.shaft.name, "shaft", elastic_columns(rotors, i)) for i, rotor in enumerate(rotors)]
@@ -141,8 +140,8 @@ def _bodies(system: System) -> Iterator[Absorber]:
         yield _damper(name, kind, system.freedoms.motion[own], dampers[own, own])
 
 
-def _damper(name: str, kind: str, rows: FloatArray, damping: FloatArray) -> Absorber:
-    return Absorber(name, kind, rows, np.zeros_like(damping), damping)
+def _damper(name: str, kind: str, rows: FloatArray, damping: FloatArray) -> _Absorber:
+    return _Absorber(name, kind, rows, np.zeros_like(damping), damping)
 
 
 # Power balance of a harmonic vibration: what excitation puts in, and what parts lose, by harmonic.
@@ -230,18 +229,14 @@ def _losses(
 ) -> Iterable[tuple[str, str, FloatArray]]:
     """Yield name, kind and power (S, H) of parts; one part may come several times."""
     for part in _absorbers(at.system, at.linear, at.cycles, at.time):
-        yield part.name, part.kind, _lost(part, u, rate)
+        along = rate @ part.rows.T
+        force = (u @ part.rows.T) @ part.stiffness.T + along @ part.damping.T
+        yield part.name, part.kind, _power(force, along)
     if at.turning:
         terms = gyroscopic_terms(at.system, speed)
         damping, stiffness = (np.stack([term[k] for term in terms]) for k in (0, 1))
         force = np.einsum("sij,shj->shi", damping, rate) + np.einsum("sij,shj->shi", stiffness, u)
         yield FRAMES, "frame", _power(force, rate)
-
-
-def _lost(part: Absorber, u: ComplexArray, rate: ComplexArray) -> FloatArray:
-    """Return the power that one part takes, (S, H)."""
-    along = rate @ part.rows.T
-    return _power((u @ part.rows.T) @ part.stiffness.T + along @ part.damping.T, along)
 
 
 def _power(force: ComplexArray, rate: ComplexArray) -> FloatArray:
@@ -333,7 +328,10 @@ def forced_response(
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
     if not speeds.size:
         raise InputError("speed", [], "at least one speed")
-    share = _halves(progress)
+
+    def half(start: float) -> Callable[[float], None] | None:
+        return None if progress is None else lambda fraction: progress(start + 0.5 * fraction)
+
     began = cpu_seconds()
     at, harmonics = excited_harmonics(system, orders, time)
     system, start = at.system, at.linear.equilibrium
@@ -342,7 +340,7 @@ def forced_response(
     seconds = {"equilibrium_and_modes": cpu_seconds() - began}
     began = cpu_seconds()
     steady, blocked = (
-        steady_vibration(at, speeds, harmonics, excitation, share(part))
+        steady_vibration(at, speeds, harmonics, excitation, half(part))
         for excitation, part in zip(EXCITATIONS, (0.0, 0.5), strict=True)
     )
     if not steady.harmonics.size:
@@ -351,7 +349,7 @@ def forced_response(
     power = _power_balance(at, speeds, steady)
     seconds["response"] = cpu_seconds() - began
     return ForcedResponse(
-        **{f.name: getattr(response, f.name) for f in fields(response)},
+        **vars(response),
         excitation_difference=_difference(response, other),
         natural_frequency=frequency,
         power_source=power.source,
@@ -359,30 +357,15 @@ def forced_response(
         power_sink=power.sink,
         power_sink_kind=power.kind,
         power_loss=power.loss,
-        facts=_facts(system, start, time, seconds, ledger),
+        facts={
+            "leading_shaft": system.scene.references[leading_law(system)].shaft,
+            "time": time,
+            "equilibrium": {"status": start.status.name, "residual": start.residual},
+            "seconds": seconds,
+            "effect_ledger": ledger,
+            **system.corrections,
+        },
     )
-
-
-def _facts(
-    system: System, start: StaticSolution, time: float, seconds: dict[str, float], ledger: Json
-) -> Json:
-    return {
-        "leading_shaft": system.scene.references[leading_law(system)].shaft,
-        "time": time,
-        "equilibrium": {"status": start.status.name, "residual": start.residual},
-        "seconds": seconds,
-        "effect_ledger": ledger,
-        **system.corrections,
-    }
-
-
-def _halves(progress: Callable[[float], None] | None) -> Callable[[float], Callable[[float], None] | None]:
-    """Return what makes the progress of each of the two excitations that of the study."""
-
-    def share(start: float) -> Callable[[float], None] | None:
-        return None if progress is None else lambda fraction: progress(start + 0.5 * fraction)
-
-    return share
 
 
 def _difference(response: HarmonicResponse, other: HarmonicResponse) -> FloatArray:

@@ -206,17 +206,12 @@ def _bearing_force(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
     return np.asarray(force.reshape(*force.shape[:2], *u.shape[:2]))
 
 
-def _whole(order: FloatArray) -> IntArray:
-    """Return orders, fractions, as whole multiples of their largest common part."""
+def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the least and the largest sum of all harmonics (m, S, H) over the period, (m, S) each."""
     parts = [Fraction(value).limit_denominator(LARGEST_DENOMINATOR) for value in order.tolist()]
     scale = math.lcm(*(part.denominator for part in parts))
     multiples = [int(part * scale) for part in parts]
-    return np.array(multiples, dtype=np.int64) // max(math.gcd(*multiples), 1)
-
-
-def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the least and the largest sum of all harmonics (m, S, H) over the period, (m, S) each."""
-    harmonic = _whole(order)
+    harmonic = np.array(multiples, dtype=np.int64) // max(math.gcd(*multiples), 1)
     samples = 8 * int(harmonic[-1] + 1) if order.size else 1
     lines = np.zeros((*amplitude.shape[:2], samples // 2 + 1), dtype=complex)
     lines[..., harmonic] = amplitude * (samples / 2.0)
@@ -226,21 +221,6 @@ def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, Fl
 
 MOST_UNKNOWNS = 150
 LEAST_ORDERS = 8
-
-
-@dataclass(frozen=True)
-class ParametricResponse:
-    """Steady vibration in which flanks have the stiffness of the position they are at; m meshes, S speeds.
-
-    Attributes
-    ----------
-    harmonics : HarmonicResponse
-    mean_shift : (m, S) array
-        By how much the mean transmission error differs from the mean static one, m.
-    """
-
-    harmonics: HarmonicResponse
-    mean_shift: FloatArray
 
 
 @dataclass(frozen=True)
@@ -263,8 +243,10 @@ class _Family:
 
 def parametric_response(
     at: Excited, speed: FloatArray, rate: FloatArray, orders: int = 10, gyroscopic: bool = False
-) -> ParametricResponse:
+) -> tuple[HarmonicResponse, FloatArray]:
     """Return the response of a system to its errors and loads, the stiffness varying with position.
+
+    And by how much the mean transmission errors differ from the mean static ones, (m, S), m.
 
     M u'' + C u' + (K + sum k(t) g^T g) u = sum k(t) g STE(t). With k = k_0 + dk(t) and the receptances A of
     the system of mean stiffness, what makes force, w = g u - STE, is sought in the harmonics -H to H of the
@@ -294,7 +276,9 @@ def parametric_response(
     for family in _families(at, harmonics, orders):
         first = np.broadcast_to(still, (speed.size, 1, *still.shape))
         moved = np.concatenate([first, steady.receptance[:, family.harmonic]], axis=1)[..., family.meshes]
-        push = _push(family, row[family.meshes] @ moved, _made(family, row, steady))
+        answer = steady.displacement[:, family.harmonic] @ row[family.meshes].T
+        made = np.asarray(0.5 * (answer - steady.static[family.meshes][:, family.harmonic].T))
+        push = _push(family, row[family.meshes] @ moved, made)
         u[:, family.harmonic] -= 2.0 * np.einsum("shnf,shf->shn", moved[:, 1:], push[:, 1:])
         own = np.ix_(family.meshes, np.arange(speed.size), family.harmonic)
         extra[own] += 2.0 * np.moveaxis(push[:, 1:], 2, 0)
@@ -302,7 +286,7 @@ def parametric_response(
     response = response_of(at, speed, replace(steady, displacement=u))
     force = response.mesh_force + extra
     least = response.mean_force[:, None] + extremes(force, response.order)[0]
-    return ParametricResponse(replace(response, mesh_force=force, least_mesh_force=least), shift)
+    return replace(response, mesh_force=force, least_mesh_force=least), shift
 
 
 def _all_harmonics(at: Excited, orders: int, speed: float) -> IntArray:
@@ -343,12 +327,6 @@ def _coefficients(at: Excited, mesh: int, highest: int) -> ComplexArray:
     return coefficients
 
 
-def _made(family: _Family, row: FloatArray, steady: Steady) -> ComplexArray:
-    """Fourier coefficients 1 to H (S, H, f) of what makes force with the mean stiffness, m."""
-    response = steady.displacement[:, family.harmonic] @ row[family.meshes].T
-    return np.asarray(0.5 * (response - steady.static[family.meshes][:, family.harmonic].T))
-
-
 def _push(family: _Family, receptance: ComplexArray, made: ComplexArray) -> ComplexArray:
     """Solve the balance at S speeds.
 
@@ -358,6 +336,7 @@ def _push(family: _Family, receptance: ComplexArray, made: ComplexArray) -> Comp
     receptance : (S, H + 1, f, f) complex array
         Of the meshes, harmonics 0 to H, m/N.
     made : (S, H, f) complex array
+        Fourier coefficients 1 to H of what makes force with the mean stiffness, m.
 
     Returns
     -------

@@ -50,18 +50,11 @@ def _resolved_to(system: System, speed: FloatArray, orders: int, highest: float 
     return orders * top
 
 
-def _with_shafts_to(system: System, highest: float) -> System:
-    """Return `system`, its shafts that bend and twist resolved to `highest`, Hz; 0: as they are."""
-    elastic = [rotor.elastic.highest for rotor in system.rotors if rotor.elastic is not None]
-    if highest == 0.0 or all(frequency == highest for frequency in elastic):
-        return system
-    return assemble(replace(system.scene, highest_frequency=highest))
-
-
 MOST_ORDERS = 100
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
 
-_ENERGY = "share of the strain energy", "share of the kinetic energy"
+AT_REST = ("frequency", "damping_ratio", "shape", "strain_energy", "kinetic_energy")
+"""What an analysis keeps of `Modes`."""
 
 
 @dataclass(frozen=True)
@@ -193,7 +186,10 @@ def modal_analysis(
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=False)
     began = cpu_seconds()
     highest = _resolved_to(system, speeds, orders, highest_frequency)
-    system = about_running(_with_shafts_to(system, highest))
+    elastic = [rotor.elastic.highest for rotor in system.rotors if rotor.elastic is not None]
+    if highest != 0.0 and any(frequency != highest for frequency in elastic):
+        system = assemble(replace(system.scene, highest_frequency=highest))
+    system = about_running(system)
     linear = linearize(system, time)
     ledger = checked_ledger(system, linear.equilibrium.mesh_force)
     linear = averaged(system, linear, flank_cycles(system, linear, time), time)
@@ -201,7 +197,7 @@ def modal_analysis(
     seconds = {"equilibrium_and_rest": cpu_seconds() - began}
     began = cpu_seconds()
     branches = whirl_branches(system, linear, speeds, progress)
-    crossings = critical_speeds(system, linear, branches, orders) if speeds.size else _no_crossings()
+    crossings = critical_speeds(system, linear, branches, orders)
     seconds["over_speed"] = cpu_seconds() - began
     facts = _facts(system, linear, time, orders, seconds, speeds.size > 0) | {"effect_ledger": ledger}
     facts |= {"highest_frequency": highest} | system.corrections
@@ -238,39 +234,18 @@ def _analysis(
     parts = spring_parts(system, linear.spring)
     meshes = np.empty((len(system.scene.meshes), 0))
     return ModalAnalysis(
-        linear.freedom,
-        tuple(mesh.name for mesh in system.scene.meshes),
-        tuple(shaft.name for shaft in system.scene.shafts),
-        linear.spring,
-        tuple(part for part, _ in parts),
-        tuple(kind for _, kind in parts),
-        rest.frequency,
-        rest.damping_ratio,
-        rest.shape,
-        rest.strain_energy,
-        rest.kinetic_energy,
-        branches.speed,
-        mesh_frequencies(system, branches.speed) if branches.speed.size else meshes,
-        branches.frequency,
-        branches.damping_ratio,
-        branches.whirl,
-        branches.shape,
-        branches.strain_energy,
-        branches.kinetic_energy,
-        crossings.speed,
-        crossings.frequency,
-        crossings.damping_ratio,
-        crossings.mode,
-        crossings.mesh,
-        crossings.order,
-        crossings.residual,
-        facts,
+        freedom=linear.freedom,
+        mesh=tuple(mesh.name for mesh in system.scene.meshes),
+        shaft=tuple(shaft.name for shaft in system.scene.shafts),
+        spring=linear.spring,
+        spring_part=tuple(part for part, _ in parts),
+        spring_kind=tuple(kind for _, kind in parts),
+        **{f"natural_{name}": getattr(rest, name) for name in AT_REST},
+        mesh_frequency=mesh_frequencies(system, branches.speed) if branches.speed.size else meshes,
+        **vars(branches),
+        **{f"critical_{name}": values for name, values in vars(crossings).items()},
+        facts=facts,
     )
-
-
-def _no_crossings() -> CriticalSpeeds:
-    empty, counts = np.empty(0), np.empty(0, dtype=np.int64)
-    return CriticalSpeeds(empty, empty, empty, counts, counts, counts, empty)
 
 
 def _named(shares: dict[str, float], between: str) -> str:

@@ -26,7 +26,7 @@ ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class ModalElimination:
+class _ModalElimination:
     """K, C and M by a bodies' freedoms and b modal ones, which s coordinates z = V u_b couple.
 
     Attributes
@@ -100,7 +100,7 @@ def modal_elimination(
     stiffness: FloatArray,
     damping: FloatArray,
     mass: FloatArray,
-) -> ModalElimination | None:
+) -> _ModalElimination | None:
     """Return the elimination of a system's modal freedoms; None where it has none.
 
     Matrices (n, n) are those per `unit` (n,) of the freedoms, of tangents in all elements. None too where
@@ -125,7 +125,7 @@ def modal_elimination(
         parts.append((out, into, along, own))
     out, into, along, own = (np.stack(pair) for pair in zip(*parts, strict=True))
     bodies = np.stack([matrix[:first, :first] for matrix in (stiffness, damping, mass)])
-    return ModalElimination(
+    return _ModalElimination(
         bodies, np.concatenate([own, np.diag(mass)[None, first:]]), shape, out, into, along
     )
 
@@ -342,7 +342,9 @@ def _solve(
         pushed = np.concatenate([pushed, each], axis=-1)
     displacement = np.empty((*omega.shape, *pushed.shape[2:]), dtype=complex)
     modal = at.system.arrays.sparse.modal
-    first = modal.first if all(_on_bodies(matrix, modal.first) for term in terms for matrix in term) else 0
+    first = modal.first
+    if any(np.any(part[first:]) or np.any(part[:, first:]) for term in terms for part in term):
+        first = 0  # gyroscopic and frame terms are of the bodies alone, or nothing is eliminated
     small = modal_elimination(modal, per_meter, total, damping, mass) if first else None
     parts = np.stack([total, mass, damping]).astype(complex)
     block = max(BLOCK // max(omega.shape[1] * per_meter.size**2, 1), 1)
@@ -367,11 +369,6 @@ def _solve(
         if progress is not None:
             progress(min(start + block, omega.shape[0]) / omega.shape[0])
     return displacement, left / max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
-
-
-def _on_bodies(matrix: FloatArray, first: int) -> bool:
-    """Whether a matrix (n, n) has no entries from freedom `first` on."""
-    return not (np.any(matrix[first:]) or np.any(matrix[:, first:]))
 
 
 def _dense(
