@@ -59,6 +59,7 @@ def paths(client: TestClient) -> list[str]:
     return [*held, *missing, "/openapi.json", "/v1/nowhere"]
 
 
+@pytest.mark.law
 def test_with_keys_no_shared_cache_keeps_any_answer(service: tuple[TestClient, dict[str, str]]) -> None:
     client, bearer = service
     kept, statuses = {}, set()

@@ -34,6 +34,7 @@ def beside(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClien
         yield http, data, folder
 
 
+@pytest.mark.law
 def test_no_question_brings_the_canary(beside: tuple[TestClient, Path, Path]) -> None:
     http, data, folder = beside
     canary = write_canary(data)

@@ -78,6 +78,7 @@ def written(data: Path) -> float:
     return sum(file.stat().st_size for file in files) / (SAMPLE_BYTES + 8) / RATE
 
 
+@pytest.mark.law
 def test_a_long_run_keeps_its_memory_and_ends_when_cancelled(
     client: LineOfActionClient, tmp_path: Path, data: Path
 ) -> None:

@@ -144,6 +144,7 @@ def test_the_description_names_the_scopes() -> None:
     )
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("walked", CLOSED, ids=str)
 def test_a_missing_scope_is_refused_and_named(two: Two, walked: WalkedRoute) -> None:
     scope = walked.route.scope

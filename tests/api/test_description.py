@@ -34,6 +34,7 @@ RULES = {
 }
 
 
+@pytest.mark.law
 def test_it_is_openapi() -> None:
     assert [error.message for error in OpenAPIV31SpecValidator(DESCRIPTION).iter_errors()] == []
 

@@ -142,6 +142,7 @@ def _without_surrogates(value: Any) -> Any:
     return json.loads(json.dumps(value).replace("\\ud800", "?"))
 
 
+@pytest.mark.law
 def test_no_spoiled_body_is_a_defect(target: Target) -> None:
     statuses_of(150, target, TARGETS)
 

@@ -194,6 +194,7 @@ def test_with_keys_any_host_may_be_named(tmp_path: Path) -> None:
     assert TestClient(app).get("/v1/jobs", headers=headers).status_code == 200
 
 
+@pytest.mark.law
 def test_no_other_origin_is_allowed_anything(http: TestClient) -> None:
     origin = {"Origin": "http://other.example", "Access-Control-Request-Method": "DELETE"}
     for method, path in (("OPTIONS", "/v1/jobs"), ("GET", "/v1/jobs"), ("GET", "/"), ("GET", "/v1/none")):

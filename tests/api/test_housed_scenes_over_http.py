@@ -72,6 +72,7 @@ def test_modes_on_a_solid_are_those_of_the_command_line(served: Served, monkeypa
     assert (own["seconds"], own["predicted_seconds"]) == (cost.seconds, cost.predicted_seconds)
 
 
+@pytest.mark.law
 def test_the_content_of_a_file_is_part_of_the_address_of_a_result(served: Served) -> None:
     """Another solid of the same name is another question."""
     client, _, folder = served

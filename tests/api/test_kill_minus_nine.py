@@ -51,6 +51,7 @@ def service(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[KilledSe
         yield KilledService(tmp_path, settings, ["serve", "work", "work"], harms)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(
     ("database", "moments"),
     [

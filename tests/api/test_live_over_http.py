@@ -60,6 +60,7 @@ def key(client: TestClient) -> str:
     return analyzed(client, case())
 
 
+@pytest.mark.law
 def test_a_live_curve_is_that_of_an_analysis_of_its_own(client: TestClient, key: str) -> None:
     live = client.post(f"/v1/databases/{key}/ste", json={"torque_n_m": [0.5, 1.0], "pinion": RELIEF}).json()
     store = client.app.state.context.store  # type: ignore[attr-defined]

@@ -64,6 +64,7 @@ def scene(case: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.law
 def test_the_service_gives_what_python_gives(client: LineOfActionClient, case: dict[str, Any]) -> None:
     job, seen = client.analyze.submit(case), []
 
@@ -102,6 +103,7 @@ def test_the_figures_of_a_run_and_of_its_table_are_as_declared(
     check_declared("database", document(client.analyze.submit(case).figures()))
 
 
+@pytest.mark.law
 def test_a_hash_serves_as_well_as_the_case(client: LineOfActionClient, case: dict[str, Any]) -> None:
     by_hash = scene(case)
     del by_hash["meshes"][0]["case"]

@@ -148,6 +148,7 @@ def test_event_streams_are_no_requests_that_take_long(client: TestClient) -> Non
     assert not [s for s in found["loa_request_seconds"].samples if s.labels["route"] == route]
 
 
+@pytest.mark.law
 def test_callers_choose_no_label(client: TestClient) -> None:
     client.get("/metrics")
     for n in range(50):

@@ -120,6 +120,7 @@ ENDS: list[Callable[[Place, int], None]] = [
 ]
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("count", [8, pytest.param(200, marks=pytest.mark.nightly)])
 def test_nothing_is_left_of_requests_that_end_badly(place: Place, count: int) -> None:
     for number, end in enumerate(islice(cycle(ENDS), count)):

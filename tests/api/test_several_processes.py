@@ -109,6 +109,7 @@ class Caller(threading.Thread):
         connection.close()
 
 
+@pytest.mark.law
 def test_a_killed_process_is_replaced_and_loses_only_what_it_answers(
     server: tuple[subprocess.Popen[str], str],
 ) -> None:

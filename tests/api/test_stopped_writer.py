@@ -82,6 +82,7 @@ def body(text: str) -> dict[str, Any]:
     return {"inputs": {"wish": {"text": text}}}
 
 
+@pytest.mark.law
 def test_writers_are_told_to_come_again_and_readers_notice_nothing(client: TestClient, address: str) -> None:
     location = client.post(EXECUTION, json=body("done")).headers["location"]
     until(lambda: client.get(location).json()["status"] == "successful")

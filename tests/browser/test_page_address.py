@@ -43,6 +43,7 @@ def test_the_menu_leaves_the_result_in_the_address(visit: Visit, analyzed: str) 
     expect(page.locator("#results [data-figure=ste] .plot")).to_have_attribute("data-drawn", "yes")
 
 
+@pytest.mark.law
 def test_a_reload_shows_what_was_typed_and_moved(visit: Visit) -> None:
     page = visit.page
     type_relief(page)

@@ -51,6 +51,7 @@ def test_the_first_stop_skips_to_the_gear_pair(browser: Browser, address: str) -
     page.close()
 
 
+@pytest.mark.law
 def test_every_stop_is_seen_and_the_order_is_that_of_the_page(visit: Visit) -> None:
     page = visit.page
     page.evaluate("document.querySelector('#pair').focus()")

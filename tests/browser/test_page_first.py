@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import re
 
+import pytest
 from page_visit import found_inaccessible, opened
 from playwright.sync_api import Browser, expect
 
 from lineofaction.client import LineOfActionClient
 
 
+@pytest.mark.law
 def test_the_first_example_is_computed_when_the_page_opens(browser: Browser, address: str) -> None:
     visit = opened(browser, f"{address}/#")
     page = visit.page

@@ -133,6 +133,7 @@ def test_a_folded_slider_redraws_the_curve_and_takes_the_length_that_its_relief_
     assert float(page.locator("#f-pair-pinion-root_relief_length_mm").input_value()) > 0.0
 
 
+@pytest.mark.law
 def test_a_fault_is_said_at_its_field_and_the_list_leads_there(
     browser: Browser, address: str, visit: Visit, tmp_path: Path
 ) -> None:
@@ -191,6 +192,7 @@ def test_both_gears_are_drawn_and_roll(visit: Visit) -> None:
     assert [b - a for a, b in zip(*angles, strict=True)] == pytest.approx([-18.0, 18.0], abs=1e-3)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(
     ("scheme", "width"), [("light", 1400), pytest.param("dark", 400, marks=pytest.mark.nightly)]
 )
@@ -214,6 +216,7 @@ def test_nothing_is_fetched_from_elsewhere(visit: Visit, address: str) -> None:
     assert foreign == []
 
 
+@pytest.mark.law
 def test_a_script_from_elsewhere_does_not_run(browser: Browser, address: str, visit: Visit) -> None:
     page = opened(browser, address, "light", 1400).page
     page.evaluate(

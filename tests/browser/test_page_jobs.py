@@ -24,6 +24,7 @@ def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
     seen.page.close()
 
 
+@pytest.mark.law
 def test_a_job_is_cancelled_from_the_list(visit: Visit, address: str) -> None:
     page = visit.page
     with LineOfActionClient(address) as client:

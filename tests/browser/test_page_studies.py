@@ -81,6 +81,7 @@ WORSE = "Warning: expected peak-to-peak rises at"
 """What a search says of loads that it makes worse: this one, of a short search on few positions, does."""
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("name", EACH)
 def test_every_plot_of_a_study_is_drawn_and_has_words(visit: Visit, name: str) -> None:
     part = ran(visit, name)

@@ -20,6 +20,7 @@ def other(address: str) -> str:
     return computed(address, case=CASE | {"load": {"torque_n_m": [0.4, 0.8]}})
 
 
+@pytest.mark.law
 def test_the_first_screen_is_light_and_has_no_plots_and_no_description_of_the_service(
     browser: Browser, address: str
 ) -> None:

@@ -129,6 +129,7 @@ def test_nothing_is_fetched_but_the_page(visit: Visit, report: Path) -> None:
     assert foreign == [report.as_uri()]
 
 
+@pytest.mark.law
 def test_the_page_does_not_scroll_sideways_on_a_phone(browser: Browser, report: Path) -> None:
     page = browser.new_page(viewport={"width": 390, "height": 800})
     page.goto(report.as_uri())
@@ -176,6 +177,7 @@ def test_print_shows_the_images_and_all_numbers(visit: Visit) -> None:
     visit.page.emulate_media(media="screen")
 
 
+@pytest.mark.law
 def test_without_scripts_the_images_fake(browser: Browser, report: Path) -> None:
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()

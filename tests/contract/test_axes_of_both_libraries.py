@@ -51,6 +51,7 @@ def queries(count, margin):
     return rng.uniform(-3.0, 3.0, count), rng.uniform(-1e-5, 4e-5, count), m, a
 
 
+@pytest.mark.law
 def test_both_evaluate_alike_inside_and_beyond_the_axes(table):
     check_table("table", table)
     x, d, m, a = queries(3000, 0.2)

@@ -31,6 +31,7 @@ def everything() -> Scene:
     return with_mesh(scene, coast=CoastFlank(backlash=10e-6, thickness=0.48))
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("name", [effect.name for effect in EFFECTS])
 def test_a_run_with_an_effect_off_is_that_of_a_build_without_it(
     name: str, monkeypatch: pytest.MonkeyPatch

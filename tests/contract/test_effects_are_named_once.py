@@ -99,6 +99,7 @@ def all_named() -> list[tuple[str, int, str]]:
     return places
 
 
+@pytest.mark.law
 def test_no_effect_is_named_outside_its_file_and_the_registry() -> None:
     places = all_named()
     assert [place for place in places if (place[0], place[2]) not in REMAINS] == []

@@ -219,6 +219,7 @@ def own(trial: Trial) -> bool:
     return trial.fault is not None and trial.fault.field == dotted(trial.place)
 
 
+@pytest.mark.law
 @EVERY
 def test_a_value_far_off_is_refused_by_the_callers_field_as_the_caller_wrote_it(name: str) -> None:
     for chain in walked(name):
@@ -259,6 +260,7 @@ def test_just_beyond_a_bound_a_value_is_refused(name: str) -> None:
                 assert beyond.fault is not None, f"{dotted(beyond.place)} = {beyond.value}"
 
 
+@pytest.mark.law
 @EVERY
 def test_the_file_says_the_same(name: str, tmp_path: Path) -> None:
     file = tmp_path / "input.toml"
@@ -273,6 +275,7 @@ def test_the_file_says_the_same(name: str, tmp_path: Path) -> None:
                 assert error.faults[0] == trial.fault
 
 
+@pytest.mark.law
 @EVERY
 def test_http_says_the_same(name: str, client: TestClient) -> None:
     process, key = ("simulate", "scene") if "run" in TABLES[name] else ("analyze", "case")

@@ -40,6 +40,7 @@ def _run(code: str) -> str:
     return done.stdout
 
 
+@pytest.mark.law
 def test_every_module_imports_without_the_modules_of_posix() -> None:
     """What others import of them is loaded before: asyncio needs fcntl on POSIX, and not on Windows."""
     code = """

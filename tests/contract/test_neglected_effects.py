@@ -48,6 +48,7 @@ def arrays(found: SteDatabase) -> Iterator[tuple[str, np.ndarray]]:
             yield name, values
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("scene", list(SCENES))
 @pytest.mark.parametrize("name", [effect.name for effect in EFFECTS])
 def test_a_table_with_an_effect_off_is_that_of_a_build_without_it(

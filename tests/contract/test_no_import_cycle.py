@@ -7,6 +7,8 @@ from collections.abc import Collection, Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "lineofaction", "service")
 
@@ -28,6 +30,7 @@ def imported(tree: ast.AST, modules: Collection[str]) -> Iterator[str]:
             yield from imported(node, modules)
 
 
+@pytest.mark.law
 def test_imports_have_no_cycle() -> None:
     paths = {module_name(path): path for kind in PACKAGES for path in (ROOT / kind).rglob("*.py")}
     assert len(paths) > 700  # all of them were looked at

@@ -50,6 +50,7 @@ def test_files_are_few_and_none_is_long() -> None:
     assert {name for name, size in sizes.items() if size > LONGER.get(name, LONGEST)} == set()
 
 
+@pytest.mark.law
 def test_every_house_is_on_a_floor_and_no_import_points_up() -> None:
     packages = {path.parent.name for path in ROOT.glob("*/py.typed")} - {"lineofaction"}
     packages |= {f"lineofaction.{path.parent.name}" for path in (ROOT / "lineofaction").glob("*/__init__.py")}
@@ -57,6 +58,7 @@ def test_every_house_is_on_a_floor_and_no_import_points_up() -> None:
     assert structure.upward() == []
 
 
+@pytest.mark.law
 def test_the_picture_is_drawn_from_the_imports() -> None:
     drawn = (ROOT / "docs" / "images" / "structure.svg").read_text("utf-8")
     assert drawn == structure.drawing(), "python scripts/structure.py docs/images/structure.svg"

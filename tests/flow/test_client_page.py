@@ -88,6 +88,7 @@ def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureF
     assert float(run_up) == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=2e-3)
 
 
+@pytest.mark.law
 def test_the_paper_s_flow_runs_again_without_the_service(
     service: tuple[subprocess.Popen[str], str],
     monkeypatch: pytest.MonkeyPatch,

@@ -13,6 +13,7 @@ from typing import Any
 
 import h5netcdf
 import numpy as np
+import pytest
 from running_service import PATIENCE_S
 from scene_files import scene_file
 from typer.testing import CliRunner
@@ -90,6 +91,7 @@ def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.law
 def test_ctrl_c_and_resume_give_the_file_of_a_run_that_never_stopped(tmp_path: Path) -> None:
     scene_file(tmp_path, duration=DURATION, rate=RATE)
     whole, parts = tmp_path / "whole.nc", tmp_path / "parts.nc"

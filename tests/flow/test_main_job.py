@@ -110,6 +110,7 @@ def test_nothing_is_left_running(job: tuple[Path, str]) -> None:
     assert running(job[0]) == []
 
 
+@pytest.mark.law
 def test_stopped_in_the_middle_it_stops_its_service(tmp_path: Path) -> None:
     started = subprocess.Popen(
         [sys.executable, str(JOB), "--out", str(tmp_path / "out")],

@@ -52,6 +52,7 @@ def run_python(code: str, folder: Path, warnings: str = "error") -> subprocess.C
     return done
 
 
+@pytest.mark.law
 def test_the_helical_example_has_five_lines_and_runs(tmp_path: Path, condensed_bodies: Path) -> None:
     find_condensed(condensed_bodies, tmp_path / "cache" / "lineofaction")
     code = blocks("python")[0]

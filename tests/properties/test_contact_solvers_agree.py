@@ -129,6 +129,7 @@ def assert_agreement(problem: Problem, load: float, solved: Solved) -> None:
     assert np.all(solved.residual < 1e-9)
 
 
+@pytest.mark.law
 @given(problem=problems, load=loads)
 def test_two_solvers_agree(problem, load):
     solved = Solved(problem, load)
@@ -136,6 +137,7 @@ def test_two_solvers_agree(problem, load):
     assert solved.iterations <= 40
 
 
+@pytest.mark.law
 @settings(max_examples=6)
 @given(seed=st.integers(0, 2**32 - 1), kind=kinds, twins=st.booleans(), arms=st.booleans(), load=loads)
 def test_two_solvers_agree_on_sixty_contacts(seed, kind, twins, arms, load):
@@ -154,6 +156,7 @@ def test_a_handful_of_iterations():
     assert max(counts) <= 24
 
 
+@pytest.mark.law
 @given(seed=st.integers(0, 2**32 - 1), kind=kinds, arms=st.booleans(), load=loads, slices=st.integers(1, 5))
 def test_contacts_that_press_on_few_slices(seed, kind, arms, load, slices):
     # what moves the contacts is a curve through the slices: the same problem as with the whole compliance

@@ -12,6 +12,7 @@ from fe_contact.geometry import Gear
 from fe_contact.mesh import mesh_gear, mesh_quality
 
 
+@pytest.mark.law
 @settings(max_examples=15, suppress_health_check=[HealthCheck.filter_too_much])
 @given(
     teeth=st.integers(5, 120),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
@@ -12,6 +13,7 @@ from fe_contact.mesh import SectorRecipe, quad_sector, swept_sector
 from fe_contact.mesh.quality import quad_quality
 
 
+@pytest.mark.law
 @settings(max_examples=15, suppress_health_check=[HealthCheck.filter_too_much])
 @given(
     teeth=st.integers(5, 120),

@@ -13,6 +13,7 @@ from fe_contact.mesh import SectorRecipe, mesh_gear, mesh_quality, quad_sector
 from fe_contact.mesh.quality import quad_quality
 
 
+@pytest.mark.law
 @settings(max_examples=12, suppress_health_check=[HealthCheck.filter_too_much])
 @given(
     teeth=st.integers(30, 200),

@@ -101,6 +101,7 @@ def test_levels_keep_their_order_everywhere(database):
     assert np.all(np.diff(levels, axis=1) > 0.0)
 
 
+@pytest.mark.law
 @SETTINGS
 @given(tables())
 def test_force_is_monotone_in_deflection(database):

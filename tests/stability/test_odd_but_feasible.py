@@ -158,6 +158,7 @@ ODD = (
 )
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("odd", ODD, ids=lambda odd: odd.name)
 def test_what_is_odd_but_feasible_is_computed(odd: Odd) -> None:
     figures = assessed(odd.pair(), odd.arguments())

@@ -207,6 +207,7 @@ def relieved(pair: ParallelAxes) -> ParallelAxes:
     return replace(pair, wheel=replace(pair.wheel, modification=relief))
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(
     "name",
     ["20/20", pytest.param("36/96 internal", marks=pytest.mark.nightly), "24/70 internal helical"],

@@ -96,6 +96,7 @@ def test_plane_strain_in_three_dimensions_is_the_transverse_section(record_figur
     assert worst < 1e-3
 
 
+@pytest.mark.law
 def test_compliance_converges_under_refinement(record_figure: Any) -> None:
     recipe = MeshRecipe.standard(RING)
     half, full, double = (by_distance(RING, recipe.refined(f)) for f in (0.5, 1.0, 2.0))

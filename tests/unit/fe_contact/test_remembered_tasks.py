@@ -62,6 +62,7 @@ def pair(crowning: float = 4e-6) -> GearPair:
     return GearPair(first, Gear(**plain, helix_angle=-radians(15)), shafts=(shaft, shaft))
 
 
+@pytest.mark.law
 def test_an_interrupted_table_goes_on_where_it_was(cache: Path, tmp_path: Path) -> None:
     whole = analyze(pair(), **ASKED, cache=cache)
     first = Here(most=5)

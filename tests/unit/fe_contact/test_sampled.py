@@ -59,6 +59,7 @@ def test_a_closed_axis_is_linear_over_its_seam():
     np.testing.assert_allclose(found, np.interp(knots, [*around, 2.0], [*values, 1.0]), rtol=1e-13)
 
 
+@pytest.mark.law
 def test_stated_errors_hardly_depend_on_what_is_sampled(monkeypatch):
     """Against errors that are measured at every position, load and misalignment, from three loads on."""
     gear = Gear(teeth=20, normal_module=2e-3, face_width=8e-3, bore_diameter=20e-3)

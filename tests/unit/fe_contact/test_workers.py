@@ -62,6 +62,7 @@ def pool() -> Iterator[ByExecutor]:
         yield ByExecutor(executor)
 
 
+@pytest.mark.law
 def test_a_pool_of_processes_gives_the_same_bits(
     pair: GearPair, compliances: Path, local: ToleranceStudy, pool: ByExecutor
 ) -> None:

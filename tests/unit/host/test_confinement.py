@@ -105,6 +105,7 @@ def test_memory_and_sizes_of_files_end(confined: Run) -> None:
     assert ended == {"memory": "MemoryError", "file": "OSError"}
 
 
+@pytest.mark.law
 def test_cpu_time_ends_the_process_and_says_so(confined: Run) -> None:
     assert confined({"loop": "[0 for _ in iter(int, 1)]"}, cpu_seconds=1).returncode == -24  # SIGXCPU
 

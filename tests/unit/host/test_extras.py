@@ -35,6 +35,7 @@ def test_a_missing_module_is_named_with_its_extra(monkeypatch: pytest.MonkeyPatc
     assert missing_extra(ModuleNotFoundError(name="something")) is None
 
 
+@pytest.mark.law
 def test_the_base_reads_tables_and_says_what_computing_needs(tmp_path: Path) -> None:
     hidden = sorted(
         {name for names in MODULES.values() for name in names} | {"llvmlite", "starlette", "uvloop"}

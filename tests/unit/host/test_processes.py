@@ -16,6 +16,7 @@ import host
 PYTHON = (sys.executable, "-I", "-S", "-c")
 
 
+@pytest.mark.law
 def test_the_peak_follows_what_is_held_in_bytes() -> None:
     """256 MiB that are written show as that, in bytes: not as KiB, nor a thousandfold.
 

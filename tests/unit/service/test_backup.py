@@ -56,6 +56,7 @@ def submitting(machine: Bench) -> Iterator[None]:
         thread.join()
 
 
+@pytest.mark.law
 def test_a_backup_holds_what_was_entered_before_and_goes_on(
     tmp_path: Path, database_url: str | None, request: pytest.FixtureRequest
 ) -> None:

@@ -158,6 +158,7 @@ def test_a_tolerance_goes_on_from_the_check_of_the_submission(calls: Calls) -> N
     assert calls.counts == (0, 2, 2)
 
 
+@pytest.mark.law
 def test_an_optimization_checks_each_of_its_requests_once(calls: Calls, file: Path, tmp_path: Path) -> None:
     """That of its torques, and that of its maps, which have further torques."""
     (tmp_path / "study.json").write_text(json.dumps(STUDY))

@@ -84,6 +84,7 @@ class Recording:
         return (function(shared, item) for item in items)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(
     ("process", "further", "task"),
     [

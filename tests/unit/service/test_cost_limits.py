@@ -46,6 +46,7 @@ def spent(machine: Bench) -> float:
     return (family_cpu_seconds(running[0].worker.pid) or 0.0) if running else 0.0
 
 
+@pytest.mark.law
 def test_work_ends_at_its_limit_and_says_what_to_lower(machine: Bench) -> None:
     ended = machine.ended(entered(machine, 1.5))
     assert (ended.status, ended.attempts, ended.max_cost_s) == ("failed", 1, 1.5)

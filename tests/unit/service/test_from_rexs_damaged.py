@@ -46,6 +46,7 @@ def _without(document: Document, seed: int) -> Document:
     return Document(type(model)(**changed))
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("make", [two_stages, planetary])
 @pytest.mark.parametrize("seeds", [40, pytest.param(80, marks=pytest.mark.nightly)])
 def test_a_damaged_unit_is_opened_or_refused_with_one_error(make: Any, seeds: int) -> None:

@@ -92,6 +92,7 @@ def same(one: ReducedHousing, other: ReducedHousing) -> None:
     np.testing.assert_array_equal(one.points[0].motion, other.points[0].motion)
 
 
+@pytest.mark.law
 def test_a_scene_on_a_step_file_is_that_on_its_file_of_modes(folder: Path) -> None:
     """To the last bit: matrices, surface, points; the scene is self-contained then."""
     own = tabled(folder)
@@ -114,6 +115,7 @@ def test_mounts_and_a_loss_factor_reach_the_housing(folder: Path) -> None:
     )
 
 
+@pytest.mark.law
 def test_a_mesh_file_is_the_same_housing_in_either_unit(folder: Path) -> None:
     """Written in text or binary, turned and moved: columns of `turn` are the axes of the file."""
     expected = tabled(folder).housings["case"]

@@ -132,6 +132,7 @@ def test_bad_input_found_by_the_work_is_named_as_the_user_wrote_it(machine: Benc
     )
 
 
+@pytest.mark.law
 def test_the_text_of_a_defect_stays_in_the_log(machine: Bench) -> None:
     job = machine.ended(machine.submit(mode="defect"))
     logs = "".join(file.read_text() for file in (machine.settings.data_directory / "log").iterdir())
@@ -176,6 +177,7 @@ def test_the_deadline_ends_the_work(tmp_path: Path) -> None:
         assert not lives(int(file.read_text()))
 
 
+@pytest.mark.law
 def test_work_beyond_its_memory_fails_with_the_limit_and_what_to_try(tmp_path: Path) -> None:
     """300 MB are refused to one that may have 256, and had by one that may have 1000."""
     for limit, status in ((256, "failed"), (1000, "successful")):
@@ -200,6 +202,7 @@ def test_work_that_finds_no_room_fails_with_the_cause_and_serves_nothing(machine
     assert machine.store.find(job.key, "database") is None
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EIO])
 def test_a_result_that_cannot_be_stored_never_leaves_its_job_running(
     machine: Bench, monkeypatch: pytest.MonkeyPatch, number: int

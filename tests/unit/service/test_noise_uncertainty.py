@@ -90,6 +90,7 @@ def test_flanks_and_guesses_are_ranked_by_what_they_change(
     json.dumps([figures_of(SensitivityFigures, row) for row in rows], allow_nan=False)
 
 
+@pytest.mark.law
 def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(
     subject: TabledScene, model: SoundModel, tmp_path: Path
 ) -> None:

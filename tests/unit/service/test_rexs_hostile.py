@@ -55,6 +55,7 @@ def test_there_are_200_files() -> None:
     assert len(HOSTILE) + len(list(damaged_files())) >= 200
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("name", HOSTILE)
 def test_a_hostile_file_is_refused_with_one_error(name: str, watched: Callable[[], Iterator[None]]) -> None:
     data, words = HOSTILE[name]

@@ -120,6 +120,7 @@ def _healthy(address: str) -> bool:
         return False
 
 
+@pytest.mark.law
 def test_a_stopped_server_leaves_no_worker(server: tuple[subprocess.Popen[str], str], tmp_path: Path) -> None:
     process, address = server
     until(lambda: _healthy(address))

@@ -88,6 +88,7 @@ def test_a_housing_in_which_the_run_did_not_move_is_named(scene: Path, tmp_path:
     assert "housing case: not that in which the run moved" in " ".join(printed.split())
 
 
+@pytest.mark.law
 def test_at_constant_speed_it_is_near_the_linear_response(scene: Path) -> None:
     """The stiffness of the table varies; the first order of a heavily loaded pair hardly knows."""
     run = told("noise", scene, "--run", run_of(scene, "even"), "--orders", ORDERS)

@@ -30,6 +30,7 @@ def rows(torque: float) -> dict[float, tuple[float, float]]:
         }
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(
     "torque",
     [t if t == 100.0 else pytest.param(t, marks=pytest.mark.nightly) for t in TARGETS],
@@ -47,6 +48,7 @@ def test_positions_under_one_load(torque: float, record_figure) -> None:
     assert max(row[0].residual for row in found.points) < 1e-10
 
 
+@pytest.mark.law
 def test_all_loads_come_from_one_compliance() -> None:
     """Meshed for one load or for all: the same within what meshes differ by."""
     alone = solve_full_contact(PAIR, [100.0], [0.2]).transmission_error[0, 0]
@@ -63,6 +65,7 @@ def test_meshes_twice_as_fine_change_little(record_figure) -> None:
     assert change < 0.05
 
 
+@pytest.mark.law
 def test_pressure_is_that_of_hertz() -> None:
     """Of the reference: 755.9 MPa at the pitch point, 592.5 MPa in double contact, within 0.2 % of Hertz."""
     found = solve_full_contact(PAIR, [100.0], [0.0, 0.5])

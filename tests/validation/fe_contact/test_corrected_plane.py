@@ -97,6 +97,7 @@ def in_plane(pair: ParallelAxes, force: float) -> tuple[np.ndarray, np.ndarray]:
     return solved(contact, asked.model, force), solved(contact.in_plane_strain, asked.model, force)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("name", SCENES)
 def test_the_correction_is_right_within_its_stated_error(name, record_figure):
     """As a part of the correction, at nine of ten positions.

@@ -22,6 +22,7 @@ def spur(**changes: object) -> Gear:
     return Gear(**values)
 
 
+@pytest.mark.law
 def test_spur_of_finite_width_over_plane_strain(cache, record_figure):
     """A study found 1.028 to 1.030 for this pair, face width 6 modules."""
     pair = GearPair(spur(), spur(), 80e-3)
@@ -38,6 +39,7 @@ def test_spur_of_finite_width_over_plane_strain(cache, record_figure):
     assert abs(ratio - 1.0285) < 0.002
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("width", [5e-3, 20e-3, 80e-3])
 def test_narrow_gears_approach_plane_stress_and_wide_ones_plane_strain(cache, record_figure, width):
     """The corrected plane lies between the hypotheses too, and agrees with 3-D within the stated errors."""

@@ -42,6 +42,7 @@ def test_stated_errors_cover_the_points(assessed, record_figure) -> None:
     assert covered >= 90.0
 
 
+@pytest.mark.law
 def test_the_face_is_softer_than_plane_strain(record_figure) -> None:
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     pair, mesh = GearPair(gear, gear, center_distance=80e-3), Resolution(2.0, 4.0, 2)

@@ -70,6 +70,7 @@ def test_the_line_of_the_standard_is_the_standards(case: tuple[int, int, float, 
     assert drawn == pytest.approx(nominal, rel=5e-4)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("case", [CASES[0], CASES[1], CASES[4]])
 def test_finite_elements_beside_the_nominal_stress(
     case: tuple[int, int, float, float, float], record_figure: Callable[..., None]

@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from fe_contact import Gear, GearPair, SteDatabase, analyze
 from fe_contact.material import Material
@@ -46,6 +47,7 @@ def cycle() -> tuple[np.ndarray, np.ndarray]:
     return tuple(np.array([[float(row["position_driver"]), 1e-6 * float(row["ste_um"])] for row in rows]).T)
 
 
+@pytest.mark.law
 def test_the_stated_errors_of_a_soft_gear_hold_and_are_not_much_too_large(record_figure):
     position, ste = cycle()
     curve = database().curve(torque=RATED, at=position)

@@ -109,6 +109,7 @@ def test_a_still_mesh_keeps_its_energy_over_a_long_run():
     np.testing.assert_allclose(settled, settled[0], rtol=1e-4)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("method", ["implicit", "explicit"])
 def test_a_million_steps_keep_the_energy(method, record_figure):
     """Undamped ringing at a fixed position, 45 steps per radian of phase, in contact throughout."""

@@ -43,6 +43,7 @@ def test_both_branches_by_shooting(branch, record_figure):
     assert worst < 5e-4, errors
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("name", JUMPS)
 def test_the_branch_turns_back_where_a_sweep_jumps(name, record_figure):
     """The excitation is exact at the jump, and the branch in between is unstable."""
@@ -67,6 +68,7 @@ def test_flanks_part_from_the_converged_frequency_on():
         assert bool(found.parted[0] > 0.0) is parts
 
 
+@pytest.mark.law
 def test_a_run_from_a_motion_stays_on_it_and_leaves_an_unstable_one():
     frequency = 0.8
     problem = problem_at(frequency)

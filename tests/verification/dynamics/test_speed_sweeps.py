@@ -32,6 +32,7 @@ def steady(first, last):
     return periodic_problem(assemble(scene(TimeLaw.constant(LOW * RPM), torque)), LOW * RPM)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(("first", "last"), [(LOW, HIGH), (HIGH, LOW)], ids=["up", "down"])
 def test_a_slow_run_follows_the_stable_branch_and_jumps_at_the_fold(first, last, record_figure):
     run = simulate(scene(TimeLaw.ramp(first * RPM, last * RPM, DURATION)))

@@ -91,6 +91,7 @@ def test_the_reference_length_parts_and_does_not_decide(cache):
     assert other.deflection == pytest.approx(found.deflection, rel=1e-11)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(
     ("corner", "shape"),
     [

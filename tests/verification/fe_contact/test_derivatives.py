@@ -90,6 +90,7 @@ def central(bodies: CondensedPair, name: str, step: float) -> np.ndarray:
     return (above - below) / (2.0 * step)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("name", PAIRS)
 def test_a_gap_opened_at_one_contact_counts_by_its_weight(name, condensed):
     bodies = condensed(name)
@@ -108,6 +109,7 @@ def test_a_gap_opened_at_one_contact_counts_by_its_weight(name, condensed):
     assert found.weight[5, :, heaviest] == pytest.approx(difference, rel=1e-6)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("name", PAIRS)
 def test_forces_change_as_their_derivatives_say(name, condensed):
     bodies = condensed(name)

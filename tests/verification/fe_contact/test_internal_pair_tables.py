@@ -57,6 +57,7 @@ def test_conjugate_flanks_have_no_error_without_load_at_any_center_distance() ->
     )
 
 
+@pytest.mark.law
 def test_planetary_set_has_finite_tables_that_keep_the_laws() -> None:
     """Sun 24, planet 36, ring 96: both meshes share the planet and the center distance."""
     assert SUN.center_distance == pytest.approx(PAIR.center_distance, rel=1e-12)
@@ -110,6 +111,7 @@ def scaled(gear: Any, factor: float) -> Any:
     return replace(gear, **{name: factor * getattr(gear, name) for name in lengths})
 
 
+@pytest.mark.law
 def test_lengths_by_s_and_forces_by_s_squared_scale_the_table() -> None:
     large = InternalGearPair(scaled(PLANET, 4.0), scaled(RING, 4.0))
     found = analyze(
@@ -155,6 +157,7 @@ def misaligned(pair: ParallelAxes, growth: float = 20e-6) -> tuple[np.ndarray, n
     return solution.deflection[:, 0], force @ face / force.sum(axis=1) / WIDTH
 
 
+@pytest.mark.law
 def test_large_wheels_with_teeth_outwards_and_inwards_end_in_the_same_rack(record_figure: Any) -> None:
     """What tells them apart falls with 1/z: curvature, tooth shape, rim. Hands and faces must agree."""
     apart, offset = np.empty((2, 2, 3))

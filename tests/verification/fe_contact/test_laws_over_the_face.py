@@ -49,6 +49,7 @@ def test_opposite_hand_is_the_mirror_image(cache):
     assert second.face_centroid == pytest.approx(-first.face_centroid[:, :, ::-1], abs=1e-9)
 
 
+@pytest.mark.law
 def test_lengths_by_s_and_forces_by_s2(cache):
     s = 3.0
     small, large = draft(helical(), cache), draft(helical(scale=s), cache, force=2000.0 * s**2)

@@ -42,6 +42,7 @@ def refined(factor: float) -> np.ndarray:
     return peaks(unit_root_stress(GEAR, MeshRecipe.standard(GEAR).refined(factor), teeth=1))
 
 
+@pytest.mark.law
 def test_the_plane_converges(record_figure: Callable[..., None]) -> None:
     errors = {f: refined(f) / refined(2.0) - 1.0 for f in (0.5, 1.0)}
     for i, name in enumerate(PEAKS):
@@ -85,6 +86,7 @@ def test_a_finer_root_is_worth_it() -> None:
     assert np.all(finer < 0.5 * plain)
 
 
+@pytest.mark.law
 def test_the_middle_of_a_wide_gear_approaches_plane_strain(record_figure: Callable[..., None]) -> None:
     recipe = replace(
         SectorRecipe.draft(GEAR), merge_rows=(), layer_growth=1.0, body_limit=3.0 * GEAR.normal_module
@@ -106,6 +108,7 @@ def test_the_middle_of_a_wide_gear_approaches_plane_strain(record_figure: Callab
     )  # fmt: skip
 
 
+@pytest.mark.law
 def test_the_stated_error_holds_in_the_plane() -> None:
     pair = GearPair(GEAR, GEAR, 80e-3)
     found = {

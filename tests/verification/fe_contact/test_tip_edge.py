@@ -69,6 +69,7 @@ def test_no_edge_given_is_the_sharp_tip_to_the_last_bit(sharp: tuple[str, Posed]
     assert curves(none).tobytes() == curves(sharp[1]).tobytes()
 
 
+@pytest.mark.law
 def test_a_rounding_tends_to_the_sharp_edge_in_proportion_to_its_radius(sharp: tuple[str, Posed]) -> None:
     """Somewhere in the handover the change is what an edge loses: a few tenths of the radius at most."""
     plain = curves(sharp[1])
@@ -81,6 +82,7 @@ def test_a_rounding_tends_to_the_sharp_edge_in_proportion_to_its_radius(sharp: t
     assert changes[-1] < 1e-6 * plain.max() + 2e-10
 
 
+@pytest.mark.law
 def test_chamfered_teeth_are_teeth_cut_off_at_the_tip_form_circle(sharp: tuple[str, Posed]) -> None:
     """Pairs hand over where theirs do; what is left is the body of the tip, and load patches."""
     height = 0.3e-3
@@ -100,6 +102,7 @@ def test_chamfered_teeth_are_teeth_cut_off_at_the_tip_form_circle(sharp: tuple[s
     assert (np.abs(plain - wanted).max(axis=0) / scale).min() > 5.0 * largest
 
 
+@pytest.mark.law
 def test_an_edge_never_stiffens_the_mesh(sharp: tuple[str, Posed]) -> None:
     plain = curves(sharp[1])
     before = plain

@@ -35,6 +35,7 @@ def _library() -> None:
     pytest.importorskip("ngsolve", reason=WITH_LIBRARY)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("ka", [0.1, 1.0, 1.83, np.pi])
 def test_pulsating_and_oscillating_sphere_within_one_percent(ka: float) -> None:
     """At ka = pi the equation without its derivative has no unique solution."""
@@ -56,6 +57,7 @@ def source_in(hull: Hull, at: np.ndarray, wavenumber: float) -> tuple[np.ndarray
     return velocity, 4.0 * np.pi / (2.0 * AIR.impedance)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("wavenumber", [2.0, 8.0])
 def test_a_box_that_moves_as_the_air_around_a_source_radiates_its_power(wavenumber: float) -> None:
     """The field outside is the source's whatever the hull: closed form for a body with edges, to 1 %."""
@@ -65,6 +67,7 @@ def test_a_box_that_moves_as_the_air_around_a_source_radiates_its_power(wavenumb
     assert 0.5 * matrix[0, 0].real == pytest.approx(power, rel=0.01)
 
 
+@pytest.mark.law
 def test_the_pressure_on_the_box_is_that_of_the_source() -> None:
     hull, wavenumber, at = box((0.4, 0.3, 0.25), (8, 6, 5)), 4.0, np.array([0.05, -0.03, 0.02])
     velocity, _ = source_in(hull, at, wavenumber)
@@ -82,6 +85,7 @@ def test_errors_fall_with_the_square_of_the_edges() -> None:
     assert 3.0 < misses[0] / misses[1] < 6.0
 
 
+@pytest.mark.law
 def test_power_into_the_air_arrives_far_away() -> None:
     """Energy balance: 1 % where the panels resolve the hull."""
     velocity, _ = source_in(FINE, np.array([0.3, 0.1, -0.2]), 2.0)

@@ -221,6 +221,7 @@ def test_what_cannot_be_used_is_refused() -> None:
         Air(density=-1.0)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("ka", [0.01, 1.0, 6.0])
 def test_plane_waves_give_the_sum_over_pairs(ka: float) -> None:
     """Free monopoles by directions against sin(kr)/(kr) of every pair."""

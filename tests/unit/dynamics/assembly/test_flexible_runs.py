@@ -27,6 +27,7 @@ def run_up(duration=0.05, **changes):
     return replace(scene, loads=(load,), **changes)
 
 
+@pytest.mark.law
 def test_no_energy_comes_from_shafts_that_spin_and_bend():
     """Undamped and thrown: what does not balance is at most 2 % of the energy of the throw in a second."""
     duration = 2e-3
@@ -103,6 +104,7 @@ def test_a_mesh_reads_the_tilt_of_its_gears_and_not_that_of_their_shafts(helix):
     assert abs(here) > 1.5 * abs(float((middle[0] - middle[1]) @ across))
 
 
+@pytest.mark.law
 def test_a_run_with_all_effects_of_the_mesh_closes_its_balance_and_reads_the_local_tilt():
     """Misalignment, center distance, moving application point, friction and backlash on flexible shafts."""
     table = sliced_database((-60e-6, 0.0, 60e-6), (-1e-4, 0.0, 1e-4), positions=12).force_table()

@@ -28,6 +28,7 @@ def states(mesh, rng):
         yield q, rng.uniform(-1e-3, 1e-3, 6)
 
 
+@pytest.mark.law
 def test_forces_balance_about_every_point(mesh, rng):
     """Action and reaction on one line through the pitch point: no net force, no net moment."""
     force, _ = user_functions(mesh)

@@ -87,6 +87,7 @@ def test_a_housing_is_estimated_as_ablation_shows_it(rpm: float) -> None:
     json.dumps(entry.to_json(), allow_nan=False)
 
 
+@pytest.mark.law
 def test_along_a_run_up_the_largest_of_each_order_is_estimated() -> None:
     """Order 1 passes the modes and others come from above: sign and size within a factor of 1.6."""
     scene = in_housing(TimeLaw((0.0, 1.0), (2000.0 * RPM, 5000.0 * RPM)), duration=1.0)

@@ -102,6 +102,7 @@ def test_inertia_alone_loads_an_unloaded_pair():
     assert found.mesh_force[0] == pytest.approx(1.1344291072112745e-3 * 100.0 / BASE_RADIUS, rel=1e-8)
 
 
+@pytest.mark.law
 def test_a_load_that_pulls_the_flanks_apart_has_no_equilibrium():
     scene = gear_pair_scene(spring_table(4e8), duration=0.01)
     pull = replace(scene.loads[0], torque=TimeLaw.constant(-20.0))

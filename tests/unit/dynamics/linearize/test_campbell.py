@@ -227,6 +227,7 @@ def averaged_linear(system: System) -> LinearSystem:
     return averaged(system, linear, flank_cycles(system, linear, 0.0), 0.0)
 
 
+@pytest.mark.law
 def test_modes_resolve_to_a_frequency_of_their_own():
     """However finely the run is sampled, shafts have the coordinates that the frequency needs."""
     scene = flexible_pair(speed=TimeLaw.constant(100.0))

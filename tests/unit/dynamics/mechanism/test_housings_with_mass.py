@@ -183,6 +183,7 @@ def test_a_run_has_the_response_of_two_masses_and_balances_seat_and_feet():
     np.testing.assert_allclose(force, inertia + feet, rtol=0.0, atol=1e-8 * np.max(np.abs(force)))
 
 
+@pytest.mark.law
 def test_runs_and_steady_states_agree_with_linear_theory_on_a_housing():
     """A weak ripple: the mesh stays a spring."""
     table = spring_table(4e8, amplitude=1e-8)

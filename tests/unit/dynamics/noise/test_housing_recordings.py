@@ -70,6 +70,7 @@ def test_its_orders_are_those_of_the_force_through_the_transfer_function(coupled
         assert found == pytest.approx(expected, rel=TENTH_DB), hertz
 
 
+@pytest.mark.law
 def test_it_scales_with_the_load_and_is_heard_where_it_varies_most() -> None:
     housing = random_housing()
     once, twice = (velocity_recording(housing, run_of(scale), "a") for scale in (1.0, 2.0))
@@ -127,6 +128,7 @@ def test_a_run_at_constant_speed_sounds_as_its_forced_response() -> None:
     assert found == pytest.approx(abs(transfer @ seat_forces(response, housing)[0, 0]), rel=0.1 * TENTH_DB)
 
 
+@pytest.mark.law
 def test_the_sound_pressure_of_bearings_adds_up_with_its_phase() -> None:
     housing, run = sounding(), run_of()
     parts = []

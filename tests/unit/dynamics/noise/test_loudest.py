@@ -38,6 +38,7 @@ def test_silence_has_no_loudest_point() -> None:
     assert loudest(radiated_sound(quiet, housing(), None, radiation())) == ()
 
 
+@pytest.mark.law
 def test_a_mode_in_resonance_carries_the_sound() -> None:
     body, driven, _, _ = oscillating(5.0, 5.0 * (2.0 * np.pi * 300.0) ** 2)
     plane = kept_radiation(body, EquivalentRadiatedPower(), driven.frequency)

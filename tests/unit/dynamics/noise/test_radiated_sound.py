@@ -93,6 +93,7 @@ def test_third_octaves_add_up_to_the_total() -> None:
     np.testing.assert_allclose(orders.third_octaves()[1].sum(axis=0), orders.power.sum(axis=0), rtol=1e-12)
 
 
+@pytest.mark.law
 def test_a_rigid_sphere_on_springs_radiates_as_theory_says() -> None:
     body, driven, plane, ka = oscillating(5.0, 5.0 * (2.0 * np.pi * 250.0) ** 2)
     by_plane = housing_radiation(body, EquivalentRadiatedPower(), driven.frequency)
@@ -107,6 +108,7 @@ def test_a_rigid_sphere_on_springs_radiates_as_theory_says() -> None:
     assert found.natural_frequency == pytest.approx([250.0] * 3)
 
 
+@pytest.mark.law
 def test_without_mass_to_speak_of_the_hull_follows_its_springs() -> None:
     stiffness = 1e6
     body, driven, _, _ = oscillating(1e-9, stiffness)

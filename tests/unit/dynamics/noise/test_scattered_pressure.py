@@ -50,6 +50,7 @@ def test_a_rigid_sphere_under_a_force_scatters() -> None:
     assert abs(whole[0]) < 0.01 * abs(whole[2])
 
 
+@pytest.mark.law
 def test_monopoles_are_off_by_what_the_manual_states() -> None:
     """A box 1 m around, 400 Hz, directions within 10 dB of the loudest: -7 to 2 dB."""
     hull = box((0.36, 0.24, 0.18), (9, 6, 4))

@@ -46,6 +46,7 @@ def test_without_ranges_only_modes_and_speeds_are_uncertain(model):
     assert max(each.below["mode_number"] for each in band.largest) > 0.01
 
 
+@pytest.mark.law
 def test_a_wider_range_never_narrows_the_band(model):
     before = [(np.inf, -np.inf)] * 100
     for width in (0.0, 0.3, 1.0):
@@ -74,6 +75,7 @@ def test_a_resonance_that_only_the_housing_damps_falls_by_the_ratio():
     assert band.below["housing_damping"] == pytest.approx(20.0 * np.log10(2.0), abs=0.1)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(
     ("speeds", "mounts", "cases"), [(24, 1, 20), pytest.param(135, 20, 200, marks=pytest.mark.nightly)]
 )

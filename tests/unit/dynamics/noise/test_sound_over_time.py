@@ -46,6 +46,7 @@ def levels(run):
     ]
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(("start", "end"), [(620.0, 620.0), (700.0, 760.0), (760.0, 700.0)])
 def test_where_only_orders_exist_it_is_their_sum(start, end):
     for own, of_orders in levels(swept_run(start, end, 3.0, FORCE)):

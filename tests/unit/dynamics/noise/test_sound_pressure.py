@@ -142,6 +142,7 @@ def test_nothing_is_heard_before_the_nearest_panel_nor_at_rest() -> None:
     assert not pressure_signal(body, time, stepped, 1e3 * AWAY).any()  # still on its way
 
 
+@pytest.mark.law
 def test_a_rigid_sphere_oscillates_as_a_dipole_of_monopoles() -> None:
     """On its axis far away rho c k a^2 v j_1(ka)/r: the first harmonic of the layer."""
     body = rigid_housing(5.0, 1e9, 0.01, sphere(12, RADIUS))

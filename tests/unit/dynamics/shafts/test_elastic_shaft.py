@@ -77,6 +77,7 @@ def test_static_twist_does_not_depend_on_the_modes_kept(highest):
     assert float(arm**2 @ (1.0 / elastic.stiffness)) == pytest.approx(sum(piece), rel=1e-9, abs=0.0)
 
 
+@pytest.mark.law
 def test_the_stated_error_of_the_elements_is_that_of_the_frequencies():
     """Against the closed form of a free rod, whose modes with free ends all lie below the limit."""
     elastic = elastic_shaft(SHAFT, (), ENDS, 60e3, 0.0)

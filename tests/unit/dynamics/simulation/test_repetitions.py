@@ -89,6 +89,7 @@ def test_rows_are_matched_in_their_order() -> None:
     assert added_rows(before, assemble(replace(coasting(), effects={"axial": "off"}))) is None
 
 
+@pytest.mark.law
 def test_what_a_tolerance_neglected_is_on_after_flanks_parted() -> None:
     scene = dropped(tolerance=0.5)
     left = set(decide_effects(scene).neglected)

@@ -90,6 +90,7 @@ def in_pieces(scene, path, blocks):
     raise AssertionError("never ended")
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("name", SCENES)
 def test_a_run_in_pieces_is_the_run_in_memory_bit_by_bit(name, tmp_path):
     scene = SCENES[name]()
@@ -137,6 +138,7 @@ simulate_to_file(scene, {path!r}, progress=hold, checkpoint_every=0.0)
 """
 
 
+@pytest.mark.law
 def test_a_killed_run_resumes_to_the_same_file(tmp_path):
     path, folder = tmp_path / "run.nc", interrupted_run(tmp_path / "run.nc")
     code = _CHILD.format(fakes=str(FAKES), path=str(path), folder=str(folder))
@@ -156,6 +158,7 @@ def test_a_killed_run_resumes_to_the_same_file(tmp_path):
     assert_same(RunResult.from_netcdf(path), simulate(run_up()))
 
 
+@pytest.mark.law
 def test_memory_does_not_grow_with_duration(tmp_path):
     def peak(duration):
         scene = replace(run_up(duration), outputs=Outputs(sample_rate=200e3, displacements=True))

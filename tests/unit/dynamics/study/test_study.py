@@ -127,6 +127,7 @@ def test_a_truncated_normal_distribution_keeps_its_ends_and_the_moments_of_its_c
     assert sample.var() == pytest.approx(variance, rel=0.03)
 
 
+@pytest.mark.law
 def test_the_mean_of_a_linear_response_is_within_its_stated_bounds() -> None:
     design = Design({TORQUE: Normal(100.0, 5.0)}, 64, seed=3)
     made = study(task(design, Springs(), (Response("peak_mesh_force"),)), design)

@@ -76,6 +76,7 @@ def global_compliance(gear: Toothing, recipe: SectorRecipe) -> np.ndarray:
     return found[number[:, sector.flank]]
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(
     "gear",
     [SPUR, HELICAL, WEBBED, pytest.param(RING, marks=pytest.mark.nightly), HELICAL_RING],

@@ -66,6 +66,7 @@ def solid_3d(gear: Gear, reach: int | None = None) -> FlankCompliance3D:
     return flank_compliance_3d(gear, six_layers(gear), reach=reach)
 
 
+@pytest.mark.law
 def test_a_web_of_full_width_is_the_solid_gear_to_the_last_bit() -> None:
     full = with_blank(web_thickness=24e-3)
     assert np.array_equal(plane(full).matrix, plane(SOLID).matrix)
@@ -75,6 +76,7 @@ def test_a_web_of_full_width_is_the_solid_gear_to_the_last_bit() -> None:
     assert moved_2d(plane(nearly)) == pytest.approx(moved_2d(plane(SOLID)), rel=5e-3)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(
     ("field", "values"),
     [

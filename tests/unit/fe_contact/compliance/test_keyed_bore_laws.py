@@ -51,6 +51,7 @@ def test_a_key_around_the_whole_bore_is_the_seat_all_round(gear: Gear) -> None:
         assert np.abs(key.block(tooth, other) - seat.block(tooth, other)).max() < 1e-11 * scale
 
 
+@pytest.mark.law
 @GEARS
 def test_equals_the_solution_of_the_whole_gear(gear: Gear) -> None:
     """All teeth in one sparse factorisation, the key's foundation assembled into it."""

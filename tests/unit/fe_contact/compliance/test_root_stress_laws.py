@@ -91,6 +91,7 @@ def some_forces(count: int) -> np.ndarray:
     return np.random.default_rng(7).normal(size=(count, 3))
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(("teeth", "bore", "real"), RINGS, ids=RING_NAMES)
 def test_equals_the_uncondensed_solution_in_the_plane(teeth: int, bore: float, real: int | None) -> None:
     gear = replace(PLANE, teeth=teeth, bore_diameter=bore)
@@ -165,6 +166,7 @@ def test_checks_hold(gear: Gear) -> None:
     assert plane.checks.recovery < 1e-11
 
 
+@pytest.mark.law
 def test_the_load_pulls_its_own_side_and_pushes_the_other() -> None:
     ring = replace(SectorRecipe.draft(RING), layers=2, merge_rows=())
     for found in (

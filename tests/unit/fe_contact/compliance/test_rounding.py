@@ -54,6 +54,7 @@ def test_a_chain_of_springs_keeps_what_it_must() -> None:
     assert u[-1] == pytest.approx(1.0 / soft + (count - 1) / stiff, rel=energy)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(("helix", "modules", "power"), [(0.3, 0.5, 4.0), (0.0, 0.1, 2.0)])
 def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(
     helix: float, modules: float, power: float
@@ -68,6 +69,7 @@ def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(
     assert 1.0 / 3.0 < predicted / found[1].energy_rounding < 3.0
 
 
+@pytest.mark.law
 def test_a_disc_as_thin_as_allowed_is_computed_and_a_thinner_one_refused() -> None:
     layers = SectorRecipe.draft(disc(1.0)).layers
     least = least_face_width(disc(1.0), layers) / 4e-3
@@ -92,6 +94,7 @@ def mate_of(gear: Gear) -> Gear:
     return disc(gear.face_width / 4e-3, -gear.helix_angle)
 
 
+@pytest.mark.law
 def test_a_body_beyond_the_bound_names_rounding() -> None:
     gear = disc(0.1, teeth=20)
     with pytest.raises(SolveError, match=r"rounding may change it by .* Widen the face"):

@@ -41,6 +41,7 @@ def test_usual_pairs_need_what_their_contact_ratio_says() -> None:
     assert teeth_in_reach(GearPair(gear, gear)) == 5
 
 
+@pytest.mark.law
 def test_a_path_of_contact_off_the_pitch_point_is_analyzed() -> None:
     pair = off_center()
     assert pair.transverse_contact_ratio < 2.0

@@ -37,6 +37,7 @@ def test_contributes_nothing_else() -> None:
     assert [f.name for f in fields(model) if getattr(after, f.name) != getattr(model, f.name)] == ["parts"]
 
 
+@pytest.mark.law
 def test_off_is_the_solid_pair_and_on_for_it_changes_no_bit() -> None:
     solid = analyze(SOLID, **COARSE, model="plane_strain")  # type: ignore[arg-type]
     for pair, choice in ((SOLID, "on"), (WEBBED, "off")):

@@ -49,6 +49,7 @@ def test_torques_differ_off_the_line_of_action_alone() -> None:
     assert at_corner.load_share[-1] > 0.05
 
 
+@pytest.mark.law
 def test_a_pair_of_twins_mirrors() -> None:
     """Driven backwards by the other gear: the same contact, named by the angle of what then drives."""
     position, torque = 0.34, 1
@@ -89,6 +90,7 @@ def test_relief_parts_the_flanks_by_what_is_removed() -> None:
     assert max(gaps) > 1e-6
 
 
+@pytest.mark.law
 def test_a_high_contact_ratio_shares_among_more_pairs() -> None:
     tall = Gear(
         teeth=60, normal_module=2e-3, face_width=20e-3, bore_diameter=40e-3,
@@ -112,6 +114,7 @@ def test_the_same_gears_inside_a_ring_deflect_less() -> None:
     assert point.transmission_error > 0.0
 
 
+@pytest.mark.law
 def test_unlike_materials_share_the_deflection() -> None:
     soft = replace(WHEEL, material=Material(9e9, 0.35))
     found = solve_full_contact(GearPair(GEAR, soft, 102e-3), [40.0], [0.4], COARSE)

@@ -240,6 +240,7 @@ def radially_blocked(pair: InternalGearPair) -> bool:
     return any(overlap(pair, turn, way, centered=0.5) > 1e-9 for turn in turns for way in ways)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(("shortening", "blocked"), [(0.05e-3, True), (-0.05e-3, False)])
 @pytest.mark.parametrize("allowance", [0.0, 1e-4])
 def test_trimming_interference_is_found_by_withdrawing_the_pinion(

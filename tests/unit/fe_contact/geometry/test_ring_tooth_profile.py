@@ -112,6 +112,7 @@ def swept(profile: ToothProfile) -> FloatArray:
     return np.concatenate(places)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("fields", RINGS)
 def test_rolling_cutter_touches_the_whole_flank_and_cuts_it_nowhere(fields: dict[str, Any]) -> None:
     profile = profile_of(fields)

@@ -46,6 +46,7 @@ def run(
     return optimize(request, Run(cache=compliances), memory=memory, cancel=cancel)
 
 
+@pytest.mark.law
 def test_a_stopped_search_goes_on_where_it_was(
     pair: GearPair, compliances: Path, tmp_path: Path, solved: list[int]
 ) -> None:

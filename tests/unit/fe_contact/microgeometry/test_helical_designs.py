@@ -110,6 +110,7 @@ def test_mirrored_hand_and_misalignment_give_the_mirrored_design(pair: GearPair,
     assert right[0][SLOPE] < -4e-6
 
 
+@pytest.mark.law
 def test_the_helix_slope_takes_up_a_fixed_misalignment(pair: GearPair, compliances: Path) -> None:
     """Both open the flanks linearly over the face, so the best slope moves by the misalignment."""
     straight, misaligned = (

@@ -53,6 +53,7 @@ def evaluator(
     return design_study(space, torques, [], StageClock(), Run(cache=compliances)).evaluator
 
 
+@pytest.mark.law
 def test_every_load_is_assessed_as_it_is_alone(pair: GearPair, compliances: Path) -> None:
     scatter = Scatter(4e-6, rule=GaussHermite(2))
     together = evaluator(pair, compliances, TORQUES, SKEWS, scatter)

@@ -42,6 +42,7 @@ def found(long_reliefs: GearPair, compliances: Path) -> Optimization:
     )
 
 
+@pytest.mark.law
 def test_no_design_of_a_fine_scan_is_better(
     found: Optimization, long_reliefs: GearPair, compliances: Path
 ) -> None:
@@ -79,6 +80,7 @@ def test_equal_gears_are_relieved_alike(found: Optimization) -> None:
     assert first == pytest.approx(second, rel=0.05)
 
 
+@pytest.mark.law
 def test_optimum_relief_is_the_deflection_at_the_load_and_grows_with_it(
     found: Optimization, long_reliefs: GearPair, compliances: Path
 ) -> None:
@@ -116,6 +118,7 @@ def test_wider_bounds_never_end_worse(found: Optimization, long_reliefs: GearPai
     )
 
 
+@pytest.mark.law
 def test_equal_seeds_give_equal_results(
     found: Optimization, long_reliefs: GearPair, compliances: Path
 ) -> None:

@@ -41,6 +41,7 @@ def points(database):
     return np.array([x, m, c, d])
 
 
+@pytest.mark.law
 def test_forces_stiffnesses_and_flags_are_those_of_the_database(database) -> None:
     x, m, c, d = at = points(database)
     found, wanted = CompiledForce.of(database).force_at(at), database.force_at(x, d, m, c)

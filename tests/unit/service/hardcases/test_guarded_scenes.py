@@ -23,6 +23,7 @@ def _imported_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lineofaction.hardcases.scene.multiprocessing.get_context", lambda _: context)
 
 
+@pytest.mark.law
 def test_crash_hang_and_exception_each_end_one_scene_only() -> None:
     scenes = [fake.CRASHING, fake.GOOD, fake.HANGING, fake.RAISING, fake.GOOD]
     crashed, good, hung, raised, last = run_scenes(scenes)

@@ -75,6 +75,7 @@ def test_in_python_the_sound_needs_no_table(
     assert heard.recording.samples.tolist() == expected.samples.tolist()
 
 
+@pytest.mark.law
 def test_the_sound_pressure_is_that_of_the_library_with_its_limits(
     file: Path,
     moved: RunResult,

@@ -105,12 +105,14 @@ def test_figures_are_those_of_loa_simulate(studied: Studied, tmp_path: Path) -> 
     np.testing.assert_array_equal(kept.bearing_force, alone.bearing_force)
 
 
+@pytest.mark.law
 def test_two_processes_give_the_same_bits(studied: Studied, scene: Path, tmp_path: Path) -> None:
     assert loa("study", scene, study_file(tmp_path), "-o", tmp_path / "two", "--workers", 2).exit_code == 0
     one, two = (Study.from_netcdf(folder / "study.nc") for folder in (studied.out, tmp_path / "two"))
     np.testing.assert_array_equal(one.figure, two.figure)
 
 
+@pytest.mark.law
 def test_a_killed_study_goes_on_where_it_was(scene: Path, tmp_path: Path) -> None:
     many = STUDY.replace("samples = 3", "samples = 40").replace("keep_worst = 1", "")
     arguments = ["study", str(scene), str(study_file(tmp_path, many)), "-o", str(tmp_path / "killed")]

@@ -136,6 +136,7 @@ def test_it_is_kept_without_a_tolerance_by_name_or_where_it_matters(more: Json) 
     assert checked.model.across_face
 
 
+@pytest.mark.law
 def test_an_effect_neglected_in_error_is_set_right(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = TINY | {"misalignments": [10e-6]}
     right = table(PAIR, cache, **asked)

@@ -37,6 +37,7 @@ def ledger(pair: GearPair, **asked: object) -> dict[str, Json]:
     return {entry["name"]: entry for entry in effect_ledger(checked, None)}
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(
     ("pair", "asked"),
     [

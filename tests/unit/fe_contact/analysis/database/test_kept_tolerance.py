@@ -95,6 +95,7 @@ def table_nodes(allowed: AllowedError):
     return decide(check_request(SPUR, *table_request(tolerance=allowed, **PLANE))).plan.nodes
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("tolerance", [0.002, 0.001, pytest.param(0.0005, marks=pytest.mark.nightly), 0.0001])
 def test_what_is_used_falls_from_pass_to_pass_and_met_is_what_the_table_states(
     from_draft, tolerance, tmp_path

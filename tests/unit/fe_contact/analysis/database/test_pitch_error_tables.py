@@ -93,6 +93,7 @@ def test_load_shares_follow_the_early_tooth(cache):
     assert curve.load_share.max(axis=1) == pytest.approx(1.0, abs=1e-9)
 
 
+@pytest.mark.law
 def test_both_gears_repeat_after_the_hunting_cycle_or_the_pitches_asked_for(cache):
     both = GearPair(gear(20, RNG.normal(0.0, 3e-6, 20)), gear(22, RNG.normal(0.0, 3e-6, 22)))
     options = {"torques": [100.0], "level": "draft", "positions": 8, "cache": cache}

@@ -49,6 +49,7 @@ def figures(table, **place):
     return curve.mean, curve.peak_to_peak, curve.harmonics[0]
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(
     ("pair", "how"),
     [
@@ -67,6 +68,7 @@ def test_the_estimate_covers_the_true_error(pair, how, cache):
         assert true <= found.error < max(0.05 * found.value, 2.0 * true)
 
 
+@pytest.mark.law
 def test_slices_of_a_helical_pair_are_a_source_of_ripple(cache):
     """The estimate must see what slices do to the ripple, also where the mesh is exact: a little."""
     table = analyze(helical(), normal_forces=[FORCE], level="draft", positions=32, cache=cache)
@@ -81,6 +83,7 @@ def test_slices_of_a_helical_pair_are_a_source_of_ripple(cache):
     )
 
 
+@pytest.mark.law
 def test_what_few_slices_change_is_carried_on_along_the_curve(cache):
     """The table with the error that is left taken off: of its peak-to-peak, and half that of the error.
 

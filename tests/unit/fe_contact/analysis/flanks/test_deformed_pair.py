@@ -73,6 +73,7 @@ def solved(pair: GearPair | InternalGearPair, cache: Path, **request: Any) -> So
     return solve_operating_point(checked, np.array([0.171875, 0.796875]), StageClock(), Run(cache=cache))
 
 
+@pytest.mark.law
 def test_the_work_of_the_forces_is_that_of_the_contact(cache: Path) -> None:
     """f' S f of both gears, tooth by tooth, is F' C F of the contact; corner forces count by their lever."""
     cases = (

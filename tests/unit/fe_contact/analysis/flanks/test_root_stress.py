@@ -58,6 +58,7 @@ def with_forces(found: SolvedOperatingPoint, keep: np.ndarray, factor: float = 1
     return replace(found, solved=[(found.problem, changed)])
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("model", ["plane_strain", "3d"])
 def test_stress_is_linear_in_the_forces(cache: Path, model: str) -> None:
     found = place(SPUR, cache, model)
@@ -126,6 +127,7 @@ def test_misalignment_raises_the_stress_where_the_load_goes(cache: Path) -> None
         assert abs(low.face_position) < 2e-3
 
 
+@pytest.mark.law
 def test_the_roots_of_a_ring_gear_are_pulled_at_the_same_end(cache: Path) -> None:
     """A ring is seen from its other side: its fillets and its ends must still be those of the contact."""
     ring = RingGear(teeth=60, normal_module=4e-3, face_width=10e-3, rim_diameter=0.29, tip_diameter=0.2342)
@@ -177,6 +179,7 @@ def test_crests_do_not_lean_on_what_does_not_count() -> None:
     assert at == pytest.approx([2.0, 2.0])
 
 
+@pytest.mark.law
 def test_a_root_under_the_patch_counts_for_no_peak(cache: Path) -> None:
     """Contact next to the form point: the patch, wider than the contact, lies on the fillet."""
     gear = replace(GEAR, profile_shift_coefficient=-0.05)

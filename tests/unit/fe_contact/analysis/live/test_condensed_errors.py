@@ -98,6 +98,7 @@ def test_patches_as_narrow_as_the_strips_leave_nothing(pair: CondensedPair) -> N
     assert light > 0.0 and heavy == 0.0
 
 
+@pytest.mark.law
 def test_stated_errors_hold_against_finer_meshes_and_more_positions(cache: Path, pair: CondensedPair) -> None:
     held, over = [], []
     for flank in FLANKS.values():

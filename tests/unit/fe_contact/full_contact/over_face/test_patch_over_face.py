@@ -144,6 +144,7 @@ def test_rigid_motions_and_even_strains_have_their_energy() -> None:
             assert moved @ stiffness.matrix @ moved == pytest.approx(expected * scale, rel=1e-10)
 
 
+@pytest.mark.law
 def test_more_layers_converge() -> None:
     """Where the contact ends inside the face: differences fall with the square of the thickness or so."""
     lags = []

@@ -42,6 +42,7 @@ def sloped() -> tuple[FullContactTable, ...]:
     return over_face(replace(PAIR, pinion=replace(GEAR, modification=CROWNED)), 0.0, -SLOPE, -2.0 * SLOPE)
 
 
+@pytest.mark.law
 def test_equilibrium_and_complementarity_hold_to_rounding() -> None:
     for table in (*plain(), *sloped()):
         for point in table.points[0]:
@@ -61,6 +62,7 @@ def test_opposite_misalignments_mirror() -> None:
     assert np.all(straight > first)
 
 
+@pytest.mark.law
 def test_a_slope_is_a_misalignment() -> None:
     """Removed from a flank or turned away: the same gap but for where on the flank it is."""
     steep = replace(PAIR, wheel=replace(GEAR, modification=FlankModification(helix_slope=SLOPE)))
