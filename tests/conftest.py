@@ -14,6 +14,7 @@ import pytest
 from coarse_sectors import coarse_sectors
 from compiled_once import compile_once
 from condensed_once import condensed_bodies, condensed_once
+from drawn_cases import leave_to_the_night
 from hypothesis import settings
 from quick_tests import is_quick
 from suite_records import SuiteRecords
@@ -59,8 +60,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     add_options(parser)
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Let whole services come last: what all their processes need is compiled by then, once."""
+    if not config.getoption("all"):
+        leave_to_the_night(items)
     if config.getoption("quick"):
         config.hook.pytest_deselected(items=[item for item in items if not is_quick(item)])
         items[:] = filter(is_quick, items)

@@ -2,7 +2,8 @@
 
 Results are made by the work of their processes, of inputs at the ends of what these take: names of all
 characters, the shortest run, one position, one torque, no load, no excitation. A new study is among them by
-its row. By day a few of each kind are read and images are left out; at night 500 with all their images.
+its row. By day one result of a fifth of the kinds is read, and images are left out; at night 500 are read
+with all their images.
 """
 
 from __future__ import annotations
@@ -71,6 +72,8 @@ def read(home: Path, http: TestClient, process: str, count: int, folder: Path) -
     return len(made)
 
 
+@pytest.mark.law
+@pytest.mark.drawn
 @pytest.mark.parametrize("process", PROCESSES)
 def test_a_few_of_every_kind_are_read(
     home: Path, http: TestClient, process: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

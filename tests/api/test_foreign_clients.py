@@ -105,6 +105,8 @@ def run_by_owslib(service: Service, process: str, inputs: Json) -> None:
     assert reference["type"] == NETCDF
 
 
+@pytest.mark.law
+@pytest.mark.drawn
 @pytest.mark.parametrize("process", INPUTS)
 def test_a_generated_client_runs_a_process(service: Service, generated: ModuleType, process: str) -> None:
     run_by_generated_client(service, generated, process, INPUTS[process])
@@ -116,6 +118,8 @@ def test_a_generated_client_reads_a_refusal(service: Service, generated: ModuleT
     assert (type(problem), problem.status) == (part("models").ProblemBody, 401)
 
 
+@pytest.mark.law
+@pytest.mark.drawn
 @pytest.mark.parametrize("process", INPUTS)
 def test_owslib_runs_a_process(service: Service, process: str) -> None:
     run_by_owslib(service, process, INPUTS[process])

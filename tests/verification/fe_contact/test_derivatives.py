@@ -161,6 +161,7 @@ ONE_SIDED = {
 }
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("shape", ["circular", "exponential", "logarithmic"])
 @pytest.mark.parametrize("quantity", ONE_SIDED)
 def test_by_reliefs_of_any_shape_to_any_end_curves_change_as_differences_say(quantity, shape, condensed):

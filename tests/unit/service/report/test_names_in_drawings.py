@@ -48,6 +48,7 @@ def texts(plot: Any, key: str = "") -> Iterator[str]:
         yield plot
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("name", NAMES)
 def test_an_image_holds_every_name_and_no_formula(name: str) -> None:
     assert png(named(name)).startswith(b"\x89PNG")

@@ -1,0 +1,27 @@
+"""A drawn test runs a fifth of its cases by day, all within five versions, and all at night."""
+
+from __future__ import annotations
+
+import pytest
+from drawn_cases import PART, draw
+
+NAMES = [f"tests/api/test_this.py::test_that[{path}-{wrong}]" for path in range(30) for wrong in "abc"]
+
+
+@pytest.mark.parametrize("count", [1, 2, 5, 7, 90])
+def test_five_turns_draw_every_case(count: int) -> None:
+    drawn = [draw(NAMES[:count], turn) for turn in range(168, 168 + PART)]
+    assert set().union(*drawn) == set(NAMES[:count])
+    assert all(1 <= len(part) <= -(-count // PART) for part in drawn)
+
+
+def test_what_is_drawn_does_not_depend_on_the_order_of_collection() -> None:
+    assert draw(NAMES, 3) == draw(reversed(NAMES), 3) != draw(NAMES, 4)
+
+
+@pytest.mark.drawn
+@pytest.mark.parametrize("case", range(2 * PART))
+def test_of_a_drawn_test_a_fifth_runs_by_day(request: pytest.FixtureRequest, case: int) -> None:
+    own = f"::{request.node.originalname}["
+    collected = [item for item in request.session.items if own in item.nodeid]
+    assert len(collected) <= (2 * PART if request.config.getoption("all") else 2)
