@@ -342,8 +342,11 @@ def assemble(scene: Scene) -> System:
     InputError
         If parts do not fit each other, or a free direction has no inertia.
     """
-    massless = under_laws(scene)
-    model = decide_model(_at_rest(scene) if massless else scene, EFFECTS)
+    massless, resting = under_laws(scene), scene
+    if massless:
+        off = {effect.name: "off" for effect in EFFECTS if not LAWS.isdisjoint(effect.adds)}
+        resting = replace(scene, housings=resting_housings(scene), effects={**scene.effects, **off})
+    model = decide_model(resting, EFFECTS)
     system = _assemble(model)
     if not system.bearings or BEARING_LAWS in model.mechanism.additions.possible:
         return system
@@ -354,11 +357,6 @@ def assemble(scene: Scene) -> System:
         reason = f'the housing "{massless[0].name}" has no mass: bearings have their tangents at the load'
         ledger = ledger.without(LAWS, reason, scene.effects)
     return replace(linear, ledger=ledger, corrected=system.corrected)
-
-
-def _at_rest(scene: Scene) -> Scene:
-    off = {effect.name: "off" for effect in EFFECTS if not LAWS.isdisjoint(effect.adds)}
-    return replace(scene, housings=resting_housings(scene), effects={**scene.effects, **off})
 
 
 def _assemble(model: Model) -> System:

@@ -156,15 +156,7 @@ def linear_scene(
     local, linear = local_state(arrays, 0.0, q, np.zeros(q.size)), dict(supports)
     first = arrays.elements.first[arrays.elements.law.size - len(bearings) :]
     for start, (name, at) in zip(first, bearings, strict=False):
-        size = at.way.shape[0]
-        rows = slice(start, start + size)
-        state = (
-            local.force[rows],
-            local.tangent[rows, :size],
-            local.viscous[rows, :size],
-            local.coordinate[rows],
-        )
-        linear[name] = _with_tangent(linear[name], at, *state)
+        linear[name] = _with_tangent(linear[name], at, local, slice(start, start + at.way.shape[0]))
     parts = [linear[part.name] for part in (*scene.ground_bearings, *scene.planet_bearings)]
     none: dict[str, Any] = dict.fromkeys(STATED, ())
     return replace(
@@ -177,20 +169,17 @@ def linear_scene(
 
 
 def _with_tangent(
-    bearing: Bushing | PlanetBearing,
-    at: BearingElement,
-    force: FloatArray,
-    stiffness: FloatArray,
-    damping: FloatArray,
-    coordinate: FloatArray,
+    bearing: Bushing | PlanetBearing, at: BearingElement, local: LocalState, rows: slice
 ) -> Bushing | PlanetBearing:
-    """Return `bearing` with an element's tangents (p, p) and its `force` (p,) at the `coordinate` (p,)."""
-    spread = at.own
+    """Return `bearing` with tangents and force that an element has in its `rows`."""
+    spread, size = at.own, at.way.shape[0]
     added = np.zeros(SEAT) if bearing.preload is None else np.array(bearing.preload)
+    stiffness = local.tangent[rows, :size]
     symmetric = 0.5 * (stiffness + stiffness.T)
+    preload = added + (symmetric @ local.coordinate[rows] - local.force[rows]) @ spread
     return replace(
         bearing,
         stiffness=matrix_rows(bearing.added_stiffness + congruent(symmetric, spread)),
-        damping=matrix_rows(seat_matrix(bearing.damping) + congruent(damping, spread)),
-        preload=tuple(float(value) for value in added + (symmetric @ coordinate - force) @ spread),
+        damping=matrix_rows(seat_matrix(bearing.damping) + congruent(local.viscous[rows, :size], spread)),
+        preload=tuple(float(value) for value in preload),
     )

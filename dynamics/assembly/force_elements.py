@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
 from dynamics.assembly.model import Model
+from dynamics.bearings.linear_bearing import LinearBearingLaws
 from dynamics.effects.force_terms import (
     CENTER_DISTANCE,
     MISALIGNMENT,
@@ -32,10 +33,9 @@ from dynamics.mechanism.bearing_elements import (
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, section_rows, turn_row
 from dynamics.mechanism.connections import ACROSS, frame_couplings, full_matrix
-from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import ROTATION, Freedoms
 from dynamics.mechanism.kinematics import Kinematics
-from dynamics.mechanism.line_of_action import LineOfAction, approach, line_of_action, middle_from_driver
+from dynamics.mechanism.line_of_action import approach, line_of_action, middle_from_driver
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.phases import LoadPhase, angle_phase, frame_phase, repeating_phases, unbalance_phase
 from dynamics.meshes.mesh_table import MeshTable
@@ -46,11 +46,12 @@ from dynamics.types import FloatArray
 # The force elements of applied forces and of unbalances.
 
 
-def _force_course_elements(mechanism: Mechanism) -> tuple[tuple[Element, ...], ForceCourseLaws]:
+def _force_course_elements(model: Model) -> tuple[tuple[Element, ...], ForceCourseLaws]:
     """Return one element per applied force, and their laws.
 
     The rows are those of the force and moment as one generalized force per newton, the moment by a lever.
     """
+    mechanism = model.mechanism
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
     lever, known, vectors = tilt_lever(scene), repeating_phases(scene, kinematics), mechanism.vectors
     elements, size, carrying, read, turned, senses = [], [], [], [], [], []
@@ -84,14 +85,9 @@ def _force_course_elements(mechanism: Mechanism) -> tuple[tuple[Element, ...], F
     return tuple(elements), laws
 
 
-def _unbalance_elements(mechanism: Mechanism) -> tuple[tuple[Element, ...], UnbalanceLaws]:
-    """Return one element per unbalance, and their laws.
-
-    Raises
-    ------
-    InputError
-        If the shaft of one is described in the frame of a carrier.
-    """
+def _unbalance_elements(model: Model) -> tuple[tuple[Element, ...], UnbalanceLaws]:
+    """Return one element per unbalance, and their laws."""
+    mechanism = model.mechanism
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
     lever, known, vectors = tilt_lever(scene), repeating_phases(scene, kinematics), mechanism.vectors
     elements, read = [], []
@@ -163,12 +159,12 @@ def _index(scene: Scene, known: tuple[LoadPhase, ...], phase: LoadPhase | None) 
 # The flank elements of meshes to whose forces effects contribute.
 
 
-def _spatial_elements(model: Model, plain: Sequence[Element]) -> tuple[tuple[Element, ...], SpatialFlankLaws]:
-    """Return the elements `plain` with those of such meshes replaced, each at its index, and their laws.
+def _spatial_elements(model: Model) -> tuple[tuple[Element, ...], SpatialFlankLaws]:
+    """Return the elements of all flanks, those of such meshes in space, and the laws of these.
 
     Flanks slide along the kinematic motion but keep their deflection.
     """
-    mechanism, law = model.mechanism, model.flanks.law
+    mechanism, law, plain = model.mechanism, model.flanks.law, _flank_elements(model)
     elements: list[Element] = []
     grids: list[MeshTable] = []
     figures: dict[str, list[Any]] = {name: [] for name in SpatialFlankLaws._fields[1:]}
@@ -284,15 +280,14 @@ def _element(
 # Couplings between shafts described in different frames.
 
 
-def _frame_coupling_elements(
-    scene: Scene, rotors: Bodies, lever: float
-) -> tuple[tuple[Element, ...], FrameCouplingLaws]:
-    """Return the elements of all couplings across frames, and their laws; `lever` (m) makes lengths of tilts.
+def _frame_coupling_elements(model: Model) -> tuple[tuple[Element, ...], FrameCouplingLaws]:
+    """Return the elements of all couplings across frames, and their laws; a lever makes lengths of tilts.
 
     Each reads a phase of its own behind those of the meshes: how far its second frame has turned against its
     first.
     """
-    parts = frame_couplings(scene)
+    scene, rotors = model.mechanism.scene, model.mechanism.rotors
+    parts, lever = frame_couplings(scene), tilt_lever(scene)
     elements = []
     size = np.array([1.0, 1.0, lever, lever])
     laws = [np.zeros((len(parts), 4, 4)) for _ in range(2)]
@@ -313,26 +308,23 @@ def _frame_coupling_elements(
 # The force elements of the flanks: driving flanks of all meshes, coast flanks where backlash is on.
 
 
-def _flank_elements(
-    scene: Scene,
-    rotors: Bodies,
-    senses: Sequence[int],
-    lines: Sequence[LineOfAction],
-    flanks: Flanks,
-) -> tuple[Element, ...]:
+def _flank_elements(model: Model) -> tuple[Element, ...]:
     """Return one element per entry of ``flanks.law``, in its order.
 
     A driving flank's coordinate is the transmission error. A coast flank pushes along the line of action of
     the opposite sense, and its coordinate is the approach along that less the backlash: a smaller center
     distance closes both.
     """
+    mechanism = model.mechanism
+    scene, rotors, lines = mechanism.scene, mechanism.rotors, mechanism.lines
     driving = [
         Element(Law.FLANK, index, index, approach(scene, rotors, index, line)[None, :], np.zeros(1))
         for index, line in enumerate(lines)
     ]
     coasting = []
-    for entry, index in enumerate(flanks.coast, start=len(lines)):
-        line, back = line_of_action(scene, index, -senses[index]), scene.meshes[index].coast
+    for entry, index in enumerate(model.flanks.coast, start=len(lines)):
+        line = line_of_action(scene, index, -mechanism.kinematics.mesh_sense[index])
+        back = scene.meshes[index].coast
         gap = back.backlash if back is not None else 0.0
         gradient = approach(scene, rotors, index, line)[None, :]
         coasting.append(Element(Law.FLANK, entry, index, gradient, np.array([-gap])))
@@ -342,14 +334,14 @@ def _flank_elements(
 # The force elements of torques that depend on speed.
 
 
-def _speed_elements(
-    scene: Scene, rotors: Bodies, kinematics: Kinematics
-) -> tuple[tuple[Element, ...], SpeedTorqueLaws]:
+def _speed_elements(model: Model) -> tuple[tuple[Element, ...], SpeedTorqueLaws]:
     """Return one element per speed torque, and their laws.
 
     Its coordinate is the rotation in the shaft's sense times a radius, and its rate in the kinematic motion
     is the shaft's speed times that radius.
     """
+    mechanism = model.mechanism
+    scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
     radius = tilt_lever(scene)
     elements = []
     for entry, part in enumerate(scene.speed_torques):
@@ -365,37 +357,38 @@ def _speed_elements(
     return tuple(elements), SpeedTorqueLaws.packed(scene.speed_torques, radius)
 
 
+def _housed_elements(model: Model) -> tuple[tuple[Element, ...], LinearBearingLaws]:
+    rotors = model.mechanism.rotors
+    return housed_bearing_elements(rotors, housed_bearings(model.mechanism.scene, rotors))
+
+
+BY_LAW: tuple[tuple[Law, Callable[[Model], tuple[tuple[Element, ...], Any]]], ...] = (
+    (Law.SPATIAL_FLANK, _spatial_elements),
+    (Law.SPEED_TORQUE, _speed_elements),
+    (Law.APPLIED_FORCE, _force_course_elements),
+    (Law.UNBALANCE, _unbalance_elements),
+    (Law.ROTATING_FRAME, _rotating_frame_elements),
+    (Law.FRAME_COUPLING, _frame_coupling_elements),
+    (Law.LINEAR_BEARING, _housed_elements),
+)
+"""What lays out the elements of a law and their arrays, in the order of the elements."""
+
+
 def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
     """Return the driving flanks of all meshes, everything else, bearings last, and their laws."""
-    mechanism, flanks = model.mechanism, model.flanks
-    scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
-    plain = _flank_elements(scene, rotors, kinematics.mesh_sense, mechanism.lines, flanks)
-    in_space, spatial = _spatial_elements(model, plain)
-    by_speed, speed = _speed_elements(scene, rotors, kinematics)
-    in_frames, rotating_frame = _rotating_frame_elements(model)
-    phase = len(scene.meshes) + len(repeating_phases(scene, kinematics))
+    mechanism, scene = model.mechanism, model.mechanism.scene
+    laws: dict[str, Any] = {"flank": model.flanks.law}
+    elements: list[Element] = []
+    for law, lay_out in BY_LAW:
+        own, laws[law.name.lower()] = lay_out(model)
+        elements += own
+    phase = len(scene.meshes) + len(repeating_phases(scene, mechanism.kinematics))
     passing = [part.name for part in scene.rolling_bearings if part.name in mechanism.passing]
     on_bearings, bearing_laws = bearing_elements(
         scene.laws_with(mechanism.passing),
-        rotors,
+        mechanism.rotors,
         mechanism.bearings,
         mechanism.bearing_duty,
         {name: phase + index for index, name in enumerate(passing)},
     )
-    across, frame = _frame_coupling_elements(scene, rotors, tilt_lever(scene))
-    applied, course = _force_course_elements(mechanism)
-    eccentric, unbalance = _unbalance_elements(mechanism)
-    housed, linear_bearing = housed_bearing_elements(rotors, housed_bearings(scene, rotors))
-    laws = ElementLaws(
-        flank=flanks.law,
-        speed_torque=speed,
-        spatial_flank=spatial,
-        rotating_frame=rotating_frame,
-        frame_coupling=frame,
-        applied_force=course,
-        unbalance=unbalance,
-        linear_bearing=linear_bearing,
-        **bearing_laws,
-    )
-    others = (*by_speed, *applied, *eccentric, *in_frames, *across, *housed)
-    return (*in_space, *others, *on_bearings), laws
+    return (*elements, *on_bearings), ElementLaws(**laws, **bearing_laws)

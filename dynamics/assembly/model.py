@@ -10,11 +10,10 @@ from dynamics.effects import Effect, EffectLedger, MeshEffect, RotorEffect
 from dynamics.effects.ledger import mechanism_of
 from dynamics.effects.loaded_parts import LoadedTrain, loaded_rotors
 from dynamics.errors import InputError
-from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import mass_terms
 from dynamics.mechanism.connections import gather_connections
 from dynamics.mechanism.flanks import Flanks, flank_laws
-from dynamics.mechanism.freedoms import Freedoms, find_freedoms
+from dynamics.mechanism.freedoms import find_freedoms
 from dynamics.mechanism.mechanism import GIVE_INERTIA, Mechanism
 from dynamics.scene.scene import Scene
 
@@ -40,20 +39,18 @@ def decide_model(scene: Scene, registry: tuple[Effect, ...]) -> Model:
         If a choice is unknown, parts do not fit each other, or a free direction has no inertia.
     """
     mechanism = mechanism_of(scene, registry)
-    flanks = _flanks(mechanism)
+    flanks = flank_laws(mechanism)
     mechanism, ledger = _on_rotors(mechanism, flanks, [e for e in registry if isinstance(e, RotorEffect)])
     added = [ledger.on_rotor(rotor.shaft.name) for rotor in mechanism.rotors]
     kinds = [{kind for effect in own for kind in effect.adds} for own in added]
     freedoms = find_freedoms(mechanism.rotors, mechanism.kinematics, kinds)
-    _require_mass(freedoms, mechanism.rotors)
+    mass = mass_terms(mechanism.rotors)[0][freedoms.column]
+    for name, value in zip(freedoms.name, mass, strict=True):
+        if value <= 0.0:
+            raise InputError(f"inertia of {name}", float(value), above(0.0), GIVE_INERTIA)
     train = LoadedTrain(mechanism, freedoms, gather_connections(mechanism.scene, mechanism.rotors), flanks)
     flanks, ledger = _on_meshes(train, ledger, [e for e in registry if isinstance(e, MeshEffect)])
     return Model(mechanism, freedoms, train.connections, flanks, ledger)
-
-
-def _flanks(mechanism: Mechanism) -> Flanks:
-    scene, kinematics = mechanism.scene, mechanism.kinematics
-    return flank_laws(scene, kinematics, mechanism.nominal_force, mechanism.polar_inertia)
 
 
 def _on_rotors(
@@ -82,9 +79,3 @@ def _on_meshes(
         on = [index for index, mesh in enumerate(scene.meshes) if ledger.on(effect.name, mesh.name)]
         flanks = effect.extend(flanks, scene.meshes, on)
     return flanks, ledger
-
-
-def _require_mass(freedoms: Freedoms, rotors: Bodies) -> None:
-    for name, value in zip(freedoms.name, mass_terms(rotors)[0][freedoms.column], strict=True):
-        if value <= 0.0:
-            raise InputError(f"inertia of {name}", float(value), above(0.0), GIVE_INERTIA)

@@ -91,17 +91,20 @@ class BallElements(NamedTuple):
     @classmethod
     def packed(cls, rows: Sequence[tuple[BallBearing, RowPlacement]]) -> BallElements:
         """Lay out `rows` and how they are placed."""
-        values = np.array([_values(bearing, place) for bearing, place in rows], dtype=float).reshape(-1, 7)
-        balls = np.array([bearing.count * place.copies for bearing, place in rows], dtype=np.int64)
-        held = np.array([HELD[place.locating] for _, place in rows], dtype=np.int64)
-        stiffness, damping, reach, radial, axial, *arms = (
-            np.ascontiguousarray(column) for column in values.T
+        figures = [_figures(bearing, place) for bearing, place in rows]
+        return cls(
+            balls=np.array([bearing.count * place.copies for bearing, place in rows], dtype=np.int64),
+            held=np.array([HELD[place.locating] for _, place in rows], dtype=np.int64),
+            **{
+                name: np.array([own[name] for own in figures], dtype=float)
+                for name in cls._fields
+                if name not in ("balls", "held")
+            },
         )
-        return cls(balls, stiffness, damping, reach, radial, axial, arms[0], arms[1], held)
 
 
-def _values(bearing: BallBearing, place: RowPlacement) -> tuple[float, ...]:
-    """Return the figures of a row in the order of `BallElements`; clearance leaves it in its middle."""
+def _figures(bearing: BallBearing, place: RowPlacement) -> dict[str, float]:
+    """Return the figures of a row by the fields of `BallElements`; clearance leaves it in its middle."""
     angle, reach = bearing.free_contact_angle, bearing.groove_distance
     offset = (bearing.inner_groove - 0.5) * bearing.diameter
     radial, axial, height = reach - bearing.clearance / 2.0, 0.0, 0.0
@@ -110,9 +113,15 @@ def _values(bearing: BallBearing, place: RowPlacement) -> tuple[float, ...]:
         radial, axial = reach * math.cos(angle), reach * math.sin(angle) - toward * bearing.clearance
         height = offset * math.sin(angle)
     arm = bearing.pitch_diameter / 2.0 + offset * math.cos(angle)
-    stiffness = bearing.element_stiffness / place.copies
-    arms = arm / place.lever, height / place.lever
-    return stiffness, place.damping, reach, radial, axial + place.shift, *arms
+    return {
+        "stiffness": bearing.element_stiffness / place.copies,
+        "damping": place.damping,
+        "reach": reach,
+        "radial": radial,
+        "axial": axial + place.shift,
+        "arm_radius": arm / place.lever,
+        "arm_axial": height / place.lever,
+    }
 
 
 @inner

@@ -61,7 +61,8 @@ def from_catalog(
     """
     CatalogLine(bore, outside_diameter, static_rating, clearance)
     pitch, largest = (bore + outside_diameter) / 2.0, WALL * (outside_diameter - bore) / 2.0
-    least, most = (_filled_rating(diameter, pitch) for diameter in (_smallest(pitch), largest))
+    smallest = pitch * math.sin(FILLED / (2.0 * (NUMBERS[-1] - 1)))  # of the greatest number of balls
+    least, most = (_filled_rating(diameter, pitch) for diameter in (smallest, largest))
     if not least <= static_rating <= most:
         suggestion = "Check its unit: no deep groove ball bearing of this section has such a rating."
         raise InputError("static_rating", static_rating, from_to(least, most, "N"), suggestion)
@@ -78,11 +79,6 @@ def _filled(count: int, diameter: float, pitch: float) -> float:
 def _filled_rating(diameter: float, pitch: float) -> float:
     """Return C_0 of as many balls as fill the usual angle, fractions of a ball included, N."""
     return (1.0 + FILLED / _filled(2, diameter, pitch)) * _rating(diameter, pitch) * diameter**2
-
-
-def _smallest(pitch: float) -> float:
-    """Return the diameter of the greatest number of balls that fill the usual angle, m."""
-    return pitch * math.sin(FILLED / (2.0 * (NUMBERS[-1] - 1)))
 
 
 def _rating(diameter: float, pitch: float) -> float:

@@ -62,31 +62,33 @@ class RollerElements(NamedTuple):
     @classmethod
     def packed(cls, rows: Sequence[tuple[RollerBearing, RowPlacement]]) -> RollerElements:
         """Lay out `rows` and how they are placed."""
-        values = np.array([_values(bearing, place) for bearing, place in rows], dtype=float).reshape(-1, 6)
+        figures = [_figures(bearing, at) for bearing, at in rows]
         places = [lamina_places(bearing.length, bearing.laminae) for bearing, _ in rows]
         drops = [2.0 * bearing.drop(place) for (bearing, _), place in zip(rows, places, strict=True)]
         own = [place / at.lever for (_, at), place in zip(rows, places, strict=True)]
-        stiffness, damping, cosine, sine, arm, play = (np.ascontiguousarray(column) for column in values.T)
         return cls(
-            np.array([bearing.count * at.copies for bearing, at in rows], dtype=np.int64),
-            stiffness,
-            damping,
-            cosine,
-            sine,
-            arm,
-            play,
-            np.cumsum([0, *(bearing.laminae for bearing, _ in rows)], dtype=np.int64),
-            np.concatenate([np.empty(0), *own]),
-            np.concatenate([np.empty(0), *drops]),
+            rollers=np.array([bearing.count * at.copies for bearing, at in rows], dtype=np.int64),
+            first=np.cumsum([0, *(bearing.laminae for bearing, _ in rows)], dtype=np.int64),
+            place=np.concatenate([np.empty(0), *own]),
+            drop=np.concatenate([np.empty(0), *drops]),
+            **{
+                name: np.array([figure[name] for figure in figures], dtype=float)
+                for name in ("stiffness", "damping", "cosine", "sine", "arm", "play")
+            },
         )
 
 
-def _values(bearing: RollerBearing, at: RowPlacement) -> tuple[float, ...]:
-    """Return the figures of a row in the order of `RollerElements`."""
+def _figures(bearing: RollerBearing, at: RowPlacement) -> dict[str, float]:
+    """Return the figures of a row by the fields of `RollerElements`."""
     cosine, sine = math.cos(bearing.contact_angle), math.sin(bearing.contact_angle)
-    stiffness = lamina_stiffness(bearing.length, bearing.laminae) / at.copies
-    arm, play = bearing.pitch_diameter / 2.0 * sine / at.lever, bearing.play - at.shift * sine
-    return stiffness, at.damping, cosine, sine, arm, play
+    return {
+        "stiffness": lamina_stiffness(bearing.length, bearing.laminae) / at.copies,
+        "damping": at.damping,
+        "cosine": cosine,
+        "sine": sine,
+        "arm": bearing.pitch_diameter / 2.0 * sine / at.lever,
+        "play": bearing.play - at.shift * sine,
+    }
 
 
 @inner

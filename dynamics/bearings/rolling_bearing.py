@@ -272,11 +272,6 @@ def _logarithmic_drop(place: FloatArray, diameter: float, length: float, tapered
     return np.asarray(-factor * diameter * np.log1p(-(ratio**2)))
 
 
-def _crowned_drop(place: FloatArray, crown: float, length: float) -> FloatArray:
-    """Return how far a circular crowning lies below its middle at `place`, m; `crown` (m) at the ends."""
-    return np.asarray(crown * (2.0 * place / length) ** 2)
-
-
 # Cylindrical and tapered roller bearings by their internal geometry, in laminae.
 
 
@@ -331,7 +326,8 @@ class RollerBearing(_Row):
         """Return how far the profile lies below the middle at `place` along the roller, m; one contact."""
         if self.profile == LOGARITHMIC:
             return _logarithmic_drop(place, self.diameter, self.length, self.contact_angle != 0.0)
-        return _crowned_drop(place, self.crown if self.profile == CROWNED else 0.0, self.length)
+        crown = self.crown if self.profile == CROWNED else 0.0
+        return np.asarray(crown * (2.0 * place / self.length) ** 2)
 
     def peak_pressure(self, load: float) -> float:
         """Return the Hertz pressure of a lamina under `load` (N) on the inner ring, the smaller one, Pa.

@@ -40,12 +40,10 @@ class _RowLaw:
 
     @property
     def arrays(self) -> type[BallElements] | type[RollerElements]:
-        """The packed arrays of its kind."""
         return BallElements if isinstance(self.row, BallBearing) else RollerElements
 
     @property
     def bushing(self) -> str:
-        """Where it acts."""
         return self.bearing.name
 
     acts_at = bushing
@@ -69,7 +67,6 @@ class _RowLaw:
         return float(self.loaded.displacement((0.0, 0.0, self.bearing.axial_preload, 0.0, 0.0))[2])
 
     def rows(self, duty: BearingDuty) -> FloatArray:
-        """Return all five displacements, tilts times the lever."""
         return np.diag([1.0, 1.0, 1.0, self.lever, self.lever])
 
     def typical(self, duty: BearingDuty) -> FloatArray:
@@ -77,12 +74,10 @@ class _RowLaw:
         return np.diag(self._under(duty)[1].tangent) / np.diag(self.rows(duty)) ** 2
 
     def missed(self, duty: BearingDuty) -> float:
-        """Return what its tangent misses of the displacement under the typical load, m."""
         way, at = self._under(duty)
         return way - float(at.force[0] / at.tangent[0, 0])
 
     def laid_out(self, duty: BearingDuty) -> tuple[BallBearing | RollerBearing, RowPlacement]:
-        """Return the row and how it is placed."""
         at = self._under(duty)[1]
         critical = 2.0 * math.sqrt(float(at.tangent[0, 0]) * duty.mass)
         damping = self.bearing.damping_ratio * critical / float(at.viscous[0, 0])

@@ -60,8 +60,12 @@ class Seat:
         """Refuse what is no linear bearing."""
         declared_fields(self)
         for name in ("stiffness", "damping"):
-            if getattr(self, name) is not None:
-                _check_matrix(name, getattr(self, name))
+            if getattr(self, name) is None:
+                continue
+            matrix = check_matrix(name, getattr(self, name), (SEAT, SEAT + 1))
+            if np.any(np.abs(matrix[SEAT:]) > PRECISION * np.max(np.abs(matrix))):
+                bound = "zero in the row and column of the rotation about the axis"
+                raise InputError(name, matrix[SEAT:].tolist(), bound, "A bearing lets its shaft turn.")
         if self.preload is not None:
             if len(self.preload) != SEAT:
                 raise InputError("preload", self.preload, "five numbers: x, y, z, tilt_x, tilt_y")
@@ -99,13 +103,6 @@ def seat_matrix(matrix: Matrix | None) -> FloatArray:
 
 def _isotropic(radial: float, axial: float) -> FloatArray:
     return np.diag([radial, radial, axial, 0.0, 0.0])
-
-
-def _check_matrix(field: str, rows: Matrix) -> None:
-    matrix = check_matrix(field, rows, (SEAT, SEAT + 1))
-    if np.any(np.abs(matrix[SEAT:]) > PRECISION * np.max(np.abs(matrix))):
-        bound = "zero in the row and column of the rotation about the axis"
-        raise InputError(field, matrix[SEAT:].tolist(), bound, "A bearing lets its shaft turn.")
 
 
 @described

@@ -201,21 +201,17 @@ def _shaft_lines(system: System, motion: FloatArray) -> _ShaftLines:
     """Return the lines at `motion` (N,): at the nodes of an elastic shaft, at what is on a rigid one."""
     shaft, position, moved = [], [], []
     for index, rotor in enumerate(system.rotors):
-        for along in _points(system, index):
+        on = [gear.position for gear in system.scene.gears if gear.shaft == rotor.shaft.name]
+        on += [support.position for support in rotor.supports]
+        points = sorted({0.0, rotor.shaft.length, *map(float, on)})
+        if rotor.elastic is not None:
+            points = [float(node) for node in rotor.elastic.position]
+        for along in points:
             z = rotor.shaft.origin[2] + along
             shaft.append(index)
             position.append(along)
             moved.append(section_rows(system.rotors, index, z) @ motion)
     return _ShaftLines(np.array(shaft, dtype=np.int64), np.array(position), np.array(moved).reshape(-1, 6))
-
-
-def _points(system: System, index: int) -> list[float]:
-    rotor, scene = system.rotors[index], system.scene
-    if rotor.elastic is not None:
-        return [float(position) for position in rotor.elastic.position]
-    on = [gear.position for gear in scene.gears if gear.shaft == rotor.shaft.name]
-    on += [support.position for support in rotor.supports]
-    return sorted({0.0, rotor.shaft.length, *map(float, on)})
 
 
 # Times at which all meshes of a system stand evenly spread over their cycles.

@@ -170,18 +170,15 @@ def leading_torque(scene: Scene, leader: _Leader, speed: float) -> tuple[float, 
     for part in scene.speed_torques:
         toward = _toward(kinematics, scene.shaft_index(part.shaft), leader)
         by_speed += float(part.curve(abs(toward) * speed)) * toward
-    return loads, by_speed + sum(_of_moments(scene, kinematics, leader, speed))
-
-
-def _of_moments(scene: Scene, kinematics: Kinematics, leader: _Leader, speed: float) -> Iterator[float]:
-    """Yield what the moments of forces about the axis ask of the leading shaft at a speed, N m."""
+    of_moments = 0.0
     for force in scene.forces:
         if force.moment[2] != 0.0:
             shaft = scene.shaft_index(force.shaft)
             read = force.course.shaft if isinstance(force.course, BySpeed) else force.shaft
             at = abs(_toward(kinematics, scene.shaft_index(read), leader)) * speed
             resists = -kinematics.sense[shaft] * force.moment[2] * float(mean_factor(force.course, 0.0, at))
-            yield resists * _toward(kinematics, shaft, leader)
+            of_moments += resists * _toward(kinematics, shaft, leader)
+    return loads, by_speed + of_moments
 
 
 def _toward(kinematics: Kinematics, shaft: int, leader: _Leader) -> float:

@@ -17,7 +17,6 @@ from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
 from dynamics.kernels.local_state import LocalState
 from dynamics.mechanism.bearing_elements import supports_by_name
-from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import elastic_columns, section_rows
 from dynamics.mechanism.connections import condensed_housings, seat_compliance
 from dynamics.mechanism.line_of_action import (
@@ -304,18 +303,6 @@ def _radial(system: System, index: int) -> list[str]:
 # The twist of gears along their faces, as a deviation of the lead.
 
 
-def _twist(rotors: Bodies, index: int, position: FloatArray, motion: FloatArray) -> FloatArray:
-    """Return the elastic rotation (P,) of sections at `position` (P,) along a shaft, rad.
-
-    Linear between nodes: exact where torques act at nodes alone.
-    """
-    elastic = rotors[index].elastic
-    if elastic is None:
-        return np.zeros_like(position)
-    turned = elastic.torsion.shape @ motion[elastic_columns(rotors, index)][elastic.twists]
-    return np.asarray(np.interp(position, elastic.position, turned))
-
-
 def lead_torsion(system: System, index: int, motion: FloatArray) -> float:
     """Return how the gap of mesh `index` grows over its common face by the twist of both shafts, m.
 
@@ -328,8 +315,11 @@ def lead_torsion(system: System, index: int, motion: FloatArray) -> float:
     for name, side in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
         shaft = scene.shaft_index(scene.gear(name).shaft)
         rotor = system.rotors[shaft]
-        middle = float(line.point[2]) - rotor.shaft.origin[2]
-        ends = _twist(system.rotors, shaft, np.array([middle - half, middle + half]), motion)
+        middle, ends = float(line.point[2]) - rotor.shaft.origin[2], np.zeros(2)
+        if rotor.elastic is not None:  # linear between nodes: exact where torques act at nodes alone
+            own = motion[elastic_columns(system.rotors, shaft)][rotor.elastic.twists]
+            turned, at = rotor.elastic.torsion.shape @ own, np.array([middle - half, middle + half])
+            ends = np.interp(at, rotor.elastic.position, turned)
         lever = side * float(line.gradient(rotor.center)[5])
         grown -= towards * lever * float(ends[1] - ends[0])
     return grown
@@ -384,6 +374,10 @@ def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain
     row = misalignment_gradient(scene, rotors, index, line, sense)
     course = mesh.misalignment + rest.motion @ row
     apart = float(distance_gradient(scene, rotors, index, line) @ motion)
+    per_tilt = misalignment_per_tilt(scene, index, line, sense)[:2]
+    driver, driven = (_gear_tilt(system, gear, motion, strain) for gear in (mesh.driver, mesh.driven))
+    causes = (driver - driven) @ per_tilt
+    causes[SET] += mesh.misalignment
     axis = np.asarray(mesh.table.misalignment)
     inside = axis.size == 1 or bool(np.all((course >= axis[0]) & (course <= axis[-1])))
     return MeshAlignment(
@@ -392,21 +386,9 @@ def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain
         float(course.mean()),
         float(course.min()),
         float(course.max()),
-        _causes(system, index, motion, strain),
+        causes,
         mesh.center_distance_change + apart,
         lead_torsion(system, index, motion),
         float(rest.centroid[:, index].mean()),
         inside,
     )
-
-
-def _causes(system: System, index: int, motion: FloatArray, strain: BearingStrain) -> FloatArray:
-    """Return the parts of the misalignment by cause, (causes,), m."""
-    scene, mesh = system.scene, system.scene.meshes[index]
-    sense = system.kinematics.mesh_sense[index]
-    per_tilt = misalignment_per_tilt(scene, index, system.lines[index], sense)[:2]
-    driver, driven = (_gear_tilt(system, gear, motion, strain) for gear in (mesh.driver, mesh.driven))
-    parts = (driver - driven) @ per_tilt
-    parts[SET] += mesh.misalignment
-    assert parts.size == len(CAUSES)
-    return np.asarray(parts)

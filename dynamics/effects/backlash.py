@@ -68,7 +68,7 @@ def _force_swing(mesh: LoadedMesh) -> float:
     """Half the peak-to-peak transmission error times stiffness, amplified as in resonance, N."""
     mechanism, flanks, index = mesh.train.mechanism, mesh.train.flanks, mesh.index
     damping = float(flanks.law.damping[index])
-    mass = 1.0 / mesh_mobility(mechanism.scene, mechanism.kinematics, index, mechanism.polar_inertia)
+    mass = 1.0 / mesh_mobility(mechanism, index)
     ratio = damping / (2.0 * math.sqrt(mesh.stiffness * mass))
     positions = flanks.used[index].position
     error = [table_deflection(flanks.static, index, x, mesh.force) for x in positions]

@@ -197,8 +197,7 @@ def assemble(housing: MeshedHousing) -> AssembledHousing:
     mesh = housing.mesh
     _check_faces(housing)
     frames = tuple(seat_frame(seat) for seat in housing.seats)
-    faces = (*_rigid_seats(housing), *_rigid_feet(housing))
-    freedoms = independent_freedoms(mesh.points, faces)
+    freedoms = independent_freedoms(mesh.points, _rigid_faces(housing))
     nodal_mass, stiffness = mass_and_stiffness(mesh, housing.material)
     motion = freedoms.motion
     mass = sp.csr_array(sp.kron(nodal_mass, sp.eye_array(3), format="csr"))
@@ -227,30 +226,20 @@ def _check_faces(housing: MeshedHousing) -> None:
     housing.nodes_of_points()
 
 
-def _rigid_seats(housing: MeshedHousing) -> list[_RigidFace]:
-    rigid = [seat for seat in housing.seats if seat.ring is Ring.RIGID]
-    return [
-        _RigidFace(f"seats.{seat.name}", wall_nodes(housing.mesh, seat.bore), np.array(seat.bore.position))
-        for seat in rigid
-    ]
-
-
-def _rigid_feet(housing: MeshedHousing) -> list[_RigidFace]:
-    return [
-        _RigidFace(
-            f"feet.{foot.name}",
-            wall_nodes(housing.mesh, foot.face),
-            _centroid(housing.mesh, foot),
-            foot.mount is None,
-        )
-        for foot in housing.feet
-    ]
-
-
-def _centroid(mesh: TetrahedralMesh, foot: Foot) -> FloatArray:
-    area, point = over_surface(mesh.points, foot.face.triangles(mesh))
-    weight = np.linalg.norm(area, axis=2)
-    return np.asarray(np.einsum("tp,tpi->i", weight, point) / weight.sum())
+def _rigid_faces(housing: MeshedHousing) -> tuple[_RigidFace, ...]:
+    """Return rigid seats about their positions, then feet about the centroids of their faces."""
+    mesh, faces = housing.mesh, []
+    for seat in housing.seats:
+        if seat.ring is Ring.RIGID:
+            nodes = wall_nodes(mesh, seat.bore)
+            faces.append(_RigidFace(f"seats.{seat.name}", nodes, np.array(seat.bore.position)))
+    for foot in housing.feet:
+        area, point = over_surface(mesh.points, foot.face.triangles(mesh))
+        weight = np.linalg.norm(area, axis=2)
+        centroid = np.einsum("tp,tpi->i", weight, point) / weight.sum()
+        nodes = wall_nodes(mesh, foot.face)
+        faces.append(_RigidFace(f"feet.{foot.name}", nodes, centroid, foot.mount is None))
+    return tuple(faces)
 
 
 def _motion(mesh: TetrahedralMesh, seat: tuple[SeatBore, SeatFrame], freedoms: Freedoms) -> sp.csr_array:

@@ -23,13 +23,7 @@ Solve = Callable[[FloatArray], FloatArray]
 
 
 def _factorized(matrix: sp.csr_array) -> Solve:
-    """Return x of matrix x = b; b is (f,) or (f, m).
-
-    Raises
-    ------
-    SolveError
-        The matrix is singular.
-    """
+    """Return x of matrix x = b; b is (f,) or (f, m); refuses a singular matrix."""
     from scipy.sparse.linalg import splu  # noqa: PLC0415 (start-up time)
 
     order = _nested_dissection(matrix)
@@ -122,28 +116,27 @@ def free_modes(housing: AssembledHousing, count: int) -> FreeModes:
     shift = SHIFT * float(np.max(squares))
     shifted = sp.csr_array(housing.stiffness + shift * housing.mass) if loose else housing.stiffness
     solve = _factorized(shifted)
-    rigid = _orthonormal(housing.loose, housing.mass)
+    held = housing.loose
+    factor = np.linalg.cholesky(held.T @ (housing.mass @ held))
+    rigid: FloatArray = np.linalg.solve(factor, held.T).T  # orthonormal
     square, shape = _lanczos(housing, solve, shift, count + loose)
     deflection, residual = _deflections(housing, solve, rigid)
     elastic, own = shape[:, loose:], square[loose:]
     force = housing.stiffness @ elastic
     missed = np.linalg.norm(force - (housing.mass @ elastic) * own, axis=0)
+    status = ModeStatus.CONVERGED if residual <= ACCEPTED else ModeStatus.ILL_CONDITIONED
+    if own.size != count:
+        status = ModeStatus.ITERATION_LIMIT
     return FreeModes(
         rigid,
         elastic,
         np.sqrt(np.maximum(own, 0.0)) / (2.0 * math.pi),
         deflection,
-        _status(own.size == count, residual),
+        status,
         float(np.max(missed / np.linalg.norm(force, axis=0), initial=0.0)),
         residual,
         math.sqrt(float(np.abs(square[:loose]).max()) / own[0]) if loose and own.size else 0.0,
     )
-
-
-def _status(complete: bool, residual: float) -> ModeStatus:
-    if not complete:
-        return ModeStatus.ITERATION_LIMIT
-    return ModeStatus.CONVERGED if residual <= ACCEPTED else ModeStatus.ILL_CONDITIONED
 
 
 def _lanczos(
@@ -169,10 +162,6 @@ def _lanczos(
 def basis_vectors(count: int) -> int:
     """Return how many vectors Lanczos' method holds for so many modes."""
     return count + max(count // 2, 20)
-
-
-def _orthonormal(vectors: FloatArray, mass: sp.csr_array) -> FloatArray:
-    return np.asarray(np.linalg.solve(np.linalg.cholesky(vectors.T @ (mass @ vectors)), vectors.T).T)
 
 
 def _deflections(housing: AssembledHousing, solve: Solve, rigid: FloatArray) -> tuple[FloatArray, float]:

@@ -168,13 +168,11 @@ def _quadratic(content: _Content) -> tuple[FloatArray, IntArray]:
     members = [cells, *content.groups.values()]
     if any(nodes.min(initial=0) < 0 or nodes.max(initial=0) >= len(points) for nodes in members):
         raise InputError(FIELD, "with elements that lack nodes", "complete, as meshlane reads it")
-    return raised(_right_handed(points, cells), points) if cells.shape[1] == LINEAR_NODES else (points, cells)
-
-
-def _right_handed(points: FloatArray, corners: IntArray) -> IntArray:
-    corner = points[corners]
-    turned = np.linalg.det(corner[:, 1:] - corner[:, :1]) < 0.0
-    return np.where(turned[:, None], corners[:, [0, 2, 1, 3]], corners)
+    if cells.shape[1] != LINEAR_NODES:
+        return points, cells
+    corner = points[cells]
+    turned = np.linalg.det(corner[:, 1:] - corner[:, :1]) < 0.0  # inside out
+    return raised(np.where(turned[:, None], cells[:, [0, 2, 1, 3]], cells), points)
 
 
 # Meshes of a STEP file, by gmsh in a child process.

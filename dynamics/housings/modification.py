@@ -113,7 +113,10 @@ def _renewed(
     `mounts` are the stiffness and damping of its mounts. Where the material does not damp, each mode keeps
     the ratio of its number.
     """
-    ratio = _ratios(housing)
+    circular, shape = housing.modes
+    own = housing.damping - _mounts(housing)[1]  # without that of the mounts
+    loss = np.einsum("rm,rs,sm->m", shape, own, shape, optimize=True)
+    ratio = loss / np.where(circular > 0.0, 2.0 * circular, np.inf)
     varied = replace(
         housing,
         stiffness=stiffness,
@@ -132,11 +135,3 @@ def _renewed(
     count = len(housing.frequency)
     hertz = np.where(elastic, circular, 0.0)[:count] / (2.0 * np.pi)
     return replace(varied, damping=damping, frequency=hertz, damping_ratio=ratio[:count])
-
-
-def _ratios(housing: ReducedHousing) -> FloatArray:
-    """Return the damping ratios of all modes of the matrices, without that of the mounts."""
-    circular, shape = housing.modes
-    own = housing.damping - _mounts(housing)[1]
-    loss = np.einsum("rm,rs,sm->m", shape, own, shape, optimize=True)
-    return np.asarray(loss / np.where(circular > 0.0, 2.0 * circular, np.inf))

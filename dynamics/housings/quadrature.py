@@ -76,16 +76,11 @@ def over_volume(points: FloatArray, tetrahedra: IntArray) -> _VolumeIntegral:
     jacobian = np.einsum("eai,akp->epik", points[tetrahedra], rule.slope, optimize=True)
     determinant = np.linalg.det(jacobian)
     with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = _inverse(jacobian, determinant)
+        a, b, c = (jacobian[..., :, k] for k in range(3))
+        rows = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-2)
+        inverse = rows / determinant[..., None, None]
     gradient = np.einsum("akp,epki->eaip", rule.slope, inverse, optimize=True)
     return _VolumeIntegral(determinant * rule.weight, gradient)
-
-
-def _inverse(matrix: FloatArray, determinant: FloatArray) -> FloatArray:
-    """Return inverses of 3 by 3 matrices by cross products of their columns."""
-    a, b, c = (matrix[..., :, k] for k in range(3))
-    rows = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-2)
-    return np.asarray(rows / determinant[..., None, None])
 
 
 def over_surface(points: FloatArray, triangles: IntArray) -> _SurfaceIntegral:

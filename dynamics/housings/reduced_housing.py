@@ -191,7 +191,9 @@ class ReducedHousing:
         """
         from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
 
-        if np.linalg.eigvalsh(_unit_diagonal(self.mass))[0] > SINGULAR:
+        diagonal = np.diag(self.mass)
+        scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)
+        if np.linalg.eigvalsh(scale[:, None] * self.mass * scale)[0] > SINGULAR:
             square, shape = eigh(self.stiffness, self.mass)
             return np.sqrt(np.maximum(square, 0.0)), shape
         inverse, shape = eigh(self.mass, self.stiffness)  # massless motions are no modes
@@ -222,13 +224,6 @@ class ReducedHousing:
             raise ResultError(str(error)) from error
         assert isinstance(housing, cls)
         return housing
-
-
-def _unit_diagonal(matrix: FloatArray) -> FloatArray:
-    """Return a matrix in units in which its diagonal is 1, or 0 where it is."""
-    diagonal = np.diag(matrix)
-    scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)
-    return np.asarray(scale[:, None] * matrix * scale)
 
 
 # Forced vibration of a reduced housing.
@@ -264,7 +259,11 @@ def receptance(
         not_negative(f"frequency[{index}]", float(value))
     omega = 2.0 * math.pi * hertz[:, None, None]
     matrices = housing.mass, housing.damping, housing.stiffness
-    basis = _scaled(housing) if residual else housing.modes[1][:, : len(housing.frequency)]
+    if residual:  # coordinates of like size: they are meters, radians and modal amplitudes
+        diagonal = np.diag(housing.stiffness)
+        basis = np.diag(1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)))
+    else:
+        basis = housing.modes[1][:, : len(housing.frequency)]
     mass, damping, stiffness = (basis.T @ matrix @ basis for matrix in matrices)
     forces = basis[: housing.motions].T
     try:
@@ -275,12 +274,6 @@ def receptance(
             "frequency", "singular", "off frequencies at which the motion is infinite", advice
         ) from error
     return np.asarray(basis @ amplitude)
-
-
-def _scaled(housing: ReducedHousing) -> FloatArray:
-    """Return coordinates of like size, (r, r): they are meters, radians and modal amplitudes."""
-    diagonal = np.diag(housing.stiffness)
-    return np.diag(1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)))
 
 
 PARALLEL = 1e-3
@@ -310,7 +303,7 @@ def scene_housing(housing: ReducedHousing, name: str, bushings: tuple[str, ...] 
         raise InputError("seats", sorted(counts), bound, "Reduce the housing with the same motions for all.")
     coordinates = len(housing.stiffness) - housing.motions
     turn = block_diag(*(_turn(seat) for seat in housing.seats), np.eye(coordinates))
-    massive = bool(np.any(housing.mass))
+    massive, positions = bool(np.any(housing.mass)), (seat.position for seat in housing.seats)
     return Housing(
         name,
         tuple(seat.name for seat in housing.seats) if bushings is None else bushings,
@@ -318,13 +311,8 @@ def scene_housing(housing: ReducedHousing, name: str, bushings: tuple[str, ...] 
         _turned(housing.damping, turn) if massive or np.any(housing.damping) else None,
         _turned(housing.mass, turn) if massive else None,
         modal_coordinates=coordinates,
-        seat_positions=tuple(_position(seat) for seat in housing.seats),
+        seat_positions=tuple((float(x), float(y), float(z)) for x, y, z in positions),
     )
-
-
-def _position(seat: SeatFrame) -> tuple[float, float, float]:
-    x, y, z = (float(value) for value in seat.position)
-    return x, y, z
 
 
 def _turn(seat: SeatFrame) -> FloatArray:

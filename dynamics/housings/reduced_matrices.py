@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -185,7 +186,8 @@ def read_reduced_matrices(path: str | Path) -> ReducedMatrices:
         A Nastran file, and pyyeti is not installed.
     """
     file = Path(path)
-    readers = {".npz": _archive, ".op4": _op4, ".pch": _dmig, ".bdf": _dmig, ".dat": _dmig}
+    archive = partial(read_archive, field=FIELD)
+    readers = {".npz": archive, ".op4": _op4, ".pch": _dmig, ".bdf": _dmig, ".dat": _dmig}
     one_of(f"{FIELD}.suffix", file.suffix.lower(), list(readers))
     return _named(file, _read(file, readers[file.suffix.lower()]))
 
@@ -248,10 +250,6 @@ def _read(file: Path, reader: Any) -> Any:
     # what the readers raise on damaged or foreign files is not one class
     except Exception as error:
         raise InputError(FIELD, file.name, f"matrices as a {file.suffix} file has them") from error
-
-
-def _archive(file: Path) -> dict[str, FloatArray]:
-    return read_archive(file, FIELD)
 
 
 def _market(file: Path) -> FloatArray:

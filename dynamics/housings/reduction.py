@@ -75,6 +75,7 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
     motion, law = coordinates.motion, housing.damping
     springs, mounts = (_symmetric(motion.T @ (part @ motion)) for part in assembled.mounts)
     ratio, own = _own_damping(housing, assembled, coordinates, springs)
+    nodes, triangles = np.unique(housing.mesh.surface, return_inverse=True)
     return ReducedHousing(
         coordinates.mass,
         coordinates.stiffness,
@@ -84,7 +85,9 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
         ratio[: len(frequency)],
         assembled.body,
         _residuals(housing, assembled, modes),
-        _surface(housing, assembled, coordinates),
+        SurfaceMotion(
+            housing.mesh.points[nodes], triangles.reshape(-1, 6), _motion_of(nodes, assembled, coordinates)
+        ),
         _points(housing, assembled, coordinates),
         mounts if np.any(mounts) else None,
         springs if np.any(springs) else None,
@@ -177,12 +180,6 @@ def _seat_rigid(housing: MeshedHousing, assembled: AssembledHousing) -> float:
     return float(np.abs(mean - expected).max() / np.abs(expected).max())
 
 
-def _surface(housing: MeshedHousing, assembled: AssembledHousing, coordinates: _Coordinates) -> SurfaceMotion:
-    nodes, triangles = np.unique(housing.mesh.surface, return_inverse=True)
-    motion = _motion_of(nodes, assembled, coordinates)
-    return SurfaceMotion(housing.mesh.points[nodes], triangles.reshape(-1, 6), motion)
-
-
 def _points(
     housing: MeshedHousing, assembled: AssembledHousing, coordinates: _Coordinates
 ) -> tuple[PointMotion, ...]:
@@ -255,20 +252,8 @@ def reduction_cost(freedoms: int, modes: int, motions: int) -> Cost:
     return Cost(seconds, FILL * size**1.1 + 8.0 * freedoms * vectors)
 
 
-def cost_of(housing: MeshedHousing) -> Cost:
-    """Return the predicted cost of a housing's reduction on the reference host."""
-    motions = sum(seat.motions for seat in housing.seats)
-    return reduction_cost(housing.mesh.freedoms, housing.modes, motions)
-
-
 def _check_cost(housing: MeshedHousing, cost: Cost, limit: CostLimit) -> None:
-    """Refuse a housing whose predicted cost on this host is above a limit.
-
-    Raises
-    ------
-    InputError
-        It is.
-    """
+    """Refuse a housing whose predicted cost on this host is above a limit."""
     advice = f"{housing.mesh.freedoms} freedoms, {housing.modes} modes: use a coarser mesh or fewer modes."
     if cost.seconds > limit.seconds:
         raise InputError("predicted_seconds", cost.seconds, at_most(limit.seconds, "s"), advice)
@@ -351,7 +336,8 @@ def reduced_housing(
     file = None if cache is None else cache / f"housing-{content_key(housing)}.nc"
 
     def reduced() -> ReducedHousing:
-        reference = cost_of(housing)
+        motions = sum(seat.motions for seat in housing.seats)
+        reference = reduction_cost(housing.mesh.freedoms, housing.modes, motions)
         predicted = on_this_host(WORK, reference, cache)
         _check_cost(housing, predicted, limit or CostLimit())
         expected(predicted)

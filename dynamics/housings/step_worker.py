@@ -64,20 +64,16 @@ def _mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
     gmsh.option.setNumber("Mesh.MeshSizeMax", size / MILLIMETER)
     gmsh.model.addPhysicalGroup(3, [solids[0][1]])  # only its elements are written
     try:
-        _generate(gmsh)
+        gmsh.model.mesh.generate(3)
+        if _worst_element(gmsh) < WORST:
+            # twice the time, a sixth more elements: on demand
+            gmsh.option.setNumber("Mesh.OptimizeNetgen", 1)
+            gmsh.model.mesh.clear()
+            gmsh.model.mesh.generate(3)
     except Exception as error:  # noqa: BLE001 - gmsh says what is wrong with the geometry
         return {"error": str(error)}
     gmsh.write(request["mesh"])
     return {"solids": 1, "size": size}
-
-
-def _generate(gmsh: Any) -> None:
-    """Mesh the solid, a second time if elements are bad."""
-    gmsh.model.mesh.generate(3)
-    if _worst_element(gmsh) < WORST:
-        gmsh.option.setNumber("Mesh.OptimizeNetgen", 1)  # twice the time, a sixth more elements: on demand
-        gmsh.model.mesh.clear()
-        gmsh.model.mesh.generate(3)
 
 
 def _worst_element(gmsh: Any) -> float:

@@ -218,7 +218,17 @@ def whirl_branches(
         if progress is not None:
             progress((index + 1) / speed.size)
     count = 1 + max((int(np.max(branch, initial=-1)) for branch in branches), default=-1)
-    return _gathered(system, linear, speed, swept, branches, count)
+    n, p = linear.scale.size, len(linear.spring)
+    frequency, ratio, whirl = (np.full((speed.size, count), np.nan) for _ in range(3))
+    shape = np.full((speed.size, count, n), np.nan + 0j)
+    strain, kinetic = np.full((speed.size, count, p), np.nan), np.full((speed.size, count, n), np.nan)
+    for row, (modes, branch) in enumerate(zip(swept, branches, strict=True)):
+        frequency[row, branch], ratio[row, branch] = modes.frequency, modes.damping_ratio
+        shape[row, branch] = modes.shape
+        strain[row, branch] = strain_shares(linear, modes.shape)
+        kinetic[row, branch] = kinetic_shares(linear, modes.shape)
+        whirl[row, branch] = _whirl(system, linear, float(speed[row]), modes)
+    return WhirlBranches(speed, frequency, ratio, whirl, shape, strain, kinetic)
 
 
 def likeness(linear: LinearSystem, first: ComplexArray, second: ComplexArray) -> FloatArray:
@@ -241,27 +251,6 @@ def _continued(linear: LinearSystem, before: WhirlModes, branch: list[int], mode
             fresh += 1
         numbers.append(known.get(index, fresh))
     return numbers
-
-
-def _gathered(
-    system: System,
-    linear: LinearSystem,
-    speed: FloatArray,
-    swept: list[WhirlModes],
-    branches: list[list[int]],
-    count: int,
-) -> WhirlBranches:
-    n, p = linear.scale.size, len(linear.spring)
-    frequency, ratio, whirl = (np.full((speed.size, count), np.nan) for _ in range(3))
-    shape = np.full((speed.size, count, n), np.nan + 0j)
-    strain, kinetic = np.full((speed.size, count, p), np.nan), np.full((speed.size, count, n), np.nan)
-    for row, (modes, branch) in enumerate(zip(swept, branches, strict=True)):
-        frequency[row, branch], ratio[row, branch] = modes.frequency, modes.damping_ratio
-        shape[row, branch] = modes.shape
-        strain[row, branch] = strain_shares(linear, modes.shape)
-        kinetic[row, branch] = kinetic_shares(linear, modes.shape)
-        whirl[row, branch] = _whirl(system, linear, float(speed[row]), modes)
-    return WhirlBranches(speed, frequency, ratio, whirl, shape, strain, kinetic)
 
 
 def _whirl(system: System, linear: LinearSystem, speed: float, modes: WhirlModes) -> FloatArray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -103,7 +103,7 @@ def critical_speeds(
     turns = float(np.max(branches.speed, initial=0.0))
     matrices = _speed_matrices(system, linear, turns) if turns > 0.0 else None
     per_speed = mesh_frequencies(system, np.ones(1))[:, 0] if branches.speed.size else np.empty(0)
-    rows: list[tuple[float, ...]] = []
+    rows: list[tuple[_Crossing, int, int, int]] = []
     for mesh, rate in enumerate(per_speed):
         if rate == 0.0 or np.any(np.isclose(per_speed[:mesh], rate, rtol=1e-9, atol=0.0)):
             continue
@@ -114,12 +114,23 @@ def critical_speeds(
                 assert matrices is not None  # between two speeds one is not 0
                 between = _between(branches, int(row), int(mode), order * rate)
                 crossing = _refined(system, linear, matrices, between)
-                rows.append((*crossing, float(mode), float(mesh), float(order)))
-    table = np.array(sorted(rows)).reshape(-1, 7)
-    counts = table[:, 4:].astype(np.int64)
-    return CriticalSpeeds(
-        table[:, 0], table[:, 1], table[:, 2], counts[:, 0], counts[:, 1], counts[:, 2], table[:, 3]
-    )
+                rows.append((crossing, int(mode), mesh, order))
+    rows.sort()
+    counts = np.array([row[1:] for row in rows], dtype=np.int64).reshape(-1, 3)
+    figures = {
+        name: np.array([getattr(crossing, name) for crossing, *_ in rows], dtype=float)
+        for name in _Crossing._fields
+    }
+    return CriticalSpeeds(**figures, mode=counts[:, 0], mesh=counts[:, 1], order=counts[:, 2])
+
+
+class _Crossing(NamedTuple):
+    """Figures of a crossing, as `CriticalSpeeds` has them."""
+
+    speed: float
+    frequency: float
+    damping_ratio: float
+    residual: float
 
 
 @dataclass(frozen=True)
@@ -156,10 +167,8 @@ def _between(branches: WhirlBranches, row: int, mode: int, rate: float) -> _Betw
     return _Between(speed, frequency - rate * speed, frequency, ratio, shape, rate)
 
 
-def _refined(
-    system: System, linear: LinearSystem, matrices: _SpeedMatrices, between: _Between
-) -> tuple[float, float, float, float]:
-    """Return speed, frequency, damping ratio and residual of a crossing.
+def _refined(system: System, linear: LinearSystem, matrices: _SpeedMatrices, between: _Between) -> _Crossing:
+    """Find a crossing.
 
     Where Newton's method leaves the two speeds or the mode (modes that veer), they are halved: the mode in
     the middle is that most like the ends.
@@ -171,12 +180,10 @@ def _refined(
         between = _halved(system, linear, between)
     end = int(np.argmin(np.abs(between.gap)))
     values = (between.speed, between.frequency, between.damping_ratio, between.gap)
-    return tuple(float(value[end]) for value in values)  # type: ignore[return-value]
+    return _Crossing(*(float(value[end]) for value in values))
 
 
-def _newton(
-    linear: LinearSystem, matrices: _SpeedMatrices, between: _Between
-) -> tuple[float, float, float, float] | None:
+def _newton(linear: LinearSystem, matrices: _SpeedMatrices, between: _Between) -> _Crossing | None:
     """Solve P(s, W) x = 0 with Im s = 2 pi rate W for x, Re s and W; None without convergence to it.
 
     The steps x + dx = -P^-1 (P_s ds + P_W dW) x keep c^H x = 1, c along the first guess: a complex equation
@@ -215,7 +222,7 @@ def _newton(
 
 def _accepted(
     linear: LinearSystem, matrices: _SpeedMatrices, between: _Between, x: ComplexArray, value: complex
-) -> tuple[float, float, float, float] | None:
+) -> _Crossing | None:
     """Return the crossing if it is between the speeds and of the mode."""
     frequency = value.imag / (2.0 * math.pi)
     speed = frequency / between.rate
@@ -227,7 +234,7 @@ def _accepted(
     force = matrices.at(value, speed) @ x
     slope = matrices.by_eigenvalue(value, speed) @ x
     left = float(np.linalg.norm(force) / np.linalg.norm(slope)) / (2.0 * math.pi)
-    return speed, frequency, -value.real / abs(value), left
+    return _Crossing(speed, frequency, -value.real / abs(value), left)
 
 
 def _halved(system: System, linear: LinearSystem, between: _Between) -> _Between:

@@ -197,31 +197,23 @@ def _power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalan
     """
     u, omega = steady.displacement, steady.omega
     rate = 1j * omega[..., None] * u
-    source, gained = _inputs(at, speed, steady, rate)
+    direction = at.system.arrays.direction
+    source = [mesh.name for mesh in at.system.scene.meshes]
+    gained = [_power(steady.force[cycle.rows].T, rate @ direction[cycle.rows].T) for cycle in at.cycles]
+    loads = load_harmonics(at.system, at.period, speed, steady.harmonics, at.time)
+    if np.any(loads):
+        source.append(LOADS)
+        gained.append(_power(loads, rate))
     lost: dict[tuple[str, str], FloatArray] = {}
     for name, kind, power in _losses(at, speed, u, rate):
         lost[name, kind] = lost.get((name, kind), 0.0) + power
     return PowerBalance(
-        source,
-        gained.reshape(len(source), *omega.shape),
+        tuple(source),
+        np.array(gained).reshape(len(source), *omega.shape),
         tuple(name for name, _ in lost),
         tuple(kind for _, kind in lost),
         np.array(list(lost.values())).reshape(len(lost), *omega.shape),
     )
-
-
-def _inputs(
-    at: Excited, speed: FloatArray, steady: Steady, rate: ComplexArray
-) -> tuple[tuple[str, ...], FloatArray]:
-    """Return the sources and the power of each, (p, S, H)."""
-    direction = at.system.arrays.direction
-    names = [mesh.name for mesh in at.system.scene.meshes]
-    powers = [_power(steady.force[cycle.rows].T, rate @ direction[cycle.rows].T) for cycle in at.cycles]
-    loads = load_harmonics(at.system, at.period, speed, steady.harmonics, at.time)
-    if np.any(loads):
-        names.append(LOADS)
-        powers.append(_power(loads, rate))
-    return tuple(names), np.array(powers)
 
 
 def _losses(

@@ -32,13 +32,7 @@ from host import cpu_seconds
 
 
 def _resolved_to(system: System, speed: FloatArray, orders: int, highest: float | None) -> float:
-    """Return the frequency to resolve, Hz: `highest`, else the highest of the orders at the highest speed.
-
-    Raises
-    ------
-    InputError
-        If `highest` is not positive.
-    """
+    """Return the frequency to resolve, Hz: `highest`, else the highest of the orders at the highest speed."""
     if highest is not None:
         return positive("highest_frequency", highest)
     if system.scene.highest_frequency is not None:

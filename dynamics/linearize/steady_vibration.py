@@ -221,7 +221,7 @@ def steady_vibration(
     progress: Callable[[float], None] | None = None,
 ) -> Steady:
     """Return the vibration at `speed` (S,), of `harmonics` (H,) those that are excited."""
-    static, force = _excitation(at.system, at.cycles, at.period, harmonics, excitation)
+    static, force = _excitation(at, harmonics, excitation)
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     kept = np.flatnonzero(_heard(force) | _heard(np.moveaxis(loads / at.linear.scale, 1, 2)))
     harmonics, static, force = harmonics[kept], static[:, kept], force[:, kept]
@@ -250,7 +250,7 @@ def swept_vibration(
     Where the speed changes at a `rate` (S,), rad/s^2, resonances are as high as they can grow while they are
     passed. With `gyroscopic`, gyroscopic and frame terms are in.
     """
-    static, force = _excitation(at.system, at.cycles, at.period, harmonics, "static_error")
+    static, force = _excitation(at, harmonics, "static_error")
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     pushed = _pushed(at, force) + loads if np.any(loads) else _pushed(at, force)
     omega = _omega(at, speed, harmonics)
@@ -279,18 +279,17 @@ def gyroscopic_terms(system: System, speed: FloatArray) -> list[Terms]:
     return [(w * gyroscopic, w * swept + w * w * centripetal) for w in part]
 
 
-def _excitation(
-    system: System, cycles: tuple[FlankCycle, ...], period: CommonPeriod, harmonics: IntArray, kind: str
-) -> tuple[ComplexArray, ComplexArray]:
+def _excitation(at: Excited, harmonics: IntArray, kind: str) -> tuple[ComplexArray, ComplexArray]:
     """STE (m, H) and exciting force on the driving flanks' rows (R', H): it pushes d up with the STE.
 
     Where the other forces of a flank (a moment as its load moves along the face, friction) vary while the
     mesh force is held, they excite too.
     """
+    cycles = at.cycles
     static = np.zeros((len(cycles), harmonics.size), dtype=complex)
     force = np.zeros((cycles[-1].rows.stop if cycles else 0, harmonics.size), dtype=complex)
-    for f, (mesh, cycle) in enumerate(zip(system.scene.meshes, cycles, strict=True)):
-        grid = period.pitches[f], mesh.table.period, mesh.position_offset, harmonics
+    for f, (mesh, cycle) in enumerate(zip(at.system.scene.meshes, cycles, strict=True)):
+        grid = at.period.pitches[f], mesh.table.period, mesh.position_offset, harmonics
         static[f] = _harmonics_of(cycle.static_error, *grid)
         for p, row in enumerate(range(cycle.rows.start, cycle.rows.stop)):
             if kind == "static_error":

@@ -142,32 +142,28 @@ def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
         shaft,
         inertia,
         center,
-        tuple(_damped_matrix(_damped(bushing, share), share, tilting) for bushing in bushings),
-        tuple(_damped_matrix(_damped(bearing, share), share, tilting) for bearing in bearings),
+        tuple(_damped(bushing, share, tilting) for bushing in bushings),
+        tuple(_damped(bearing, share, tilting) for bearing in bearings),
         frame,
         frame if planet else None,
     )
 
 
-def _damped(support: Support, share: float) -> Support:
-    """Fill in the damping that follows from the damping ratio and the support's share of the mass."""
-
-    def damping(stated: float | None, stiffness: float) -> float:
-        return 2.0 * support.damping_ratio * float(np.sqrt(stiffness * share)) if stated is None else stated
-
-    return replace(
-        support,
-        radial_damping=damping(support.radial_damping, support.radial_stiffness),
-        axial_damping=damping(support.axial_damping, support.axial_stiffness),
-    )
-
-
-def _damped_matrix(support: Support, share: float, tilting: float) -> Support:
-    """Fill in the damping of a stiffness matrix, in proportion to it.
+def _damped(support: Support, share: float, tilting: float) -> Support:
+    """Fill in the damping that follows from the damping ratio; that of a matrix in proportion to it.
 
     `share` and `tilting` are the support's shares of mass and transverse inertia; the latter sets the time
     where the matrix holds tilt alone.
     """
+
+    def damping(stated: float | None, stiffness: float) -> float:
+        return 2.0 * support.damping_ratio * float(np.sqrt(stiffness * share)) if stated is None else stated
+
+    support = replace(
+        support,
+        radial_damping=damping(support.radial_damping, support.radial_stiffness),
+        axial_damping=damping(support.axial_damping, support.axial_stiffness),
+    )
     if support.stiffness is None or support.damping is not None:
         return support
     matrix = support.added_stiffness

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.bearings import Bushing, PlanetBearing
+from dynamics.bearings import PlanetBearing
 from dynamics.bearings.matrix import Matrix
 from dynamics.bearings.seat import SEAT
 from dynamics.joints import Coupling, Housing
-from dynamics.mechanism.bodies import Bodies, Rotor
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, elastic_terms, section_rows
 from dynamics.mechanism.freedoms import Freedoms
 from dynamics.mechanism.supports import Supports, gather_supports, seat_axes, seat_error, seat_motion
@@ -231,17 +231,16 @@ def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
     return Seats(
         tuple(order),
         np.array([list(names).index(name) for name in order], dtype=np.int64),
-        tuple(_frame(rotors, *supports[name]) for name in order),
+        tuple(
+            None if isinstance(part, PlanetBearing) else rotors[index].frame
+            for index, part in (supports[name] for name in order)
+        ),
         tuple(groups),
         motion,
         stiffness,
         damping,
         preload,
     )
-
-
-def _frame(rotors: Sequence[Rotor], index: int, part: Bushing | PlanetBearing) -> int | None:
-    return None if isinstance(part, PlanetBearing) else rotors[index].frame
 
 
 def condense_housing(

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from dynamics.errors import InputError
 from dynamics.identity_cache import identity_cached
-from dynamics.mechanism.kinematics import Kinematics
+from dynamics.mechanism.mechanism import Mechanism
 from dynamics.meshes.flank_force import FlankLaws
 from dynamics.meshes.packed_tables import PackedTables, pack_tables
 from dynamics.meshes.table_lookup import table_deflection, table_force
 from dynamics.meshes.technique import PlainTable, secant_table, table_at
-from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
 DAMPING_REACH = 0.05
@@ -52,14 +50,13 @@ class Flanks:
     tables: tuple[PlainTable, ...]
 
 
-def flank_laws(
-    scene: Scene, kinematics: Kinematics, nominal: FloatArray, polar_inertia: Sequence[float]
-) -> Flanks:
+def flank_laws(mechanism: Mechanism) -> Flanks:
     """Resolve the force law of every driving flank.
 
     Stiffness and damping are those at the typical force: the nominal one, and where nothing loads a mesh the
     lowest load of its table. A line contact has no stiffness at lift-off, and idle gears would not be damped.
     """
+    scene, nominal = mechanism.scene, mechanism.nominal_force
     static: list[PlainTable] = []
     used: list[PlainTable] = []
     for index, mesh in enumerate(scene.meshes):
@@ -73,9 +70,7 @@ def flank_laws(
     stiffness = np.array(
         [_mean_stiffness(table, force) for table, force in zip(static, typical, strict=True)]
     )
-    damping = np.array(
-        [_damping(scene, kinematics, f, stiffness[f], polar_inertia) for f in range(len(static))]
-    )
+    damping = np.array([_damping(mechanism, f, stiffness[f]) for f in range(len(static))])
     alike = all(own is table for own, table in zip(used, static, strict=True))
     law = FlankLaws(packed if alike else pack_tables(used), damping, DAMPING_REACH * typical)
     return Flanks(nominal, stiffness, tuple(used), law, (), packed, tuple(used))
@@ -99,22 +94,20 @@ def with_technique(technique: str, table: PlainTable, force: float) -> PlainTabl
     return secant_table(table, force)
 
 
-def _damping(
-    scene: Scene, kinematics: Kinematics, index: int, stiffness: float, polar_inertia: Sequence[float]
-) -> float:
+def _damping(mechanism: Mechanism, index: int, stiffness: float) -> float:
     """Return it as given, or from the ratio, for the gears rotating against each other on the mesh."""
-    mesh = scene.meshes[index]
+    mesh = mechanism.scene.meshes[index]
     if mesh.damping is not None:
         return mesh.damping
-    mobility = mesh_mobility(scene, kinematics, index, polar_inertia)
-    return 2.0 * mesh.damping_ratio * float(np.sqrt(stiffness / mobility))
+    return 2.0 * mesh.damping_ratio * float(np.sqrt(stiffness / mesh_mobility(mechanism, index)))
 
 
-def mesh_mobility(scene: Scene, kinematics: Kinematics, index: int, polar_inertia: Sequence[float]) -> float:
+def mesh_mobility(mechanism: Mechanism, index: int) -> float:
     """Return 1/m of the gears rotating against each other on mesh `index`: sum of base_radius^2 / inertia."""
-    mesh, mobility = scene.meshes[index], 0.0
-    for gear in (scene.gear(mesh.driver), scene.gear(mesh.driven)):
+    scene, mobility = mechanism.scene, 0.0
+    for name in (scene.meshes[index].driver, scene.meshes[index].driven):
+        gear = scene.gear(name)
         shaft = scene.shaft_index(gear.shaft)
-        if shaft not in kinematics.imposed:
-            mobility += gear.base_radius**2 / polar_inertia[shaft]
+        if shaft not in mechanism.kinematics.imposed:
+            mobility += gear.base_radius**2 / mechanism.polar_inertia[shaft]
     return mobility

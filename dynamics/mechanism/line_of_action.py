@@ -78,13 +78,16 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
     force = inwards * math.sin(angle) * e + sense * math.cos(angle) * across
     force[2] = -sense * math.tan(driver.base_helix_angle)
     point = first + e * driver.base_radius / math.cos(angle)
-    point[2] = _middle_of_common_face(field, first[2], driver, second[2], driven)
+    low, high = _common_face(scene, index)
+    if high <= low:
+        position = Quantity(driven.position, "m")
+        raise InputError(field, position, "at an axial position where the faces overlap")
+    point[2] = (low + high) / 2.0
     return LineOfAction(point, force, angle)
 
 
 def _center(scene: Scene, gear: GearBody) -> FloatArray:
-    shaft = scene.shafts[scene.shaft_index(gear.shaft)]
-    x, y, z = shaft.origin
+    x, y, z = scene.shaft(gear.shaft).origin
     return np.array([x, y, z + gear.position])
 
 
@@ -112,14 +115,14 @@ def _check_fit(field: str, driver: GearBody, driven: GearBody) -> None:
         raise InputError(field, Quantity(driven.base_helix_angle, "rad"), bound)
 
 
-def _middle_of_common_face(field: str, z1: float, driver: GearBody, z2: float, driven: GearBody) -> float:
-    """Axial position of the force."""
-    low = max(z1 - driver.face_width / 2.0, z2 - driven.face_width / 2.0)
-    high = min(z1 + driver.face_width / 2.0, z2 + driven.face_width / 2.0)
-    if high <= low:
-        position = Quantity(driven.position, "m")
-        raise InputError(field, position, "at an axial position where the faces overlap")
-    return (low + high) / 2.0
+def _common_face(scene: Scene, index: int) -> tuple[float, float]:
+    """Return the ends along z of the length over which both gears' faces overlap, m."""
+    ends = []
+    for name in (scene.meshes[index].driver, scene.meshes[index].driven):
+        gear = scene.gear(name)
+        middle = scene.shaft(gear.shaft).origin[2] + gear.position
+        ends.append((middle - gear.face_width / 2.0, middle + gear.face_width / 2.0))
+    return max(end[0] for end in ends), min(end[1] for end in ends)
 
 
 # How deflection, misalignment and center distance of a flank follow from its bodies' freedoms.
@@ -148,12 +151,8 @@ def table_sense(scene: Scene, index: int, sense: int) -> int:
 
 def common_face_width(scene: Scene, index: int) -> float:
     """Axial length over which both gears' faces overlap, m."""
-    ends = []
-    for name in (scene.meshes[index].driver, scene.meshes[index].driven):
-        gear = scene.gear(name)
-        middle = scene.shafts[scene.shaft_index(gear.shaft)].origin[2] + gear.position
-        ends.append((middle - gear.face_width / 2.0, middle + gear.face_width / 2.0))
-    return min(end[1] for end in ends) - max(end[0] for end in ends)
+    low, high = _common_face(scene, index)
+    return high - low
 
 
 def middle_from_driver(scene: Scene, index: int, line: LineOfAction, sense: int) -> float:
@@ -162,7 +161,7 @@ def middle_from_driver(scene: Scene, index: int, line: LineOfAction, sense: int)
     gear = scene.gear(mesh.driver)
     if gear.internal:
         gear = scene.gear(mesh.driven)
-    middle = scene.shafts[scene.shaft_index(gear.shaft)].origin[2] + gear.position
+    middle = scene.shaft(gear.shaft).origin[2] + gear.position
     return -table_sense(scene, index, sense) * float(line.point[2] - middle)
 
 
@@ -192,8 +191,8 @@ def misalignment_gradient(
 def distance_gradient(scene: Scene, rotors: Bodies, index: int, line: LineOfAction) -> FloatArray:
     """Return the derivative of the center distance at mid-face in all rotors' freedoms, (N,)."""
     mesh = scene.meshes[index]
-    shafts = [scene.shaft_index(scene.gear(name).shaft) for name in (mesh.driver, mesh.driven)]
-    apart = np.subtract(scene.shafts[shafts[1]].origin, scene.shafts[shafts[0]].origin)
+    first, second = (scene.shaft(scene.gear(name).shaft) for name in (mesh.driver, mesh.driven))
+    apart = np.subtract(second.origin, first.origin)
     apart = apart * np.array([1.0, 1.0, 0.0]) / np.hypot(apart[0], apart[1])
 
     def pulled(center: FloatArray) -> FloatArray:

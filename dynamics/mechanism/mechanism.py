@@ -302,7 +302,9 @@ def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
     duties = bearing_duties(scene, rotors, forces)
     bearings, rotors = _with_bearings(scene, rotors, duties)
     rotors = Bodies(_with_couplings(scene, rotors))
-    _require_polar_inertia(rotors, kinematics)
+    for index, rotor in enumerate(rotors):
+        if index not in kinematics.imposed and rotor.inertia.polar <= 0.0:
+            raise InputError(f"shafts[{index}].inertia.polar", 0.0, above(0.0), GIVE_INERTIA)
     return Mechanism(scene, kinematics, rotors, lines, forces, duties, bearings, corrected, additions)
 
 
@@ -318,9 +320,3 @@ def _with_bearings(
         rotor = stiffened[index]
         stiffened[index] = replace(rotor, curved=(*rotor.curved, (at.seat, rotor.lever(support))))
     return bearings, Bodies(tuple(stiffened))
-
-
-def _require_polar_inertia(rotors: Sequence[Rotor], kinematics: Kinematics) -> None:
-    for index, rotor in enumerate(rotors):
-        if index not in kinematics.imposed and rotor.inertia.polar <= 0.0:
-            raise InputError(f"shafts[{index}].inertia.polar", 0.0, above(0.0), GIVE_INERTIA)

@@ -7,7 +7,6 @@ from fractions import Fraction
 
 import numpy as np
 
-from dynamics.bearings import RollingBearing
 from dynamics.loads.applied_force import AppliedForce, Unbalance
 from dynamics.loads.load_course import Orders
 from dynamics.mechanism.connections import frame_couplings
@@ -53,11 +52,14 @@ def frame_phase(scene: Scene, kinematics: Kinematics, force: AppliedForce) -> Lo
     shaft = None if force.turns_with is None else scene.shaft_index(force.turns_with)
     if own is None and shaft is None:
         return None
-    none = (Fraction(0),) * len(kinematics.law_shaft)
-    turned = none if shaft is None else kinematics.ratio[shaft]
-    back = none if own is None else kinematics.ratio[own]
+    turned, back = _turns(kinematics, shaft), _turns(kinematics, own)
     rate = tuple(a - b for a, b in zip(turned, back, strict=True))
     return LoadPhase(rate, 1, shaft, _position(force, force.turns_with))
+
+
+def _turns(kinematics: Kinematics, shaft: int | None) -> tuple[Fraction, ...]:
+    """Return the turns of a shaft per turn of each law; None: what stands still."""
+    return (Fraction(0),) * len(kinematics.law_shaft) if shaft is None else kinematics.ratio[shaft]
 
 
 def unbalance_phase(scene: Scene, kinematics: Kinematics, part: Unbalance) -> LoadPhase:
@@ -106,14 +108,10 @@ def frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, .
     """Return the revolutions of the second frame against the first per revolution of each law, for each."""
     turns = []
     for part in frame_couplings(scene):
-        first, second = (_frame_speed(scene, kinematics, end) for end in (part.first, part.second))
+        frames = (scene.frame_index(end) for end in (part.first, part.second))
+        first, second = (_turns(kinematics, frame) for frame in frames)
         turns.append(tuple(b - a for a, b in zip(first, second, strict=True)))
     return tuple(turns)
-
-
-def _frame_speed(scene: Scene, kinematics: Kinematics, shaft: int) -> tuple[Fraction, ...]:
-    frame = scene.frame_index(shaft)
-    return kinematics.ratio[frame] if frame is not None else (Fraction(0),) * len(kinematics.law_shaft)
 
 
 # How the cages of bearings turn in the kinematic motion.
@@ -131,21 +129,16 @@ def cage_turns(
     In the frame in which the shaft is described. Nothing slips: a cage turns at (1 - gamma)/2 of the inner
     ring's speed and (1 + gamma)/2 of the outer's.
     """
-    return tuple(
-        _cage_turn(scene, kinematics, bearing)
-        for bearing in scene.rolling_bearings
-        if bearing.name in passing
-    )
-
-
-def _cage_turn(scene: Scene, kinematics: Kinematics, bearing: RollingBearing) -> tuple[Fraction, ...]:
-    inner = Fraction(bearing.row.cage_ratio).limit_denominator(LARGEST_DENOMINATOR)
-    shaft = scene.shaft_index(bearing.shaft)
-    frame = scene.frame_index(shaft)
-    still = (Fraction(0),) * len(kinematics.law_shaft)
-    held = still if frame is None else kinematics.ratio[frame]
-    # the outer ring is at rest, so in a frame it turns against that
-    return tuple(inner * own - around for own, around in zip(kinematics.ratio[shaft], held, strict=True))
+    cages = []
+    for bearing in scene.rolling_bearings:
+        if bearing.name in passing:
+            inner = Fraction(bearing.row.cage_ratio).limit_denominator(LARGEST_DENOMINATOR)
+            shaft = scene.shaft_index(bearing.shaft)
+            # the outer ring is at rest, so in a frame it turns against that
+            held = _turns(kinematics, scene.frame_index(shaft))
+            pairs = zip(kinematics.ratio[shaft], held, strict=True)
+            cages.append(tuple(inner * own - around for own, around in pairs))
+    return tuple(cages)
 
 
 # All phases of a scene, in their order.

@@ -63,6 +63,7 @@ def with_planets(
         for part in scene.planet_bearings
         if part.shaft == shaft
     }
+    of_pin = {_numbered(shaft, index): error for index, error in enumerate(pin_errors or ())}
     laws: dict[str, Any] = {kind: _on_copies(getattr(scene, kind), copied) for kind in STATED}
     return replace(
         scene,
@@ -72,7 +73,10 @@ def with_planets(
         ),
         gears=_with_copies(scene.gears, shaft, number),
         discs=_with_copies(scene.discs, shaft, number),
-        planet_bearings=_on_pins(_with_copies(scene.planet_bearings, shaft, number), shaft, pin_errors),
+        planet_bearings=tuple(
+            _with_error(bearing, of_pin.get(bearing.shaft))
+            for bearing in _with_copies(scene.planet_bearings, shaft, number)
+        ),
         meshes=(*scene.meshes, *_mesh_copies(scene, shaft, number, offsets)),
         **laws,
     )
@@ -88,7 +92,12 @@ def _carrier(scene: Scene, shaft: str) -> Shaft:
 
 
 def _with_copies(parts: Sequence[Part], shaft: str, number: int) -> tuple[Part, ...]:
-    copies = [_copy(part, index) for index in range(1, number) for part in parts if part.shaft == shaft]
+    copies = [
+        replace(part, name=_numbered(part.name, index), shaft=_numbered(part.shaft, index))
+        for index in range(1, number)
+        for part in parts
+        if part.shaft == shaft
+    ]
     return tuple(parts) + tuple(copies)
 
 
@@ -102,14 +111,6 @@ def _mesh_copies(
         for index in range(1, number)
         for mesh in meshes
     ]
-
-
-def _on_pins(
-    bearings: Sequence[PlanetBearing], shaft: str, pin_errors: Sequence[tuple[float, float]] | None
-) -> tuple[PlanetBearing, ...]:
-    """Return `bearings`, those of the planets on pins with these errors if there are any."""
-    of_pin = {_numbered(shaft, index): error for index, error in enumerate(pin_errors or ())}
-    return tuple(_with_error(bearing, of_pin.get(bearing.shaft)) for bearing in bearings)
 
 
 def _on_copies(laws: Sequence[Any], copied: Mapping[str, Sequence[str]]) -> tuple[Any, ...]:
@@ -164,10 +165,6 @@ def _check_fit(mine: Sequence[Turn], other: Sequence[Turn]) -> None:
 
 def _numbered(name: str, index: int) -> str:
     return name if index == 0 else f"{name} {index + 1}"
-
-
-def _copy(part: Part, index: int) -> Part:
-    return replace(part, name=_numbered(part.name, index), shaft=_numbered(part.shaft, index))
 
 
 def _turned_shaft(shaft: Shaft, axis: tuple[float, float, float], turn: Turn, index: int) -> Shaft:

@@ -93,7 +93,8 @@ class Sampling:
         at = np.arange(self.taps) - self.taps // 2
         if self.stop_band == 0.0:
             return np.asarray(at == 0, dtype=float)
-        weight = np.sinc(at / self.factor) * np.kaiser(self.taps, _kaiser_shape(DESIGN))
+        shape = 0.1102 * (DESIGN - 8.7)  # of a stop band above 50 dB (Kaiser 1974)
+        weight = np.sinc(at / self.factor) * np.kaiser(self.taps, shape)
         return np.asarray(weight / np.sum(weight))
 
     def points(self) -> Sampling:
@@ -103,11 +104,6 @@ class Sampling:
     def to_json(self) -> Json:
         """Return what the receipt says."""
         return {**asdict(self), "edge": self.edge}
-
-
-def _kaiser_shape(stop_band: float) -> float:
-    """Return the shape of Kaiser's window for a stop band above 50 dB (Kaiser 1974)."""
-    return 0.1102 * (stop_band - 8.7)
 
 
 def order_rate(scene: Scene, kinematics: Kinematics) -> float:

@@ -91,14 +91,12 @@ class GridTables(NamedTuple):
 @identity_cached
 def _numbers(table: MeshTable) -> FloatArray:
     """Return (M, D, P, L, channels, orders)."""
-    channels = [
-        _values_of(table, "deflection"),
-        _values_of(table, "stiffness"),
-    ]
+    channels = [_values_of(table, name) for name in ("deflection", "stiffness")]
     for name in LEVERS:
         values = getattr(table, name, None)
         lever = np.zeros(np.shape(table.deflection)) if values is None else np.asarray(values, dtype=float)
-        in_force = _force_slope(np.asarray(table.level, dtype=float), lever)
+        in_force = np.gradient(lever, np.asarray(table.level, dtype=float), axis=3)
+        in_force[..., 0], in_force[..., -1] = 0.0, 0.0  # beyond the ends it stays as it is
         channels += [_smooth(table, lever), _smooth(table, in_force)]
     orders = list(product(*((0, 1) if size > 1 else (0,) for size in np.shape(table.deflection)[:2]), (0, 1)))
     return np.stack([np.stack([c[order] for order in orders], axis=-1) for c in channels], axis=-2)
@@ -120,14 +118,11 @@ def _smooth(table: MeshTable, values: FloatArray) -> FloatArray:
     numbers = np.zeros((2, 2, 2, *values.shape))
     numbers[0, 0, 0] = values
     numbers[0, 0, 1] = _periodic_slope(np.asarray(table.position, dtype=float), float(table.period), values)
-    for number, knots in ((1, table.center_distance_change), (0, table.misalignment)):
-        if np.size(knots) > 1:
-            done = numbers[0, 0] if number else numbers[0]
-            slope = np.gradient(done, np.asarray(knots, dtype=float), axis=-4 + number)
-            if number:
-                numbers[0, 1] = slope
-            else:
-                numbers[1] = slope
+    if np.size(table.center_distance_change) > 1:
+        knots = np.asarray(table.center_distance_change, dtype=float)
+        numbers[0, 1] = np.gradient(numbers[0, 0], knots, axis=-3)
+    if np.size(table.misalignment) > 1:
+        numbers[1] = np.gradient(numbers[0], np.asarray(table.misalignment, dtype=float), axis=-4)
     return numbers
 
 
@@ -136,10 +131,3 @@ def _periodic_slope(position: FloatArray, period: float, values: FloatArray) -> 
     around = np.concatenate([position[-1:] - period, position, position[:1] + period])
     closed = np.concatenate([values[:, :, -1:], values, values[:, :, :1]], axis=2)
     return np.asarray(np.gradient(closed, around, axis=2)[:, :, 1:-1])
-
-
-def _force_slope(level: FloatArray, values: FloatArray) -> FloatArray:
-    """Three-point derivatives in the force, 0 at both ends: beyond them the quantity stays as it is."""
-    slope = np.gradient(values, level, axis=3)
-    slope[..., 0], slope[..., -1] = 0.0, 0.0
-    return np.asarray(slope)

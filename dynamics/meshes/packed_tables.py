@@ -144,43 +144,43 @@ def _decimated(tables: PackedTables, flank: int, every: int) -> tuple[FloatArray
 def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
     """Lay out `tables`, each with misalignment and center-distance axes of length 1."""
     parts = [_laid_out(table) for table in tables]
-    knots, buckets, rows = (
-        [part[0] for part in parts],
-        [part[1] for part in parts],
-        [part[2] for part in parts],
-    )
-    levels, energies = [part[3] for part in parts], [part[4] for part in parts]
-    starts = [_starts(own) for own in (knots, buckets, rows, levels)]
+    sizes = [(part.knot.size, part.bucket.size, len(part.row), part.level.size) for part in parts]
+    starts = np.cumsum([(0, 0, 0, 0), *sizes], axis=0)
     offset = [
-        [starts[0][f], starts[1][f], buckets[f].size, starts[2][f], starts[3][f], levels[f].size]
-        for f in range(len(tables))
+        [start[0], start[1], size[1], start[2], start[3], size[3]]
+        for start, size in zip(starts, sizes, strict=False)
     ]
     period = np.array([float(table.period) for table in tables])
     packed = PackedTables(
         np.array(offset, dtype=np.int64).reshape(-1, 6),
         np.array([float(table.position[0]) for table in tables]),
         period,
-        np.array([float(bucket.size) for bucket in buckets]) / period,
-        np.concatenate([*knots, np.empty(0)]),
-        np.concatenate([*buckets, np.empty(0, dtype=np.int64)]),
-        np.concatenate([*rows, np.empty((0, 8))]),
-        np.concatenate([*levels, np.empty(0)]),
-        np.concatenate([*energies, np.empty((0, ORDER + 1))]),
+        np.array([float(part.bucket.size) for part in parts]) / period,
+        np.concatenate([*(part.knot for part in parts), np.empty(0)]),
+        np.concatenate([*(part.bucket for part in parts), np.empty(0, dtype=np.int64)]),
+        np.concatenate([*(part.row for part in parts), np.empty((0, 8))]),
+        np.concatenate([*(part.level for part in parts), np.empty(0)]),
+        np.concatenate([*(part.energy for part in parts), np.empty((0, ORDER + 1))]),
     )
     return by_address(packed)
 
 
+class _Table(NamedTuple):
+    """One table as `PackedTables` has it: knots from 0 to the period, buckets, rows, levels, energies."""
+
+    knot: FloatArray
+    bucket: IntArray
+    row: FloatArray
+    level: FloatArray
+    energy: FloatArray
+
+
 @identity_cached
-def _laid_out(table: MeshTable) -> tuple[FloatArray, IntArray, FloatArray, FloatArray, FloatArray]:
-    """Return knots from 0 to the period, buckets, rows, levels and energies of one table."""
+def _laid_out(table: MeshTable) -> _Table:
     knot = np.append(np.asarray(table.position, dtype=float), table.position[0] + table.period)
     knot -= knot[0]
     rows, level = _rows(table, knot), np.asarray(table.level, dtype=float)
-    return knot, _bucket_starts(knot), rows, level, _energy_below(rows, level)
-
-
-def _starts(parts: Sequence[FloatArray] | Sequence[IntArray]) -> list[int]:
-    return [0, *np.cumsum([len(part) for part in parts]).tolist()]
+    return _Table(knot, _bucket_starts(knot), rows, level, _energy_below(rows, level))
 
 
 def _bucket_starts(knot: FloatArray) -> IntArray:

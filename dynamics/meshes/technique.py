@@ -85,6 +85,7 @@ def secant_table(table: PlainTable, force: float) -> PlainTable:
             "nominal_force", force, "a force at which the transmission error is above 0 everywhere"
         )
     zero, stiffness = np.zeros_like(ste), force / ste
+    weight = np.array([np.interp(force, table.level, unit) for unit in np.eye(table.level.size)])[:, None]
     stiffness_slope = -stiffness * slope / ste
 
     def shaped(first: FloatArray, second: FloatArray) -> FloatArray:
@@ -101,17 +102,11 @@ def secant_table(table: PlainTable, force: float) -> PlainTable:
         shaped(stiffness_slope, stiffness_slope),
         table.period,
         **{
-            name: np.repeat(_at_force(table.level, values, force), 2, axis=-1)
+            name: np.repeat(values @ weight, 2, axis=-1)
             for name in LEVERS
             if (values := getattr(table, name)) is not None
         },
     )
-
-
-def _at_force(level: FloatArray, values: FloatArray, force: float) -> FloatArray:
-    """Return a lever (M, D, P, L) at one force, (M, D, P, 1), linear between the levels."""
-    weight = [np.interp(force, level, unit) for unit in np.eye(level.size)]
-    return np.asarray(values @ np.array(weight)[:, None])
 
 
 def _weights(field: str, knots: FloatArray, value: float) -> FloatArray:

@@ -128,41 +128,40 @@ class _ElasticModes:
         return _hertz(self.stiffness / self.mass)
 
 
-def _elastic_modes(
-    mass: FloatArray,
-    stiffness: FloatArray,
-    rigid: FloatArray,
-    interface: IntArray,
-    highest: float,
-    held: int = -1,
-) -> _ElasticModes:
-    """Reduce a family and split it into its rigid motions and elastic coordinates.
+@dataclass(frozen=True)
+class _Family:
+    """Matrices (n, n) of a family, its k motions without strain (n, k), and what is held (-1: nothing)."""
 
-    A Craig-Bampton reduction to the freedoms `interface`, diagonalized: its motions that are orthogonal in
-    mass to the rigid ones, so that rigid motions stay those of the center of mass. With a freedom `held`,
-    whose motion is imposed, the motions that leave it at rest.
+    mass: FloatArray
+    stiffness: FloatArray
+    rigid: FloatArray
+    held: int = -1
 
-    Parameters
-    ----------
-    mass, stiffness : (n, n) arrays
-    rigid : (n, k) array
-        Motions without strain.
-    interface : (a,) int array
-        Freedoms where forces act.
-    highest : float
-        Frequency of interest, Hz.
-    held : int
-        One of the interface, or -1.
+
+def _elastic_modes(family: _Family, acting: Sequence[int], highest: float) -> _ElasticModes:
+    """Reduce a family and split it into its rigid motions and elastic coordinates; none where nothing acts.
+
+    A Craig-Bampton reduction to the freedoms on which forces are `acting`, diagonalized: its motions that are
+    orthogonal in mass to the rigid ones, so that rigid motions stay those of the center of mass. With a
+    freedom held, whose motion is imposed, the motions that leave it at rest. `highest` is the frequency of
+    interest, Hz.
     """
-    whole = _free_frequencies(mass, stiffness, rigid.shape[1], held)
+    mass, stiffness, rigid, held = family.mass, family.stiffness, family.rigid, family.held
+    interface = np.array(sorted(set(acting)), dtype=np.int64)
+    if interface.size == 0:
+        n, k = rigid.shape
+        return _ElasticModes(np.zeros((n, 0)), np.zeros(0), np.zeros(0), np.zeros((0, k)), 0, highest, 0.0)
+    whole = _free_frequencies(family)
     for cut_off in CUT_OFFS:
         reduced = craig_bampton(mass, stiffness, interface, cut_off * highest)
-        square, vectors = _of_reduced(reduced, rigid, interface, held)
+        none = np.zeros((reduced.frequency.size, rigid.shape[1]))  # rigid motions are of the interface alone
+        moved, at = np.concatenate([rigid[interface], none]), np.flatnonzero(interface == held)
+        square, vectors = _split(reduced.mass, reduced.stiffness, moved, int(at[0]) if held >= 0 else -1)
         truncation = _worst_error(_hertz(square), whole, highest)
         if truncation <= TRUNCATION:
             break
     shape = reduced.motion @ vectors
-    shape = shape / _largest(shape)
+    shape = shape / np.take_along_axis(shape, np.argmax(np.abs(shape), axis=0)[None], axis=0)[0]
     modal = np.einsum("ij,ik,kj->j", shape, mass, shape)
     return _ElasticModes(
         shape,
@@ -175,14 +174,15 @@ def _elastic_modes(
     )
 
 
-def _free_frequencies(mass: FloatArray, stiffness: FloatArray, rigid: int, held: int = -1) -> FloatArray:
-    """Return the elastic natural frequencies of a whole family of `rigid` motions without strain, Hz."""
+def _free_frequencies(family: _Family) -> FloatArray:
+    """Return the elastic natural frequencies of a whole family, Hz."""
     from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
 
+    mass, held = family.mass, family.held
     kept = np.delete(np.arange(mass.shape[0]), held) if held >= 0 else np.arange(mass.shape[0])
     own = np.ix_(kept, kept)
-    square = eigh(stiffness[own], mass[own], eigvals_only=True)
-    return _hertz(square if held >= 0 else square[rigid:])
+    square = eigh(family.stiffness[own], mass[own], eigvals_only=True)
+    return _hertz(square if held >= 0 else square[family.rigid.shape[1] :])
 
 
 def _worst_error(coarse: FloatArray, exact: FloatArray, highest: float) -> float:
@@ -198,15 +198,6 @@ def _worst_error(coarse: FloatArray, exact: FloatArray, highest: float) -> float
     return float(np.max(error * np.minimum(highest / exact[:count], 1.0) ** 2))
 
 
-def _of_reduced(
-    reduced: _ReducedBody, rigid: FloatArray, interface: IntArray, held: int
-) -> tuple[FloatArray, FloatArray]:
-    """Squared circular frequencies and shapes of a reduced body: rigid motions are those of its interface."""
-    none = np.zeros((reduced.frequency.size, rigid.shape[1]))
-    held_index = int(np.flatnonzero(interface == held)[0]) if held >= 0 else -1
-    return _split(reduced.mass, reduced.stiffness, np.concatenate([rigid[interface], none]), held_index)
-
-
 def _split(
     mass: FloatArray, stiffness: FloatArray, rigid: FloatArray, held: int
 ) -> tuple[FloatArray, FloatArray]:
@@ -218,13 +209,6 @@ def _split(
         return np.zeros(0), basis
     square, vectors = eigh(basis.T @ stiffness @ basis, basis.T @ mass @ basis)
     return square, np.asarray(basis @ vectors)
-
-
-def _largest(shape: FloatArray) -> FloatArray:
-    """Return the entry of largest size of each column, with its sign."""
-    if shape.shape[1] == 0:
-        return np.ones(0)
-    return np.asarray(np.take_along_axis(shape, np.argmax(np.abs(shape), axis=0)[None], axis=0)[0])
 
 
 def _hertz(square: FloatArray) -> FloatArray:
@@ -265,16 +249,6 @@ class PointOfApplication:
     tilt: bool = False
     along: bool = False
     turn: bool = False
-
-
-@dataclass(frozen=True)
-class _Family:
-    """Matrices of a family, its rigid motions, and the freedom that is held (-1: none)."""
-
-    mass: FloatArray
-    stiffness: FloatArray
-    rigid: FloatArray
-    held: int = -1
 
 
 def _families(
@@ -327,10 +301,7 @@ def _fine_beam(
 
 
 def _frequencies(beam: TimoshenkoBeam, discs: Sequence[Disc], held: float | None) -> list[FloatArray]:
-    return [
-        _free_frequencies(part.mass, part.stiffness, part.rigid.shape[1], part.held)
-        for part in _families(beam, discs, held)
-    ]
+    return [_free_frequencies(part) for part in _families(beam, discs, held)]
 
 
 @dataclass(frozen=True)
@@ -459,20 +430,11 @@ def elastic_shaft(
     bent = [2 * k for k, g in pairs if g.across] + [2 * k + 1 for k, g in pairs if g.tilt]
     return ElasticShaft(
         beam.position,
-        _reduced(across, bent, highest),
-        _reduced(along, [k for k, g in pairs if g.along], highest),
-        _reduced(turn, [k for k, g in pairs if g.turn], highest),
+        _elastic_modes(across, bent, highest),
+        _elastic_modes(along, [k for k, g in pairs if g.along], highest),
+        _elastic_modes(turn, [k for k, g in pairs if g.turn], highest),
         turn.mass,
         highest,
         damping_ratio,
         error,
     )
-
-
-def _reduced(family: _Family, interface: Sequence[int], highest: float) -> _ElasticModes:
-    """Return the coordinates of a family; none where nothing acts on it."""
-    interfaces = np.array(sorted(set(interface)), dtype=np.int64)
-    if interfaces.size == 0:
-        n, k = family.rigid.shape
-        return _ElasticModes(np.zeros((n, 0)), np.zeros(0), np.zeros(0), np.zeros((0, k)), 0, highest, 0.0)
-    return _elastic_modes(family.mass, family.stiffness, family.rigid, interfaces, highest, family.held)

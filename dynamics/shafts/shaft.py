@@ -21,19 +21,11 @@ class OnShaft(Protocol):
     """A part at a position on a shaft, m from its left end."""
 
     @property
-    def name(self) -> str:
-        """Its name."""
-        ...
-
+    def name(self) -> str: ...  # noqa: D102
     @property
-    def shaft(self) -> str:
-        """Name of the shaft."""
-        ...
-
+    def shaft(self) -> str: ...  # noqa: D102
     @property
-    def position(self) -> float:
-        """Position along the shaft."""
-        ...
+    def position(self) -> float: ...  # noqa: D102
 
 
 def on_length(position: float, length: float) -> bool:

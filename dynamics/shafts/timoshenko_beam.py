@@ -221,7 +221,11 @@ def timoshenko_beam(
     node = _nodes(ends, [*graded, *(nearest_on(station, length) for station in stations)], longest)
     size = PER_NODE * node.size
     mass, stiffness = np.zeros((size, size)), np.zeros((size, size))
-    pieces = [_piece_between(sections, ends, left, right) for left, right in pairwise(node)]
+    pieces = []
+    for left, right in pairwise(node):
+        index = int(np.searchsorted(ends, 0.5 * (left + right), side="right")) - 1
+        start, whole = ends[index], sections[index].length
+        pieces.append(_Piece(sections[index], float((left - start) / whole), float((right - start) / whole)))
     for k, (m, s) in enumerate(zip(*_coupled(_beam_elements(pieces)), strict=True)):
         rows = slice(PER_NODE * k, PER_NODE * k + 2 * PER_NODE)
         mass[rows, rows] += m
@@ -239,12 +243,6 @@ def _nodes(ends: FloatArray, stations: Sequence[float], longest: float) -> Float
         count = max(math.ceil((right - left) / longest * (1.0 - SAME_POSITION)), 1)
         parts.append(np.linspace(left, right, count, endpoint=False))
     return np.concatenate([*parts, nodes[-1:]])
-
-
-def _piece_between(sections: Sequence[BeamSection], ends: FloatArray, left: float, right: float) -> _Piece:
-    index = int(np.searchsorted(ends, 0.5 * (left + right), side="right")) - 1
-    start, length = ends[index], sections[index].length
-    return _Piece(sections[index], float((left - start) / length), float((right - start) / length))
 
 
 def _coupled(elements: _ElementMatrices) -> tuple[FloatArray, FloatArray]:
