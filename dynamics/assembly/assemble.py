@@ -23,7 +23,7 @@ from dynamics.kernels.by_address import by_address
 from dynamics.mechanism.additions import BEARING_LAWS, ELEMENT_PASSING, HOUSING_AMPLITUDES
 from dynamics.mechanism.base_pitches import Corrections
 from dynamics.mechanism.bearing_elements import BearingElement, housed_bearings, tilt_lever
-from dynamics.mechanism.bodies import Bodies, ModalHousing, resting_housings, under_laws
+from dynamics.mechanism.bodies import Bodies, resting_housings, under_laws
 from dynamics.mechanism.columns import column_count, times_mass, turn_row
 from dynamics.mechanism.connections import (
     CouplingRows,
@@ -229,14 +229,10 @@ def _scales(scene: Scene, rotors: Bodies, freedoms: Freedoms) -> FloatArray:
         for rotor, own in zip(rotors, scale, strict=True)
         if rotor.elastic is not None
     ]
-    seats = [_seat_scale(housing, largest) for housing in rotors.housings]
+    per_strain = np.array([1.0, 1.0, 1.0, largest, largest])[:, None]
+    moved = [np.max(np.abs(housing.shape) * per_strain, axis=(0, 1)) for housing in rotors.housings]
+    seats = [np.maximum(own, LEAST_SEAT * np.max(own)) for own in moved]
     return np.ascontiguousarray(np.concatenate([scale.ravel(), *elastic, *seats])[freedoms.column])
-
-
-def _seat_scale(housing: ModalHousing, lever: float) -> FloatArray:
-    """Return the largest motion of a seat per amplitude, (m,), tilts by a lever."""
-    moved = np.max(np.abs(housing.shape) * np.array([1.0, 1.0, 1.0, lever, lever])[:, None], axis=(0, 1))
-    return np.asarray(np.maximum(moved, LEAST_SEAT * np.max(moved)))
 
 
 LAWS = frozenset((BEARING_LAWS, ELEMENT_PASSING))
@@ -350,7 +346,11 @@ def assemble(scene: Scene) -> System:
     system = _assemble(model)
     if not system.bearings or BEARING_LAWS in model.mechanism.additions.possible:
         return system
-    tangents = replace(_with_linear_bearings(system), housings=scene.housings, effects=scene.effects)
+    mesh_force = system.flanks.nominal_force @ system.arrays.direction[system.driving_rows]
+    bearings = [(system.supports.name[at.support], at) for at in system.bearings]
+    supports = {part.name: part for rotor in system.rotors for part in rotor.supports}
+    tangents = linear_scene(system.scene, system.arrays, bearings, supports, -mesh_force)
+    tangents = replace(tangents, housings=scene.housings, effects=scene.effects)
     linear = _assemble(decide_model(tangents, EFFECTS))
     ledger = system.ledger.with_entries_of(linear.ledger, HOUSING_AMPLITUDES)
     if massless:
@@ -362,14 +362,6 @@ def assemble(scene: Scene) -> System:
 def _assemble(model: Model) -> System:
     elements, laws = force_elements(model)
     return _put_together(model, elements, _system_arrays(model, elements, laws))
-
-
-def _with_linear_bearings(system: System) -> Scene:
-    """Return the scene with the tangents of its bearings where it rests under the load."""
-    mesh_force = system.flanks.nominal_force @ system.arrays.direction[system.driving_rows]
-    bearings = [(system.supports.name[at.support], at) for at in system.bearings]
-    supports = {part.name: part for rotor in system.rotors for part in rotor.supports}
-    return linear_scene(system.scene, system.arrays, bearings, supports, -mesh_force)
 
 
 def _put_together(model: Model, elements: tuple[Element, ...], arrays: SystemArrays) -> System:

@@ -26,10 +26,7 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray, IntArray
 
-# How a row of rolling elements is laid out, and the grooves between which its balls lie.
-
-
-# How a row of rolling elements is laid out for compiled functions.
+# How a row of rolling elements is laid out for compiled functions, and the grooves its balls lie between.
 
 
 @dataclass(frozen=True)

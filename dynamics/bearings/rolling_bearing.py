@@ -261,17 +261,6 @@ def lamina_stiffness(length: float, laminae: int) -> float:
     return float(LINE_STIFFNESS * length ** (8.0 / 9.0) / laminae)
 
 
-def _logarithmic_drop(place: FloatArray, diameter: float, length: float, tapered: bool) -> FloatArray:
-    """Return how far the logarithmic profile [1]_ of a roller lies below its middle at `place`, m.
-
-    Diameter and effective length in m.
-    """
-    straight = 0.0 if tapered or length <= LONG * diameter else length - LONG * diameter
-    factor = 0.00045 if tapered else 0.0005 if straight > 0.0 else 0.00035
-    ratio = np.maximum(2.0 * np.abs(place) - straight, 0.0) / (length - straight)
-    return np.asarray(-factor * diameter * np.log1p(-(ratio**2)))
-
-
 # Cylindrical and tapered roller bearings by their internal geometry, in laminae.
 
 
@@ -324,10 +313,14 @@ class RollerBearing(_Row):
 
     def drop(self, place: FloatArray) -> FloatArray:
         """Return how far the profile lies below the middle at `place` along the roller, m; one contact."""
-        if self.profile == LOGARITHMIC:
-            return _logarithmic_drop(place, self.diameter, self.length, self.contact_angle != 0.0)
-        crown = self.crown if self.profile == CROWNED else 0.0
-        return np.asarray(crown * (2.0 * place / self.length) ** 2)
+        length, diameter, tapered = self.length, self.diameter, self.contact_angle != 0.0
+        if self.profile != LOGARITHMIC:
+            crown = self.crown if self.profile == CROWNED else 0.0
+            return np.asarray(crown * (2.0 * place / length) ** 2)
+        straight = 0.0 if tapered or length <= LONG * diameter else length - LONG * diameter
+        factor = 0.00045 if tapered else 0.0005 if straight > 0.0 else 0.00035  # [1]_
+        ratio = np.maximum(2.0 * np.abs(place) - straight, 0.0) / (length - straight)
+        return np.asarray(-factor * diameter * np.log1p(-(ratio**2)))
 
     def peak_pressure(self, load: float) -> float:
         """Return the Hertz pressure of a lamina under `load` (N) on the inner ring, the smaller one, Pa.

@@ -39,7 +39,7 @@ from model_studies import Record, in_unit
 # Basic reference rating life of rolling bearings under load cases, and over all of them.
 
 
-def life_of(bearing: RollingBearing, displacement: FloatArray) -> float:
+def _life_of(bearing: RollingBearing, displacement: FloatArray) -> float:
     """Return L_10r of a row in revolutions; NaN without a capacity, infinite where no element is loaded.
 
     The inner ring turns against a load that stands still. Loads of the elements are averaged over their
@@ -142,7 +142,7 @@ def _bearing_loads(system: System, rest: Rest, strain: BearingStrain) -> tuple[B
                 strain.elastic[k],
                 strain.clearance[k],
                 strain.seat[k],
-                life_of(rows[name], strain.elastic[k] + strain.clearance[k]) if name in rows else math.nan,
+                _life_of(rows[name], strain.elastic[k] + strain.clearance[k]) if name in rows else math.nan,
             )
         )
     return tuple(loads)

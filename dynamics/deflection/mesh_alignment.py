@@ -40,33 +40,6 @@ FREE = 1e-12
 """Part of the force up to which an element does not press."""
 
 
-def _clearance_of(system: System, strain: FloatArray, coordinate: FloatArray) -> FloatArray:
-    """Return the part (b, 5) of the bearings' strains (b, 5) that meets no force.
-
-    The largest fraction of an element's displacement, in its own directions and in the sense in which it is
-    displaced, at which it does not press yet. Where springs hold the bearing in these directions as well,
-    there is no clearance.
-
-    Parameters
-    ----------
-    system : System
-    strain : (b, 5) array
-        x, y, z, tilt_x, tilt_y of the shaft against what holds it, m and rad.
-    coordinate : (R,) array
-        Local coordinates of all elements at these strains.
-    """
-    elements, free = system.arrays.elements, np.zeros_like(strain)
-    supports, names = supports_by_name(system.rotors), system.supports.name
-    first = len(system.elements) - len(system.bearings)
-    for e, at in enumerate(system.bearings, start=first):
-        along = np.linalg.pinv(at.way) @ at.way
-        if np.any(np.abs(supports[names[at.support]][1].seat_stiffness @ along) > 0.0):
-            continue
-        rows = slice(elements.first[e], elements.first[e + 1])
-        free[at.support] += _free_fraction(system.arrays, e, coordinate[rows]) * along @ strain[at.support]
-    return free
-
-
 def _free_fraction(arrays: SystemArrays, element: int, coordinate: FloatArray) -> float:
     """Return the largest fraction of `coordinate` (p,) at which an element exerts no force; bisection."""
     local = make_local(arrays.elements, arrays.turn.shape[0])
@@ -122,6 +95,10 @@ class BearingStrain:
 def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -> BearingStrain:
     """Split the displacements at the bearings.
 
+    Clearance is the largest fraction of an element's displacement, in its own directions and in the sense in
+    which it is displaced, at which it does not press yet. Where springs hold the bearing in these directions
+    as well, there is none.
+
     Parameters
     ----------
     system : System
@@ -136,8 +113,15 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
     carried = np.array([carried_seat(rotors, name) @ motion for name in names]).reshape(-1, SEAT)
     total = strain + carried
     seat = carried + _condensed_seats(system, total)
-    clearance = _clearance_of(system, total - seat, coordinate)
-    return BearingStrain(total - seat - clearance, clearance, seat)
+    yielded, clearance, elements = total - seat, np.zeros_like(total), system.arrays.elements
+    for e, at in enumerate(system.bearings, start=len(system.elements) - len(system.bearings)):
+        along = np.linalg.pinv(at.way) @ at.way
+        if np.any(np.abs(places[names[at.support]][1].seat_stiffness @ along) > 0.0):
+            continue
+        rows = slice(elements.first[e], elements.first[e + 1])
+        free = _free_fraction(system.arrays, e, coordinate[rows])
+        clearance[at.support] += free * along @ yielded[at.support]
+    return BearingStrain(yielded - clearance, clearance, seat)
 
 
 def _condensed_seats(system: System, total: FloatArray) -> FloatArray:
@@ -303,7 +287,7 @@ def _radial(system: System, index: int) -> list[str]:
 # The twist of gears along their faces, as a deviation of the lead.
 
 
-def lead_torsion(system: System, index: int, motion: FloatArray) -> float:
+def _lead_torsion(system: System, index: int, motion: FloatArray) -> float:
     """Return how the gap of mesh `index` grows over its common face by the twist of both shafts, m.
 
     Towards positive z of the table's driving gear, as misalignment. The shafts as they are under the gears;
@@ -388,7 +372,7 @@ def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain
         float(course.max()),
         causes,
         mesh.center_distance_change + apart,
-        lead_torsion(system, index, motion),
+        _lead_torsion(system, index, motion),
         float(rest.centroid[:, index].mean()),
         inside,
     )

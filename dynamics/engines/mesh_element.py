@@ -55,7 +55,7 @@ class MeshElement:
     coast: CoastFlank | None = None
 
     def __post_init__(self) -> None:
-        check_table("table", self.table)
+        check_table(self.table, "table")
         for index in range(2):
             integer(f"teeth[{index}]", self.teeth[index], 1, MOST_TEETH)
             positive(f"base_radius[{index}]", self.base_radius[index])

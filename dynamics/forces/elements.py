@@ -58,27 +58,20 @@ class Element:
 
 
 class Elements(NamedTuple):
-    """E elements with R local coordinates in all, of m meshes.
+    """E elements with R local coordinates in all, of m meshes: the fields of `Element`, one after the other.
 
     Attributes
     ----------
-    law : (E,) int array
-        See `Law`.
-    entry : (E,) int array
-        Of each within the arrays of its law.
+    law, entry : (E,) int arrays
     first : (E + 1,) int array
         First row of each element, and R.
     mesh : (E,) int array
-        The mesh whose position it reads, or from m on the turn of frames it reads; -1: none.
-    offset : (R,) array
-        y0: local coordinates at q = 0, m.
+        From m on the turn of frames and cages it reads.
+    offset, stiffness : (R,) arrays
+        The stiffness is for error norms and first guesses.
     drift : (k, R) array
-        Rates of the local coordinates in the kinematic motion per unit speed of each law, m/rad; 0 for
-        flanks, whose coordinates that motion does not change.
-    stiffness : (R,) array
-        Typical stiffness of bearings, N/m, for error norms and first guesses; 0 for all others.
+        0 for flanks, whose coordinates the kinematic motion does not change.
     speed : (k, E, 2) array
-        Spin of a shaft and speed of its frame per unit speed of each law; for rotating-frame terms.
     laws : ElementLaws
     """
 
@@ -121,7 +114,10 @@ class Elements(NamedTuple):
                 laws,
             )
         )
-        _prepare_laws(packed)
+        local = by_address(make_local(packed, 0))
+        for law in map(Law, np.unique(packed.law)):
+            for each in COMPILED[law].routines:
+                each.prepare(by_address(getattr(packed.laws, law.name.lower())), local)
         return packed
 
 
@@ -129,13 +125,6 @@ def make_local(elements: Elements, meshes: int) -> LocalState:
     """Allocate for `elements` of that many meshes."""
     most = int(np.max(np.diff(elements.first), initial=1))
     return LocalState.empty(elements.offset.size, most, meshes, elements.law.size, elements.drift.shape[0])
-
-
-def _prepare_laws(elements: Elements) -> None:
-    local = by_address(make_local(elements, 0))
-    for law in map(Law, np.unique(elements.law)):
-        for each in COMPILED[law].routines:
-            each.prepare(by_address(getattr(elements.laws, law.name.lower())), local)
 
 
 # The dispatch is written from the list of laws: a chain of comparisons, each with the call of its law.
@@ -153,10 +142,6 @@ _ARGUMENTS = {
 def _call(law: Law, function: Callable[..., Any]) -> str:
     own = {**_ARGUMENTS, "laws": f"elements.laws.{law.name.lower()}"}
     return f"{function.__name__}({', '.join(own[name] for name in signature(function).parameters)})"
-
-
-def _force(law: Law, row: Compiled) -> str:
-    return _call(law, row.force)
 
 
 def _potential(law: Law, row: Compiled) -> str:
@@ -180,7 +165,9 @@ def _dispatch(name: str, branch: Callable[[Law, Compiled], str], otherwise: str)
     return inner(names[name])
 
 
-evaluate: Callable[[Elements, LocalState, int], None] = _dispatch("evaluate", _force, "return")
+evaluate: Callable[[Elements, LocalState, int], None] = _dispatch(
+    "evaluate", lambda law, row: _call(law, row.force), "return"
+)
 """Write forces and derivatives of element `e` at the coordinates, rates and position in `local`."""
 potential: Callable[[Elements, LocalState, int], tuple[float, float]] = _dispatch(
     "potential", _potential, "return 0.0, 0.0"

@@ -62,7 +62,7 @@ class Freedoms:
         return np.vstack(parts)
 
 
-def independent_freedoms(points: FloatArray, faces: tuple[_RigidFace, ...]) -> Freedoms:
+def _independent_freedoms(points: FloatArray, faces: tuple[_RigidFace, ...]) -> Freedoms:
     """Eliminate the nodes of rigid faces.
 
     Raises
@@ -101,7 +101,7 @@ BATCH = 2000
 """Elements at a time: bounds the memory of what is dense."""
 
 
-def mass_and_stiffness(mesh: TetrahedralMesh, material: Material) -> tuple[sp.csr_array, sp.csr_array]:
+def _mass_and_stiffness(mesh: TetrahedralMesh, material: Material) -> tuple[sp.csr_array, sp.csr_array]:
     """Return the consistent mass matrix per direction and the stiffness matrix.
 
     Parameters
@@ -197,8 +197,8 @@ def assemble(housing: MeshedHousing) -> AssembledHousing:
     mesh = housing.mesh
     _check_faces(housing)
     frames = tuple(seat_frame(seat) for seat in housing.seats)
-    freedoms = independent_freedoms(mesh.points, _rigid_faces(housing))
-    nodal_mass, stiffness = mass_and_stiffness(mesh, housing.material)
+    freedoms = _independent_freedoms(mesh.points, _rigid_faces(housing))
+    nodal_mass, stiffness = _mass_and_stiffness(mesh, housing.material)
     motion = freedoms.motion
     mass = sp.csr_array(sp.kron(nodal_mass, sp.eye_array(3), format="csr"))
     mounts = _stiffness_and_damping_of_mounts(housing.feet, freedoms)

@@ -118,7 +118,7 @@ def free_modes(housing: AssembledHousing, count: int) -> FreeModes:
     solve = _factorized(shifted)
     held = housing.loose
     factor = np.linalg.cholesky(held.T @ (housing.mass @ held))
-    rigid: FloatArray = np.linalg.solve(factor, held.T).T  # orthonormal
+    rigid: FloatArray = np.asarray(np.linalg.solve(factor, held.T).T)  # orthonormal
     square, shape = _lanczos(housing, solve, shift, count + loose)
     deflection, residual = _deflections(housing, solve, rigid)
     elastic, own = shape[:, loose:], square[loose:]

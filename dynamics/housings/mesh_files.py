@@ -33,7 +33,7 @@ SIZE = from_to(5e-3, 50.0, "m")
 FIELD = "mesh_file"
 
 
-def element_shape(mesh: TetrahedralMesh) -> FloatArray:
+def _element_shape(mesh: TetrahedralMesh) -> FloatArray:
     """Return 6 sqrt(2) V / l^3 of each element's corners, l the root mean square of its edges: 1 at best."""
     corner = mesh.points[mesh.tetrahedra[:, :4]]
     edge = corner[:, EDGES[:, 1]] - corner[:, EDGES[:, 0]]
@@ -43,18 +43,11 @@ def element_shape(mesh: TetrahedralMesh) -> FloatArray:
 
 
 def _check_quality(mesh: TetrahedralMesh) -> None:
-    """Refuse a mesh that gives wrong results.
-
-    Raises
-    ------
-    InputError
-        Slivers, elements turned inside out by their mid-side nodes, parts that nothing joins, or a size that
-        is no housing's.
-    """
+    """Refuse a mesh that gives wrong results: slivers, folds, several parts, a size that is no housing's."""
     extent = float(np.ptp(mesh.points, axis=0).max())
     if not SIZE.holds(extent):
         raise InputError(f"{FIELD}.size", extent, SIZE, 'Check the unit of the mesh: "m" or "mm".')
-    shape = element_shape(mesh)
+    shape = _element_shape(mesh)
     if shape.min() < LEAST_SHAPE:
         count, bound = int(np.sum(shape < LEAST_SHAPE)), f"at least {LEAST_SHAPE:g} (1: regular)"
         raise InputError(
@@ -65,14 +58,9 @@ def _check_quality(mesh: TetrahedralMesh) -> None:
     if folded:
         advice = "Mid-side nodes fold them: refine where the surface is curved, or use straight edges."
         raise InputError(f"{FIELD}.elements", f"{folded} of {len(volume)} folded", "without folds", advice)
-    _check_joined(mesh)
-
-
-def _check_joined(mesh: TetrahedralMesh) -> None:
     corners = mesh.tetrahedra[:, :4]
     row, column = np.repeat(corners[:, :1], 3, axis=1).ravel(), corners[:, 1:].ravel()
-    count = len(mesh.points)
-    graph = sp.coo_array((np.ones(len(row)), (row, column)), shape=(count, count))
+    graph = sp.coo_array((np.ones(len(row)), (row, column)), shape=2 * (len(mesh.points),))
     _, label = connected_components(graph, directed=False)
     parts = np.unique(label[corners[:, 0]]).size
     if parts > 1:

@@ -22,10 +22,7 @@ from dynamics.solid_housing import LOSS_FACTOR, MODES, Material
 from dynamics.types import FloatArray, IntArray
 from host import MissingExtra
 
-# A housing by its mesh: what is reduced, and its damping.
-
-
-# Damping of a housing: by mode, or by its material.
+# A housing by its mesh: what is reduced, and its damping by mode or by its material.
 
 
 HIGHEST_RATIO = 1.0
@@ -189,7 +186,16 @@ def read_reduced_matrices(path: str | Path) -> ReducedMatrices:
     archive = partial(read_archive, field=FIELD)
     readers = {".npz": archive, ".op4": _op4, ".pch": _dmig, ".bdf": _dmig, ".dat": _dmig}
     one_of(f"{FIELD}.suffix", file.suffix.lower(), list(readers))
-    return _named(file, _read(file, readers[file.suffix.lower()]))
+    matrices = _read(file, readers[file.suffix.lower()])
+    small = {name.lower(): matrix for name, matrix in matrices.items()}
+    chosen = {
+        part: next((small[name] for name in names if name in small), None) for part, names in NAMES.items()
+    }
+    if chosen["stiffness"] is None:
+        bound = f"a file with a matrix named {' or '.join(NAMES['stiffness'])}"
+        advice = f"It has {', '.join(sorted(matrices)[:5]) or 'none'}."
+        raise InputError(FIELD, file.name, bound, advice)
+    return ReducedMatrices(chosen["stiffness"], chosen["mass"], chosen["damping"])
 
 
 def read_matrix_market(
@@ -270,18 +276,6 @@ def _dmig(file: Path) -> Mapping[str, FloatArray]:
 
     frames = bulk.rddmig(str(file), square=True)
     return {name: np.asarray(frame.to_numpy(), dtype=float) for name, frame in frames.items()}
-
-
-def _named(file: Path, matrices: Mapping[str, FloatArray]) -> ReducedMatrices:
-    small = {name.lower(): matrix for name, matrix in matrices.items()}
-    chosen = {
-        part: next((small[name] for name in names if name in small), None) for part, names in NAMES.items()
-    }
-    if chosen["stiffness"] is None:
-        bound = f"a file with a matrix named {' or '.join(NAMES['stiffness'])}"
-        advice = f"It has {', '.join(sorted(matrices)[:5]) or 'none'}."
-        raise InputError(FIELD, file.name, bound, advice)
-    return ReducedMatrices(chosen["stiffness"], chosen["mass"], chosen["damping"])
 
 
 def _symmetric(matrix: FloatArray) -> FloatArray:

@@ -159,17 +159,7 @@ def _residuals(housing: MeshedHousing, assembled: AssembledHousing, modes: FreeM
     mesh = housing.mesh
     area, point = over_surface(mesh.points, mesh.surface)
     volume = float(np.einsum("tpi,tpi->", area, point)) / 3.0
-    return ReductionChecks(
-        abs(housing.material.density * volume / assembled.body.mass - 1.0),
-        modes.eigen_residual,
-        modes.solve_residual,
-        modes.rigid_ratio,
-        _seat_rigid(housing, assembled),
-    )
-
-
-def _seat_rigid(housing: MeshedHousing, assembled: AssembledHousing) -> float:
-    """Return how far the motion of seats is off in rigid motions of all nodes and rigid faces."""
+    # how far the motion of seats is off in rigid motions of all nodes and rigid faces
     center = assembled.body.center
     mean = assembled.seats @ assembled.freedoms.rigid(housing.mesh.points, center)
     turned = np.hstack([np.zeros((3, 3)), np.eye(3)])
@@ -177,7 +167,13 @@ def _seat_rigid(housing: MeshedHousing, assembled: AssembledHousing) -> float:
     expected = np.vstack(
         [in_axes(frame) @ body for frame, body in zip(assembled.frames, bodies, strict=True)]
     )
-    return float(np.abs(mean - expected).max() / np.abs(expected).max())
+    return ReductionChecks(
+        abs(housing.material.density * volume / assembled.body.mass - 1.0),
+        modes.eigen_residual,
+        modes.solve_residual,
+        modes.rigid_ratio,
+        float(np.abs(mean - expected).max() / np.abs(expected).max()),
+    )
 
 
 def _points(
@@ -250,15 +246,6 @@ def reduction_cost(freedoms: int, modes: int, motions: int) -> Cost:
     )
     vectors = basis + modes + 4.0 * motions
     return Cost(seconds, FILL * size**1.1 + 8.0 * freedoms * vectors)
-
-
-def _check_cost(housing: MeshedHousing, cost: Cost, limit: CostLimit) -> None:
-    """Refuse a housing whose predicted cost on this host is above a limit."""
-    advice = f"{housing.mesh.freedoms} freedoms, {housing.modes} modes: use a coarser mesh or fewer modes."
-    if cost.seconds > limit.seconds:
-        raise InputError("predicted_seconds", cost.seconds, at_most(limit.seconds, "s"), advice)
-    if cost.bytes > limit.bytes:
-        raise InputError("predicted_bytes", cost.bytes, at_most(limit.bytes), advice)
 
 
 REDUCTION_VERSION = 4
@@ -339,7 +326,12 @@ def reduced_housing(
         motions = sum(seat.motions for seat in housing.seats)
         reference = reduction_cost(housing.mesh.freedoms, housing.modes, motions)
         predicted = on_this_host(WORK, reference, cache)
-        _check_cost(housing, predicted, limit or CostLimit())
+        most, own = limit or CostLimit(), f"{housing.mesh.freedoms} freedoms, {housing.modes} modes"
+        advice = f"{own}: use a coarser mesh or fewer modes."
+        if predicted.seconds > most.seconds:
+            raise InputError("predicted_seconds", predicted.seconds, at_most(most.seconds, "s"), advice)
+        if predicted.bytes > most.bytes:
+            raise InputError("predicted_bytes", predicted.bytes, at_most(most.bytes), advice)
         expected(predicted)
         body, cost = measured(WORK, reference, cache, lambda: reduce_housing(housing))
         return replace(body, cost=cost)

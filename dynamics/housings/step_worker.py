@@ -24,7 +24,8 @@ MILLIMETER = 1e-3
 ELEMENTS_A_TURN = 12
 FRONTAL_DELAUNAY = 6
 WORST = 0.05
-"""Quality below which a mesh is made again: Delaunay's method leaves slivers in the walls of castings."""
+"""Quality of a tetrahedron (its inverse condition number, 1 if it is regular) below which a mesh is made
+again: Delaunay's method leaves slivers in the walls of castings."""
 
 
 def _start_gmsh() -> Any:
@@ -65,7 +66,8 @@ def _mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
     gmsh.model.addPhysicalGroup(3, [solids[0][1]])  # only its elements are written
     try:
         gmsh.model.mesh.generate(3)
-        if _worst_element(gmsh) < WORST:
+        _, tags, _ = gmsh.model.mesh.getElements(3)
+        if min(quality.min() for quality in map(gmsh.model.mesh.getElementQualities, tags)) < WORST:
             # twice the time, a sixth more elements: on demand
             gmsh.option.setNumber("Mesh.OptimizeNetgen", 1)
             gmsh.model.mesh.clear()
@@ -74,12 +76,6 @@ def _mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
         return {"error": str(error)}
     gmsh.write(request["mesh"])
     return {"solids": 1, "size": size}
-
-
-def _worst_element(gmsh: Any) -> float:
-    """Return the least quality of a tetrahedron: its inverse condition number, 1 if it is regular."""
-    _, tags, _ = gmsh.model.mesh.getElements(3)
-    return float(min(quality.min() for quality in map(gmsh.model.mesh.getElementQualities, tags)))
 
 
 def _wall_thickness(gmsh: Any, solid: int) -> float:

@@ -250,14 +250,11 @@ def _normals(mesh: TetrahedralMesh, triangles: IntArray) -> tuple[FloatArray, Fl
     return area / size[:, None], size
 
 
-def _extent_in_words(low: FloatArray, high: FloatArray) -> Text:
-    ends = (Quantity(float(end), "m", digits=6) for pair in zip(low, high, strict=True) for end in pair)
-    words = ("The mesh spans ", " to ", ", ", " to ", ", ", " to ")
-    return Text.of(*(part for pair in zip(words, ends, strict=True) for part in pair), " in x, y, z.")
-
-
 def _require_some(field: str, value: object, mesh: TetrahedralMesh, chosen: BoolArray) -> IntArray:
     if not chosen.any():
-        low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
-        raise InputError(field, value, "where the surface has triangles", _extent_in_words(low, high))
+        extent = np.stack([mesh.points.min(axis=0), mesh.points.max(axis=0)], axis=1).ravel()
+        ends = (Quantity(float(end), "m", digits=6) for end in extent)
+        words = ("The mesh spans ", " to ", ", ", " to ", ", ", " to ")
+        advice = Text.of(*(part for pair in zip(words, ends, strict=True) for part in pair), " in x, y, z.")
+        raise InputError(field, value, "where the surface has triangles", advice)
     return np.asarray(mesh.surface[chosen])

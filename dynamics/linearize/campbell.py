@@ -55,14 +55,14 @@ class WhirlModes:
 def whirl_modes(system: System, time: float = 0.0) -> WhirlModes:
     """Return the modes about the static equilibrium at the speeds of the kinematic motion at `time`.
 
-    M x'' + (C + G) x' + (K + S) x = 0 with G and S of `speed_terms`, both zero at standstill.
+    M x'' + (C + G) x' + (K + S) x = 0 with G and S of `_speed_terms`, both zero at standstill.
 
     Raises
     ------
     SolveError
         If there is no static equilibrium.
     """
-    return _whirl_modes_with(linearize(system, time), *speed_terms(system, time))
+    return _whirl_modes_with(linearize(system, time), *_speed_terms(system, time))
 
 
 def _whirl_modes_with(linear: LinearSystem, gyroscopic: FloatArray, stiffening: FloatArray) -> WhirlModes:
@@ -81,7 +81,7 @@ def _whirl_modes_with(linear: LinearSystem, gyroscopic: FloatArray, stiffening: 
     )
 
 
-def speed_terms(system: System, time: float) -> tuple[FloatArray, FloatArray]:
+def _speed_terms(system: System, time: float) -> tuple[FloatArray, FloatArray]:
     """Return G and S (n, n), factors of the rates and of the displacements, at the speeds at `time`.
 
     A shaft of spin w in a frame of speed W (0: fixed) feels, with J = z x,
@@ -95,7 +95,7 @@ def speed_terms(system: System, time: float) -> tuple[FloatArray, FloatArray]:
 
 
 def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return G and S (n, n) of `speed_terms` at the speeds `law_speed` (k,) of the laws, rad/s."""
+    """Return G and S (n, n) of `_speed_terms` at the speeds `law_speed` (k,) of the laws, rad/s."""
     speed = system.kinematics.float_ratio @ law_speed
     size = column_count(system.rotors)
     gyroscopic, stiffening = np.zeros((size, size)), np.zeros((size, size))
@@ -260,24 +260,16 @@ def _whirl(system: System, linear: LinearSystem, speed: float, modes: WhirlModes
     depend on the combination.
     """
     spin = system.kinematics.float_ratio @ law_speeds(system, speed)
-    clusters, basis = _clusters(modes.frequency), modes.shape.copy()
+    frequency, basis = modes.frequency, modes.shape.copy()
+    ends = np.flatnonzero(np.diff(frequency) > SAME * frequency[1:]) + 1
+    clusters = [part for part in np.split(np.arange(frequency.size), ends) if part.size]
     for cluster in clusters:
-        if cluster.size > 1:
-            basis[cluster] = _orthonormal(linear, basis[cluster])
+        if cluster.size > 1:  # shapes of the same span that the mass makes orthonormal
+            factor = np.linalg.cholesky(linear.mass)
+            spanned = np.linalg.qr(factor.T @ basis[cluster].T)[0]
+            basis[cluster] = np.linalg.solve(factor.T, spanned).T
     sense = _senses(system, spin, basis, kinetic_shares(linear, basis), clusters)
     return np.repeat(sense, [cluster.size for cluster in clusters])
-
-
-def _clusters(frequency: FloatArray) -> list[IntArray]:
-    """Group modes, sorted by frequency, whose neighbors are alike."""
-    ends = np.flatnonzero(np.diff(frequency) > SAME * frequency[1:]) + 1
-    return [part for part in np.split(np.arange(frequency.size), ends) if part.size]
-
-
-def _orthonormal(linear: LinearSystem, shape: ComplexArray) -> ComplexArray:
-    """Return shapes (c, n) of the same span that the mass makes orthonormal."""
-    factor = np.linalg.cholesky(linear.mass)
-    return np.asarray(np.linalg.solve(factor.T, np.linalg.qr(factor.T @ shape.T)[0]).T)
 
 
 def _senses(

@@ -60,22 +60,6 @@ class _Absorber:
     damping: FloatArray
 
 
-def _absorbers(
-    system: System, linear: LinearSystem, cycles: tuple[FlankCycle, ...], time: float
-) -> tuple[_Absorber, ...]:
-    """Return all parts with damping about the equilibrium of `linear`, driving flanks by their mean tangents.
-
-    Their sum is the damping of `LinearSystem`. What gyroscopic and frame terms do is not among them.
-    """
-    parts = (
-        *_elements(system, linear, cycles, time),
-        *_bearings(system),
-        *_couplings(system),
-        *_bodies(system),
-    )
-    return tuple(part for part in parts if np.any(part.damping) or np.any(part.stiffness))
-
-
 def _elements(
     system: System, linear: LinearSystem, cycles: tuple[FlankCycle, ...], time: float
 ) -> Iterator[_Absorber]:
@@ -219,8 +203,15 @@ def _power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalan
 def _losses(
     at: Excited, speed: FloatArray, u: ComplexArray, rate: ComplexArray
 ) -> Iterable[tuple[str, str, FloatArray]]:
-    """Yield name, kind and power (S, H) of parts; one part may come several times."""
-    for part in _absorbers(at.system, at.linear, at.cycles, at.time):
+    """Yield name, kind and power (S, H) of parts; one part may come several times.
+
+    The sum of all parts with damping about the equilibrium, driving flanks by their mean tangents, is the
+    damping of `LinearSystem`; what gyroscopic and frame terms do comes last.
+    """
+    elements = _elements(at.system, at.linear, at.cycles, at.time)
+    for part in (*elements, *_bearings(at.system), *_couplings(at.system), *_bodies(at.system)):
+        if not (np.any(part.damping) or np.any(part.stiffness)):
+            continue
         along = rate @ part.rows.T
         force = (u @ part.rows.T) @ part.stiffness.T + along @ part.damping.T
         yield part.name, part.kind, _power(force, along)

@@ -94,7 +94,7 @@ def _sum(omega: FloatArray | ComplexArray, parts: FloatArray) -> ComplexArray:
     return np.asarray(total - omega * omega * parts[2] if len(parts) > 2 else total)
 
 
-def modal_elimination(
+def _modal_elimination(
     modal: ModalFreedoms,
     unit: FloatArray,
     stiffness: FloatArray,
@@ -344,7 +344,7 @@ def _solve(
     first = modal.first
     if any(np.any(part[first:]) or np.any(part[:, first:]) for term in terms for part in term):
         first = 0  # gyroscopic and frame terms are of the bodies alone, or nothing is eliminated
-    small = modal_elimination(modal, per_meter, total, damping, mass) if first else None
+    small = _modal_elimination(modal, per_meter, total, damping, mass) if first else None
     parts = np.stack([total, mass, damping]).astype(complex)
     block = max(BLOCK // max(omega.shape[1] * per_meter.size**2, 1), 1)
     left = 0.0

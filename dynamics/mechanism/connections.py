@@ -51,7 +51,6 @@ class CouplingRows:
 
 
 def _gather_couplings(scene: Scene, rotors: Bodies) -> CouplingRows:
-    """Lay out the couplings of `scene`."""
     motion = np.zeros((len(scene.couplings), 6, column_count(rotors)))
     for index, coupling in enumerate(scene.couplings):
         first, second = scene.shaft_index(coupling.first), scene.shaft_index(coupling.second)
@@ -72,7 +71,7 @@ def _gather_couplings(scene: Scene, rotors: Bodies) -> CouplingRows:
 
 def _constant(scene: Scene, coupling: Coupling, matrix: FloatArray) -> FloatArray:
     """Return what of a coupling's `matrix` (6, 6) no frame turns: all, or axial motion and rotation."""
-    first, second = (scene.shafts[scene.shaft_index(name)] for name in (coupling.first, coupling.second))
+    first, second = scene.shaft(coupling.first), scene.shaft(coupling.second)
     if not crosses_frames(first, second, coupling):
         return matrix
     kept = matrix.copy()
@@ -223,7 +222,7 @@ def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
     first, groups = 0, []
     for housing in condensed:
         rows = slice(first, first + SEAT * len(housing.bushings))
-        yielding = condense_housing(housing, stiffness[rows, rows], damping[rows, rows], preload[rows])
+        yielding = _condense_housing(housing, stiffness[rows, rows], damping[rows, rows], preload[rows])
         stiffness[rows, rows], damping[rows, rows], preload[rows] = yielding
         groups.append((housing.name, rows))
         first = rows.stop
@@ -243,7 +242,7 @@ def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
     )
 
 
-def condense_housing(
+def _condense_housing(
     housing: Housing, stiffness: FloatArray, damping: FloatArray, preload: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return stiffness, damping and preload of bearings in series with a housing, its mass neglected.

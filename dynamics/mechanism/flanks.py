@@ -70,9 +70,14 @@ def flank_laws(mechanism: Mechanism) -> Flanks:
     stiffness = np.array(
         [_mean_stiffness(table, force) for table, force in zip(static, typical, strict=True)]
     )
-    damping = np.array([_damping(mechanism, f, stiffness[f]) for f in range(len(static))])
+    damping = [  # as given, or from the ratio, of the gears rotating against each other on the mesh
+        2.0 * mesh.damping_ratio * float(np.sqrt(stiffness[f] / mesh_mobility(mechanism, f)))
+        if mesh.damping is None
+        else mesh.damping
+        for f, mesh in enumerate(scene.meshes)
+    ]
     alike = all(own is table for own, table in zip(used, static, strict=True))
-    law = FlankLaws(packed if alike else pack_tables(used), damping, DAMPING_REACH * typical)
+    law = FlankLaws(packed if alike else pack_tables(used), np.array(damping), DAMPING_REACH * typical)
     return Flanks(nominal, stiffness, tuple(used), law, (), packed, tuple(used))
 
 
@@ -92,14 +97,6 @@ def with_technique(technique: str, table: PlainTable, force: float) -> PlainTabl
         suggestion = 'Load the mesh, give nominal_force, or use "variable_torque".'
         raise InputError("technique", technique, "used with a nominal force", suggestion)
     return secant_table(table, force)
-
-
-def _damping(mechanism: Mechanism, index: int, stiffness: float) -> float:
-    """Return it as given, or from the ratio, for the gears rotating against each other on the mesh."""
-    mesh = mechanism.scene.meshes[index]
-    if mesh.damping is not None:
-        return mesh.damping
-    return 2.0 * mesh.damping_ratio * float(np.sqrt(stiffness / mesh_mobility(mechanism, index)))
 
 
 def mesh_mobility(mechanism: Mechanism, index: int) -> float:

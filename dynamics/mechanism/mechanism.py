@@ -54,15 +54,7 @@ def _nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, *
     stated = [mesh.nominal_force for mesh in scene.meshes]
     if all(force is not None for force in stated):
         return np.array(stated, dtype=float)
-    balanced = _balance(scene, kinematics, inertia, coasts)
-    return np.array([b if g is None else g for g, b in zip(stated, balanced, strict=True)], dtype=float)
-
-
-def _balance(scene: Scene, kinematics: Kinematics, inertia: FloatArray, coasts: bool) -> FloatArray:
-    """Solve the torque balance of all shafts but those of drives.
-
-    Planets that share a load on equal terms share it equally: the solution of least squares.
-    """
+    # the balance of all shafts but those of drives; by least squares planets share a load equally
     lever = _levers(scene, kinematics)
     torque = _loads(scene, kinematics, np.zeros(1))[:, 0]
     torque -= inertia * _acceleration(scene, kinematics, inertia, torque)
@@ -77,7 +69,8 @@ def _balance(scene: Scene, kinematics: Kinematics, inertia: FloatArray, coasts: 
         if value < -1e-9 * np.max(np.abs(force)) and driving_only[index]:
             bound, suggestion = "loaded on its driving flank", "Turn the load, or give it its coast flank."
             raise InputError(f"meshes[{index}]", Quantity(float(value), "N", digits=6), bound, suggestion)
-    return np.asarray(np.where(driving_only, np.maximum(force, 0.0), np.abs(force)), dtype=float)
+    balanced = np.where(driving_only, np.maximum(force, 0.0), np.abs(force))
+    return np.array([b if g is None else g for g, b in zip(stated, balanced, strict=True)], dtype=float)
 
 
 def mean_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, moments: FloatArray) -> FloatArray:
@@ -213,8 +206,7 @@ def _holding(scene: Scene, rotor: Rotor, coupling: Coupling, kinds: tuple[int, .
     matrix, kept = full_matrix(coupling.stiffness, 0.0)[:SEAT, :SEAT], np.zeros((SEAT, SEAT))
     at = np.ix_(kinds, kinds)
     kept[at] = matrix[at]
-    first = scene.shafts[scene.shaft_index(coupling.first)]
-    lever = float(first.origin[2] + coupling.position - rotor.center[2])
+    lever = float(scene.shaft(coupling.first).origin[2] + coupling.position - rotor.center[2])
     return replace(rotor, curved=(*rotor.curved, (kept, lever)))
 
 
@@ -300,23 +292,14 @@ def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
     coasts = COAST_FLANKS in additions.possible
     forces = _nominal_forces(scene, kinematics, rotational_inertia(rotors), coasts=coasts)
     duties = bearing_duties(scene, rotors, forces)
-    bearings, rotors = _with_bearings(scene, rotors, duties)
-    rotors = Bodies(_with_couplings(scene, rotors))
-    for index, rotor in enumerate(rotors):
-        if index not in kinematics.imposed and rotor.inertia.polar <= 0.0:
-            raise InputError(f"shafts[{index}].inertia.polar", 0.0, above(0.0), GIVE_INERTIA)
-    return Mechanism(scene, kinematics, rotors, lines, forces, duties, bearings, corrected, additions)
-
-
-def _with_bearings(
-    scene: Scene, rotors: Bodies, duties: dict[str, BearingDuty]
-) -> tuple[tuple[BearingElement, ...], Bodies]:
-    """Return where laws of bearings act, and the rotors with their typical stiffness."""
-    names = gather_supports(rotors, frozenset()).name
-    bearings = bearing_locations(scene, rotors, names, duties)
+    bearings = bearing_locations(scene, rotors, gather_supports(rotors, frozenset()).name, duties)
     known, stiffened = supports_by_name(rotors), list(rotors)
     for at in bearings:
         index, support = known[at.name]
         rotor = stiffened[index]
         stiffened[index] = replace(rotor, curved=(*rotor.curved, (at.seat, rotor.lever(support))))
-    return bearings, Bodies(tuple(stiffened))
+    rotors = Bodies(_with_couplings(scene, stiffened))
+    for index, rotor in enumerate(rotors):
+        if index not in kinematics.imposed and rotor.inertia.polar <= 0.0:
+            raise InputError(f"shafts[{index}].inertia.polar", 0.0, above(0.0), GIVE_INERTIA)
+    return Mechanism(scene, kinematics, rotors, lines, forces, duties, bearings, corrected, additions)

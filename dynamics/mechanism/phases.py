@@ -73,17 +73,6 @@ def _position(force: AppliedForce, shaft: str | None) -> float:
     return force.position if shaft == force.shaft else 0.0
 
 
-def _load_phases(scene: Scene, kinematics: Kinematics) -> tuple[LoadPhase, ...]:
-    """Return all phases that loads read, each once."""
-    phases: list[LoadPhase | None] = []
-    for force in scene.forces:
-        phases.append(frame_phase(scene, kinematics, force))
-        if isinstance(force.course, Orders):
-            phases.append(angle_phase(scene, kinematics, force, force.course))
-    phases += [unbalance_phase(scene, kinematics, part) for part in scene.unbalances]
-    return tuple(dict.fromkeys(phase for phase in phases if phase is not None))
-
-
 def load_orders(scene: Scene, kinematics: Kinematics) -> FloatArray:
     """Return the highest order of every load, (loads, k): turns per turn of each law, of its fastest wave."""
     rows = [_rates(unbalance_phase(scene, kinematics, part)) for part in scene.unbalances]
@@ -104,7 +93,7 @@ def _rates(phase: LoadPhase) -> FloatArray:
 # How frames that couplings cross turn against each other.
 
 
-def frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, ...], ...]:
+def _frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, ...], ...]:
     """Return the revolutions of the second frame against the first per revolution of each law, for each."""
     turns = []
     for part in frame_couplings(scene):
@@ -145,9 +134,15 @@ def cage_turns(
 
 
 def repeating_phases(scene: Scene, kinematics: Kinematics) -> tuple[LoadPhase, ...]:
-    """Return the phases of exact ratio, of frames and loads, in their order behind the last mesh."""
-    frames = tuple(LoadPhase(rate, 1, None) for rate in frame_turns(scene, kinematics))
-    return (*frames, *_load_phases(scene, kinematics))
+    """Return the phases of exact ratio, of frames and, each once, loads, in their order behind the meshes."""
+    frames = tuple(LoadPhase(rate, 1, None) for rate in _frame_turns(scene, kinematics))
+    read: list[LoadPhase | None] = []
+    for force in scene.forces:
+        read.append(frame_phase(scene, kinematics, force))
+        if isinstance(force.course, Orders):
+            read.append(angle_phase(scene, kinematics, force, force.course))
+    read += [unbalance_phase(scene, kinematics, part) for part in scene.unbalances]
+    return (*frames, *dict.fromkeys(phase for phase in read if phase is not None))
 
 
 def phases(mechanism: Mechanism) -> tuple[LoadPhase, ...]:

@@ -57,7 +57,7 @@ def with_planets(
     if pin_errors is not None and len(pin_errors) != number:
         raise InputError("pin_errors", len(pin_errors), f"one for each of the {number} planets")
     offsets = _offsets(scene, solve_kinematics(scene), shaft, turns)
-    planet = scene.shafts[scene.shaft_index(shaft)]
+    planet = scene.shaft(shaft)
     copied = {
         part.name: [_numbered(part.name, index) for index in range(1, number)]
         for part in scene.planet_bearings
@@ -85,7 +85,7 @@ def with_planets(
 def _carrier(scene: Scene, shaft: str) -> Shaft:
     one_of("planet", shaft, [part.name for part in scene.shafts])
     carrier = scene.frame_index(scene.shaft_index(shaft))
-    if carrier is None or on_axis(scene.shafts[scene.shaft_index(shaft)], scene.shafts[carrier]):
+    if carrier is None or on_axis(scene.shaft(shaft), scene.shafts[carrier]):
         bound = "a shaft in the frame of a carrier, off its axis"
         raise InputError("planet", shaft, bound, "Give the shaft its carrier as frame.")
     return scene.shafts[carrier]

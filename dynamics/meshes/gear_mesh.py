@@ -42,7 +42,7 @@ class CoastFlank:
         not_negative("backlash", self.backlash)
         finite("thickness", self.thickness)
         if self.table is not None:
-            check_table("table", self.table)
+            check_table(self.table, "table")
 
 
 # The mesh.
@@ -101,5 +101,5 @@ class GearMesh:
     bent_shafts: bool = False
 
     def __post_init__(self) -> None:
-        check_table("table", self.table)
+        check_table(self.table, "table")
         declared_fields(self, beyond=("position_offset",))  # copies of a planet add to it

@@ -117,17 +117,13 @@ def _smooth(table: MeshTable, values: FloatArray) -> FloatArray:
     """Return values (M, D, P, L) with three-point derivatives along all axes, (2, 2, 2, M, D, P, L)."""
     numbers = np.zeros((2, 2, 2, *values.shape))
     numbers[0, 0, 0] = values
-    numbers[0, 0, 1] = _periodic_slope(np.asarray(table.position, dtype=float), float(table.period), values)
+    position, period = np.asarray(table.position, dtype=float), float(table.period)
+    around = np.concatenate([position[-1:] - period, position, position[:1] + period])
+    closed = np.concatenate([values[:, :, -1:], values, values[:, :, :1]], axis=2)
+    numbers[0, 0, 1] = np.gradient(closed, around, axis=2)[:, :, 1:-1]
     if np.size(table.center_distance_change) > 1:
         knots = np.asarray(table.center_distance_change, dtype=float)
         numbers[0, 1] = np.gradient(numbers[0, 0], knots, axis=-3)
     if np.size(table.misalignment) > 1:
         numbers[1] = np.gradient(numbers[0], np.asarray(table.misalignment, dtype=float), axis=-4)
     return numbers
-
-
-def _periodic_slope(position: FloatArray, period: float, values: FloatArray) -> FloatArray:
-    """Three-point derivatives along the positions, (M, D, P, L)."""
-    around = np.concatenate([position[-1:] - period, position, position[:1] + period])
-    closed = np.concatenate([values[:, :, -1:], values, values[:, :, :1]], axis=2)
-    return np.asarray(np.gradient(closed, around, axis=2)[:, :, 1:-1])

@@ -70,13 +70,9 @@ class MeshTable(Protocol):
     def stiffness_slope(self) -> FloatArray: ...  # noqa: D102
 
 
-def check_table(field: str, table: MeshTable) -> None:
-    """Raise `InputError` if `table` breaks the protocol's shapes, orders or signs."""
-    _check(table, field)
-
-
 @identity_cached
-def _check(table: MeshTable, field: str) -> None:
+def check_table(table: MeshTable, field: str) -> None:
+    """Raise `InputError` if `table` breaks the protocol's shapes, orders or signs; `field` names it."""
     if not isinstance(table, MeshTable):
         raise InputError(field, type(table).__name__, "a mesh-force table", "Use SteDatabase.force_table().")
     period = integer(f"{field}.period", table.period, 1, LARGEST_PERIOD)
@@ -88,23 +84,15 @@ def _check(table: MeshTable, field: str) -> None:
     if level[0] != 0.0 or level.size < 2:
         raise InputError(f"{field}.level", level.tolist(), "at least two forces, the first 0")
     shape = (np.size(table.misalignment), np.size(table.center_distance_change), position.size, level.size)
-    for name in FIELDS:
-        values = np.asarray(getattr(table, name))
-        if values.shape != shape or not np.all(np.isfinite(values)):
-            raise InputError(f"{field}.{name}", f"shape {values.shape}", f"finite, of shape {shape}")
-    _check_optional_arrays(field, table, shape)
+    of_derivatives = (2, 2, 2, *shape)
+    for names, expected in ((FIELDS, shape), (DERIVATIVES, of_derivatives), (LEVERS, shape)):
+        for name in names:
+            if names is not FIELDS and getattr(table, name, None) is None:
+                continue
+            values = np.asarray(getattr(table, name))
+            if values.shape != expected or not np.all(np.isfinite(values)):
+                raise InputError(f"{field}.{name}", f"shape {values.shape}", f"finite, of shape {expected}")
     if np.any(np.diff(table.deflection, axis=-1) <= 0.0):
         raise InputError(f"{field}.deflection", "not increasing", "strictly increasing along the levels")
     if np.any(np.asarray(table.stiffness) < 0.0) or np.any(np.asarray(table.stiffness)[..., -1] == 0.0):
         raise InputError(f"{field}.stiffness", "negative", "0 or above, and above 0 at the last level")
-
-
-def _check_optional_arrays(field: str, table: MeshTable, shape: tuple[int, ...]) -> None:
-    for names, expected in ((DERIVATIVES, (2, 2, 2, *shape)), (LEVERS, shape)):
-        for name in names:
-            field_values = getattr(table, name, None)
-            if field_values is None:
-                continue
-            values = np.asarray(field_values)
-            if values.shape != expected or not np.all(np.isfinite(values)):
-                raise InputError(f"{field}.{name}", f"shape {values.shape}", f"finite, of shape {expected}")

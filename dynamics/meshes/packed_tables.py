@@ -179,7 +179,10 @@ class _Table(NamedTuple):
 def _laid_out(table: MeshTable) -> _Table:
     knot = np.append(np.asarray(table.position, dtype=float), table.position[0] + table.period)
     knot -= knot[0]
-    rows, level = _rows(table, knot), np.asarray(table.level, dtype=float)
+    width, level = np.diff(knot)[:, np.newaxis], np.asarray(table.level, dtype=float)
+    deflection = _cubic(table.deflection[0, 0], table.deflection_slope[0, 0], width)
+    stiffness = _cubic(table.stiffness[0, 0], table.stiffness_slope[0, 0], width)
+    rows = np.ascontiguousarray(np.concatenate([deflection, stiffness], axis=-1).reshape(-1, 8))
     return _Table(knot, _bucket_starts(knot), rows, level, _energy_below(rows, level))
 
 
@@ -189,14 +192,6 @@ def _bucket_starts(knot: FloatArray) -> IntArray:
     start = np.arange(count) / count * (knot[-1] * (1.0 - 1e-12))
     index = np.clip(np.searchsorted(knot, start, side="right") - 1, 0, knot.size - 2)
     return np.asarray(index, dtype=np.int64)
-
-
-def _rows(table: MeshTable, knot: FloatArray) -> FloatArray:
-    """Hermite data as ascending cubics: (P L, 8)."""
-    width = np.diff(knot)[:, np.newaxis]
-    deflection = _cubic(table.deflection[0, 0], table.deflection_slope[0, 0], width)
-    stiffness = _cubic(table.stiffness[0, 0], table.stiffness_slope[0, 0], width)
-    return np.ascontiguousarray(np.concatenate([deflection, stiffness], axis=-1).reshape(-1, 8))
 
 
 def _cubic(value: FloatArray, slope: FloatArray, width: FloatArray) -> FloatArray:

@@ -53,7 +53,7 @@ def queries(count, margin):
 
 @pytest.mark.law
 def test_both_evaluate_alike_inside_and_beyond_the_axes(table):
-    check_table("table", table)
+    check_table(table, "table")
     x, d, m, a = queries(3000, 0.2)
     theirs = MeshForce(table).force_at(x, d, m, a)
     ours = at(table, x, d, m, a)

@@ -52,7 +52,7 @@ def database():
 def test_the_table_is_what_dynamics_asks_for(database):
     table = database.force_table()
     assert isinstance(table, MeshTable)
-    check_table("mesh.table", table)
+    check_table(table, "mesh.table")
 
 
 def test_force_and_stiffness_agree(database):

@@ -53,7 +53,7 @@ def waving_table():
 )
 def test_both_evaluate_alike(make):
     table = ForceTable(**{name: getattr(make(), name) for name in FIELDS})
-    check_table("table", table)
+    check_table(table, "table")
     packed = pack_tables([table])
     rng = np.random.default_rng(3)
     position = rng.uniform(-4.0, 7.0, 2000)

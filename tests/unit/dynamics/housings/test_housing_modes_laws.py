@@ -31,9 +31,9 @@ from dynamics.housings import (
 from dynamics.housings import free_modes as free_modes_module
 from dynamics.housings.assembled_housing import (
     AssembledHousing,
+    _independent_freedoms,
+    _mass_and_stiffness,
     assemble,
-    independent_freedoms,
-    mass_and_stiffness,
 )
 from dynamics.housings.free_modes import ModeStatus, free_modes
 from dynamics.housings.reduced_housing import rigid_body
@@ -61,8 +61,8 @@ def reduced(**changes) -> ReducedHousing:
 
 def loose_frequencies(mesh, material, modes) -> np.ndarray:
     """Elastic frequencies of a free body without bores."""
-    freedoms = independent_freedoms(mesh.points, ())
-    nodal, stiffness = mass_and_stiffness(mesh, material)
+    freedoms = _independent_freedoms(mesh.points, ())
+    nodal, stiffness = _mass_and_stiffness(mesh, material)
     mass = sp.csr_array(sp.kron(nodal, sp.eye_array(3)))
     none, force = sp.csr_array(mass.shape), sp.csr_array(sp.eye_array(mass.shape[0], format="csr")[:1])
     rigid = freedoms.rigid(mesh.points, mesh.points.mean(axis=0))

@@ -11,7 +11,7 @@ from housed_pair import ON, housed_pair
 
 from dynamics.assembly.assemble import assemble
 from dynamics.linearize import harmonic_response, linearize, steady_vibration
-from dynamics.linearize.steady_vibration import modal_elimination
+from dynamics.linearize.steady_vibration import _modal_elimination
 
 
 @pytest.mark.parametrize("gyroscopic", ["off", "on"])
@@ -21,9 +21,11 @@ def test_a_response_with_the_modes_eliminated_is_that_of_the_whole_matrices(monk
     system = assemble(replace(scene, meshes=gear_pair_scene(table).meshes))
     speeds = np.linspace(50.0, 400.0, 40)
     small = harmonic_response(system, speeds)
-    eliminated = steady_vibration.modal_elimination
+    eliminated = steady_vibration._modal_elimination
     seen = []
-    monkeypatch.setattr(steady_vibration, "modal_elimination", lambda *given: seen.append(eliminated(*given)))
+    monkeypatch.setattr(
+        steady_vibration, "_modal_elimination", lambda *given: seen.append(eliminated(*given))
+    )
     whole = harmonic_response(system, speeds)
     assert all(part is not None for part in seen) and seen
     for name in ("dynamic_transmission_error", "bearing_force", "displacement"):
@@ -48,9 +50,9 @@ def test_what_the_rows_of_elements_do_not_explain_is_not_eliminated():
     system = assemble(housed_pair())
     linear, modal = linearize(system), system.arrays.sparse.modal
     unit = np.ones(linear.scale.size)
-    assert modal_elimination(modal, unit, linear.stiffness, linear.damping, linear.mass) is not None
+    assert _modal_elimination(modal, unit, linear.stiffness, linear.damping, linear.mass) is not None
     coupled = linear.stiffness.copy()
     coupled[-1, -2] = coupled[-2, -1] = 1e-6 * np.max(np.abs(coupled))
-    assert modal_elimination(modal, unit, coupled, linear.damping, linear.mass) is None
+    assert _modal_elimination(modal, unit, coupled, linear.damping, linear.mass) is None
     twice = modal._replace(shape=np.repeat(modal.shape[:1], len(modal.shape), axis=0))
-    assert modal_elimination(twice, unit, linear.stiffness, linear.damping, linear.mass) is None
+    assert _modal_elimination(twice, unit, linear.stiffness, linear.damping, linear.mass) is None

@@ -29,7 +29,7 @@ def stiffness(x: float) -> float:
 def test_a_harmonic_mesh_has_the_force_of_the_closed_form() -> None:
     curve = PeriodicCurve.harmonic(MEAN, SIZES, PHASES)
     table = stiffness_table(curve, PeriodicCurve.harmonic(0.0, (ERROR,), (0.0,)))
-    check_table("table", table)
+    check_table(table, "table")
     packed = pack_tables([table])
     for x in POSITIONS:
         error = ERROR * math.cos(2.0 * math.pi * x)
