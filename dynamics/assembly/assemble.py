@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg import eigh
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.sparse_rows import NO_ENTRIES
@@ -38,7 +39,7 @@ from dynamics.mechanism.kinematics import Kinematics, mesh_shafts
 from dynamics.mechanism.line_of_action import LineOfAction
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.phases import phases
-from dynamics.mechanism.sampling import Sampling, choose_sampling, top_mode
+from dynamics.mechanism.sampling import Sampling, choose_sampling
 from dynamics.mechanism.supports import Supports
 from dynamics.scene.scene import LEAST_RATE, Scene
 from dynamics.types import FloatArray, IntArray, Json
@@ -122,6 +123,8 @@ def _bearing_force_map(
 
 LEAST_SEAT = 0.1
 """Least scale of an amplitude, of the largest."""
+MESH_SHARE = 0.01
+"""Share of a mode's strain energy in the meshes from which on they excite it."""
 
 
 def _system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) -> SystemArrays:
@@ -401,9 +404,18 @@ def _put_together(model: Model, elements: tuple[Element, ...], arrays: SystemArr
 
 
 def _top_mode(model: Model, arrays: SystemArrays) -> float:
-    """Return the highest mode that the meshes excite, as far as shafts are resolved, Hz."""
+    """Return the highest mode that the meshes excite, as far as shafts are resolved, Hz; 0: none."""
     elements, meshes = arrays.elements, len(model.mechanism.scene.meshes)
     rows = arrays.direction[elements.first[:meshes]]
     other = arrays.direction.T @ (elements.stiffness[:, None] * arrays.direction)
     elastic = [rotor.elastic.highest for rotor in model.mechanism.rotors if rotor.elastic is not None]
-    return top_mode(arrays, rows, model.flanks.mean_stiffness, other, max(elastic, default=np.inf))
+    highest, mesh_stiffness = max(elastic, default=np.inf), model.flanks.mean_stiffness
+    per_meter = 1.0 / arrays.scale
+    rows = rows * per_meter  # springs in place of the meshes
+    springs = rows.T @ (mesh_stiffness[:, None] * rows)
+    mass, rest = (per_meter[:, None] * a * per_meter for a in (arrays.mass, arrays.stiffness + other))
+    square, shape = eigh(springs + rest, mass)
+    strain = mesh_stiffness @ (rows @ shape) ** 2
+    excited = strain >= MESH_SHARE * np.maximum(square, 0.0)
+    frequency = np.sqrt(np.maximum(square, 0.0)) / (2.0 * math.pi)
+    return float(np.max(frequency[excited & (frequency <= highest)], initial=0.0))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,19 +30,8 @@ SOFTEST = 1e-9  # of the largest stiffness: least damping of a step
 UNRESISTED = 1e-13  # of the largest stiffness: below it nothing resists a motion
 
 
-@dataclass(frozen=True)
-class _Rest:
-    """Where bodies rest on bearings under known forces.
-
-    Attributes
-    ----------
-    settled : bool
-        Whether the forces balance.
-    displacement : (n,) array
-        Deviations from the kinematic motion, m and rad.
-    residual : float
-        What is left of the forces, N.
-    """
+class _Rest(NamedTuple):
+    """Whether forces balance, at what deviation (n,) from the kinematic motion; what is left of them, N."""
 
     settled: bool
     displacement: FloatArray

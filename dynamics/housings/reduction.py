@@ -14,8 +14,15 @@ from scipy.linalg import eigh, null_space
 
 from bounds import at_most
 from dynamics.errors import InputError, ResultError, SolveError
-from dynamics.housings.assembled_housing import AssembledHousing, assemble
-from dynamics.housings.free_modes import ACCEPTED, FreeModes, ModeStatus, basis_vectors, free_modes
+from dynamics.housings.assembled_housing import (
+    ACCEPTED,
+    AssembledHousing,
+    FreeModes,
+    ModeStatus,
+    assemble,
+    basis_vectors,
+    free_modes,
+)
 from dynamics.housings.mesh_files import WALL_ELEMENTS, mesh_step
 from dynamics.housings.quadrature import over_surface
 from dynamics.housings.reduced_housing import (

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, replace
-from typing import Protocol
 
 import numpy as np
-from scipy.linalg import eigh
 
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.phases import cage_turns, load_orders
@@ -24,21 +22,10 @@ INNER_PER_PITCH = 64.0
 """Inner samples per base pitch, or period of a load's highest order, at the least: as many as steps."""
 LEAST_FACTOR = 3
 """Inner samples per output sample at the least."""
-MESH_SHARE = 0.01
-"""Share of a mode's strain energy in the meshes from which on they excite it."""
 PASSING_ORDERS = 4
 """Multiples of the passing of elements that matter: the fifth is below 3 % of the first on loaded rows."""
 SPEED_POINTS = 257
 DIGITS = 3  # of a rate that is chosen
-
-
-class _Matrices(Protocol):
-    @property
-    def mass(self) -> FloatArray: ...
-    @property
-    def stiffness(self) -> FloatArray: ...
-    @property
-    def scale(self) -> FloatArray: ...
 
 
 @dataclass(frozen=True)
@@ -144,25 +131,6 @@ def _highest(scene: Scene, rate: FloatArray) -> float:
     time = np.union1d(time, inside[(inside >= 0.0) & (inside <= scene.duration)])
     speed = np.array([part.speed(time) for part in scene.references])
     return float(np.max(np.abs(rate @ speed), initial=0.0)) / (2.0 * math.pi)
-
-
-def top_mode(
-    arrays: _Matrices, mesh_rows: FloatArray, mesh_stiffness: FloatArray, other: FloatArray, highest: float
-) -> float:
-    """Return the highest natural frequency up to `highest` (Hz) of a mode that the meshes excite; 0: none.
-
-    `mesh_rows` (m, n) and `mesh_stiffness` (m,) are springs in place of the meshes, `other` (n, n) is the
-    stiffness of all other force elements.
-    """
-    per_meter = 1.0 / arrays.scale
-    rows = mesh_rows * per_meter
-    meshes = rows.T @ (mesh_stiffness[:, None] * rows)
-    mass, rest = (per_meter[:, None] * a * per_meter for a in (arrays.mass, arrays.stiffness + other))
-    square, shape = eigh(meshes + rest, mass)
-    strain = mesh_stiffness @ (rows @ shape) ** 2
-    excited = strain >= MESH_SHARE * np.maximum(square, 0.0)
-    frequency = np.sqrt(np.maximum(square, 0.0)) / (2.0 * math.pi)
-    return float(np.max(frequency[excited & (frequency <= highest)], initial=0.0))
 
 
 def choose_sampling(scene: Scene, kinematics: Kinematics, mode: float) -> Sampling:

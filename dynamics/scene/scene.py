@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from itertools import chain
-from typing import Any, Protocol, get_args, get_origin, get_type_hints
+from typing import Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from dynamics.forces import SpeedTorque
 from dynamics.forces.laws import STATED, StatedLaws
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.joints.housing import DEFINITE
-from dynamics.loads import AngleLaw, AppliedForce, LoadTorque, TimeLaw, Unbalance
+from dynamics.loads import AppliedForce, LoadTorque, TimeLaw, Unbalance
 from dynamics.meshes import GearMesh
 from dynamics.settings import Integration, Outputs
 from dynamics.shafts import DiscBody, GearBody, Shaft
@@ -246,17 +246,6 @@ SAMPLE_LIMIT = 2e7  # a run's states are held in memory
 LEAST_RATE = 1000.0  # Hz, of an output whose rate is chosen
 
 
-class _MotionLaw(Protocol):
-    """The law that sets the speed of one shaft in the kinematic motion."""
-
-    @property
-    def shaft(self) -> str: ...
-    @property
-    def speed(self) -> TimeLaw | AngleLaw: ...
-    @property
-    def rigid(self) -> bool: ...
-
-
 @dataclass(frozen=True)
 class Scene(StatedLaws):
     """A geared system and its run.
@@ -341,7 +330,7 @@ class Scene(StatedLaws):
         return {kind: getattr(self, kind) for kind in KINDS}
 
     @property
-    def references(self) -> tuple[_MotionLaw, ...]:
+    def references(self) -> tuple[ImposedRotation | FreeRotation, ...]:
         """The laws of the kinematic motion: the drives, then the free rotations."""
         return (*self.drives, *self.free_rotations)
 
