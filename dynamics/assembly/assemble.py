@@ -27,6 +27,7 @@ from dynamics.mechanism.bearing_elements import BearingElement, housed_bearings,
 from dynamics.mechanism.bodies import Bodies, resting_housings, under_laws
 from dynamics.mechanism.columns import column_count, times_mass, turn_row
 from dynamics.mechanism.connections import (
+    Connections,
     CouplingRows,
     Seats,
     elastic_matrices,
@@ -87,8 +88,7 @@ class BearingForce(NamedTuple):
 def _bearing_force_map(
     stiffness: FloatArray,
     damping: FloatArray,
-    supports: Supports,
-    seats: Seats,
+    joined: Connections,
     bearings: Sequence[BearingElement],
     elements: Elements,
 ) -> BearingForce:
@@ -97,7 +97,7 @@ def _bearing_force_map(
     Springs of supports press against their errors, seats have preloads, and bearings that are not linear or
     sit in a housing that moves give their own forces: the last elements.
     """
-    count, rows, n = stiffness.shape
+    supports, seats, (count, rows, n) = joined.supports, joined.seats, stiffness.shape
     total = elements.offset.size
     weight = np.zeros((count, rows, total + 2 * n))
     weight[:, :, total : total + n], weight[:, :, total + n :] = stiffness, damping
@@ -389,14 +389,7 @@ def _put_together(model: Model, elements: tuple[Element, ...], arrays: SystemArr
         joined.couplings,
         stiffness,
         damping,
-        _bearing_force_map(
-            stiffness,
-            damping,
-            joined.supports,
-            joined.seats,
-            (*housed, *mechanism.bearings),
-            arrays.elements,
-        ),
+        _bearing_force_map(stiffness, damping, joined, (*housed, *mechanism.bearings), arrays.elements),
         choose_sampling(mechanism.scene, mechanism.kinematics, _top_mode(model, arrays)),
         model.ledger,
         mechanism.corrected,

@@ -20,14 +20,14 @@ from dynamics.effects.force_terms import (
 from dynamics.errors import InputError
 from dynamics.forces.elements import Element
 from dynamics.forces.frames import FrameCouplingLaws, FrameTerm, RotatingFrameLaws
-from dynamics.forces.laws import ElementLaws, Law
+from dynamics.forces.laws import STATED_OF_BEARINGS, ElementLaws, Law
 from dynamics.loads.applied_force import AppliedForce
 from dynamics.loads.load_course import BySpeed, Orders
 from dynamics.loads.load_laws import ForceCourseLaws, SpeedTorqueLaws, UnbalanceLaws
 from dynamics.mechanism.bearing_elements import (
-    bearing_elements,
     housed_bearing_elements,
     housed_bearings,
+    supports_by_name,
     tilt_lever,
 )
 from dynamics.mechanism.bodies import Bodies
@@ -38,6 +38,7 @@ from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.line_of_action import approach, line_of_action, middle_from_driver
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.phases import LoadPhase, angle_phase, frame_phase, repeating_phases, unbalance_phase
+from dynamics.mechanism.supports import seat_error, seat_motion
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.meshes.spatial_flank import SpatialFlankLaws
 from dynamics.scene.scene import Scene
@@ -357,6 +358,31 @@ def _speed_elements(model: Model) -> tuple[tuple[Element, ...], SpeedTorqueLaws]
     return tuple(elements), SpeedTorqueLaws.packed(scene.speed_torques, radius)
 
 
+# The force elements of bearings that are not linear, and of linear ones in housings that move.
+
+
+def _bearing_elements(model: Model) -> tuple[tuple[Element, ...], dict[str, Any]]:
+    """Return the elements of all laws of bearings, and their laws by the fields of `ElementLaws`.
+
+    Cages of rows whose elements pass read the last of the positions.
+    """
+    mechanism, scene = model.mechanism, model.mechanism.scene
+    cages = len(scene.meshes) + len(repeating_phases(scene, mechanism.kinematics))
+    passing = [part.name for part in scene.rolling_bearings if part.name in mechanism.passing]
+    phases = {name: cages + index for index, name in enumerate(passing)}
+    supports, elements = supports_by_name(mechanism.rotors), []
+    entries: dict[Any, list[Any]] = {arrays: [] for arrays in STATED_OF_BEARINGS}
+    for part, at in zip(scene.laws_with(mechanism.passing), mechanism.bearings, strict=True):
+        rotor, support = supports[at.name]
+        gradient = at.way @ seat_motion(mechanism.rotors, rotor, support)
+        offset = -at.way @ seat_error(mechanism.rotors, rotor, support)
+        law, own, phase = STATED_OF_BEARINGS[part.arrays], entries[part.arrays], phases.get(at.name, -1)
+        elements.append(Element(law, len(own), phase, gradient, offset, stiffness=at.typical))
+        own.append(part.laid_out(mechanism.bearing_duty[at.name]))
+    packed = {law.name.lower(): arrays.packed(entries[arrays]) for arrays, law in STATED_OF_BEARINGS.items()}
+    return tuple(elements), packed
+
+
 def _housed_elements(model: Model) -> tuple[tuple[Element, ...], LinearBearingLaws]:
     rotors = model.mechanism.rotors
     return housed_bearing_elements(rotors, housed_bearings(model.mechanism.scene, rotors))
@@ -376,19 +402,10 @@ BY_LAW: tuple[tuple[Law, Callable[[Model], tuple[tuple[Element, ...], Any]]], ..
 
 def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
     """Return the driving flanks of all meshes, everything else, bearings last, and their laws."""
-    mechanism, scene = model.mechanism, model.mechanism.scene
     laws: dict[str, Any] = {"flank": model.flanks.law}
     elements: list[Element] = []
     for law, lay_out in BY_LAW:
         own, laws[law.name.lower()] = lay_out(model)
         elements += own
-    phase = len(scene.meshes) + len(repeating_phases(scene, mechanism.kinematics))
-    passing = [part.name for part in scene.rolling_bearings if part.name in mechanism.passing]
-    on_bearings, bearing_laws = bearing_elements(
-        scene.laws_with(mechanism.passing),
-        mechanism.rotors,
-        mechanism.bearings,
-        mechanism.bearing_duty,
-        {name: phase + index for index, name in enumerate(passing)},
-    )
+    on_bearings, bearing_laws = _bearing_elements(model)
     return (*elements, *on_bearings), ElementLaws(**laws, **bearing_laws)

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from dynamics.bearings import Bushing, PlanetBearing
-from dynamics.bearings.bearing_law import BearingDuty, BearingLaw
+from dynamics.bearings.bearing_law import BearingDuty
 from dynamics.bearings.linear_bearing import LinearBearingLaws
 from dynamics.forces.elements import Element
-from dynamics.forces.laws import STATED_OF_BEARINGS, Law
+from dynamics.forces.laws import Law
 from dynamics.mechanism.bodies import Bodies, Rotor
-from dynamics.mechanism.supports import gather_supports, seat_axes, seat_error, seat_motion
+from dynamics.mechanism.supports import gather_supports, seat_axes, seat_motion
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
@@ -93,30 +92,6 @@ def bearing_locations(
         own = law.rows(duty)
         locations.append(BearingElement(name, support_index[name], own @ axes[name], own, law.typical(duty)))
     return tuple(locations)
-
-
-def bearing_elements(
-    laws: Sequence[BearingLaw],
-    rotors: Bodies,
-    bearings: Sequence[BearingElement],
-    duties: Mapping[str, BearingDuty],
-    phases: Mapping[str, int],
-) -> tuple[tuple[Element, ...], dict[str, Any]]:
-    """Return the elements of `laws` at `bearings`, and their laws by the fields of `ElementLaws`.
-
-    `phases` are the positions that the cages of some bearings are among.
-    """
-    supports, elements = supports_by_name(rotors), []
-    entries: dict[Any, list[Any]] = {arrays: [] for arrays in STATED_OF_BEARINGS}
-    for part, at in zip(laws, bearings, strict=True):
-        rotor, support = supports[at.name]
-        gradient = at.way @ seat_motion(rotors, rotor, support)
-        offset = -at.way @ seat_error(rotors, rotor, support)
-        law, own, phase = STATED_OF_BEARINGS[part.arrays], entries[part.arrays], phases.get(at.name, -1)
-        elements.append(Element(law, len(own), phase, gradient, offset, stiffness=at.typical))
-        own.append(part.laid_out(duties[at.name]))
-    packed = {law.name.lower(): arrays.packed(entries[arrays]) for arrays, law in STATED_OF_BEARINGS.items()}
-    return tuple(elements), packed
 
 
 def tilt_lever(scene: Scene) -> float:
