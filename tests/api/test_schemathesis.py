@@ -2,10 +2,11 @@
 
 Bodies start from feasible pairs (`feasible_bodies`), so that most of them pass validation; every fifth
 breaks its schema; some are drawn from the description alone, as any generator draws them. Nothing that is
-submitted is worked on. With every change: some requests of every operation, but for plans and live
-questions, which have a worker of their own. With `LOA_GENERATED_BODIES` (scripts/nightly, in one process):
-at least so many bodies in one run, to plans, live questions and force queries of a table that exists too,
-with an access key; counts, and what was refused why, in out/generated_bodies.json.
+submitted is worked on. With every change: some requests of every operation, and of a fifth of them bodies of
+the other kinds, but for plans and live questions, which have a worker of their own. With
+`LOA_GENERATED_BODIES` (scripts/nightly, in one process): at least so many bodies in one run, to plans, live
+questions and force queries of a table that exists too, with an access key; counts, and what was refused why,
+in out/generated_bodies.json.
 """
 
 from __future__ import annotations
@@ -159,6 +160,7 @@ def test_a_request_is_answered_as_documented(operation: Operation) -> None:
     answered()
 
 
+@pytest.mark.drawn
 @parametrized(with_body)
 def test_a_body_that_breaks_its_schema_is_answered_as_documented(operation: Operation) -> None:
     @as_long_as(max(-(-EACH // 5), FEW // 5))
@@ -186,6 +188,7 @@ def test_so_many_bodies_were_sent() -> None:
     assert sent["bodies"] >= BODIES
 
 
+@pytest.mark.drawn
 @parametrized(with_body)
 def test_a_body_drawn_from_the_description_alone_is_answered_as_documented(operation: Operation) -> None:
     """Last, as most of these are refused: they are not among those of which half are accepted."""
