@@ -68,7 +68,6 @@ def assumed(model: Model, assumptions: Iterable[Assumption]) -> Model:
 
 
 def _shown(attribute: Attribute) -> str:
-    """Return value and unit of an attribute."""
     unit = "" if attribute.unit in (None, "none", "-") else f" {attribute.unit}"
     return ", ".join(texts_of(attribute.value)) + unit
 
@@ -76,14 +75,9 @@ def _shown(attribute: Attribute) -> str:
 def mend(error: BadInput) -> str:
     """Return the assumptions that replace the values at fault, empty where none is that of a component."""
     places = [_PLACE.search(fault.field) for fault in error.faults]
-    known = [
-        (place[1], place[2]) for place in places if place is not None and listed_unit(place[2]) is not None
-    ]
-    return (
-        f" Or open it with {', '.join(f'--assume {id_}.{name}=VALUE' for id_, name in known)}."
-        if known
-        else ""
-    )
+    known = [place for place in places if place is not None and listed_unit(place[2]) is not None]
+    options = ", ".join(f"--assume {place[1]}.{place[2]}=VALUE" for place in known)
+    return f" Or open it with {options}." if options else ""
 
 
 def _with(model: Model, assumption: Assumption) -> Model:
@@ -193,7 +187,6 @@ class Account:
         return tuple(line for part in self._parts.values() for line in self._lines(part))
 
     def _lines(self, part: Component) -> Iterator[Line]:
-        """Lines of a component, its own first."""
         said = dict(self._said[id(part)])
         own = said.pop("", None)
         for attribute in part.attributes:
@@ -201,18 +194,14 @@ class Account:
             if attribute.origin == ASSUMED and fate in ("taken", "ignored"):
                 said[attribute.id] = _assumed(attribute, fate, words)
         used = any(fate in ("taken", "derived", "assumed") for fate, _ in said.values())
-        fate, words = own or (("taken", "") if used else ("ignored", UNUSED))
-        yield self._line(part, "", fate, words)
-        for item, (fate, words) in said.items():
-            yield self._line(part, item, fate, words)
-
-    def _line(self, part: Component, item: str, fate: Fate, words: str) -> Line:
-        return Line(self.place(part), part.id, part.type, part.name or "", item, fate, words, part.line)
+        own = own or (("taken", "") if used else ("ignored", UNUSED))
+        place, name = self.place(part), part.name or ""
+        for item, (fate, words) in {"": own, **said}.items():
+            yield Line(place, part.id, part.type, name, item, fate, words, part.line)
 
 
 def _assumed(attribute: Attribute, fate: Fate, words: str) -> tuple[Fate, str]:
     """Return what became of an assumed value: one that nothing reads is refused."""
     if fate == "ignored":
         return "refused", f"assumed to be {_shown(attribute)}, and {words}"
-    former = dict(attribute.extra)[FORMER]
-    return "assumed", f"{_shown(attribute)} instead of {former}: {words}"
+    return "assumed", f"{_shown(attribute)} instead of {dict(attribute.extra)[FORMER]}: {words}"

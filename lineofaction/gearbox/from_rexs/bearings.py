@@ -112,11 +112,11 @@ class BearingGeometry:
 
 def bearing_geometry(part: Part) -> BearingGeometry | str:
     """Return the geometry of a bearing, or the reason why it is not known."""
-    if part.type == "rolling_bearing_with_catalog_geometry":
-        return _catalog_bearing(part)
-    if part.type == "rolling_bearing_with_detailed_geometry":
-        return _detailed_bearing(part)
-    return f"a {part.type} has no geometry"
+    read = {
+        "rolling_bearing_with_catalog_geometry": _catalog_bearing,
+        "rolling_bearing_with_detailed_geometry": _detailed_bearing,
+    }.get(part.type)
+    return f"a {part.type} has no geometry" if read is None else read(part)
 
 
 def _bearing_type(part: Part) -> str:
@@ -128,9 +128,9 @@ def _bearing_type(part: Part) -> str:
 
 
 def _catalog_bearing(part: Part) -> BearingGeometry | str:
-    names = ("inner_diameter", "outer_diameter", _RATING)
-    words = ("bore, mm", "outside diameter, mm", "static load rating, kN")
-    bore, outside, rating = (part.number(name, word) for name, word in zip(names, words, strict=True))
+    bore = part.number("inner_diameter", "bore, mm")
+    outside = part.number("outer_diameter", "outside diameter, mm")
+    rating = part.number(_RATING, "static load rating, kN")
     kind = _bearing_type(part)
     if kind != DEEP_GROOVE:
         return f"no geometry follows from the catalog line of a {kind or 'bearing without bearing_type'}"
@@ -144,10 +144,8 @@ def _catalog_bearing(part: Part) -> BearingGeometry | str:
     except InputError as error:
         part.say(_RATING, "refused", f"no deep groove ball bearing has this line: {error}")
         return "no deep groove ball bearing has its catalog line"
-    estimate = f"{row.count} balls of {row.diameter * 1e3:.3g} mm, estimated"
-    part.say(
-        "bearing_type", "derived", f"{estimate}; displacements within {100.0 * BAND['displacement']:g} %"
-    )
+    words = f"{row.count} balls of {row.diameter * 1e3:.3g} mm, estimated; displacements within"
+    part.say("bearing_type", "derived", f"{words} {100.0 * BAND['displacement']:g} %")
     return BearingGeometry(row, rating, line)
 
 
@@ -224,7 +222,6 @@ COPIES = 8
 """Of each element: stiffness as the average over the passing of an element."""
 
 _FIXED = ("both_directions", "positive", "negative")
-_AXES = ("u", "v", "w")
 _MOTIONS = ("d_u", "d_v", "d_w", "rot_v", "rot_w")
 _ROWS = ("f_u", "f_v", "f_w", "m_v", "m_w")
 
@@ -353,11 +350,10 @@ def _axial_load(row: Row) -> float:
 def operating_point(part: Part) -> FloatArray | None:
     """Return the stated matrix (5, 5), None where the file has none or one that holds nothing."""
     names = [[f"operating_point_stiffness_{row}_{motion}" for motion in _MOTIONS] for row in _ROWS]
-    values = [[part.number(name, "stiffness at the operating point") for name in row] for row in names]
-    stated = [value for row in values for value in row if value is not None]
-    if not any(stated):
+    words = "stiffness at the operating point"
+    matrix = np.array([[part.number(name, words, 0.0) for name in row] for row in names])
+    if not np.any(matrix):
         return None
-    matrix = np.array([[0.0 if value is None else value for value in row] for row in values])
     matrix = 0.5 * (matrix + matrix.T)
     least, most = map(float, np.linalg.eigvalsh(matrix)[[0, -1]])
     if most <= 0.0 or least < -1e-6 * most or np.max(np.abs(matrix)) >= RIGID_FROM:

@@ -13,11 +13,7 @@ from lineofaction.gearbox.convert.case import check_plain_case
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.micro_geometry import micro_geometry
 from lineofaction.gearbox.from_rexs.placement import u_on_shaft
-from lineofaction.gearbox.from_rexs.toothing import (
-    ToothDepth,
-    ToothedPair,
-    ToothingData,
-)
+from lineofaction.gearbox.from_rexs.toothing import ToothDepth, ToothedPair, ToothingData
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.reading import validated
@@ -26,7 +22,8 @@ from lineofaction.gearbox.units import DEGREE, GPA, MM, UM
 # What carries the teeth: bore or rim, rim and web of the gear body, and the material.
 
 
-_RING_RIM = 3.5  # normal modules: from there on the rim of a ring gear has no influence, ISO 6336-3, clause 9
+RIM = 3.5
+"""Normal modules: thinner rims weaken the tooth root, thicker have no influence (ISO 6336-3, clause 9)."""
 _THINNEST = 1.0  # normal modules between bore and root circle; less is one piece with the shaft
 _INTEGRAL = 0.5  # of the root diameter
 STEEL = (210e9, 0.3)
@@ -37,8 +34,8 @@ def _rim_diameter(gear: ToothingData, root: float) -> float:
         value = part.number("outer_diameter", "rim_diameter_mm")
         if value is not None and value > root:
             return value
-    rim = root + 2.0 * _RING_RIM * gear.normal_module
-    words = f"rim_diameter_mm {rim / MM:.7g} = d_f + 2 * {_RING_RIM} m_n: the file gives no rim"
+    rim = root + 2.0 * RIM * gear.normal_module
+    words = f"rim_diameter_mm {rim / MM:.7g} = d_f + 2 * {RIM} m_n: the file gives no rim"
     gear.part.say("outer_diameter", "defaulted", words)
     return rim
 
@@ -70,13 +67,10 @@ def _shaft_diameter(gear: Part) -> float | None:
     start = 0.0
     for section in shaft.children("shaft_section"):
         length = section.number("length", "length of the section") or 0.0
-        left = section.number("u_coordinate_on_shaft", "begin of the section")
-        start = start if left is None else left
+        start = section.number("u_coordinate_on_shaft", "begin of the section", start)
         if start <= place <= start + length:
-            begin, end = (
-                section.number(f"outer_diameter_{side}", "outer diameter of the section")
-                for side in ("begin", "end")
-            )
+            begin = section.number("outer_diameter_begin", "outer diameter of the section")
+            end = section.number("outer_diameter_end", "outer diameter of the section")
             if begin is None or end is None:
                 return begin if end is None else end
             return begin + (0.0 if length == 0.0 else (place - start) / length) * (end - begin)
@@ -119,10 +113,8 @@ def _clearing_tip(pair: ToothedPair, depths: Sequence[ToothDepth], shifts: Mappi
     if depth.tip_diameter > least:
         return depth
     tip = math.ceil(least / _STEP + 1e-3) * _STEP
-    words = (
-        f"{tip / MM:.7g} mm, above {least / MM:.7g} mm = 2 sqrt(r_b2^2 + (l_F1 + a sin alpha_wt)^2), where"
-    )
-    words += f" the tip meets the form circle of {pair.pinion.part.name}; d - 2 m_n (x + h_aP) would be"
+    words = f"{tip / MM:.7g} mm, above {least / MM:.7g} mm = 2 sqrt(r_b2^2 + (l_F1 + a sin alpha_wt)^2),"
+    words += f" where the tip meets the form circle of {pair.pinion.part.name}; d - 2 m_n (x + h_aP) would be"
     ring.part.say("tip_diameter", "defaulted", f"{words} {depth.tip_diameter / MM:.7g} mm")
     return replace(depth, tip_diameter=tip)
 
@@ -270,19 +262,15 @@ def _strangers(
         if isinstance(mate, (int, float))
     ]
     advice = f"Open it with {' or '.join(mends)}." if mends else ""
-    return BadInput.of(f"{pair.stage.place}, gears", named, bound, advice)
+    return pair.stage.refusal("gears", named, bound, advice)
 
 
-def _depth(
-    gear: ToothingData,
-    pairs: Sequence[ToothedPair],
-    shifts: Mapping[int, float],
-) -> ToothDepth:
+def _depth(gear: ToothingData, pairs: Sequence[ToothedPair], shifts: Mapping[int, float]) -> ToothDepth:
     """Return tip and root of a gear; raises `BadInput` without a profile shift."""
     shift = shifts.get(gear.part.id)
     if shift is None:
-        field = f"{gear.part.place}, addendum_modification_coefficient"
-        raise BadInput.of(field, None, "given for this gear or for its mate")
+        bound = "given for this gear or for its mate"
+        raise gear.part.refusal("addendum_modification_coefficient", None, bound)
     return ToothDepth.of(gear, shift, _tip_alteration(gear, pairs, shifts))
 
 
@@ -309,14 +297,8 @@ def _tip_alteration(gear: ToothingData, pairs: Sequence[ToothedPair], shifts: Ma
     """Return the tip alteration coefficient of an external gear that suits all its external mates."""
     if gear.sign < 0:
         return 0.0
-    return min(
-        (
-            _alteration(pair, shifts)
-            for pair in pairs
-            if gear.part.id in {part.part.id for part in pair.gears}
-        ),
-        default=0.0,
-    )
+    own = (pair for pair in pairs if gear.part.id in {each.part.id for each in pair.gears})
+    return min((_alteration(pair, shifts) for pair in own), default=0.0)
 
 
 def _alteration(pair: ToothedPair, shifts: Mapping[int, float]) -> float:

@@ -50,29 +50,33 @@ class Part:
     def number(self, item: str, words: str) -> float | None: ...
 
     @overload
-    def number(self, item: str, words: str, default: float, why: str) -> float: ...
+    def number(self, item: str, words: str, default: float, why: str = "") -> float: ...
 
     def number(self, item: str, words: str, default: float | None = None, why: str = "") -> float | None:
-        """Return a number; the default, which the account states, where the file gives none."""
+        """Return a number; the default, which the account states with its reason, where the file has none."""
         value = quantity(self.component, item, self.place)
         if value is not None:
             self.say(item, "taken", words)
-        elif default is not None:
+        elif why:
             self.say(item, "defaulted", why)
         return default if value is None else value
+
+    def refusal(self, item: str, value: object, bound: str, advice: str = "") -> BadInput:
+        """Return the error of an attribute's value, in the unit of REXS."""
+        return BadInput.of(f"{self.place}, {item}", value, bound, advice)
 
     def required(self, item: str, words: str) -> float:
         """Return a number that the component must have."""
         value = self.number(item, words)
         if value is None:
-            raise BadInput.of(f"{self.place}, {item}", None, "given", f"{self.name} needs it.")
+            raise self.refusal(item, None, "given", f"{self.name} needs it.")
         return value
 
     def positive(self, item: str, words: str) -> float:
         """Return a number above zero that the component must have."""
         value = self.required(item, words)
         if not value > 0.0:
-            raise BadInput.of(f"{self.place}, {item}", value, "above 0")
+            raise self.refusal(item, value, "above 0")
         return value
 
     def bounded(self, item: str, words: str, field: Declared) -> float | None:
@@ -115,8 +119,7 @@ class Part:
 
     def value(self, item: str) -> Value:
         """Return the value of an attribute as it stands, without an entry in the account."""
-        attribute = self.component.attribute(item)
-        return None if attribute is None else attribute.value
+        return None if (attribute := self.attribute(item)) is None else attribute.value
 
     def say(self, item: str, fate: Fate, words: str) -> None:
         """State what becomes of an attribute that the component has or lacks; "" is the component."""
@@ -148,24 +151,16 @@ class Part:
     @property
     def shaft(self) -> Part | None:
         """The first shaft that has the component, None if there is none."""
-        for relation in self.unit.relations("assembly", "ordered_assembly"):
-            number = relation.of_role("assembly")
-            if relation.of_role("part") == self.id and number is not None:
-                owner = self.unit.part(number)
-                if owner.type == "shaft":
-                    return owner
-        return None
+        relations = self.unit.relations("assembly", "ordered_assembly")
+        owners = [each.of_role("assembly") for each in relations if each.of_role("part") == self.id]
+        parts = (self.unit.part(owner) for owner in owners if owner is not None)
+        return next((part for part in parts if part.type == "shaft"), None)
 
     @property
     def teeth(self) -> int | None:
         """Number of teeth, negative of some ring gears."""
         value = self.value("number_of_teeth")
-        if (
-            isinstance(value, bool)
-            or not isinstance(value, (int, float))
-            or value == 0
-            or value != value // 1
-        ):
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or value == 0 or value % 1:
             return None
         return int(value)
 
@@ -312,7 +307,6 @@ def _shift_index(unit: GearUnit) -> int:
 # Stages of a REXS model: two gears in mesh, the shafts that carry them, and their ratio.
 
 
-_GEARS = ("gear_1", "gear_2")
 NO_STAGE = "relation `stage` needs two gears with teeth, on two shafts that carry them and turn by themselves"
 
 
@@ -345,7 +339,7 @@ class GearStage:
 def _gear_stages(unit: GearUnit) -> Iterator[GearStage]:
     for relation in unit.relations("stage"):
         number = relation.of_role("stage")
-        ends = [relation.of_role(role) for role in _GEARS]
+        ends = [relation.of_role(role) for role in ("gear_1", "gear_2")]
         if number is None:
             continue
         stage = unit.part(number)
@@ -392,21 +386,16 @@ class PlanetarySet:
 
 def _planetary_sets(unit: GearUnit) -> Iterator[PlanetarySet]:
     for stage in unit.of_type("planetary_stage"):
-        planetary = PlanetarySet(
-            stage,
-            stage.related("planet_shaft", "planetary_stage", "shaft"),
-            stage.related("central_shaft", "planetary_stage", "shaft"),
-            tuple({part.id: part for part in _carrier(stage)}.values()),
+        planets, central, carrier, pins = (
+            stage.related(relation, "planetary_stage", "shaft")
+            for relation in ("planet_shaft", "central_shaft", "planet_carrier_shaft", "planet_pin")
         )
+        carriers = stage.children("planet_carrier")
+        plates = (part for each in carriers for part in each.children("shaft", "side_plate"))
+        turning = {part.id: part for part in (*carrier, *pins, *plates)}
+        planetary = PlanetarySet(stage, planets, central, tuple(turning.values()))
         if planetary.planets and planetary.carrier:
             stage.say("", "taken", f"planetary set of {len(planetary.planets)} planets")
             yield planetary
         else:
             stage.say("", "refused", "relations `planet_shaft` and `planet_carrier_shaft` are needed")
-
-
-def _carrier(stage: Part) -> Iterator[Part]:
-    for relation in ("planet_carrier_shaft", "planet_pin"):
-        yield from stage.related(relation, "planetary_stage", "shaft")
-    for carrier in stage.children("planet_carrier"):
-        yield from carrier.children("shaft", "side_plate")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeVar
@@ -15,7 +15,7 @@ import numpy as np
 from bounds.types import FloatArray
 from dynamics.shafts import Inertia, hollow_cylinder
 from lineofaction.gearbox.from_rexs.account import mend
-from lineofaction.gearbox.from_rexs.case_table import case_of
+from lineofaction.gearbox.from_rexs.case_table import RIM, case_of
 from lineofaction.gearbox.from_rexs.gear_unit import GearStage, GearUnit, Part
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.meshing import OTHER_STAGES, STAGES, LoadedFlank, Meshing
@@ -63,14 +63,10 @@ class StageCase:
 
     def driving(self, stage: GearStage) -> tuple[Part, Part]:
         """Return driver and driven gear of a stage, which may be that of an equal planet."""
-        first = {gear.id: gear for gear in stage.gears}
-        if self.driver in first:
-            driver = first[self.driver]
-        elif self.driven in first:
-            driver = next(gear for gear in stage.gears if gear.id != self.driven)
-        else:
-            driver = stage.gears[0]
-        return driver, next(gear for gear in stage.gears if gear is not driver)
+        first, second = stage.gears
+        if self.driver == second.id or (self.driven == first.id and self.driver != first.id):
+            return second, first
+        return first, second
 
 
 def stage_cases(
@@ -91,7 +87,11 @@ def stage_cases(
     """
     for stage in unit.of_type(*OTHER_STAGES):
         stage.say("", "refused", "no cylindrical stage: its loads stand in its place")
-    pairs = list(_pairs(unit, torques, drivers or {}))
+    pairs: list[ToothedPair] = []
+    for stage in unit.of_type(*STAGES):
+        driver = (drivers or {}).get(stage.id)
+        pair = _attempt(stage, partial(_pair, stage, torques.get(stage.id, ()), driver))
+        pairs += [] if pair is None else [pair]
     shifts = derived_shifts(pairs)
     cases: list[StageCase] = []
     for pair in pairs:
@@ -99,17 +99,6 @@ def stage_cases(
         if case is not None:
             _enter(cases, pair, case)
     return tuple(cases)
-
-
-def _pairs(
-    unit: GearUnit, torques: Mapping[int, tuple[float, ...]], drivers: Mapping[int, int]
-) -> Iterator[ToothedPair]:
-    """Yield the pairs of the cylindrical stages that are not refused."""
-    for stage in unit.of_type(*STAGES):
-        make = partial(_pair, stage, torques.get(stage.id, ()), drivers.get(stage.id))
-        pair = _attempt(stage, make)
-        if pair is not None:
-            yield pair
 
 
 def _attempt(stage: Part, make: Callable[[], T]) -> T | None:
@@ -140,7 +129,7 @@ def _center_distance(stage: Part, across: FloatArray) -> float:
         return abs(value)
     distance = float(np.linalg.norm(across))
     if not distance > 0.0:
-        raise BadInput.of(f"{stage.place}, center_distance", value, "given, or gears on axes apart")
+        raise stage.refusal("center_distance", value, "given, or gears on axes apart")
     stage.say("center_distance", "derived", f"{distance / MM:.7g} mm, the distance of the gears' axes")
     return distance
 
@@ -154,17 +143,12 @@ def _enter(cases: list[StageCase], pair: ToothedPair, case: Case) -> None:
             stage.say("", "derived", f"its case is that of stage {present.stage}: the planets are equal")
             cases[index] = replace(present, equal=(*present.equal, stage.id))
             return
-    name = _name(stage, {present.name for present in cases})
+    plain = unicodedata.normalize("NFKD", stage.name).encode("ascii", "ignore").decode().lower()
+    name = re.sub(r"[^a-z0-9]+", "_", plain).strip("_")[:_LONGEST_NAME] or f"stage_{stage.id}"
+    name += f"_{stage.id}" if name in {present.name for present in cases} else ""
     stage.say("", "taken", f"case {name}")
     distance, gears = pair.center_distance, (meshing.driver.id, meshing.driven.id)
     cases.append(StageCase(stage.id, name, case, *gears, meshing.wheel_drives, distance))
-
-
-def _name(stage: Part, taken: set[str]) -> str:
-    """Return a name for a file: the stage's in plain letters, with its id if another has it."""
-    plain = unicodedata.normalize("NFKD", stage.name).encode("ascii", "ignore").decode().lower()
-    name = re.sub(r"[^a-z0-9]+", "_", plain).strip("_")[:_LONGEST_NAME] or f"stage_{stage.id}"
-    return name if name not in taken else f"{name}_{stage.id}"
 
 
 # Gears, meshes and additional masses of the scene.
@@ -172,8 +156,6 @@ def _name(stage: Part, taken: set[str]) -> str:
 
 SAME = 1e-6
 """Relative; axes of a scene that differ more from the center distance of their mesh are refused."""
-RIM = 3.5
-"""Modules; thinner rims weaken the tooth root (ISO 6336-3, rim thickness factor)."""
 INTEGRAL = 0.95
 """Share of the pitch diameter from which a shaft's section is the gear's own body."""
 
@@ -282,12 +264,8 @@ def _disc(part: Part, on: SceneShaft, z: float, names: Names) -> dict[str, Any] 
     if not mass or mass < 0.0:
         part.say("", "refused", "no mass is stated")
         return None
-    moments = []
-    for axis in "uvw":
-        item = f"moment_of_inertia_{axis}_axis"
-        words = "moment of inertia of a disc, kg m^2"
-        value = part.number(item, words, 0.0, "0 kg m^2: a point mass on the axis")
-        moments.append(max(0.0, value))
+    words, why = "moment of inertia of a disc, kg m^2", "0 kg m^2: a point mass on the axis"
+    moments = [max(0.0, part.number(f"moment_of_inertia_{a}_axis", words, 0.0, why)) for a in "uvw"]
     if moments[1] != moments[2]:
         part.say("moment_of_inertia_w_axis", "derived", "mean of v and w: a disc is a body of revolution")
     inertia = Inertia(mass, moments[0], 0.5 * (moments[1] + moments[2]))

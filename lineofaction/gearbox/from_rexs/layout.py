@@ -9,13 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bounds.types import FloatArray
-from lineofaction.gearbox.from_rexs.gear_unit import (
-    Connection,
-    GearStage,
-    GearUnit,
-    Part,
-    PlanetarySet,
-)
+from lineofaction.gearbox.from_rexs.gear_unit import Connection, GearStage, GearUnit, Part, PlanetarySet
 from lineofaction.gearbox.from_rexs.placement import (
     FIXED,
     SAME_PLACE,
@@ -135,7 +129,11 @@ def _shaft_places(
     for planets in sets:
         pins = {pin.id for pin in planets.pins}
         for shaft in planets.carrier:
-            _by_set(shaft, pins, planets.central, places)
+            base = next((places[part.id] for part in planets.central if part.id in places), None)
+            if shaft.type == "shaft" and base is not None and shaft.id not in {*places, *pins}:
+                places[shaft.id] = base
+                words = "on the axis of the central shafts, its begin at theirs"
+                shaft.say("support_vector", "defaulted", words)
     _spread(unit, stages, places)
     for shaft in shafts:
         if shaft.id not in places:
@@ -155,13 +153,6 @@ def _spread(unit: GearUnit, stages: Sequence[GearStage], places: dict[int, Place
             return
 
 
-def _by_set(shaft: Part, pins: set[int], central: Sequence[Part], places: dict[int, Placement]) -> None:
-    base = next((places[part.id] for part in central if part.id in places), None)
-    if shaft.type == "shaft" and shaft.id not in places and shaft.id not in pins and base is not None:
-        places[shaft.id] = base
-        shaft.say("support_vector", "defaulted", "on the axis of the central shafts, its begin at theirs")
-
-
 def _by_stage(stage: GearStage, places: dict[int, Placement]) -> None:
     known = [shaft.id in places for shaft in stage.shafts]
     if not stage.is_cylindrical or known[0] == known[1]:
@@ -172,12 +163,11 @@ def _by_stage(stage: GearStage, places: dict[int, Placement]) -> None:
     angle = stage.stage.number(_ANGLE, "direction from gear 1 to gear 2, deg", 0.0, "0 deg")
     way = 1.0 if known[0] else -1.0
     base, new = (stage.shafts[index] for index in ((0, 1) if known[0] else (1, 0)))
-    place = places[base.id]
-    u, v, w = place.axes
+    u, v, w = places[base.id].axes
     across = way * center_distance * (math.sin(angle) * v + math.cos(angle) * w)
     ends = [_u(gear, "u_coordinate_on_shaft") for gear in stage.gears]
-    along = way * (ends[0] - ends[1]) * u
-    _place(new, place, across + along, f"center distance and {_ANGLE} of component {stage.stage.id}", places)
+    offset = across + way * (ends[0] - ends[1]) * u
+    _place(new, base, offset, f"center distance and {_ANGLE} of component {stage.stage.id}", places)
 
 
 def _by_coupling(coupling: Connection, places: dict[int, Placement]) -> None:
@@ -187,21 +177,17 @@ def _by_coupling(coupling: Connection, places: dict[int, Placement]) -> None:
         return
     base, new = sides if known[0] else sides[::-1]
     inner, outer = (_u(coupling.part, f"u_coordinate_on_shaft_{side}_side") for side in ("inner", "outer"))
-    way = 1.0 if known[0] else -1.0
-    place = places[base.id]
-    _place(
-        new, place, way * (inner - outer) * place.axes[0], f"coaxial: component {coupling.part.id}", places
-    )
+    offset = (1.0 if known[0] else -1.0) * (inner - outer) * places[base.id].u
+    _place(new, base, offset, f"coaxial: component {coupling.part.id}", places)
 
 
 def _u(part: Part, item: str) -> float:
     return part.number(item, "place along the shaft, mm") or 0.0
 
 
-def _place(
-    shaft: Part, base: Placement, offset: FloatArray, words: str, places: dict[int, Placement]
-) -> None:
-    places[shaft.id] = Placement(np.asarray(base.origin + offset), base.axes)
+def _place(shaft: Part, base: Part, offset: FloatArray, words: str, places: dict[int, Placement]) -> None:
+    beside = places[base.id]
+    places[shaft.id] = Placement(np.asarray(beside.origin + offset), beside.axes)
     shaft.say("support_vector", "derived", words)
 
 
@@ -266,6 +252,11 @@ class Layout:
         """Return the rotor of the carrier that a stage runs on, None for the ground."""
         return self.rotors.carrier_of(*(shaft.id for shaft in stage.shafts))
 
+    def joined(self, stage: GearStage) -> set[int]:
+        """Return the rotors that a stage joins: its shafts', and the carrier that it runs on."""
+        rotors = {self.rotor(shaft.id) for shaft in stage.shafts}
+        return rotors if (carrier := self.carrier(stage)) is None else rotors | {carrier}
+
     def is_computed(self, stage: GearStage) -> bool:
         """Return whether a stage has parallel axes, and so a case."""
         return stage.is_cylindrical and all(shaft.id in self.shafts for shaft in stage.shafts)
@@ -278,7 +269,7 @@ class Layout:
             if stated is None:
                 part.say(item, "defaulted", "0 mm: the file gives no place")
             return stated or 0.0
-        u = shaft.along(place.origin)
+        u = shaft.place.along(place.origin)
         _compare(part, item, stated, u, shaft.off_axis(place.origin))
         return u
 

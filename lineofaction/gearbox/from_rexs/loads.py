@@ -100,11 +100,7 @@ class SceneMotion:
         layout, stages = self._layout, self._shafts.stages
         trains = [{rotor} for rotor in self._shafts.by_rotor]
         joined = [{layout.rotor(shaft.id) for shaft in stage.shafts} for stage in stages]
-        joined += [
-            {carrier} | {layout.rotor(shaft.id) for shaft in stage.shafts}
-            for stage in stages
-            if (carrier := layout.carrier(stage)) is not None
-        ]
+        joined += [layout.joined(stage) for stage in stages if layout.carrier(stage) is not None]
         joined += [{layout.rotor(e.inner.id), layout.rotor(e.outer.id)} for e in layout.rotors.couplings]
         for ends in joined:
             touched = [train for train in trains if train & ends]
@@ -210,11 +206,6 @@ class LoadCase:
 
     def table(self) -> dict[str, Any]:
         """Return its table in a file."""
-        table = {
-            "name": self.name,
-            "share": self.share,
-            "torque_n_m": self.torque_n_m,
-            "speed_rpm": self.speed_rpm,
-            "direction": self.direction,
-        }
+        names = ("name", "share", "torque_n_m", "speed_rpm", "direction")
+        table = {name: getattr(self, name) for name in names}
         return table | ({"forces": [dict(force) for force in self.forces]} if self.forces else {})

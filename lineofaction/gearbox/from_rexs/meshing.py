@@ -11,7 +11,6 @@ import numpy as np
 from bounds.types import FloatArray
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
 from lineofaction.gearbox.from_rexs.placement import frame_of
-from lineofaction.gearbox.problems import BadInput
 
 STAGES = ("cylindrical_stage",)
 OTHER_STAGES = ("bevel_stage", "worm_stage", "hypoid_stage", "beveloid_stage")
@@ -38,7 +37,12 @@ def _senses(unit: GearUnit) -> dict[int, _Sense]:
     """
     shafts = unit.of_type("shaft")
     known = {shaft.id: (sense, shaft.name) for shaft in shafts if (sense := _sense_of_speed(shaft))}
-    links = [*_on_shafts(unit), *_in_mesh(unit)]
+    gears = unit.of_type("cylindrical_gear", "ring_gear")
+    links = [(shaft, gear, _aligned(shaft, gear)) for gear in gears if (shaft := gear.shaft) is not None]
+    for stage in unit.of_type(*STAGES):
+        if (pair := _stage_gears(stage)) is not None:
+            same = "ring_gear" in (pair[0].type, pair[1].type)
+            links.append((*pair, _aligned(*pair) * (1.0 if same else -1.0)))
     while True:
         count = len(known)
         for first, second, ratio in links:
@@ -58,22 +62,6 @@ def _sense_of_speed(shaft: Part) -> float | None:
         if speed:
             return math.copysign(1.0, speed)
     return None
-
-
-def _on_shafts(unit: GearUnit) -> list[tuple[Part, Part, float]]:
-    """Return shafts and their gears, -1 where a gear's u axis is against the shaft's."""
-    gears = unit.of_type("cylindrical_gear", "ring_gear")
-    return [(shaft, gear, _aligned(shaft, gear)) for gear in gears if (shaft := gear.shaft) is not None]
-
-
-def _in_mesh(unit: GearUnit) -> list[tuple[Part, Part, float]]:
-    links = []
-    for stage in unit.of_type(*STAGES):
-        gears = _stage_gears(stage)
-        if gears is not None:
-            same = "ring_gear" in (gears[0].type, gears[1].type)
-            links.append((*gears, _aligned(*gears) * (1.0 if same else -1.0)))
-    return links
 
 
 def _aligned(first: Part, second: Part) -> float:
@@ -115,7 +103,7 @@ class Meshing:
         """
         gears = _stage_gears(stage)
         if gears is None or all(gear.type == "ring_gear" for gear in gears):
-            raise BadInput.of(f"{stage.place}, stage", None, "a relation to two gears, one of them external")
+            raise stage.refusal("stage", None, "a relation to two gears, one of them external")
         driving = _driver(stage, gears, driver)
         sense = _sense(stage, driving, torques)
         ring = next((gear for gear in gears if gear.type == "ring_gear"), None)
@@ -149,7 +137,7 @@ def _driver(stage: Part, gears: tuple[Part, Part], driver: int | None) -> Part:
     if driver is not None:
         chosen = next((gear for gear in gears if gear.id == driver), None)
         if chosen is None:
-            raise BadInput.of(f"{stage.place}, driver", driver, f"one of {[gear.id for gear in gears]}")
+            raise stage.refusal("driver", driver, f"one of {[gear.id for gear in gears]}")
         return chosen
     marked = [gear for gear in gears if _is_marked(stage, gear)]
     if len(marked) == 1:
@@ -172,8 +160,7 @@ def _sense(stage: Part, driver: Part, torques: tuple[float, ...]) -> float:
     """Return the sense in which the driver turns about its u axis: by its torque, else by the speeds."""
     signs = {math.copysign(1.0, torque) for torque in torques if torque}
     if len(signs) > 1:
-        advice = "Make a case for each sense of rotation."
-        raise BadInput.of(f"{stage.place}, torque", list(torques), "of one sign", advice)
+        raise stage.refusal("torque", list(torques), "of one sign", "Make a case for each sense of rotation.")
     if signs:
         return signs.pop()
     if (known := _senses(stage.unit).get(driver.id)) is not None:

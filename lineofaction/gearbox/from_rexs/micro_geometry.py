@@ -14,12 +14,7 @@ from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.meshing import LoadedFlank
-from lineofaction.gearbox.from_rexs.modifications import (
-    READERS,
-    UNREAD,
-    FlankPlace,
-    Modification,
-)
+from lineofaction.gearbox.from_rexs.modifications import READERS, UNREAD, FlankPlace, Modification
 from lineofaction.gearbox.units import MM, UM
 
 Table = dict[str, Any]
@@ -59,13 +54,12 @@ def _modifications(place: FlankPlace, flank: Part) -> Iterator[Modification]:
             part.say("", *UNREAD[part.type])
         if part.type not in READERS:
             continue
-        if part.attribute("position_of_profile_modification") is not None:
-            part.say(
-                "position_of_profile_modification", "ignored", "the profile is the same all over the face"
-            )
-        additive = part.text("is_additive_modification", "modifications add up")
-        if additive == "False":
-            part.say("is_additive_modification", "ignored", "modifications add up")
+        item = "position_of_profile_modification"
+        if part.attribute(item) is not None:
+            part.say(item, "ignored", "the profile is the same all over the face")
+        item, words = "is_additive_modification", "modifications add up"
+        if part.text(item, words) == "False":
+            part.say(item, "ignored", words)
         yield READERS[part.type](place, part)
 
 

@@ -14,7 +14,6 @@ from fe_contact.types import FloatArray
 from lineofaction.gearbox.from_rexs.account import Fate
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.meshing import LoadedFlank
-from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, UM
 
 Removed = Callable[[FloatArray, FloatArray], FloatArray]
@@ -75,17 +74,14 @@ class FlankPlace:
             return None
         radius, base = 0.5 * abs(value), self.gear.base_radius
         if radius <= base:
-            bound = f"above the base diameter {2.0 * base / MM:.7g} mm"
-            raise BadInput.of(f"{part.place}, {diameter}", value / MM, bound)
+            raise part.refusal(diameter, value / MM, f"above the base diameter {2.0 * base / MM:.7g} mm")
         return math.sqrt(radius**2 - base**2)
 
     def stated_roll(self, part: Part, diameter: str, length: str, end: float) -> float:
         """Return the roll length where an amount is stated, by a diameter or as such; else an end."""
         words = "where the amount is stated"
         stated = self.roll_length(part, diameter, words)
-        if stated is None:
-            stated = part.number(length, f"{words}: a roll length")
-        return stated or end
+        return (part.number(length, f"{words}: a roll length") if stated is None else stated) or end
 
     def roll_range(self, part: Part, start: str, ends: Sequence[str]) -> tuple[float, float]:
         """Return the roll lengths over which an amount is stated, those of the whole flank by default."""
@@ -105,8 +101,7 @@ class FlankPlace:
 
     def radial(self, roll_length: float, end: float) -> float:
         """Return the radial distance in mm between two roll lengths."""
-        radii = (math.hypot(self.gear.base_radius, length) for length in (roll_length, end))
-        first, second = radii
+        first, second = (math.hypot(self.gear.base_radius, length) for length in (roll_length, end))
         return abs(second - first) / MM
 
 
@@ -136,13 +131,8 @@ def _shape_of(part: Part) -> str:
         part.say(item, "defaulted", "linear")
         return "linear"
     if word not in LAWS:
-        raise BadInput.of(f"{part.place}, {item}", word, f"one of {', '.join(LAWS)}")
+        raise part.refusal(item, word, f"one of {', '.join(LAWS)}")
     return word
-
-
-def _relative_depth(shape: str, fraction: FloatArray) -> FloatArray:
-    """Return the depth of a relief by that at its end, at fractions of its length; 0 before it starts."""
-    return np.asarray(LAWS[shape](np.maximum(fraction, 0.0)))
 
 
 def _blended_depth(fraction: FloatArray, start: float, end: float) -> FloatArray:
@@ -183,7 +173,8 @@ class _Growth:
     stated: float
 
     def at(self, place: FloatArray) -> FloatArray:
-        return self.depth * _relative_depth(self.shape, (place - self.start) / (self.stated - self.start))
+        fraction = np.maximum((place - self.start) / (self.stated - self.start), 0.0)
+        return self.depth * np.asarray(LAWS[self.shape](fraction))
 
     def fields(self, place: FlankPlace, name: str, end: float, length_mm: float) -> dict[str, Any]:
         """Return the fields of a relief that runs to an end of the flank, none where its law has no place."""
@@ -207,9 +198,8 @@ def _profile_relief(place: FlankPlace, part: Part) -> Modification:
     item = f"{name}_evaluation_reference"
     growth = _Growth(depth, shape, start, place.stated_roll(part, item, f"{item}_length", end))
     if not (growth.stated - start) * (end - start) > 0.0:
-        lengths = [start / MM, growth.stated / MM]
         bound = "roll lengths in mm of its start and, towards the end of the involute, of its depth"
-        raise BadInput.of(f"{part.place}, {name}", lengths, bound)
+        raise part.refusal(name, [start / MM, growth.stated / MM], bound)
     transition = _transition(place, part, growth)
     if transition is not None:
         whole = growth.stated - start
@@ -246,8 +236,7 @@ def _transition(place: FlankPlace, part: Part, growth: _Growth) -> tuple[float, 
         return None
     low, high = ((roll - growth.start) / (growth.stated - growth.start) for roll in (first, last))
     if not low < high < 1.0:
-        field = f"{part.place}, tangential transition"
-        raise BadInput.of(field, [low, high], "increasing, before the amount")
+        raise part.refusal("tangential transition", [low, high], "increasing, before the amount")
     return low, high
 
 
@@ -257,7 +246,7 @@ def _both_amounts(
     """Return the amounts of a crowning on both sides, one that is left out as on the other."""
     stated = [part.number(item, field) for item in items]
     if stated == [None, None]:
-        raise BadInput.of(f"{part.place}, {items[0]}", None, bound)
+        raise part.refusal(items[0], None, bound)
     for item, value in zip(items, stated, strict=True):
         if value is None:
             part.say(item, "defaulted", words)
@@ -279,8 +268,8 @@ def _profile_crowning(place: FlankPlace, part: Part) -> Modification:
     if part.text(item, "a parabola") == "circular":
         part.say(item, "taken", "an arc, which is a parabola to (amount / length)^2")
     if not (ends[0] - highest) * place.towards_tip > 0.0 > (ends[1] - highest) * place.towards_tip:
-        field, bound = f"{part.place}, profile_highest_point", "between the places of the amounts"
-        raise BadInput.of(field, highest / MM, bound, "In mm of roll length.")
+        bound = "between the places of the amounts"
+        raise part.refusal("profile_highest_point", highest / MM, bound, "In mm of roll length.")
     whole = place.same(ends[0], place.tip) and place.same(ends[1], place.root)
     fields = {}
     if whole and place.same(highest, middle) and amounts[0] == amounts[1]:
@@ -307,8 +296,7 @@ def _profile_slope(place: FlankPlace, part: Part) -> Modification:
     ends = ("diameter_where_profile_slope_amount_is_specified", "profile_evaluation_end")
     start, end = place.roll_range(part, "profile_evaluation_start", ends)
     if not (end - start) * place.towards_tip > 0.0:
-        field = f"{part.place}, profile_evaluation_end"
-        raise BadInput.of(field, part.name, "nearer to the tip than the start")
+        raise part.refusal("profile_evaluation_end", part.name, "nearer to the tip than the start")
     whole = amount * (place.tip - place.root) / (end - start)
     middle = 0.5 * (place.tip + place.root)
     return Modification(
@@ -327,13 +315,10 @@ def _helix_crowning(place: FlankPlace, part: Part) -> Modification:
     amounts = _both_amounts(part, items, "helix_crowning_um", "given", "as at the other face")
     item, words = "coordinate_where_helix_crowning_is_specified", "where the amount is stated"
     first = part.number(f"{item}_datum_face", words) or 0.0
-    last = part.number(f"{item}_non_datum_face", words)
-    ends = (first, place.width if last is None else last)
-    highest = part.number("helix_highest_point", "highest point")
-    highest = 0.5 * (ends[0] + ends[1]) if highest is None else highest
+    ends = (first, part.number(f"{item}_non_datum_face", words, place.width))
+    highest = part.number("helix_highest_point", "highest point", 0.5 * (ends[0] + ends[1]))
     if not ends[0] < highest < ends[1]:
-        field = f"{part.place}, helix_highest_point"
-        raise BadInput.of(field, rounded(1e3 * highest), "between the stated amounts")
+        raise part.refusal("helix_highest_point", rounded(1e3 * highest), "between the stated amounts")
     part.text("shape_of_helix_crowning", "a parabola; an arc is one to (amount / length)^2")
     whole = place.same(ends[0], 0.0) and place.same(ends[1], place.width)
     fields = {}
@@ -371,12 +356,11 @@ def _slope_length(place: FlankPlace, part: Part) -> float:
         owner, item, words = flank, "facewidth_usable", "length of the helix slope"
     else:
         owner, item, words = part, "helix_evaluation", "length of the amount"
-    start, stated = (owner.number(f"{item}_{end}", words) for end in ("start", "end"))
-    end = place.width if stated is None else stated
-    if not end > (start or 0.0):
-        field = f"{part.place}, helix_evaluation_end"
-        raise BadInput.of(field, rounded(1e3 * end), "above helix_evaluation_start")
-    return end - (start or 0.0)
+    start = owner.number(f"{item}_start", words) or 0.0
+    end = owner.number(f"{item}_end", words, place.width)
+    if not end > start:
+        raise part.refusal("helix_evaluation_end", rounded(1e3 * end), "above helix_evaluation_start")
+    return end - start
 
 
 def _end_relief(place: FlankPlace, part: Part) -> Modification:
@@ -388,11 +372,10 @@ def _end_relief(place: FlankPlace, part: Part) -> Modification:
     is_datum = side == "datum_face"
     end, inwards = (0.0, 1.0) if is_datum else (place.width, -1.0)
     start = end + inwards * length
-    stated = part.number(f"end_relief_evaluation_reference_{side}", "where the amount is stated")
-    growth = _Growth(depth, shape, start, end if stated is None else stated)
+    stated = part.number(f"end_relief_evaluation_reference_{side}", "where the amount is stated", end)
+    growth = _Growth(depth, shape, start, stated)
     if not 0.0 < length <= place.width or not (start - growth.stated) * inwards > 0.0:
-        field = f"{part.place}, end_relief_length_{side}"
-        raise BadInput.of(field, rounded(1e3 * length), "above 0, within the face")
+        raise part.refusal(f"end_relief_length_{side}", rounded(1e3 * length), "above 0, within the face")
     name = place.face_field("end_relief", datum=is_datum)
     fields = growth.fields(place, name, end, 1e3 * length)
     return Modification(part, lambda _roll, face: growth.at(face), fields, faces=(start,))
@@ -405,11 +388,9 @@ def _profile_twist(place: FlankPlace, part: Part) -> Modification:
     start, end = place.roll_range(part, "profile_twist_evaluation_start", ends)
     words = "range of the amount"
     first = part.number("position_of_profile_twist_datum_face", words) or 0.0
-    last = part.number("position_of_profile_twist_non_datum_face", words)
-    last = place.width if last is None else last
+    last = part.number("position_of_profile_twist_non_datum_face", words, place.width)
     if not last > first or not (end - start) * place.towards_tip > 0.0:
-        field = f"{part.place}, profile_twist"
-        raise BadInput.of(field, part.name, "stated over a range of profile and face")
+        raise part.refusal("profile_twist", part.name, "stated over a range of profile and face")
     whole = amount * (place.tip - place.root) / (end - start) * place.width / (last - first)
     middle, half = 0.5 * (place.tip + place.root), 0.5 * (place.tip - place.root)
     return Modification(
@@ -441,11 +422,11 @@ def _topography(place: FlankPlace, part: Part) -> Modification:
     rolls = _roll_lengths(place, part)
     if amounts is None or faces is None or rolls is None or not len(amounts) == len(faces) == len(rolls):
         counts = [None if entry is None else len(entry) for entry in (faces, rolls, amounts)]
-        raise BadInput.of(f"{part.place}, {_AMOUNTS}", counts, "as many coordinates, diameters and amounts")
+        raise part.refusal(_AMOUNTS, counts, "as many coordinates, diameters and amounts")
     nodes = dict(zip(zip(rolls, faces, strict=True), amounts, strict=True))
     axes = [np.array(sorted({node[axis] for node in nodes})) for axis in (0, 1)]
     if len(nodes) != len(axes[0]) * len(axes[1]) or min(map(len, axes)) < 2 or len(nodes) != len(amounts):
-        raise BadInput.of(f"{part.place}, {_AMOUNTS}", len(amounts), "on a grid of coordinates and diameters")
+        raise part.refusal(_AMOUNTS, len(amounts), "on a grid of coordinates and diameters")
     values = np.array([[nodes[roll, face] for face in axes[1]] for roll in axes[0]])
     surface = RegularGridInterpolator(tuple(axes), values)
 
@@ -463,7 +444,7 @@ def _roll_lengths(place: FlankPlace, part: Part) -> tuple[float, ...] | None:
         return part.numbers(_LENGTHS, "flank_grid")
     base = place.gear.base_radius
     if min(abs(value) for value in diameters) <= 2.0 * base:
-        raise BadInput.of(f"{part.place}, {_DIAMETERS}", 1e3 * min(diameters), f"above {2e3 * base:.7g} mm")
+        raise part.refusal(_DIAMETERS, 1e3 * min(diameters), f"above {2e3 * base:.7g} mm")
     return tuple(float(np.sqrt((0.5 * value) ** 2 - base**2)) for value in diameters)
 
 

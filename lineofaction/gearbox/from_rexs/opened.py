@@ -7,7 +7,7 @@ import binascii
 import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, astuple, dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -40,13 +40,6 @@ _OF_TYPE = {
     "external_load": "it acts on no shaft of the scene",
     "side_plate": "it is part of no planet carrier of the scene",
 }
-
-
-def _say_left_out(unit: GearUnit) -> None:
-    descriptive = words("descriptive_components")
-    for component in unit.model.components:
-        if component.type not in descriptive and not unit.account.is_stated(component):
-            unit.part(component.id).say("", "refused", _OF_TYPE.get(component.type, _NO_REASON))
 
 
 def headline(lines: Iterable[Line]) -> str:
@@ -151,8 +144,9 @@ def opened(document: Document, assumptions: Iterable[Assumption] = ()) -> Opened
     BadInput
         A value has the wrong type or unit, or a place, a section, the version or an assumption is none.
     """
-    model, changes = upgrade(document.model)
-    unit = GearUnit(assumed(model, assumptions))
+    newest, changes = upgrade(document.model)
+    model = assumed(newest, assumptions)
+    unit = GearUnit(model)
     layout = Layout.of(unit)
     flows = _flows(layout)
     drivers = {s.stage.id: s.gears[flows[0].driver(s)].id for s in layout.stages if flows}
@@ -162,8 +156,10 @@ def opened(document: Document, assumptions: Iterable[Assumption] = ()) -> Opened
         unit.say("scene", "refused", "no load case fits the train")
     elif not cases:
         unit.say("scene", "refused", "no stage has a case")
-    if table is not None:
-        _say_left_out(unit)
+    descriptive = words("descriptive_components")
+    for component in () if table is None else model.components:
+        if component.type not in descriptive and not unit.account.is_stated(component):
+            unit.part(component.id).say("", "refused", _OF_TYPE.get(component.type, _NO_REASON))
     scene = None if table is None else _scene(layout, table)
     loads = _load_cases(flows, table)
     parts = SceneParts() if table is None or scene is None else table.parts
@@ -251,9 +247,8 @@ def unit_files(unit: OpenedUnit) -> dict[str, str]:
 def _account_csv(lines: Iterable[Line]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    names = [field.name for field in fields(Line)]
-    writer.writerow(names)
-    writer.writerows([_safe(getattr(line, name)) for name in names] for line in lines)
+    writer.writerow(field.name for field in fields(Line))
+    writer.writerows(map(_safe, astuple(line)) for line in lines)
     return text.getvalue()
 
 
@@ -315,28 +310,23 @@ def unit_of_rexs(inputs: Json, _folder: Path) -> Json:
 
 def unit_json(unit: OpenedUnit) -> Json:
     """Return an opened unit as JSON."""
-    cases = {f"{case.name}.toml": case_json(case.case) for case in unit.cases}
+    cases = [
+        {"name": c.name, "stage": c.stage, "equal": list(c.equal), "case": case_json(c.case)}
+        for c in unit.cases
+    ]
     return {
         "left_out": list(unit.left_out),
-        "cases": [
-            {
-                "name": case.name,
-                "stage": case.stage,
-                "equal": list(case.equal),
-                "case": cases[f"{case.name}.toml"],
-            }
-            for case in unit.cases
-        ],
-        "scene": None if unit.scene is None else _whole(unit, cases),
+        "cases": cases,
+        "scene": None if unit.scene is None else _whole(unit.scene, cases),
         "load_cases": [{"forces": [], **case.table()} for case in unit.load_cases],
         "lines": [asdict(line) for line in unit.lines],
         "summary": list(report_lines(unit.lines)),
     }
 
 
-def _whole(unit: OpenedUnit, cases: dict[str, Json]) -> Json:
-    assert unit.scene is not None
-    scene: Json = unit.scene.model_dump(mode="json", exclude_unset=True)
-    for mesh in scene["meshes"]:
-        mesh["case"] = cases[mesh.pop("case_file")]
-    return scene
+def _whole(scene: SceneInput, cases: list[Json]) -> Json:
+    by_file = {f"{case['name']}.toml": case["case"] for case in cases}
+    whole: Json = scene.model_dump(mode="json", exclude_unset=True)
+    for mesh in whole["meshes"]:
+        mesh["case"] = by_file[mesh.pop("case_file")]
+    return whole

@@ -12,7 +12,6 @@ import numpy as np
 from bounds.types import FloatArray
 from dynamics.shafts import BeamSection
 from lineofaction.gearbox.from_rexs.gear_unit import Part
-from lineofaction.gearbox.problems import BadInput
 
 # Where components stand: points and axes u, v, w, composed over the components they refer to.
 
@@ -55,9 +54,10 @@ class Placement:
 FIXED = Placement(np.zeros(3), np.eye(3))
 
 
-def placement(part: Part) -> Placement | None:
-    """Return where a component stands, None where the file does not say."""
-    return _stated(part, ())
+def placement(part: Part, inner: tuple[int, ...] = ()) -> Placement | None:
+    """Return where a component stands, None where the file does not say; `inner` as of `frame_of`."""
+    origin = _vector(part, "support_vector", "place")
+    return None if origin is None else _in_reference(part, origin, inner)
 
 
 def frame_of(part: Part, inner: tuple[int, ...] = ()) -> Placement:
@@ -70,8 +70,8 @@ def frame_of(part: Part, inner: tuple[int, ...] = ()) -> Placement:
     """
     if part.id in inner or len(inner) > _MOST_REFERENCES:
         bound = "a component that is not placed by this one itself"
-        raise BadInput.of(f"{part.place}, {_REFERENCE}", inner[-1], bound, "Refer to the gear unit.")
-    stated, shaft = _stated(part, inner), part.shaft
+        raise part.refusal(_REFERENCE, inner[-1], bound, "Refer to the gear unit.")
+    stated, shaft = placement(part, inner), part.shaft
     if stated is not None:
         return stated
     if shaft is None or shaft.id == part.id:
@@ -90,11 +90,6 @@ def u_on_shaft(part: Part) -> float | None:
     base = None if shaft is None else placement(shaft)
     stated = part.number("u_coordinate_on_shaft", "place along the shaft")
     return stated if place is None or base is None else base.along(place.origin)
-
-
-def _stated(part: Part, inner: tuple[int, ...]) -> Placement | None:
-    origin = _vector(part, "support_vector", "place")
-    return None if origin is None else _in_reference(part, origin, inner)
 
 
 def _in_reference(part: Part, origin: FloatArray, inner: tuple[int, ...]) -> Placement:
@@ -119,20 +114,19 @@ def _across(part: Part, u: FloatArray) -> FloatArray:
     across = axis - (axis @ u) * u
     length = float(np.linalg.norm(across))
     if length < PARALLEL:
-        raise BadInput.of(f"{part.place}, w_axis_vector", list(map(float, axis)), "not along u_axis_vector")
+        raise part.refusal("w_axis_vector", list(map(float, axis)), "not along u_axis_vector")
     return np.asarray(across / length)
 
 
 def _unit(part: Part, item: str, usual: FloatArray) -> FloatArray:
     vector = _vector(part, item, "axis")
     if vector is None:
-        attribute = part.attribute(item)
-        if attribute is None or attribute.value is None:
+        if part.value(item) is None:
             part.say(item, "defaulted", f"{usual.tolist()}")
         return usual
     length = math.hypot(*vector)
     if length == 0.0:
-        raise BadInput.of(f"{part.place}, {item}", vector.tolist(), "a vector that has a direction")
+        raise part.refusal(item, vector.tolist(), "a vector that has a direction")
     return np.asarray(vector / length)
 
 
@@ -141,7 +135,7 @@ def _vector(part: Part, item: str, words: str) -> FloatArray | None:
     if numbers is None:
         return None
     if len(numbers) != 3 or not np.all(np.isfinite(numbers)):
-        raise BadInput.of(f"{part.place}, {item}", list(numbers), "three finite numbers")
+        raise part.refusal(item, list(numbers), "three finite numbers")
     return np.array(numbers, dtype=float)
 
 
@@ -248,10 +242,6 @@ class PlacedShaft:
         """Return the position of a u from the left end, m."""
         return u - self.begin if self.sense > 0 else self.end - u
 
-    def along(self, point: FloatArray) -> float:
-        """Return u of a point of the model, m."""
-        return self.place.along(point)
-
     def off_axis(self, point: FloatArray) -> float:
         """Return the distance of a point of the model from the axis, m."""
         return float(np.linalg.norm(np.cross(self.place.axes[0], point - self.place.origin)))
@@ -302,7 +292,7 @@ def _section(shaft: Part, part: Part) -> BeamSection:
     tapers = end != begin or end_bore not in (None, bore)
     if bore >= begin or (end_bore or 0.0) >= end:
         bound = f"smaller than the outer diameter, {begin * 1e3:g} mm"
-        raise BadInput.of(f"{part.place}, inner_diameter_begin", bore * 1e3, bound)
+        raise part.refusal("inner_diameter_begin", bore * 1e3, bound)
     return BeamSection(
         length,
         begin,
@@ -320,16 +310,12 @@ def _size(part: Part, item: str) -> float:
         part.say(item, "derived", "as at the begin")
     if value is None or not 0.0 < value <= 100.0:
         written = None if value is None else value * 1e3
-        raise BadInput.of(f"{part.place}, {item}", written, "above 0 mm and at most 100000 mm")
+        raise part.refusal(item, written, "above 0 mm and at most 100000 mm")
     return value
 
 
 def _material(shaft: Part) -> dict[str, float]:
-    names = {
-        "elastic_modulus": "youngs_modulus",
-        "poisson_ratio": "poissons_ratio",
-        "density": "density",
-    }
+    names = {"elastic_modulus": "youngs_modulus", "poisson_ratio": "poissons_ratio", "density": "density"}
     for part in shaft.referenced:
         if part.type == "material":
             values = {own: part.number(item, f"{own} of the shaft") for item, own in names.items()}

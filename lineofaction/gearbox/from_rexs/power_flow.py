@@ -11,7 +11,6 @@ import numpy as np
 from bounds.types import FloatArray
 from lineofaction.gearbox.from_rexs.gear_unit import GearStage, GearUnit, Part
 from lineofaction.gearbox.from_rexs.layout import Flow, Layout, Train
-from lineofaction.gearbox.problems import BadInput
 
 # Load cases of a REXS model: speeds and torques from outside, each with its share of the time.
 
@@ -128,7 +127,7 @@ def _component(part: Part, item: str, words: str) -> float | None:
     """Return a component of a force or moment, None where the file gives none, or it is the torque."""
     value = part.number(item, words) if words else None
     if value is not None and not abs(value) <= LARGEST:
-        raise BadInput.of(f"{part.place}, {item}", value, f"from {-LARGEST:g} to {LARGEST:g} N or N m")
+        raise part.refusal(item, value, f"from {-LARGEST:g} to {LARGEST:g} N or N m")
     return value
 
 

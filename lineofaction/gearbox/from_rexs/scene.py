@@ -10,18 +10,8 @@ from typing import Any
 import numpy as np
 
 from bounds.types import FloatArray
-from lineofaction.gearbox.from_rexs.gear_unit import (
-    NO_STAGE,
-    Connection,
-    GearStage,
-    Part,
-    rounded,
-)
-from lineofaction.gearbox.from_rexs.gears import (
-    StageCase,
-    scene_discs,
-    scene_gears,
-)
+from lineofaction.gearbox.from_rexs.gear_unit import NO_STAGE, GearStage, Part, rounded
+from lineofaction.gearbox.from_rexs.gears import StageCase, scene_discs, scene_gears
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.loads import AppliedTorque, SceneMotion
 from lineofaction.gearbox.from_rexs.placement import FIXED, SAME_PLACE, PlacedShaft, placement
@@ -107,29 +97,25 @@ def _scene_parts(
     seats: Mapping[int, str],
     meshes: Sequence[tuple[str, StageCase]],
 ) -> SceneParts:
-    """Return the components of a scene's parts, its meshes in the order of `shafts.stages`."""
-    parts = {
+    """Return the components of a scene's parts, its meshes in the order of `shafts.stages`.
+
+    A carrier is a shaft of them only if the component of its rotor is a shaft of its own.
+    """
+    of_meshes = {
         name: MeshPart(stage.stage.id, case.name, _face_sense(layout, flow, stage, case))
         for stage, (name, case) in zip(shafts.stages, meshes, strict=True)
     }
-    return SceneParts(dict(_shafts(layout, shafts)), dict(_bearings(layout, seats)), parts)
-
-
-def _shafts(layout: Layout, shafts: SceneShafts) -> Iterator[tuple[str, ShaftPart]]:
-    """Yield the shafts; a carrier only if the component of its rotor is a shaft of its own."""
+    of_shafts = {}
     for rotor, shaft in shafts.by_rotor.items():
-        if rotor in layout.shafts:
-            placed = layout.shafts[rotor]
-            zero = float(placed.start[2]) - shaft.begin
-            yield shaft.name, ShaftPart(rotor, layout.axes.turn(placed.place), placed.sense, zero)
-
-
-def _bearings(layout: Layout, seats: Mapping[int, str]) -> Iterator[tuple[str, BearingPart]]:
-    entries: tuple[Connection, ...] = (*layout.unit.bearings, *layout.unit.couplings)
-    for entry in entries:
+        if (placed := layout.shafts.get(rotor)) is not None:
+            turn, zero = layout.axes.turn(placed.place), float(placed.start[2]) - shaft.begin
+            of_shafts[shaft.name] = ShaftPart(rotor, turn, placed.sense, zero)
+    of_bearings = {}
+    for entry in (*layout.unit.bearings, *layout.unit.couplings):
         if entry.part.id in seats and entry.held.id in layout.shafts:
             turn, inside = layout.turn(entry.part, entry.held), entry.held.id == entry.inner.id
-            yield seats[entry.part.id], BearingPart(entry.part.id, turn, inside)
+            of_bearings[seats[entry.part.id]] = BearingPart(entry.part.id, turn, inside)
+    return SceneParts(of_shafts, of_bearings, of_meshes)
 
 
 def _face_sense(layout: Layout, flow: PowerFlow, stage: GearStage, case: StageCase) -> int:
@@ -192,20 +178,16 @@ class _SceneForce:
         return {**self.stated(point), "shaft": self.shaft, "position_mm": self.position_mm}
 
 
-def _scene_forces(
-    layout: Layout, points: Sequence[OperatingPoint], shafts: SceneShafts
-) -> tuple[_SceneForce, ...]:
-    """Return the external loads that push or tilt a shaft at any of some operating points.
+def _forces(layout: Layout, points: Sequence[OperatingPoint], shafts: SceneShafts) -> Iterator[_SceneForce]:
+    """Yield the external loads that push or tilt a shaft at any of some operating points.
 
     The account says which are left out, and why.
     """
-    acting = {load for point in points for load, wrench in point.forces.items() if any(wrench)}
-    return tuple(_forces(layout, [p for p in layout.unit.of_type("external_load") if p.id in acting], shafts))
-
-
-def _forces(layout: Layout, loads: Sequence[Part], shafts: SceneShafts) -> Iterator[_SceneForce]:
     names = Names()
-    for part in loads:
+    acting = {load for point in points for load, wrench in point.forces.items() if any(wrench)}
+    for part in layout.unit.of_type("external_load"):
+        if part.id not in acting:
+            continue
         placed, reason = _placed(layout, part, shafts)
         if placed is None:
             _refuse(layout, part, reason)
@@ -301,7 +283,7 @@ def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[Stag
     bearings = SceneBearings(layout, shafts)
     gears, meshes = scene_gears(layout, shafts, by_stage)
     motion = SceneMotion(flow, shafts, cut)
-    forces = _scene_forces(layout, [each.point for each in flows], shafts)
+    forces = tuple(_forces(layout, [each.point for each in flows], shafts))
     table: dict[str, Any] = {
         "run": {"duration_s": _duration(layout, motion.slowest_mesh())},
         "gravity_m_per_s2": _gravity(layout),
@@ -396,8 +378,7 @@ def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
         if not np.allclose(turned, equal, atol=1e-6):
             table["angles_deg"] = turned
         for planet in planets.planets[1:]:
-            gears = planet.children("cylindrical_gear")
-            for part in (planet, *gears):
+            for part in (planet, *planet.children("cylindrical_gear")):
                 part.say("", "derived", f"copy of planet {names[first.id]}")
         tables.append(table)
     return tables

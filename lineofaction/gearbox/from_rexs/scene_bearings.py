@@ -64,7 +64,7 @@ class SceneBearings:
         for entry in layout.rotors.couplings:
             self._enter_coupling(entry)
         self.couplings += _stub_couplings(shafts)
-        self.housings = _scene_housings(layout, self.seats)
+        self.housings = list(_housings(layout, self.seats))
 
     def _enter(self, entry: Connection) -> None:
         """Enter a bearing, or a coupling on the ground, by what it joins."""
@@ -236,9 +236,8 @@ def _contact_side(part: Part, row: Part | None, sense: int) -> int | str:
     The row's own direction counts, else that of the bearing; the reason where neither says or they differ.
     """
     own = _SIGN.get(_axial_location(part, sense) or "")
-    of_row = None
-    if row is not None:
-        of_row = _SIGN.get(_axial_location(row, sense, f"{_ABSORPTION}_of_row") or "")
+    stated = None if row is None else _axial_location(row, sense, f"{_ABSORPTION}_of_row")
+    of_row = _SIGN.get(stated or "")
     if own is not None and of_row is not None and own != of_row:
         return f"{_ABSORPTION} of the bearing and of its row are opposite"
     side = of_row or own
@@ -303,16 +302,34 @@ _SYMMETRIC = 1e-6
 """Relative; a finite-element program writes its matrices with that many digits."""
 
 
-def _scene_housings(layout: Layout, seats: dict[int, str]) -> list[Table]:
-    """Return the housings whose points carry bearings.
+def _housings(layout: Layout, seats: dict[int, str]) -> Iterator[Table]:
+    """Yield the housings whose points carry bearings.
 
     The matrix of the file has six rows a point, motions along and rotations about u, v, w of its assembly
     group, in N, mm, rad, and the order of the points. Points that carry no bearing of the scene follow free
     of force (static condensation). `seats` has the names of the bushings by component.
     """
     names = Names()
-    tables = (_housing_table(layout, group, seats, names) for group in _groups(layout))
-    return [table for table in tables if table is not None]
+    for group in _groups(layout):
+        points = group.children("reduction_point")
+        bearings = [_seat_of(point, seats) for point in points]
+        matrix = _stiffness(group, len(points))
+        if matrix is None:
+            continue
+        if not any(bearings):
+            group.say("", "refused", "no reduction point refers to a bearing of the scene")
+            continue
+        turn = np.kron(np.eye(2 * len(points)), layout.axes.turn(placement(group) or FIXED))
+        turned = turn @ matrix @ turn.T
+        kept = [index for index, name in enumerate(bearings) if name]
+        group.say("", "taken", "elastic housing")
+        words = f"stiffness under {len(kept)} bearings; u, v, w turned to x, y, z, mm to m"
+        group.say(_MATRIX, "taken", words)
+        yield {
+            "name": names.of(group),
+            "bushings": [name for name in bearings if name],
+            "stiffness_matrix": _condensed(turned, kept).tolist(),
+        }
 
 
 def _loosely_housed(layout: Layout) -> set[int]:
@@ -339,29 +356,7 @@ def _groups(layout: Layout) -> list[Part]:
     ]
 
 
-def _housing_table(layout: Layout, group: Part, seats: dict[int, str], names: Names) -> Table | None:
-    points = group.children("reduction_point")
-    bearings = [_seat_of(layout, point, seats) for point in points]
-    matrix = _stiffness(group, len(points))
-    if matrix is None:
-        return None
-    if not any(bearings):
-        group.say("", "refused", "no reduction point refers to a bearing of the scene")
-        return None
-    place = placement(group) or FIXED
-    turn = np.kron(np.eye(2 * len(points)), layout.axes.turn(place))
-    turned = turn @ matrix @ turn.T
-    kept = [index for index, name in enumerate(bearings) if name]
-    group.say("", "taken", "elastic housing")
-    group.say(_MATRIX, "taken", f"stiffness under {len(kept)} bearings; u, v, w turned to x, y, z, mm to m")
-    return {
-        "name": names.of(group),
-        "bushings": [name for name in bearings if name],
-        "stiffness_matrix": _condensed(turned, kept).tolist(),
-    }
-
-
-def _seat_of(layout: Layout, point: Part, seats: dict[int, str]) -> str | None:
+def _seat_of(point: Part, seats: dict[int, str]) -> str | None:
     for part in point.referenced:
         if part.id in seats:
             point.say("", "taken", f"seat of {seats[part.id]}")
@@ -377,14 +372,10 @@ def _stiffness(group: Part, points: int) -> FloatArray | None:
         group.say("", "refused", f"no {_MATRIX}: files of finite-element programs are not read")
         return None
     size = _PER_POINT * points
-    if (
-        not isinstance(rows, tuple)
-        or len(rows) != size
-        or any(not isinstance(row, tuple) or len(row) != size for row in rows)
-    ):
-        group.say(
-            _MATRIX, "refused", f"{size} rows of {size} numbers are needed: six for each reduction point"
-        )
+    sizes = [len(row) if isinstance(row, tuple) else 0 for row in (rows if isinstance(rows, tuple) else ())]
+    if not isinstance(rows, tuple) or sizes != [size] * size:
+        words = f"{size} rows of {size} numbers are needed: six for each reduction point"
+        group.say(_MATRIX, "refused", words)
         return None
     try:
         matrix = np.array(rows, dtype=float)

@@ -60,9 +60,12 @@ class _Piece:
 def _carrier_body(layout: Layout, rotor: int) -> dict[str, Any]:
     """Return the body of a carrier.
 
-    A piece off the axis adds m r^2 about it and, as one of several around it, m r^2 / 2 across it.
+    Its axis is that of the first shaft that is no pin. A piece off the axis adds m r^2 about it and, as one
+    of several around it, m r^2 / 2 across it.
     """
-    axis = layout.shafts[_axis(layout, rotor)]
+    pins = {pin.id for planets in layout.rotors.sets for pin in planets.pins}
+    shafts = [member for member in layout.rotors.members(rotor) if member in layout.shafts]
+    axis = layout.shafts[next((member for member in shafts if member not in pins), shafts[0])]
     x, y = (float(value) for value in axis.origin[:2])
     members = (layout.unit.part(member) for member in layout.rotors.members(rotor))
     pieces = [piece for member in members for piece in _pieces(layout, member, (x, y))]
@@ -87,13 +90,6 @@ def _disc(layout: Layout, axis: PlacedShaft, rotor: int) -> dict[str, Any]:
     words = f"no part has a size: a steel disc of {2e3 * radius:.6g} mm diameter, {DISC * 1e3:g} mm long"
     layout.unit.part(rotor).say("inertia", "defaulted", words)
     return _rigid((x, y, z), DISC, hollow_cylinder(2.0 * radius, DISC))
-
-
-def _axis(layout: Layout, rotor: int) -> int:
-    """Return the shaft on the carrier's axis: the first that is no pin."""
-    pins = {pin.id for planets in layout.rotors.sets for pin in planets.pins}
-    shafts = [member for member in layout.rotors.members(rotor) if member in layout.shafts]
-    return next((member for member in shafts if member not in pins), shafts[0])
 
 
 def _pieces(layout: Layout, part: Part, axis: tuple[float, float]) -> Iterator[_Piece]:
@@ -182,10 +178,10 @@ class SceneShafts:
         for placed in layout.shafts.values():
             if placed.part.id not in others and layout.rotor(placed.part.id) not in rotors:
                 placed.part.say("", "refused", "no computed stage or coupling joins it to the train")
-        for stage in kept:
+        for stage in (each for each in kept if layout.carrier(each) is not None):
             for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
-                carrier = layout.carrier(stage)
-                if carrier is not None and _meshes_outside(layout, kept, shaft, carrier):
+                meshing = (each for each in kept if shaft.id in {own.id for own in each.shafts})
+                if len(set(map(layout.carrier, meshing))) > 1:
                     bodies.stubs[gear.id] = _stub(layout, shaft, gear, names)
         _enter_frames(layout, bodies)
         return bodies
@@ -198,8 +194,7 @@ class SceneShafts:
 
 def _joined(layout: Layout, stages: Sequence[GearStage]) -> set[int]:
     """Return the rotors of the stages, their carriers, and what is coupled to them."""
-    rotors = {layout.rotor(shaft.id) for stage in stages for shaft in stage.shafts}
-    rotors |= {carrier for stage in stages if (carrier := layout.carrier(stage)) is not None}
+    rotors: set[int] = set().union(*map(layout.joined, stages))
     known: set[int] = set()
     while rotors != known:
         known = set(rotors)
@@ -210,19 +205,19 @@ def _joined(layout: Layout, stages: Sequence[GearStage]) -> set[int]:
     return rotors
 
 
-def _meshes_outside(layout: Layout, stages: Sequence[GearStage], shaft: Part, carrier: int) -> bool:
-    return any(
-        shaft.id in {own.id for own in stage.shafts} and layout.carrier(stage) != carrier for stage in stages
-    )
-
-
 def _shaft(layout: Layout, rotor: int, names: Names) -> SceneShaft:
     part = layout.unit.part(rotor)
     if rotor in {layout.rotor(planets.carrier[0].id) for planets in layout.rotors.sets}:
-        return _carrier(layout, rotor, names)
-    placed = layout.shafts[rotor]
-    part.say("", "taken", f"shaft of the scene, {'u along z' if placed.sense > 0 else 'u against z'}")
-    return SceneShaft(names.of(part), rotor, {"name": names.of(part), **_body(placed, part)})
+        body = _carrier_body(layout, rotor)
+        members = layout.rotors.members(rotor)
+        for member in members:
+            words = f"part of the rigid planet carrier of {len(members)} parts"
+            layout.unit.part(member).say("", "derived", words)
+    else:
+        placed = layout.shafts[rotor]
+        part.say("", "taken", f"shaft of the scene, {'u along z' if placed.sense > 0 else 'u against z'}")
+        body = _body(placed, part)
+    return SceneShaft(names.of(part), rotor, {"name": names.of(part), **body})
 
 
 def _body(placed: PlacedShaft, part: Part) -> dict[str, Any]:
@@ -253,15 +248,6 @@ def _section(section: BeamSection) -> dict[str, Any]:
     return table
 
 
-def _carrier(layout: Layout, rotor: int, names: Names) -> SceneShaft:
-    body = _carrier_body(layout, rotor)
-    members = [layout.unit.part(member) for member in layout.rotors.members(rotor)]
-    for member in members:
-        member.say("", "derived", f"part of the rigid planet carrier of {len(members)} parts")
-    name = names.of(layout.unit.part(rotor))
-    return SceneShaft(name, rotor, {"name": name, **body})
-
-
 def _stub(layout: Layout, shaft: Part, gear: Part, names: Names) -> SceneShaft:
     placed = layout.shafts[shaft.id]
     z = layout.z_on(placed, gear)
@@ -273,7 +259,6 @@ def _stub(layout: Layout, shaft: Part, gear: Part, names: Names) -> SceneShaft:
 
 
 def _line(origin: Sequence[float], length: float) -> dict[str, Any]:
-    """Return length and left end (m) of a shaft."""
     return {"length_mm": length / MM, "origin_mm": [value / MM for value in origin]}
 
 
@@ -297,8 +282,4 @@ def _enter_frames(layout: Layout, shafts: SceneShafts) -> None:
 
 def inertia_table(inertia: Inertia) -> dict[str, float]:
     """Return the table of an inertia."""
-    return {
-        "mass_kg": inertia.mass,
-        "polar_kg_m2": inertia.polar,
-        "transverse_kg_m2": inertia.transverse,
-    }
+    return {"mass_kg": inertia.mass, "polar_kg_m2": inertia.polar, "transverse_kg_m2": inertia.transverse}

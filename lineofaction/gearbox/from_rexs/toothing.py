@@ -10,7 +10,6 @@ from functools import cached_property
 from fe_contact.flank.involute import involute_function
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, Meshing
-from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, as_typed
 
 _SHIFT = "addendum_modification_coefficient"
@@ -50,7 +49,7 @@ class ToothingData:
         if teeth != round(teeth) or teeth == 0.0 or (teeth < 0.0 and not ring):
             bound = f"a whole number {'other than' if ring else 'above'} 0"
             advice = "" if teeth > 0.0 else "A ring gear is a component of the type ring_gear."
-            raise BadInput.of(f"{gear.place}, number_of_teeth", teeth, bound, advice)
+            raise gear.refusal("number_of_teeth", teeth, bound, advice)
         return cls(
             loaded=loaded,
             sign=-1 if ring else 1,
@@ -104,7 +103,7 @@ def _helix_angle(gear: Part) -> float:
     item = "helix_angle_reference_diameter"
     value = gear.number(item, "helix_angle_deg; > 0 is right hand", 0.0, "0: a spur gear")
     if not abs(value) < math.radians(80.0):
-        raise BadInput.of(f"{gear.place}, {item}", math.degrees(value), "-80 to 80 deg")
+        raise gear.refusal(item, math.degrees(value), "-80 to 80 deg")
     return value + 0.0  # -0.0 becomes 0.0
 
 
@@ -158,8 +157,8 @@ class ToothedPair:
         cosine = reference * math.cos(pinion.transverse_pressure_angle) / self.center_distance
         if not 0.0 < cosine < 1.0:
             least = 1e3 * reference * math.cos(pinion.transverse_pressure_angle)
-            field = f"{self.stage.place}, center_distance"
-            raise BadInput.of(field, as_typed(self.center_distance, MM), f"above {least:.7g} mm")
+            value, bound = as_typed(self.center_distance, MM), f"above {least:.7g} mm"
+            raise self.stage.refusal("center_distance", value, bound)
         return math.acos(cosine)
 
     @property

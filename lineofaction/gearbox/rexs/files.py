@@ -24,14 +24,14 @@ _MOST_RATIO = 200
 _MODEL_NAME = "rexs-model.rexs"
 _MODEL_ENDINGS = (".rexs", ".rexsj")
 _FIRST_DAY = (1980, 1, 1, 0, 0, 0)
+_UNREADABLE = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError, OSError)
+"""What the reader of archives raises for one that is damaged or locked, or for what it does not know."""
 
-_WHOLE, _PART = "assembly", "part"
 _ASSEMBLIES = ("assembly", "ordered_assembly")
 _MOST_FAULTS = 20
 
 
 def _check(model: Model) -> None:
-    """Check the model's references."""
     faults = [*_repeated(model), *_dangling(model), *_cycles(model)]
     if faults:
         raise BadInput(faults[:_MOST_FAULTS])
@@ -75,7 +75,7 @@ def _cycles(model: Model) -> Iterator[Fault]:
     """
     parts: dict[int, set[int]] = {}
     for relation in model.relations:
-        whole, part = relation.of_role(_WHOLE), relation.of_role(_PART)
+        whole, part = relation.of_role("assembly"), relation.of_role("part")
         if relation.type in _ASSEMBLIES and whole is not None and part is not None:
             parts.setdefault(whole, set()).add(part)
     holders: dict[int, set[int]] = {}
@@ -116,10 +116,11 @@ def parsed(data: bytes) -> Document:
     """Return the document of a file's bytes."""
     if len(data) > _MOST_BYTES:
         raise BadInput.of("file", f"more than {_MOST_BYTES} bytes", "smaller")
-    if data.startswith(b"PK"):
-        text, files = _read_archive(data)
-        return Document(_model(text), files)
-    return Document(_model(data))
+    text, files = _read_archive(data) if data.startswith(b"PK") else (data, {})
+    start = text.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
+    model = read_json(text) if start == b"{" else read_xml(text)
+    _check(model)
+    return Document(model, files)
 
 
 def serialized(document: Document, name: str) -> bytes:
@@ -141,14 +142,6 @@ def serialized(document: Document, name: str) -> bytes:
     return json_of(document.model) if ending == ".rexsj" else xml_of(document.model)
 
 
-def _model(data: bytes) -> Model:
-    """Return the model of an XML or JSON text, its references checked."""
-    start = data.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
-    model = read_json(data) if start == b"{" else read_xml(data)
-    _check(model)
-    return model
-
-
 # The ZIP form (``.rexsz``, ``.rexs.zip``): a model and the files it names, read within bounds.
 
 
@@ -157,15 +150,7 @@ def _read_archive(data: bytes) -> tuple[bytes, dict[str, bytes]]:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             files = _unpacked(archive, len(data))
-    except (
-        zipfile.BadZipFile,
-        zlib.error,
-        EOFError,
-        NotImplementedError,
-        RuntimeError,
-        ValueError,
-        OSError,
-    ):
+    except _UNREADABLE:
         raise BadInput.of("archive", None, "a ZIP archive that can be read") from None
     models = [name for name in files if name.lower().endswith(_MODEL_ENDINGS)]
     if len(models) != 1:
@@ -184,12 +169,6 @@ def _archive_of(model: bytes, files: Mapping[str, bytes]) -> bytes:
     return stream.getvalue()
 
 
-def _inside(name: str) -> bool:
-    """Return whether a relative name stays in its folder on every system."""
-    parts = re.split(r"[/\\]", name)
-    return bool(name) and parts[0] != "" and ".." not in parts and ":" not in name and "\0" not in name
-
-
 def _unpacked(archive: zipfile.ZipFile, size: int) -> dict[str, bytes]:
     entries = [entry for entry in archive.infolist() if not entry.is_dir()]
     if len(entries) > _MOST_FILES:
@@ -197,7 +176,8 @@ def _unpacked(archive: zipfile.ZipFile, size: int) -> dict[str, bytes]:
     files: dict[str, bytes] = {}
     left = min(_MOST_BYTES, _MOST_RATIO * size)
     for entry in entries:
-        if not _inside(entry.filename):
+        parts = re.split(r"[/\\]", entry.filename)  # a relative name that stays in its folder on every system
+        if not parts[0] or ".." in parts or ":" in entry.filename or "\0" in entry.filename:
             raise BadInput.of("archive", entry.filename, "a name inside the archive")
         if entry.filename in files:
             raise BadInput.of("archive", entry.filename, "in the archive once")

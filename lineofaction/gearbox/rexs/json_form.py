@@ -159,9 +159,12 @@ def _json(data: bytes) -> Any:
 def _typed(value: Any, kind: type, place: str) -> Any:
     """Return a value of a type; true and false are no integers."""
     if not isinstance(value, kind) or isinstance(value, bool):
-        shown = value if isinstance(value, (str, int, float, bool)) else type(value).__name__
-        raise BadInput.of(place, shown if value is not None else None, _WORDS[kind])
+        raise BadInput.of(place, None if value is None else _shown(value), _WORDS[kind])
     return value
+
+
+def _shown(plain: Any) -> Any:
+    return plain if isinstance(plain, (str, int, float)) else type(plain).__name__
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -196,8 +199,7 @@ def _scalar(kind: str, plain: Any, place: str) -> Scalar:
     """Return a value of a scalar kind; a floating point may be written as an integer."""
     types: Any = _TYPES.get(kind, _TEXT)
     if not isinstance(plain, types) or (isinstance(plain, bool) and bool not in types):
-        shown = plain if isinstance(plain, (str, int, float)) else type(plain).__name__
-        raise BadInput.of(place, shown, f"of type {kind}")
+        raise BadInput.of(place, _shown(plain), f"of type {kind}")
     value: Scalar = float(plain) if kind == "floating_point" else plain
     if isinstance(value, float) and not math.isfinite(value):
         raise BadInput.of(place, str(value), "a finite number")

@@ -149,30 +149,27 @@ def _stated(own: Mapping[str, str | int | None], extra: Extra) -> dict[str, str 
     return {name: value for name, value in own.items() if value is not None} | dict(extra)
 
 
+def _named(
+    part: Relation | Reference | Component | LoadCase | LoadSpectrum, *names: str
+) -> dict[str, str | int]:
+    return _stated({name: getattr(part, name) for name in names}, part.extra)
+
+
 def _relation(relation: Relation) -> Written:
-    refs = [
-        Written("ref", _stated({"id": ref.id, "role": ref.role, "hint": ref.hint}, ref.extra))
-        for ref in relation.refs
-    ]
-    own: dict[str, str | int | None] = {"id": relation.id, "type": relation.type, "order": relation.order}
-    return Written("relation", _stated(own, relation.extra), {"refs": refs})
+    refs = [Written("ref", _named(ref, "id", "role", "hint")) for ref in relation.refs]
+    return Written("relation", _named(relation, "id", "type", "order"), {"refs": refs})
 
 
 def _component(component: Component) -> Written:
-    own: dict[str, str | int | None] = {"id": component.id, "type": component.type, "name": component.name}
-    return Written("component", _stated(own, component.extra), {"attributes": component.attributes})
+    return Written("component", _named(component, "id", "type", "name"), {"attributes": component.attributes})
 
 
 def _spectrum(spectrum: LoadSpectrum) -> Written:
     cases = [
-        Written(
-            "load_case",
-            _stated({"id": case.id}, case.extra),
-            {"components": [_component(part) for part in case.components]},
-        )
+        Written("load_case", _named(case, "id"), {"components": list(map(_component, case.components))})
         for case in spectrum.cases
     ]
     groups: dict[str, list[Written]] = {"load_cases": cases}
     if spectrum.accumulation is not None:
-        groups["accumulation"] = [_component(part) for part in spectrum.accumulation]
-    return Written("load_spectrum", _stated({"id": spectrum.id}, spectrum.extra), groups)
+        groups["accumulation"] = list(map(_component, spectrum.accumulation))
+    return Written("load_spectrum", _named(spectrum, "id"), groups)

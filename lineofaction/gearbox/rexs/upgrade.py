@@ -92,6 +92,7 @@ def _component(
 
 
 _Changed = tuple[Attribute, str, bool]
+_UNWRAPPED = ("floating_point_array", "floating_point_matrix")
 
 
 def _name(component: str, name: str, step: _Step, names: set[str]) -> tuple[str, str]:
@@ -127,9 +128,6 @@ def _kind(attribute: Attribute, step: _Step) -> _Changed:
         only: Value = value[0]
         return replace(attribute, kind=new, value=only, code=None), f"type {old} is {new}", False
     return attribute, f"the type is {new} now; the value is of type {old}", True
-
-
-_UNWRAPPED = ("floating_point_array", "floating_point_matrix")
 
 
 def _enum(attribute: Attribute, step: _Step) -> _Changed:

@@ -61,11 +61,6 @@ def _boolean_of(text: str, place: str) -> bool:
     return plain == "true"
 
 
-def _words(text: str, place: str) -> str:
-    del place
-    return text
-
-
 OF_TEXT: dict[str, Callable[[str, str], Scalar]] = {
     "floating_point": _float_of,
     "integer": integer_of,
@@ -76,7 +71,8 @@ OF_TEXT: dict[str, Callable[[str, str], Scalar]] = {
 
 def scalar_of(kind: str, text: str, place: str) -> Scalar:
     """Return the value of a text of a scalar kind."""
-    return OF_TEXT.get(kind, _words)(text, place)
+    read = OF_TEXT.get(kind)
+    return text if read is None else read(text, place)
 
 
 def entry_kind(kind: str) -> str:

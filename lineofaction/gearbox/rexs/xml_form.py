@@ -144,10 +144,9 @@ class _XmlElement(Element):
     def spectrum(self) -> LoadSpectrum:
         parts = self.groups({"load_case": None, "accumulation": 1})
         cases = tuple(case.load_case({}) for case in parts["load_case"])
-        whole = [
-            tuple(part.component({}) for part in group.group("component")) for group in parts["accumulation"]
-        ]
-        return LoadSpectrum(self.number("id"), cases, whole[0] if whole else None, self.extra())
+        groups = [group.group("component") for group in parts["accumulation"]]
+        whole = tuple(part.component({}) for part in groups[0]) if groups else None
+        return LoadSpectrum(self.number("id"), cases, whole, self.extra())
 
 
 def read_xml(data: bytes) -> Model:
@@ -189,34 +188,28 @@ class _Builder:
 
     def __init__(self) -> None:
         self.root = _XmlElement("", 0, {})
+        self._open = [self.root]
         self.parser = expat.ParserCreate()
         self.parser.buffer_text = True
         self.parser.StartElementHandler = self._start
-        self.parser.EndElementHandler = self._end
+        self.parser.EndElementHandler = lambda _name: self._open.pop()
         self.parser.CharacterDataHandler = self._characters
         self.parser.StartDoctypeDeclHandler = self._document_type
         self.parser.XmlDeclHandler = self._declaration
-        self._open = [self.root]
         self._count = 0
 
     def _start(self, name: str, fields: dict[str, str]) -> None:
         line = self.parser.CurrentLineNumber
         self._count += 1
         if self._count > MOST_ENTRIES:
-            raise BadInput.of(
-                f"line {line}", f"more than {MOST_ENTRIES} elements", "smaller", "Code arrays in base64."
-            )
+            too_many = f"more than {MOST_ENTRIES} elements"
+            raise BadInput.of(f"line {line}", too_many, "smaller", "Code arrays in base64.")
         if len(self._open) > _MOST_DEPTH:
-            raise BadInput.of(
-                f"line {line}", f"elements nested {len(self._open)} deep", f"at most {_MOST_DEPTH} deep"
-            )
+            depth = f"elements nested {len(self._open)} deep"
+            raise BadInput.of(f"line {line}", depth, f"at most {_MOST_DEPTH} deep")
         element = _XmlElement(name, line, fields)
         self._open[-1].inside.append(element)
         self._open.append(element)
-
-    def _end(self, name: str) -> None:
-        del name
-        self._open.pop()
 
     def _characters(self, text: str) -> None:
         self._open[-1].words.append(text)
@@ -224,9 +217,8 @@ class _Builder:
     def _declaration(self, version: str, encoding: str | None, standalone: int) -> None:
         del version, standalone
         if encoding is not None and encoding.lower() not in _ENCODINGS:
-            raise BadInput.of(
-                "encoding", encoding[:_SHOWN], f"one of {', '.join(_ENCODINGS)}", "Write UTF-8."
-            )
+            known = f"one of {', '.join(_ENCODINGS)}"
+            raise BadInput.of("encoding", encoding[:_SHOWN], known, "Write UTF-8.")
 
     def _document_type(self, name: str, *rest: object) -> NoReturn:
         del rest
@@ -274,12 +266,8 @@ def _fields(fields: Mapping[str, str | int]) -> str:
 
 
 def _attribute(attribute: Attribute) -> str:
-    own = {
-        "id": attribute.id,
-        "unit": attribute.unit,
-        "origin": attribute.origin,
-        _KIND_FIELD: _hidden_kind(attribute),
-    }
+    own = {"id": attribute.id, "unit": attribute.unit, "origin": attribute.origin}
+    own[_KIND_FIELD] = _hidden_kind(attribute)
     fields = {name: value for name, value in own.items() if value is not None} | dict(attribute.extra)
     return f"<attribute{_fields(fields)}>{_body(attribute)}</attribute>"
 
