@@ -30,8 +30,8 @@ from lineofaction.report.document import (
     Inputs,
     nominal_force,
     page_beside,
+    page_of,
     read_inputs,
-    write_page,
     write_whole,
 )
 from lineofaction.report.drawing.figure import number
@@ -121,7 +121,7 @@ def run_report(
         page = page_beside(STUDIES["flank"], found, read.database)
         read = replace(read, pages={**read.pages, "flanks": page})
         spent = found.metadata.receipt["cpu_seconds"]
-    written = write_page(read, output, images)
+    written = write_whole(page_of(read), output, images)
     if as_json:
         print_json({"file": str(output), "written": [str(path) for path in written]})
         return

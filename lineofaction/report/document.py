@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -25,19 +25,9 @@ from lineofaction.report.drawing.page import Headline, Page, Section, html, soun
 from lineofaction.report.drawing.tables import one_effects_section
 from lineofaction.report.pair import pair_lead, pair_title
 from lineofaction.report.presentation import presentation_of
-from lineofaction.report.run.page import (
-    dynamic_alarms,
-    dynamic_headlines,
-    dynamic_making,
-    dynamic_results,
-)
+from lineofaction.report.run.page import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
 from lineofaction.report.run.view import RunView
-from lineofaction.report.ste.page import (
-    static_alarms,
-    static_headlines,
-    static_making,
-    static_results,
-)
+from lineofaction.report.ste.page import static_alarms, static_headlines, static_making, static_results
 from model_studies.netcdf import UnreadableFile, opened_netcdf
 
 
@@ -52,15 +42,8 @@ def _study_page(study: Study, file: Path, database: SteDatabase | None = None) -
 
 def read_stored(study: Study, file: Path) -> Any:
     """Return the result in a study's file; raises `BadInput`: it is damaged."""
-    with _undamaged(study, file):
-        return study.run.file.read(file)
-
-
-@contextmanager
-def _undamaged(study: Study, file: Path) -> Iterator[None]:
-    """Name the file in the libraries' errors of damaged files."""
     try:
-        yield
+        return study.run.file.read(file)
     except (FeContactError, DynamicsError) as error:
         raise BadInput.of("file", str(file), f"an undamaged {study.kind}", f"{error}.") from None
     except ValueError:
@@ -287,13 +270,12 @@ def _section(section: Section) -> Json:
         "part": section.part.name.lower(),
         "text": section.text,
         "figures": [_figure(figure) for figure in section.figures],
-        "tables": _tables(section.tables),
-        "folded": _tables(section.folded),
+        "tables": list(map(_table, section.tables)),
+        "folded": list(map(_table, section.folded)),
     }
 
 
 def _figure(figure: Figure) -> Json:
-    """One plot, with what stands in for it where it cannot be seen."""
     return {
         "key": figure.key,
         "title": figure.title,
@@ -303,10 +285,6 @@ def _figure(figure: Figure) -> Json:
         "table": None if figure.table is None else _table(figure.table),
         "sound": None if figure.sound is None else sound_json(figure.sound),
     }
-
-
-def _tables(tables: Iterable[Table]) -> list[Json]:
-    return [_table(table) for table in tables]
 
 
 def _table(table: Table) -> Json:
@@ -330,11 +308,7 @@ def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | Non
     BadInput
         A file is none of them, is damaged, or there are two of a kind.
     """
-    return write_page(read_inputs([inputs] if isinstance(inputs, Path) else list(inputs)), output, images)
-
-
-def write_page(read: Inputs, output: Path, images: Path | None = None) -> list[Path]:
-    """Write the page of what was read; parameters and result are those of `write_report`."""
+    read = read_inputs([inputs] if isinstance(inputs, Path) else list(inputs))
     return write_whole(page_of(read), output, images)
 
 

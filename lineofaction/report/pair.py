@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -110,21 +110,17 @@ def pair_lead(facts: PairFacts) -> str:
 
 def pair_remarks(pair: ParallelAxes) -> list[Json]:
     """Return the remarks as warnings: `check`, `message`."""
-    remarks = (*_undercut(pair), *_backlash(pair))
-    findings = [{"check": finding.check, "message": finding.message()} for finding in mesh_findings(pair)]
-    return [{"check": check, "message": message} for check, message in remarks] + findings
-
-
-def _undercut(pair: ParallelAxes) -> Iterator[tuple[str, str]]:
-    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
-        if isinstance(gear, Gear) and gear.form_point.undercut:
-            words = "the tool cuts into the involute near the root. Raise its profile shift."
-            yield "undercut", f"pair.{name}: {words}"
-
-
-def _backlash(pair: ParallelAxes) -> Iterator[tuple[str, str]]:
+    words = "the tool cuts into the involute near the root. Raise its profile shift."
+    remarks = [
+        ("undercut", f"pair.{name}: {words}")
+        for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel))
+        if isinstance(gear, Gear) and gear.form_point.undercut
+    ]
     if pair.normal_backlash <= 0.0:
-        yield "backlash", "pair: no backlash. Give thickness_allowance_um, or a larger center distance."
+        words = "no backlash. Give thickness_allowance_um, or a larger center distance."
+        remarks.append(("backlash", f"pair: {words}"))
+    remarks += [(finding.check, finding.message()) for finding in mesh_findings(pair)]
+    return [{"check": check, "message": message} for check, message in remarks]
 
 
 _POINTS = 201
@@ -237,7 +233,7 @@ def _finding(name: str, gear: Toothing) -> str:
     if gear.modification.neutral:
         return f"The {name} is not modified."
     roll, face = np.meshgrid(_usable(gear), np.linspace(-0.5, 0.5, _POINTS) * gear.face_width)
-    return f"At most {number(float(_removed(gear, roll, face).max()), 3)} µm are removed from the {name}."
+    return f"At most {number(_removed(gear, roll, face).max(), 3)} µm are removed from the {name}."
 
 
 _UNITS: Mapping[str, float] = {"": 1.0, "mm": MM, "um": UM, "deg": DEGREE}
@@ -279,16 +275,11 @@ def _pair(of: Callable[[ParallelAxes], float]) -> Callable[[ParallelAxes], Seque
     return lambda pair: (of(pair),)
 
 
-def _start_rolls(pair: ParallelAxes) -> tuple[float, float]:
-    """Roll lengths in m of both gears where their active flanks begin at the root."""
-    path = pair.active_path
-    return path.start, float(pair.mating_roll_length(path.end))
-
-
 def _start_diameters(pair: ParallelAxes) -> list[float]:
     """Diameters in m at which the active flanks begin."""
     gears = (pair.pinion, pair.wheel)
-    rolls = zip(gears, _start_rolls(pair), strict=True)
+    path = pair.active_path
+    rolls = zip(gears, (path.start, float(pair.mating_roll_length(path.end))), strict=True)
     return [2.0 * math.hypot(gear.base_radius, roll) for gear, roll in rolls]
 
 

@@ -44,14 +44,7 @@ from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.run.levels import DEPTH, largest_orders, order_blocks
 from lineofaction.report.run.signals import ORDERS, amplitude_spectrum, spectrum_window
 from lineofaction.report.run.sound import Heard, heard_runs, sound_of
-from lineofaction.report.run.view import (
-    SCALES,
-    RunView,
-    along_direction,
-    decibels,
-    run_axis,
-    shown_signal,
-)
+from lineofaction.report.run.view import SCALES, RunView, along_direction, decibels, run_axis, shown_signal
 
 _DASHES: tuple[Dash, ...] = ("solid", "dash")
 _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error": "transmission_error_orders"}
@@ -160,7 +153,7 @@ def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figur
         caption += " Measured: as read."
     top = max(float(line.y.max()) for line in lines)
     peaks = [
-        f"{line.name} {number(float(line.y.max()), 3)} at order {float(line.x[np.argmax(line.y)]):.2f}"
+        f"{line.name} {number(line.y.max(), 3)} at order {float(line.x[np.argmax(line.y)]):.2f}"
         for line in lines
     ]
     y = Axis(f"amplitude, {signal.unit}", "log", (1e-5 * top, 3.0 * top))
@@ -223,13 +216,8 @@ def _datasets(path: Path) -> list[Dataset]:
     except Exception:  # noqa: BLE001 (of a damaged file: whatever the reader meets)
         advice = "Export it again, as text (UFF58)."
         raise BadInput.of("measured", str(path), "a readable universal file", advice) from None
-    return list(_known(read if isinstance(read, list) else [read]))
-
-
-def _known(read: list[Any]) -> Iterator[Dataset]:
-    for each in read:
-        if isinstance(each, Mapping) and "type" in each:
-            yield each
+    sets = read if isinstance(read, list) else [read]
+    return [each for each in sets if isinstance(each, Mapping) and "type" in each]
 
 
 def _fits(function: Dataset, unit: str) -> bool:

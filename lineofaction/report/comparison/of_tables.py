@@ -141,7 +141,11 @@ def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | 
         lines.append(
             Line("measured", position, _twice(moved.ripple), palette.INK, "dash", band=measured.spread)
         )
-        caption += f" {_how_aligned(moved)}"
+        caption += (
+            f" Measured: mean of {measured.pitches} base pitches, less its mean, moved by {moved.shift:.3f} "
+            "base pitches to where it is most like the first curve. Its band is the standard deviation of "
+            "single base pitches."
+        )
         words.append(_how_alike(name, curves[name], moved))
     across = Axis("position of the driving gear, base pitches", limits=(0.0, 2.0))
     return Figure(
@@ -155,14 +159,6 @@ def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | 
 
 def _twice(ripple: FloatArray) -> FloatArray:
     return np.concatenate([ripple, ripple, ripple[:1]])
-
-
-def _how_aligned(moved: Aligned) -> str:
-    return (
-        f"Measured: mean of {moved.measured.pitches} base pitches, less its mean, moved by {moved.shift:.3f} "
-        "base pitches to where it is most like the first curve. Its band is the standard deviation of single "
-        "base pitches."
-    )
 
 
 def _how_alike(name: str, curve: Curve, moved: Aligned) -> str:

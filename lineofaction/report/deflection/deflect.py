@@ -23,7 +23,6 @@ CAUSE_WORDS = ("of shafts", "bearings", "clearance", "housing", "couplings", "se
 
 
 def _meshes_worst_first(result: GearboxDeflection) -> list[str]:
-    """Return the meshes by their largest misalignment under any load case, the worst first."""
     largest = {
         name: max(abs(_mesh_of(case, name).misalignment) for case in result.deflection.cases)
         for name in mesh_names(result)
@@ -32,7 +31,6 @@ def _meshes_worst_first(result: GearboxDeflection) -> list[str]:
 
 
 def _worst_case(result: GearboxDeflection, mesh: str) -> CaseDeflection:
-    """Return the load case of the largest misalignment of a mesh."""
     return max(result.deflection.cases, key=lambda case: abs(_mesh_of(case, mesh).misalignment))
 
 
@@ -71,7 +69,7 @@ def _force_table(result: GearboxDeflection) -> Table | None:
             force.name,
             force.shaft,
             _titled(case),
-            *("0" if value == 0.0 else number(float(value), 4) for value in (*force.force, *force.moment)),
+            *("0" if value == 0.0 else number(value, 4) for value in (*force.force, *force.moment)),
         )
         for case in result.deflection.cases
         for force in case.forces
@@ -94,7 +92,6 @@ def _row(name: str, case: CaseDeflection, flanks: MeshFlanks | None, acting: Boo
 
 
 def _titled(case: CaseDeflection) -> str:
-    """Name a load case; say if the other flanks carry or it was not found."""
     side = "" if case.direction == "drive" else f" ({case.direction})"
     return f"{case.name}{side}" + ("" if case.status == "converged" else f", {case.status.replace('_', ' ')}")
 
@@ -122,7 +119,7 @@ def _bearing_table(result: GearboxDeflection) -> Table:
 
 
 def _moved(vector: list[float]) -> str:
-    return number(float(np.hypot(vector[0], vector[1])), 3)
+    return number(np.hypot(vector[0], vector[1]), 3)
 
 
 def _life_text(bearing: Json) -> str:
@@ -131,8 +128,6 @@ def _life_text(bearing: Json) -> str:
 
 
 def _life_table(result: GearboxDeflection) -> Table:
-    """List the rating lives over all load cases and the constant loads of the same life."""
-
     def equivalent(way: str, kind: str) -> Callable[[Json], str]:
         return lambda part: number(part[f"equivalent_{way}_force_n"][kind])
 
@@ -259,19 +254,14 @@ def _headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
 
 
 def _page(result: GearboxDeflection) -> Page:
-    """Return the report: the gearbox under the worst load case, then its meshes and bearings."""
-    contact = tuple(figure for figure in (_face_load_figure(result), _pattern_figure(result)) if figure)
-    sections = [
-        Section("Gearbox", figures=(_figure(result),)),
-        *(
-            [Section("Meshes", figures=(_causes_figure(result),), tables=(_mesh_table(result),))]
-            if mesh_names(result)
-            else []
-        ),
-        *([Section("Flanks", figures=contact)] if contact else []),
-        Section("Bearings", tables=(_bearing_table(result), _life_table(result))),
-        *([Section("Forces", tables=(forces,))] if (forces := _force_table(result)) else []),
-    ]
+    sections = [Section("Gearbox", figures=(_figure(result),))]
+    if mesh_names(result):
+        sections.append(Section("Meshes", figures=(_causes_figure(result),), tables=(_mesh_table(result),)))
+    if contact := tuple(filter(None, (_face_load_figure(result), _pattern_figure(result)))):
+        sections.append(Section("Flanks", figures=contact))
+    sections.append(Section("Bearings", tables=(_bearing_table(result), _life_table(result))))
+    if forces := _force_table(result):
+        sections.append(Section("Forces", tables=(forces,)))
     count = len(result.deflection.cases)
     lead = f"{count} load case{'s' * (count > 1)} on {result.deflection.leading_shaft}. {agreement(result)}"
     return Page("Deflection of the gearbox", lead, _headlines(result), tuple(sections), _alarms(result))
@@ -300,7 +290,6 @@ def _alarms(result: GearboxDeflection) -> tuple[str, ...]:
 
 
 def _text(result: GearboxDeflection) -> Iterator[Table | str]:
-    """Tables for the terminal, the worst mesh first."""
     yield from _alarms(result)
     yield agreement(result)
     if mesh_names(result):

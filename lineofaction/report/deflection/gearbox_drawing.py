@@ -35,18 +35,14 @@ class _GearName(NamedTuple):
 def _gear_names(outline: Outline) -> tuple[_GearName, ...]:
     """Return each name where it is farthest from all circles and from the names before it."""
     center, radius = outline.origin[outline.gear_shaft, :2], 0.5 * outline.gear[:, 2]
+    ends = np.vstack([center - radius[:, None], center + radius[:, None]])
+    size = float(np.max(np.ptp(ends, axis=0)))  # the larger extent of the circles
     names: list[_GearName] = []
     for k, text in enumerate(outline.gears):
         written = np.vstack([np.empty((0, 2)), *(name.points for name in names)])
-        places = [_at(text, center[k] + radius[k] * way, way, _size(center, radius)) for way in WAYS]
+        places = [_at(text, center[k] + radius[k] * way, way, size) for way in WAYS]
         names.append(max(places, key=lambda place: _room(place.points, center, radius, written)))
     return tuple(names)
-
-
-def _size(center: FloatArray, radius: FloatArray) -> float:
-    """Return the larger extent of the circles, m."""
-    ends = np.vstack([center - radius[:, None], center + radius[:, None]])
-    return float(np.max(np.ptp(ends, axis=0)))
 
 
 def _at(text: str, start: FloatArray, way: FloatArray, size: float) -> _GearName:
@@ -102,7 +98,6 @@ def gearbox_drawing(result: GearboxDeflection, case: CaseDeflection) -> Figure:
 
 
 def _finding(case: CaseDeflection) -> str:
-    """Say which mesh is misaligned most; without meshes, how far the axes move."""
     if not case.meshes:
         return f"The axes move by up to {number(largest_motion(case) / UM, 3)} µm."
     worst = max(case.meshes, key=lambda mesh: abs(mesh.misalignment))
@@ -111,7 +106,6 @@ def _finding(case: CaseDeflection) -> str:
 
 
 def _exaggeration(outline: Outline, case: CaseDeflection) -> float:
-    """Return the round factor by which deflections are enlarged."""
     largest = largest_motion(case)
     if largest == 0.0:
         return 1.0
@@ -135,11 +129,6 @@ def _view_direction(outline: Outline, case: CaseDeflection) -> FloatArray:
     return np.array([*VIEWS[np.argmax(apart > (1.0 - 1e-9) * apart.max())], 0.0])
 
 
-def _label(direction: FloatArray) -> str:
-    angle = round(math.degrees(math.atan2(direction[1], direction[0])))
-    return {0: "x, mm", 90: "y, mm"}.get(angle, f"across z, {angle}° from x, mm")
-
-
 def _along(outline: Outline, case: CaseDeflection, across: FloatArray, scale: float) -> Panel:
     heights = outline.origin @ across
     lines = [*_shafts(outline, heights), *_gears(outline, heights), *_bearings(outline, heights)]
@@ -149,7 +138,8 @@ def _along(outline: Outline, case: CaseDeflection, across: FloatArray, scale: fl
         z = (outline.origin[k, 2] + case.shafts.position[own]) / MM
         name = f"axis, {scale:.0f} times"
         lines.append(Line(name, z, (heights[k] + scale * moved[own]) / MM, palette.VERMILLION, width=2.4))
-    axes = Axis("z, mm"), Axis(_label(across))
+    angle = round(math.degrees(math.atan2(across[1], across[0])))
+    axes = Axis("z, mm"), Axis({0: "x, mm", 90: "y, mm"}.get(angle, f"across z, {angle}° from x, mm"))
     return Panel(*axes, tuple(lines), title="From the side", notes=_shaft_names(outline, heights), equal=True)
 
 

@@ -104,11 +104,11 @@ def _ripple_table(result: Optimization) -> Table:
     rows = tuple(
         (
             text,
-            number(float(skews[k]), 3),
+            number(skews[k], 3),
             "yes" if torque in result.torque else "",
             *_value(before.expected[k], before.expected_error[k]),
             *_value(after.expected[k], after.expected_error[k]),
-            number(float(before.expected[k] / after.expected[k]), 3),
+            number(before.expected[k] / after.expected[k], 3),
             number(after.peak_to_peak[:, k].max() / UM, 3),
         )
         for k, (text, torque) in enumerate(zip(texts, before.torque, strict=True))
@@ -150,8 +150,8 @@ def _node_table(result: Optimization) -> Table:
         amounts = zip(result.nodes.deviation[node], units, strict=True)
         deviation = (engineering(amount / unit, 3, "+") for amount, unit in amounts)
         ripples = (d.harris_map.peak_to_peak[node, counted] / UM for d in (result.start, result.optimum))
-        cells = (number(float(x), 3) for ripple in ripples for x in ripple)
-        rows.append((*deviation, number(float(weight), 3), *cells))
+        cells = (number(x, 3) for ripple in ripples for x in ripple)
+        rows.append((*deviation, number(weight, 3), *cells))
     return Table("Robustness: peak to peak at every node of the scatter", tuple(head), tuple(rows))
 
 
@@ -169,12 +169,6 @@ def _run_table(result: Optimization) -> Table:
     return Table("Searches", ("start", "objective, µm", "designs", "ended", "CPU s"), rows)
 
 
-def _cost_table(result: Optimization) -> Table:
-    stages = result.cost["stages"].items()
-    rows = tuple((name, number(float(cost["cpu_seconds"]), 3)) for name, cost in stages)
-    return Table("Cost", ("stage", "CPU s"), rows)
-
-
 def _optimization_page(result: Optimization) -> Page:
     before, after = result.start.objective, result.optimum.objective
     heads = (
@@ -186,7 +180,9 @@ def _optimization_page(result: Optimization) -> Page:
     figure = Section("Harris map", "", (replace(_harris(result), table=None),), (_ripple_table(result),))
     design = Section("Design", "", tables=(_optimum_table(result),))
     tried = f"Not tried: {'; '.join(result.not_tried)}."
-    search = Section("Search", tried, tables=(_run_table(result), _cost_table(result)))
+    stages = result.cost["stages"].items()
+    rows = tuple((name, number(cost["cpu_seconds"], 3)) for name, cost in stages)
+    search = Section("Search", tried, tables=(_run_table(result), Table("Cost", ("stage", "CPU s"), rows)))
     robust = Section("Scatter", "", tables=(_node_table(result),))
     return Page("Microgeometry of least transmission error", lead, heads, (figure, design, robust, search))
 

@@ -19,13 +19,17 @@ _STEPS = 400
 
 def _scatter_figure(study: ToleranceStudy) -> Figure:
     count = study.peak_to_peak.shape[0]
+    last = study.quantiles[-1]
+    part, size = f"{100 * last.fraction:g} %", number(last.value[-1] / UM, 3)
+    designed = number(study.nominal[-1] / UM, 3)
     return Figure(
         key="scatter",
         title="Peak-to-peak transmission error within tolerances",
         caption=f"{count} pairs sampled within their tolerances. Above: part of all up to a ripple. "
         f"Lower: quantiles with bounds of {100 * study.confidence:g} % confidence (dotted), and the "
         "pair as designed (dashed).",
-        alternative=_words(study),
+        alternative=f"At the highest torque {part} of all pairs stay below {size} µm; as designed "
+        f"{designed} µm.",
         content=(_distribution(study), _over_torque(study)),
         table=_quantile_table(study),
     )
@@ -98,13 +102,6 @@ def _page(study: ToleranceStudy) -> Page:
     section = Section("Distribution", "", (replace(_scatter_figure(study), table=None),), tables)
     lead = f"{study.peak_to_peak.shape[0]} pairs sampled within their tolerances"
     return Page("Transmission error within tolerances", lead, heads, (section,))
-
-
-def _words(study: ToleranceStudy) -> str:
-    last = study.quantiles[-1]
-    part, size = f"{100 * last.fraction:g} %", number(last.value[-1] / UM, 3)
-    designed = number(study.nominal[-1] / UM, 3)
-    return f"At the highest torque {part} of all pairs stay below {size} µm; as designed {designed} µm."
 
 
 PAGE = Presentation(_scatter_figure, _page, lambda study: (_quantile_table(study), _influence_table(study)))

@@ -59,17 +59,9 @@ def _map(study: Study, across: int, up: int, response: int) -> Panel:
         values = study.figure[here, response]
         if np.isfinite(values).any():
             z[row, column] = np.nanmean(values) / one
-    least, largest = _range(z)
-    shade = HeatMap(x, y, z, _unit(study, response), largest, least)
+    shade = HeatMap.spanning(x, y, z, _unit(study, response))
     axes = Axis(study.factor[across]), Axis(study.factor[up])
     return Panel(*axes, title=study.response[response], shade=shade)
-
-
-def _range(z: FloatArray) -> tuple[float, float]:
-    """Return least and largest value, apart where all are alike."""
-    known = z[np.isfinite(z)]
-    least, largest = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
-    return least, largest if largest > least else least + 1.0
 
 
 def _curves(study: Study, axis: int, shown: range) -> Figure:
@@ -240,15 +232,12 @@ def _summary_table(study: Study) -> Table:
         texts = [
             number(float(take(values)), 4) if values.size else "none" for take in (np.min, np.mean, np.max)
         ]
-        rows.append(
-            (_label(study, k), *texts, number(float(errors.mean()), 2) if errors.size else "not stated")
-        )
+        rows.append((_label(study, k), *texts, number(errors.mean(), 2) if errors.size else "not stated"))
     head = ("response", "least", "mean", "largest", "stated error, mean")
     return Table("Responses of all runs", head, tuple(rows))
 
 
 def _extreme_table(study: Study) -> Table:
-    """Return the points of the largest first response."""
     first = study.figure[:, 0]
     usable = np.flatnonzero(np.isfinite(first))
     points = usable[np.argsort(-first[usable], kind="stable")][:SHOWN]
@@ -268,7 +257,6 @@ def _extreme_table(study: Study) -> Table:
 
 
 def _failed_table(study: Study) -> Table:
-    """Return the runs without figures, and why."""
     failed = [k for k, reason in enumerate(study.reason) if reason]
     rows = tuple(
         (str(k), *(f"{study.value[k, f]:.6g}" for f in _varied(study)), study.reason[k])
@@ -281,9 +269,12 @@ def _failed_table(study: Study) -> Table:
 def _page(study: Study) -> Page:
     failed = len(study.reason) - study.usable
     usable = f"{failed} without figures" if failed else "all with figures"
+    unit, one = in_boundary_units(study, 0)
+    first = study.figure[:, 0][np.isfinite(study.figure[:, 0])] / one
+    largest = f"{number(first.max(), 4)} {unit}".strip() if first.size else "none"
     heads = (
         Headline("runs", str(len(study.reason)), usable),
-        Headline("largest", _largest(study), study.response[0]),
+        Headline("largest", largest, study.response[0]),
         Headline("cost of a run", f"{1e3 * float(study.seconds[:, 0].mean()):.0f} ms", "CPU time, mean"),
     )
     tables = (_extreme_table(study), *((_failed_table(study),) if failed else ()))
@@ -291,21 +282,11 @@ def _page(study: Study) -> Page:
         Section("Responses", "", tuple(replace(f, table=None) for f in _study_figures(study))),
         Section("Figures", "", (), (_summary_table(study), *tables)),
     )
-    return Page("Many scenes", _lead(study), heads, sections)
-
-
-def _lead(study: Study) -> str:
     without = ", ".join(study.facts["neglected"])
     each = f" {study.samples} samples of each combination." if study.samples > 1 else ""
     over = ", ".join(study.factor[k] for k in _varied(study))
-    return f"{len(study.reason)} runs over {over}.{each} Neglected in the runs: {without}."
-
-
-def _largest(study: Study) -> str:
-    """Write the largest value of the first response."""
-    unit, one = in_boundary_units(study, 0)
-    first = study.figure[:, 0][np.isfinite(study.figure[:, 0])] / one
-    return f"{number(float(first.max()), 4)} {unit}".strip() if first.size else "none"
+    lead = f"{len(study.reason)} runs over {over}.{each} Neglected in the runs: {without}."
+    return Page("Many scenes", lead, heads, sections)
 
 
 def _text(study: Study) -> Iterator[Table | str]:

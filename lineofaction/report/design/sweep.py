@@ -44,9 +44,10 @@ def _curves(result: SweepResult) -> Figure:
     one = len(result.axes) == 1
     quantities = result.quantities if one else result.quantities[:1]
     x = Axis(result.axes[result.across].label)
+    words = QUANTITIES[result.quantities[0].name].words
     return Figure(
         "sweep_curves",
-        _title(result),
+        f"{words[0].upper()}{words[1:]} over {result.axes[result.across].words}",
         "Bands are the errors.",
         "",
         tuple(
@@ -62,9 +63,7 @@ def _map(result: SweepResult, quantity: SweptQuantity) -> Panel:
     x, y = result.levels(across), result.levels(1 - across)
     shown = QUANTITIES[quantity.name]
     z = result.grid(quantity.value) / shown.one
-    known = z[np.isfinite(z)]
-    least, largest = float(known.min()), float(known.max())
-    shade = HeatMap(x, y, z, shown.label, largest if largest > least else least + 1.0, least)
+    shade = HeatMap.spanning(x, y, z, shown.label)
     at = np.argwhere(result.like_least(quantity))
     dots = x[at[:, 1]], y[at[:, 0]]
     marks = Line(_alike(result), *dots, palette.VERMILLION, width=0.0, markers=True)
@@ -88,12 +87,6 @@ def _lines(result: SweepResult, quantity: SweptQuantity) -> tuple[Line, ...]:
 def _alike(result: SweepResult) -> str:
     at = "at the same torque " if TORQUE in result.sweep.axes else ""
     return f"as low as the least {at}within both errors"
-
-
-def _title(result: SweepResult) -> str:
-    """Name the first quantity and the axis that runs across."""
-    words = QUANTITIES[result.quantities[0].name].words
-    return f"{words[0].upper()}{words[1:]} over {result.axes[result.across].words}"
 
 
 BEYOND = "by more than the errors"
@@ -159,7 +152,6 @@ def _headlines(result: SweepResult) -> tuple[Headline, ...]:
 
 
 def _figure(result: SweepResult, quantity: SweptQuantity, point: int) -> tuple[str, str]:
-    """Write a value with its error and where it is."""
     shown = QUANTITIES[quantity.name]
     where = " and ".join(
         f"{axis.words} {result.sweep.point[point, k] / axis.factor:.6g} {axis.unit}"
@@ -181,7 +173,7 @@ def _best_level(result: SweepResult, quantity: SweptQuantity) -> Headline:
     alike[best] = False
     others = ", ".join(f"{level:.6g}" for level in levels[alike])
     also = f"as low within the errors: {others} {axis.unit}" if others else f"below all others {BEYOND}"
-    text = f"{number(float(value[best]), 3)} {shown.unit}".strip()
+    text = f"{number(value[best], 3)} {shown.unit}".strip()
     band = f"± {engineering(float(error[best]), 2)} {shown.unit}".strip()
     where = f"at {axis.words} {levels[best]:.6g} {axis.unit}"
     return Headline(f"least mean {shown.words} over the torques", text, f"{band} {where}; {also}")
@@ -198,7 +190,6 @@ def _page(result: SweepResult) -> Page:
 
 
 def _text(result: SweepResult) -> Iterator[Table | str]:
-    """Yield the table of the first quantity."""
     yield _table(result, result.quantities[0])
     points, usable = len(result.sweep.reason), result.sweep.usable
     yield f"{points} points, {points - usable} without figures"

@@ -143,6 +143,13 @@ class HeatMap:
     least: float = 0.0
     isolines: tuple[float, ...] = ()
 
+    @classmethod
+    def spanning(cls, x: FloatArray, y: FloatArray, z: FloatArray, label: str) -> HeatMap:
+        """Return the map whose colors run from the least to the largest value, apart where all are alike."""
+        known = z[np.isfinite(z)]
+        least, largest = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+        return cls(x, y, z, label, largest if largest > least else least + 1.0, least)
+
     @property
     def colors(self) -> tuple[str, ...]:
         """Return the palette from the least to the largest: ordered, or of either sign about 0."""

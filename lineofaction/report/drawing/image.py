@@ -145,11 +145,8 @@ def _drawable(text: str) -> str:
     known = "".join(
         c if c == "\n" or ord(c) in _glyphs() else c.encode("unicode_escape").decode() for c in text
     )
-    return re.sub(rf"\S{{{_LONGEST_WORD},}}", _shortened, known).replace("$", r"\$")
-
-
-def _shortened(word: re.Match[str]) -> str:
-    return f"{word[0][: _LONGEST_WORD - 1]}\N{HORIZONTAL ELLIPSIS}"
+    cut = re.sub(rf"(\S{{{_LONGEST_WORD - 1}}})\S+", "\\1\N{HORIZONTAL ELLIPSIS}", known)
+    return cut.replace("$", r"\$")
 
 
 @cache

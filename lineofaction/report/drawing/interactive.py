@@ -141,7 +141,8 @@ def plotly_figure(figure: Figure) -> Json:
     """Return ``{"data": [...], "layout": {...}}`` for ``Plotly.newPlot``."""
     panels = rewritten(figure.content, _plain)
     names = legend_names(figure.content)
-    above = (62 if panels[0].title else 44) + _LEGEND_ROW * (_legend_rows(names) - 1)
+    rows = math.ceil(sum(len(name) + _HANDLE_CHARACTERS for name in names) / _ROW_CHARACTERS)
+    above = (62 if panels[0].title else 44) + _LEGEND_ROW * max(rows - 1, 0)
     gaps = [_BETWEEN if repeats_below(panels, i) else _BETWEEN + _LABEL for i in range(len(panels) - 1)]
     heights = [round(_PANEL_HEIGHT * panel_height(panel)) for panel in panels]
     inner = sum(heights) + sum(gaps)
@@ -153,7 +154,8 @@ def plotly_figure(figure: Figure) -> Json:
     unnamed = set(map(_plain, names))
     for index, panel in enumerate(panels):
         suffix = str(index + 1) if index else ""
-        domain = _domain(sum(heights[:index]) + sum(gaps[:index]), heights[index], inner)
+        top = inner - (sum(heights[:index]) + sum(gaps[:index]))
+        domain = [round((top - heights[index]) / inner, 6), round(top / inner, 6)]
         frame = {"domain": domain, "anchor": "x" + suffix}
         layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
         if repeats_below(panels, index):
@@ -180,10 +182,6 @@ def plotly_figure(figure: Figure) -> Json:
 def _plain(text: str) -> str:
     """Write a text so that plotly.js, which takes its texts for HTML, shows it as it is."""
     return escape(text, quote=False)
-
-
-def _legend_rows(names: list[str]) -> int:
-    return max(math.ceil(sum(len(name) + _HANDLE_CHARACTERS for name in names) / _ROW_CHARACTERS), 1)
 
 
 def _margin(panels: tuple[Panel, ...]) -> int:
@@ -225,12 +223,6 @@ def _bars(bars: Bars, suffix: str, *, show: bool) -> Json:
         "marker": {"color": bars.color, "opacity": 0.35 if bars.veiled else 1.0},
         "hovertemplate": "%{fullData.name}<br>%{x}: %{customdata:.4g}<extra></extra>",
     }
-
-
-def _domain(above: int, height: int, inner: int) -> list[float]:
-    """Vertical extent of a panel as a fraction of the plot, with `above` pixels of it over the panel."""
-    top = inner - above
-    return [round((top - height) / inner, 6), round(top / inner, 6)]
 
 
 def _layout(height: int) -> Json:

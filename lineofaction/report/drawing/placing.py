@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import fields, is_dataclass, replace
+from itertools import pairwise
 from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
@@ -20,13 +21,9 @@ def envelope(time: FloatArray, values: FloatArray, columns: int = 1200) -> tuple
     if size <= 2 * columns:
         return time, values
     edges = np.linspace(0, size, columns + 1).astype(int)
-    kept = [edges[k] + np.sort(_extremes(values[edges[k] : edges[k + 1]])) for k in range(columns)]
+    kept = [a + np.sort([np.argmin(values[a:b]), np.argmax(values[a:b])]) for a, b in pairwise(edges)]
     index = np.unique(np.concatenate([[0], *kept, [size - 1]]))
     return time[index], values[index]
-
-
-def _extremes(values: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
-    return np.array([np.argmin(values), np.argmax(values)], dtype=np.int64)
 
 
 # of an 8 point text in a panel of the usual size, in parts of its width and height
@@ -173,17 +170,12 @@ Description = TypeVar("Description")
 
 def rewritten(description: Description, write: Callable[[str], str]) -> Description:
     """Return a description with all its texts rewritten; colors and the like hold nothing to rewrite."""
-    return cast(Description, _rewritten(description, write))
-
-
-def _rewritten(part: Any, write: Callable[[str], str]) -> Any:
-    """Rewrite a text, the entries of a tuple, or the fields of a record; leave numbers alone."""
+    part: Any = description
     if isinstance(part, str):
-        return write(part)
-    if isinstance(part, tuple):
-        return tuple(_rewritten(entry, write) for entry in part)
-    if is_dataclass(part) and not isinstance(part, type):
-        return replace(
-            part, **{each.name: _rewritten(getattr(part, each.name), write) for each in fields(part)}
-        )
-    return part
+        part = write(part)
+    elif isinstance(part, tuple):
+        part = tuple(rewritten(entry, write) for entry in part)
+    elif is_dataclass(part) and not isinstance(part, type):
+        own = {each.name: rewritten(getattr(part, each.name), write) for each in fields(part)}
+        part = replace(part, **own)
+    return cast(Description, part)

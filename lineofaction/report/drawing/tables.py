@@ -42,15 +42,11 @@ def _rows(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, s
         label = f"{before}{_words(name)}"
         if isinstance(value, Mapping):
             yield from _rows(value, f"{label} · ")
-        elif _is_record_list(value):
+        elif isinstance(value, list | tuple) and bool(value) and all(isinstance(v, Mapping) for v in value):
             for index, record in enumerate(value):
                 yield from _rows(record, f"{label} {index + 1} · ")
         elif value is not None:
             yield label, _cell(value)
-
-
-def _is_record_list(value: object) -> bool:
-    return isinstance(value, list | tuple) and bool(value) and all(isinstance(v, Mapping) for v in value)
 
 
 def _words(name: str) -> str:
@@ -137,7 +133,14 @@ UNKNOWN, LEAST = "-", 1e-3
 
 def cost_tables(facts: Mapping[str, Any]) -> tuple[Table, ...]:
     """Return the table of predicted and measured cost of the housings; none without any."""
-    rows = tuple(_row(name, cost) for name, cost in _work(facts))
+    rows = tuple(
+        (
+            name,
+            *(amount(cost[clock]) for clock in ("seconds", "predicted_seconds")),
+            *(gigabytes(cost[size]) for size in ("bytes", "predicted_bytes")),
+        )
+        for name, cost in _work(facts)
+    )
     return (Table("Cost of the housings, once: results are kept", HEAD, rows),) if rows else ()
 
 
@@ -148,11 +151,6 @@ def _work(facts: Mapping[str, Any]) -> Iterator[tuple[str, Json]]:
         if "cost" in radiation:
             model = radiation["model_name"].replace("_", " ")
             yield f"{housing}: {model}, all frequencies", radiation["cost"]
-
-
-def _row(name: str, cost: Json) -> tuple[str, ...]:
-    seconds = amount(cost["seconds"]), amount(cost["predicted_seconds"])
-    return name, *seconds, gigabytes(cost["bytes"]), gigabytes(cost["predicted_bytes"])
 
 
 def amount(value: float | None) -> str:

@@ -47,7 +47,6 @@ class _Look:
     table: Callable[[Any], Table]
 
     def words(self, ablation: Any, entry: Any) -> str:
-        """Write the change of peak-to-peak by leaving an effect out."""
         return f"{self.signed(1e6 * self.change(ablation, entry))} µm"
 
     def ordered(self, ablation: Any) -> list[Any]:
@@ -82,7 +81,11 @@ _SMALLEST = 1e-3  # um; smaller changes are nothing
 def _case_table(ablation: Ablation) -> Table:
     """List the changes at the nominal load, trifles in one row."""
     ordered = _CASE.ordered(ablation)
-    shown = [entry for entry in ordered if not _trifle(ablation, entry)]
+    shown = [
+        entry
+        for entry in ordered
+        if not (ablation.measured(entry).trifle and (entry.estimate is None or entry.estimate.trifle))
+    ]
     rows = [_case_row(ablation, entry) for entry in shown]
     if len(shown) < len(ordered):
         names = ", ".join(entry.name for entry in ordered if entry not in shown)
@@ -94,11 +97,7 @@ def _case_table(ablation: Ablation) -> Table:
 
 def _where(ablation: Ablation) -> str:
     misalignment = number(1e6 * ablation.misalignment)
-    return f"at {number(float(ablation.torque[-1]))} N m, misalignment {misalignment} µm"
-
-
-def _trifle(ablation: Ablation, entry: EffectAblation) -> bool:
-    return ablation.measured(entry).trifle and (entry.estimate is None or entry.estimate.trifle)
+    return f"at {number(ablation.torque[-1])} N m, misalignment {misalignment} µm"
 
 
 def _cells(influence: Influence | None) -> tuple[str, ...]:
@@ -152,7 +151,6 @@ def _scatter(ablation: Ablation, title: str, which: str) -> Panel:
 
 
 def _case_panels(ablation: Ablation) -> tuple[Panel, ...]:
-    """Draw estimated over measured changes, and the harmonics without each effect."""
     return (
         _scatter(ablation, "Mean", "mean"),
         _scatter(ablation, "Peak to peak", "peak_to_peak"),
@@ -176,7 +174,6 @@ _CASE = _Look(
 
 
 def _scene_table(ablation: SceneAblation) -> Table:
-    """List the largest changes over meshes and bearings."""
 
     def estimated(entry: SceneEffect, name: str) -> str:
         return "" if entry.estimate is None else _signed(1e6 * _most(getattr(entry.estimate, name)))

@@ -10,7 +10,7 @@ import numpy as np
 
 from dynamics.accuracy import Frontier as SceneFrontier
 from fe_contact.analysis.studies.frontier import Frontier
-from fe_contact.analysis.studies.measured_full_contact import ORIGIN, PLANE, PROGRAM, MeasuredFullContact
+from fe_contact.analysis.studies.measured_full_contact import ORIGIN, PLANE, PROGRAM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Note, Panel, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Section
@@ -40,34 +40,22 @@ LIVE = "full contact, run on this case"
 
 
 def _peers(study: Frontier) -> list[_Peer]:
-    known, measured = _known_cost(study), study.full_contact
-    return known if measured is None else [*known, _of_case(measured, study.solves)]
-
-
-def _known_cost(study: Frontier) -> list[_Peer]:
-    """Return what is known of this very pair, if anything is."""
-    levels = study.known_full_contact
-    if not levels:
-        return []
-    titles = tuple(f"full contact, {level.unknowns // 1000} k unknowns" for level in levels)
-    time = np.array([level.seconds(study.solves) for level in levels])
-    errors = {"mean_error": np.array([level.relative_error for level in levels])}
-    return [_Peer("full contact, 2-D", titles, time, errors, "known cost", palette.VERMILLION, 1.8)]
-
-
-def _of_case(measured: MeasuredFullContact, solves: int) -> _Peer:
-    title = f"full contact of this case, {measured.unknowns // 1000} k unknowns"
-    mark = f"{len(measured.solved)} of {len(measured.points)} positions x loads solved"
-    names = ("mean_error", "peak_to_peak_error")
-    errors = {name: np.array([getattr(measured, name)]) for name in names}
-    time = np.array([measured.seconds(solves)])
-    return _Peer(LIVE, (title,), time, errors, mark, palette.PURPLE, 0.0, "full contact")
-
-
-def _own(measured: MeasuredFullContact) -> str:
-    if not np.isfinite(measured.own_error):
-        return ""
-    return f" Its own meshes differ by at most {number(100.0 * measured.own_error, 2)} %."
+    """Return what is known of this very pair, and full contact as measured on this case."""
+    peers, measured = [], study.full_contact
+    if levels := study.known_full_contact:
+        titles = tuple(f"full contact, {level.unknowns // 1000} k unknowns" for level in levels)
+        time = np.array([level.seconds(study.solves) for level in levels])
+        errors = {"mean_error": np.array([level.relative_error for level in levels])}
+        known = _Peer("full contact, 2-D", titles, time, errors, "known cost", palette.VERMILLION, 1.8)
+        peers.append(known)
+    if measured is not None:
+        titles = (f"full contact of this case, {measured.unknowns // 1000} k unknowns",)
+        mark = f"{len(measured.solved)} of {len(measured.points)} positions x loads solved"
+        names = ("mean_error", "peak_to_peak_error")
+        errors = {name: np.array([getattr(measured, name)]) for name in names}
+        time = np.array([measured.seconds(study.solves)])
+        peers.append(_Peer(LIVE, titles, time, errors, mark, palette.PURPLE, 0.0, "full contact"))
+    return peers
 
 
 def _peer_caption(study: Frontier) -> str:
@@ -77,20 +65,19 @@ def _peer_caption(study: Frontier) -> str:
     measured = study.full_contact
     if measured is None:
         return known.strip()
-    own = measured.plane_strain_mean
+    meshes, own = measured.own_error, measured.plane_strain_mean
     plane = ", and hold what plane strain leaves out" if measured.solved_in == PLANE else ""
     beside = (
-        f" Our plane strain differs from it by {number(100.0 * own, 2)} % of the mean."
-        if np.isfinite(own)
-        else ""
+        f" Its own meshes differ by at most {number(100.0 * meshes, 2)} %." if np.isfinite(meshes) else ""
     )
+    if np.isfinite(own):
+        beside += f" Our plane strain differs from it by {number(100.0 * own, 2)} % of the mean."
     return (
         f"{known}On this case {PROGRAM} solved {measured.positions} positions under all loads in "
         f"{measured.solved_in} ({measured.unknowns // 1000} k unknowns, {number(measured.cpu_seconds, 3)} "
         f"CPU s): its errors are those at these positions, the worst of all loads"
         f"{plane}; its time is extrapolated, the mean of a position and load times "
-        f"{study.solves}."
-        f"{_own(measured)}{beside}"
+        f"{study.solves}.{beside}"
     )
 
 
@@ -289,7 +276,6 @@ def _panel(
 
 
 def _mark(study: Study, name: str) -> str:
-    """Return what a fidelity is: knee, chosen, reference."""
     marks = (("knee", study.knee), ("chosen", study.chosen), ("reference", study.reference.name))
     return ", ".join(mark for mark, marked in marks if marked == name)
 

@@ -59,7 +59,7 @@ def contact_lines(flanks: LoadDistribution) -> Figure:
         "(A) to its tip (E). Color and thickness: line load; thin gray: flanks that could touch "
         "but carry no load. "
         f"One stroke is {number(1e3 * flanks.slice_width, 2)} mm of the face, its color the mean there.",
-        alternative=f"At most {number(float(1e-3 * flanks.line_load.max()), 4)} N/mm; at position {at}, the "
+        alternative=f"At most {number(1e-3 * flanks.line_load.max(), 4)} N/mm; at position {at}, the "
         f"one of the largest pressure, {_carrying(flanks, worst)} tooth pairs carry load.",
         content=(
             Panel(x, y, (), _marks(flanks), f"line load at {chosen.size} positions of the cycle", load),
@@ -70,7 +70,6 @@ def contact_lines(flanks: LoadDistribution) -> Figure:
 
 
 def _axes(flanks: LoadDistribution) -> tuple[Axis, Axis]:
-    """Face and path of contact, mm."""
     start, *_, end = (1e3 * point for point in flanks.scene.path_of_contact)
     room = 0.06 * (end - start)
     return (
@@ -106,7 +105,6 @@ def _carrying(flanks: LoadDistribution, position: int) -> int:
 
 
 def _table(flanks: LoadDistribution, chosen: IntArray) -> Table:
-    """Pairs in contact, line load and pressure at the positions shown."""
     columns = {
         "position, base pitches": lambda k: f"{flanks.position[k]:.4g}",
         "pairs that carry": lambda k: str(_carrying(flanks, int(k))),
@@ -128,30 +126,22 @@ _Map = tuple[FloatArray, FloatArray]
 
 def contact_pattern_figure(flanks: LoadDistribution) -> Figure:
     """Draw one panel per gear: colors over face and roll length, or a curve where there is one slice."""
-    drawn = _shaded if flanks.face_position.size > 1 else _curve
-    maps = [_map(flanks, roll) for roll in (flanks.roll_length_1, flanks.roll_length_2)]
+    pressures = (pressure_map(flanks, roll) for roll in (flanks.roll_length_1, flanks.roll_length_2))
+    maps = [(1e3 * rows, 1e-6 * pressure) for rows, pressure in pressures]
+    count = flanks.face_position.size
+    drawn = _shaded if count > 1 else _curve
+    stretches = f" and {count} stretches of the face; blank: nothing touches" if count > 1 else ""
     return Figure(
         key="contact_pattern",
         title="Contact pattern",
         caption="The Hertz pressure that passes over each point of the unrolled flanks, interpolated between "
-        f"{flanks.position.size} positions{_stretches(flanks)}. At a tip edge the true pressure is "
+        f"{flanks.position.size} positions{stretches}. At a tip edge the true pressure is "
         "singular, and this a measure only. Roll length: distance to the base circle along the "
         "involute's normal. Seen from the +z end, the driving gear turns clockwise.",
         alternative=_words(flanks),
         content=tuple(drawn(flanks, gear, one) for gear, one in zip(GEARS, maps, strict=True)),
         table=_pattern_table(flanks, maps),
     )
-
-
-def _map(flanks: LoadDistribution, roll: FloatArray) -> _Map:
-    """Return the pressure over one flank in mm and MPa."""
-    rows, pressure = pressure_map(flanks, roll)
-    return 1e3 * rows, 1e-6 * pressure
-
-
-def _stretches(flanks: LoadDistribution) -> str:
-    count = flanks.face_position.size
-    return f" and {count} stretches of the face; blank: nothing touches" if count > 1 else ""
 
 
 def _roll_marks(
@@ -191,7 +181,6 @@ def _isolines(largest: float) -> tuple[float, ...]:
 
 
 def _title(flanks: LoadDistribution, gear: Gear) -> str:
-    """Name a flank and where its tip is."""
     if gear == "pinion":
         return "pinion (drives): root below, tip above"
     ring = flanks.scene.facts.internal
@@ -223,7 +212,6 @@ def _extent(flanks: LoadDistribution, gear: Gear, roll: FloatArray) -> tuple[flo
 
 
 def _words(flanks: LoadDistribution) -> str:
-    """Say where the pressure is largest, edges aside."""
     at = np.unravel_index(int(flanks.clear_pressure.argmax()), flanks.pressure.shape)
     roll, face = (1e3 * float(v) for v in (flanks.roll_length_1[at], flanks.face_position[at[2]]))
     largest = number(1e-6 * float(flanks.pressure[at]), 4)
@@ -272,8 +260,8 @@ def line_load_figure(flanks: LoadDistribution) -> Figure:
         key="line_load",
         title="Load and gap over the face" if gaps else "Load over the face",
         caption=_line_load_caption(flanks, with_gap=bool(gaps)),
-        alternative=f"Averaged over the positions the face carries {number(float(mean.min()), 4)} to "
-        f"{number(float(mean.max()), 4)} N/mm: K_Hbeta {number(factor, 3)}.",
+        alternative=f"Averaged over the positions the face carries {number(mean.min(), 4)} to "
+        f"{number(mean.max(), 4)} N/mm: K_Hbeta {number(factor, 3)}.",
         content=(
             Panel(face, Axis("load per face width, N/mm"), (*loads, cycle)),
             *gaps,
@@ -321,8 +309,8 @@ def load_centroid_figure(flanks: LoadDistribution) -> Figure:
         caption="Above: distance of the load's centroid from the pinion's mid-face. Below: largest over mean "
         "load per unit of face width at each position; the line is that of the load averaged over all of "
         "them, K_Hbeta of ISO 6336-1 for this alignment and without manufacturing errors.",
-        alternative=f"The centroid lies {number(float(centroid.min()), 3)} to "
-        f"{number(float(centroid.max()), 3)} mm from mid-face; K_Hbeta is {k}.",
+        alternative=f"The centroid lies {number(centroid.min(), 3)} to "
+        f"{number(centroid.max(), 3)} mm from mid-face; K_Hbeta is {k}.",
         content=(
             _over_position(flanks, "load centroid, mm", centroid, "mid-face", 0.0),
             _over_position(flanks, "largest over mean load", flanks.face_load_factor, f"K_Hbeta {k}", factor),
@@ -352,7 +340,7 @@ def _face_table(flanks: LoadDistribution, mean: FloatArray) -> Table:
     columns = {
         "face position, mm": lambda k: number(1e3 * float(flanks.face_position[k]), 4),
         "mean load per face width, N/mm": lambda k: number(float(mean[k])),
-        "largest line load, N/mm": lambda k: number(float(largest[k])),
+        "largest line load, N/mm": lambda k: number(largest[k]),
     }
     return Table.of("Load over the face", range(mean.size), columns)
 

@@ -46,13 +46,10 @@ def force_words(facts: Json) -> tuple[tuple[str, str], ...]:
         (f"housing {name}", "not that in which the run moved: its forces lack what this one does")
         for name in run.get("other_housings", ())
     ]
-    name, share = _largest_remainder(run)
-    rows.append(
-        (
-            "what orders do not hold",
-            f"at most {number(100.0 * share, 3)} % of the force on {name}, in variance",
-        )
-    )
+    most = {name: max(shares) for name, shares in run["remainder"].items()}
+    bearing = max(most, key=lambda name: most[name])
+    remainder = f"at most {number(100.0 * most[bearing], 3)} % of the force on {bearing}, in variance"
+    rows.append(("what orders do not hold", remainder))
     if run["smearing"] is None:
         rows.append(("smearing by the windows", "not known: the run states no modes"))
         return tuple(rows)
@@ -63,12 +60,6 @@ def force_words(facts: Json) -> tuple[tuple[str, str], ...]:
         words += f"; above 1 dB in {coarse} windows: run up more slowly"
     rows.append(("smearing by the windows", words))
     return tuple(rows)
-
-
-def _largest_remainder(run: Json) -> tuple[str, float]:
-    most = {name: max(shares) for name, shares in run["remainder"].items()}
-    name = max(most, key=lambda bearing: most[bearing])
-    return name, most[name]
 
 
 DEPTH, LABEL = 60.0, "sound power level, dB(A)"
@@ -92,7 +83,7 @@ def third_octaves_over_time(facts: Json) -> Figure:
         caption="All that the forces on the bearings hold, impacts and sidebands too, from "
         f"{number(course['lowest_hz'], 3)} to {number(course['highest_hz'], 4)} Hz; A-weighted at the "
         f"centers of bands. Blocks of {BLOCK:g} s overlap by half.",
-        alternative=f"Loudest at {number(float(time[at]), 3)} s: {total[at]:.1f} dB(A) in all.",
+        alternative=f"Loudest at {number(time[at], 3)} s: {total[at]:.1f} dB(A) in all.",
         content=(Panel(x, y, shade=shaded_levels(time, place, level, LABEL, DEPTH)),),
         table=_over_time_table(course),
     )

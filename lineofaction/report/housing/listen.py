@@ -40,7 +40,7 @@ def _level_figure(heard: HeardRun) -> Figure:
         title=f"Level of the {name}",
         caption=f"{heard.recording.quantity[0].upper()}{heard.recording.quantity[1:]}. Over blocks of "
         f"{number(time[0] * 2.0, 2)} s.",
-        alternative=f"Loudest at {number(float(along[loudest]), 4)} {x.label.rpartition(', ')[2]}: "
+        alternative=f"Loudest at {number(along[loudest], 4)} {x.label.rpartition(', ')[2]}: "
         f"{level[loudest]:.1f} {unit.partition(' re ')[0]}.",
         content=(Panel(x, y, (Line(name, along, level, palette.INK, width=1.4),)),),
         table=_table(time, along, level, x.label, unit),
@@ -65,9 +65,7 @@ def _noun(heard: HeardRun) -> str:
 
 
 def _table(time: FloatArray, along: FloatArray, level: FloatArray, label: str, unit: str) -> Table:
-    rows = tuple(
-        (f"{t:.3f}", number(float(x), 5), f"{dB:.1f}") for t, x, dB in zip(time, along, level, strict=True)
-    )
+    rows = tuple((f"{t:.3f}", number(x, 5), f"{dB:.1f}") for t, x, dB in zip(time, along, level, strict=True))
     return Table("Level over the run", ("middle, s", label, unit), rows)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -44,7 +44,7 @@ LINES, SHOWN = 160, 6
 """Cells of the map in frequency; lines of orders and bearings."""
 
 
-def _sound_map(sound: RadiatedSound, table: Table, words: Sequence[str]) -> Figure:
+def _sound_map(sound: RadiatedSound) -> Figure:
     orders, (x, along) = sound.orders, row_axis(sound.speed, sound.facts)
     forces = "linear: mean mesh stiffness, no loss of contact"
     if of_run(sound.facts) is not None:
@@ -54,9 +54,9 @@ def _sound_map(sound: RadiatedSound, table: Table, words: Sequence[str]) -> Figu
         title="Sound power over speed and frequency",
         caption="A-weighted sound power level re 1 pW of each order as in a steady state, "
         f"{forces}. Colors end {DEPTH:g} dB below the loudest.",
-        alternative=" ".join(f"Loudest: {text}." for text in words) or "Nothing radiates.",
+        alternative=" ".join(f"Loudest: {text}." for text in _sentences(sound)) or "Nothing radiates.",
         content=(Panel(x, Axis("frequency, Hz"), shade=_cells(orders, along)),),
-        table=table,
+        table=_loudest_table(sound),
     )
 
 
@@ -167,23 +167,23 @@ def _bearing_levels(sound: RadiatedSound) -> Figure:
     )
 
 
-def _panel_intensity(sound: RadiatedSound, where: str, table: Table) -> Figure | None:
-    """Draw the intensity on the hulls at the loudest point, `_where`; None where it was not looked at."""
-    panels = sound.panels
-    if panels is None:
+def _panel_intensity(sound: RadiatedSound) -> Figure | None:
+    """Draw the intensity on the hulls at the loudest point; None in silence or where it is not known."""
+    panels, points = sound.panels, loudest(sound, 1)
+    if panels is None or not points:
         return None
     hull, value = panels.hull, 1e3 * panels.intensity
-    least, largest = (number(float(end), 2) for end in (value.min(), value.max()))
+    least, largest = (number(end, 2) for end in (value.min(), value.max()))
     return Figure(
         key="sound_panels",
-        title=f"Sound intensity on the surface: {where}",
+        title=f"Sound intensity on the surface: {_where(points[0])}",
         caption="Active intensity normal to the hull that the radiation model takes: openings are covered, "
         "fine details rounded off. Negative: takes power that other panels radiate.",
         alternative=f"The intensity is between {least} and {largest} mW/m².",
         content=surface_panels(
             hull.nodes, hull.triangles, np.zeros_like(hull.nodes), value, "intensity, mW/m²", "outer hull"
         ),
-        table=table,
+        table=_region_table(sound),
     )
 
 
@@ -198,7 +198,7 @@ def _levels_table(sound: RadiatedSound, level: FloatArray, total: FloatArray) ->
         sound.order, level.argmax(axis=1), level, sound.frequency.T, strict=True
     ):
         speed = number(float(sound.speed[at]) / RPM, 5)
-        rows.append((f"{order:.4g}", f"{row[at]:.1f}", speed, number(float(hertz[at]), 5)))
+        rows.append((f"{order:.4g}", f"{row[at]:.1f}", speed, number(hertz[at], 5)))
     head = ("order", "dB(A)", "speed, rpm", "frequency, Hz")
     return Table("Largest level of each order", head, tuple(rows))
 
@@ -304,7 +304,6 @@ def _where(point: LoudPoint) -> str:
 
 
 def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
-    """Return the loudest speed, the loudest order, and where flanks part."""
     total, points = sound.orders.total_weighted_level, loudest(sound, 1)
     at = int(total.argmax())
     where = f"at {number(float(sound.speed[at]) / RPM, 4)} rpm, all orders"
@@ -318,7 +317,7 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
     ]
     parting = sound.speed[~sound.in_contact] / RPM
     if parting.size:
-        first = f"from {number(float(parting[0]), 4)} rpm on"
+        first = f"from {number(parting[0], 4)} rpm on"
         shown.append(Headline("flanks part at", f"{parting.size} of {sound.speed.size} speeds", first))
     return tuple(shown)
 
@@ -327,17 +326,12 @@ _MODEL_HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predict
 
 
 def _model_tables(sound: RadiatedSound) -> Iterator[Table]:
-    """Yield the models of each housing where it is loudest."""
     for housing in sound.housing:
         compared = sound.facts["models"][housing]
         if compared.get("predicted"):
-            yield _models(housing, compared)
-
-
-def _models(housing: str, compared: Json) -> Table:
-    speed = number(compared["speed"] / RPM, 4)
-    caption = f"Radiation models of {housing} at order {compared['order']:.4g}, {speed} rpm"
-    return Table(caption, _MODEL_HEAD, tuple(_model(name, compared) for name in compared["predicted"]))
+            where = f"order {compared['order']:.4g}, {number(compared['speed'] / RPM, 4)} rpm"
+            rows = tuple(_model(name, compared) for name in compared["predicted"])
+            yield Table(f"Radiation models of {housing} at {where}", _MODEL_HEAD, rows)
 
 
 def _model(name: str, compared: Json) -> tuple[str, ...]:
@@ -371,7 +365,6 @@ def _main_region(sound: RadiatedSound) -> str:
 
 
 def _region_table(sound: RadiatedSound) -> Table:
-    """List the regions of the loudest points."""
     listed = [
         {"point": point, **region}
         for point, regions in zip(loudest(sound, _REGION_POINTS), sound.facts["regions"], strict=False)
@@ -391,16 +384,8 @@ def _region_table(sound: RadiatedSound) -> Table:
 
 
 def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
-    points = loudest(sound, 1)
-    panels = _panel_intensity(sound, _where(points[0]), _region_table(sound)) if points else None
-    figures = (
-        _sound_map(sound, _loudest_table(sound), _sentences(sound)),
-        _level_over_speed(sound),
-        _third_octaves(sound),
-        _bearing_levels(sound),
-        panels,
-    )
-    shown = tuple(figure for figure in figures if figure is not None)
+    draws = (_sound_map, _level_over_speed, _third_octaves, _bearing_levels, _panel_intensity)
+    shown = tuple(figure for draw in draws if (figure := draw(sound)) is not None)
     if sound.facts.get("over_time") is None:
         return shown
     return (*shown, third_octaves_over_time(sound.facts))
@@ -442,29 +427,20 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield from (f"{what}: {words}" for what, words in _limits(sound))
     yield from _model_tables(sound)
     yield from _uncertainty_tables(sound.facts)
-    yield from (f"no sensitivity to {name}: {why}" for name, why in _missing(sound))
+    left_out = sound.facts["sensitivities_left_out"]
+    yield from (f"no sensitivity to {name}: {why}" for name, why in left_out.items())
     yield from model_text(sound.facts)
 
 
-def _missing(sound: RadiatedSound) -> tuple[tuple[str, str], ...]:
-    """Return the figures without a sensitivity, and why."""
-    return tuple(sound.facts["sensitivities_left_out"].items())
-
-
 def _page(sound: RadiatedSound) -> Page:
-    """Return the report: figures, bands and sensitivities, effects, and what the levels rest on."""
     whole = dynamics_page("Sound power", _figures(sound), _headlines(sound), sound.facts)
     tables = tuple(_uncertainty_tables(sound.facts))
-    if missing := _missing(sound):
-        tables += (Table("No sensitivity", ("to", "because"), missing),)
+    if missing := sound.facts["sensitivities_left_out"]:
+        tables += (Table("No sensitivity", ("to", "because"), tuple(missing.items())),)
     bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
     rests = Table("Radiation models, and what the levels do not hold", ("what", "how"), tuple(_limits(sound)))
     accuracy = Section("Accuracy of the levels", tables=(rests, *_model_tables(sound)), part=Part.ACCURACY)
     return replace(whole, sections=(*whole.sections, *bands, accuracy))
 
 
-PAGE = Presentation(
-    lambda sound: _sound_map(sound, _loudest_table(sound), _sentences(sound)),
-    _page,
-    _text,
-)
+PAGE = Presentation(_sound_map, _page, _text)

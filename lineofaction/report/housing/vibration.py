@@ -40,7 +40,7 @@ _LARGEST_HEAD = (
 
 def _where(analysis: VibrationAnalysis) -> str:
     vibration, s, h = analysis.vibration, analysis.at_speed, analysis.at_order
-    speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(float(vibration.frequency[s, h]), 4)
+    speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
     return f"order {vibration.order[h]:.4g} at {speed} rpm, {hertz} Hz"
 
 
@@ -58,7 +58,7 @@ def _largest_table(result: HousingVibrationResult) -> Table:
         speed, order = number(float(vibration.speed[s]) / RPM, 5), f"{vibration.order[h]:.4g}"
         size = number(float(rms[s, h]) / MM_PER_S, 4), number(float(vibration_level(rms[s, h])), 4)
         valid = "yes" if vibration.valid[s, h] else "no"
-        rows.append((name, order, speed, number(hertz, 5), number(float(near), 5), *size, valid))
+        rows.append((name, order, speed, number(hertz, 5), number(near, 5), *size, valid))
     return Table("Largest velocity of every point", _LARGEST_HEAD, tuple(rows))
 
 
@@ -78,7 +78,7 @@ def _rows(shares: Shares, with_surface: bool) -> list[tuple[str, ...]]:
     return [
         (
             shares.name[p],
-            number(float(shares.frequency[p]), 5) if np.isfinite(shares.frequency[p]) else "",
+            number(shares.frequency[p], 5) if np.isfinite(shares.frequency[p]) else "",
             *(f"{100.0 * float(value):.1f}" for value in every[:, p]),
         )
         for p in most
@@ -176,7 +176,7 @@ def _transfer_figure(result: HousingVibrationResult) -> Figure:
         title=f"Transfer functions of {analysis.housing}",
         caption="Velocity per force on a seat (per moment in N m for tilts), along the seat's own axes: the "
         "seats that act most in the order shown.",
-        alternative=f"From the seats to {title}, up to {number(float(hertz[-1]), 4)} Hz.",
+        alternative=f"From the seats to {title}, up to {number(hertz[-1], 4)} Hz.",
         content=tuple(panels),
     )
 
@@ -221,7 +221,6 @@ def _share_panel(shares: Shares, part: FloatArray) -> Panel:
 
 
 def _name(shares: Shares, index: int) -> str:
-    """Name a part: a mode by its frequency."""
     hertz = float(shares.frequency[index])
     return f"{number(hertz, 4)} Hz" if np.isfinite(hertz) else shares.name[index]
 
@@ -232,7 +231,7 @@ def _shape_figure(result: HousingVibrationResult) -> Figure | None:
     if shape is None:
         return None
     if result.mode:
-        what = f"Mode {result.mode}, {number(float(result.natural_frequency[result.mode - 1]), 4)} Hz"
+        what = f"Mode {result.mode}, {number(result.natural_frequency[result.mode - 1], 4)} Hz"
         one, unit = 1.0, "1"
     else:
         what = f"Operating deflection at {_where(result.analysis)}"
@@ -264,7 +263,6 @@ def _words(result: HousingVibrationResult) -> str:
 
 
 def _figure(result: HousingVibrationResult) -> Figure:
-    """Draw the mode or the deflection; without a surface the velocities."""
     return _shape_figure(result) or _velocity_figure(result)
 
 
@@ -294,7 +292,7 @@ def _headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
     for what, shares in (("bearing", analysis.bearings), ("mode", analysis.modes)):
         part = shares.surface if surface else shares.point[0]
         p = int(np.argmax(part))
-        hertz = f"{number(float(shares.frequency[p]), 4)} Hz, " if np.isfinite(shares.frequency[p]) else ""
+        hertz = f"{number(shares.frequency[p], 4)} Hz, " if np.isfinite(shares.frequency[p]) else ""
         share = f"{hertz}{number(100.0 * float(part[p]), 3)} % of the mean square"
         most.append(Headline(f"{what} that contributes most", shares.name[p], share))
     return (first, *most)

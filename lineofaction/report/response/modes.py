@@ -105,7 +105,7 @@ def mode_table(run: RunResult, top: float, orders: int) -> Table | None:
         line, damping = np.atleast_1d(frequency), np.atleast_1d(ratio)
         if not 0.0 < line[0] < top:
             continue
-        frequencies = [number(float(end), 4) for end in ((line[0], line[-1]) if whirls else line)]
+        frequencies = [number(end, 4) for end in ((line[0], line[-1]) if whirls else line)]
         whirl = (_whirl_name(modes["whirl"][index][-1]),) if whirls else ()
         met = _met(modes["mesh_frequency"][0] if whirls else None, line, orders, (low, high))
         rows.append((*frequencies, number(100.0 * float(damping[-1]), 2), *whirl, _moves(modes, index), met))
@@ -196,7 +196,6 @@ WHIRLS: dict[str, tuple[str, Dash]] = {
 
 
 def _modal_figures(modes: ModalAnalysis) -> tuple[Figure, ...]:
-    """Draw the Campbell diagram, if there are speeds, and the energies."""
     return (_campbell(modes), *_energies(modes)) if modes.speed.size > 1 else _energies(modes)
 
 
@@ -242,7 +241,6 @@ def _different(modes: ModalAnalysis) -> list[int]:
 
 
 def _order_notes(modes: ModalAnalysis, speed: FloatArray, top: float) -> Iterator[Note]:
-    """Name the orders where they leave the panel."""
     several, width = len(_different(modes)) > 1, float(np.ptp(speed))
     for mesh in _different(modes):
         rate, last = float(modes.mesh_frequency[mesh, -1] / speed[-1]), np.inf
@@ -269,7 +267,7 @@ def _modes(modes: ModalAnalysis, speed: FloatArray) -> Iterator[Line]:
 def _energies(modes: ModalAnalysis) -> tuple[Figure, Figure]:
     """Show what holds each natural mode (meshes, bearings, drives), and what moves in it (shafts)."""
     shown = np.flatnonzero(modes.natural_frequency > 0.0)[:SHOWN_MODES]
-    names = [f"{number(float(modes.natural_frequency[mode]), 4)} Hz" for mode in shown]
+    names = [f"{number(modes.natural_frequency[mode], 4)} Hz" for mode in shown]
     held = [modes.held_by(modes.natural_strain_energy[mode]) for mode in shown]
     moved = [modes.moved(modes.natural_kinetic_energy[mode]) for mode in shown]
     alike = (
@@ -332,7 +330,7 @@ def _critical_table(modes: ModalAnalysis) -> Table:
             mate.append(index)
     columns = {
         "speed, rpm": lambda group: number(float(modes.critical_speed[group[0]]) / RPM, 5),
-        "frequency, Hz": lambda group: number(float(modes.critical_frequency[group[0]]), 5),
+        "frequency, Hz": lambda group: number(modes.critical_frequency[group[0]], 5),
         "order": lambda group: str(int(modes.critical_order[group[0]])),
         "mesh": lambda group: modes.mesh[int(modes.critical_mesh[group[0]])],
         "modes": lambda group: ", ".join(str(int(modes.critical_mode[index]) + 1) for index in group),
@@ -359,7 +357,6 @@ def _critical_kind(modes: ModalAnalysis, index: int) -> tuple[str, str]:
 
 
 def _words(modes: ModalAnalysis) -> str:
-    """Say how many crossings there are and where the least damped is."""
     if not modes.critical_speed.size:
         return "No mesh order meets a mode in this range."
     least = int(np.argmin(modes.critical_damping_ratio))
@@ -367,7 +364,7 @@ def _words(modes: ModalAnalysis) -> str:
         f"{modes.critical_speed.size} crossings; the least damped, with "
         f"{number(100.0 * float(modes.critical_damping_ratio[least]), 3)} %, at "
         f"{number(float(modes.critical_speed[least]) / RPM, 4)} rpm and "
-        f"{number(float(modes.critical_frequency[least]), 4)} Hz, mesh order "
+        f"{number(modes.critical_frequency[least], 4)} Hz, mesh order "
         f"{int(modes.critical_order[least])}."
     )
 
@@ -378,7 +375,7 @@ def _headlines(modes: ModalAnalysis) -> tuple[Headline, ...]:
         return ()
     first = int(elastic[0])
     kind = modes.kind(modes.natural_strain_energy[first], modes.natural_kinetic_energy[first])
-    frequency = f"{number(float(modes.natural_frequency[first]), 4)} Hz"
+    frequency = f"{number(modes.natural_frequency[first], 4)} Hz"
     lowest = Headline("lowest natural frequency", frequency, kind)
     return (lowest, _least_damped(modes)) if modes.speed.size else (lowest,)
 

@@ -45,7 +45,7 @@ def _power_table(response: ForcedResponse) -> Table:
         most = max(own, key=lambda part: by_part[part])
         share = 100.0 * float(lost[at] / total[at])
         if abs(share) >= LEAST_SHARE:
-            rows.append((kind, power.sink[most], number(float(lost[at]), 3), number(share, 3)))
+            rows.append((kind, power.sink[most], number(lost[at], 3), number(share, 3)))
     title = f"Power lost at {number(float(response.speed[at]) / RPM, 4)} rpm, all orders"
     return Table(title, ("lost in", "most in", "W", "%"), tuple(rows))
 
@@ -97,7 +97,12 @@ def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
     for label, amplitude in quantities:
         panels.append(Panel(x, Axis(label), category_lines(speed, names, amplitude[:, shown].T)))
     if response.mesh:
-        panels.append(_least(x, speed, response, mesh))
+        line = Line("least mesh force", speed, response.least_mesh_force[mesh], palette.INK, width=1.4)
+        panels.append(
+            Panel(
+                x, Axis("least mesh force, N"), (line,), (Reference("flanks part", 0.0, "horizontal", 0.12),)
+            )
+        )
     return Figure(
         key="response",
         title="Forced response to transmission errors and loads" if response.mesh else "Forced response",
@@ -129,13 +134,6 @@ def _bearing_force(response: ForcedResponse) -> FloatArray:
     return np.asarray(np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1)))
 
 
-def _least(x: Axis, speed: FloatArray, response: ForcedResponse, mesh: int) -> Panel:
-    line = Line("least mesh force", speed, response.least_mesh_force[mesh], palette.INK, width=1.4)
-    return Panel(
-        x, Axis("least mesh force, N"), (line,), (Reference("flanks part", 0.0, "horizontal", 0.12),)
-    )
-
-
 def _peak_table(response: ForcedResponse) -> Table:
     every = peaks(response)
     listed = [
@@ -156,24 +154,22 @@ def _peak_table(response: ForcedResponse) -> Table:
 
 
 def _words(response: ForcedResponse) -> str:
-    """Say the largest amplitude, and where flanks part."""
     if not response.mesh:
         return " ".join(f"{part.name}: {part.value}, {part.remark}." for part in _headlines(response))
     size = np.abs(response.mesh_force)
     mesh, s, h = np.unravel_index(int(np.argmax(size)), size.shape)
     text = (
-        f"Largest mesh force: {number(float(size[mesh, s, h]), 3)} N of order {response.order[h]:.4g} at "
+        f"Largest mesh force: {number(size[mesh, s, h], 3)} N of order {response.order[h]:.4g} at "
         f"{number(float(response.speed[s]) / RPM, 4)} rpm."
     )
     parting = response.speed[~response.in_contact] / RPM
     if parting.size:
-        first = number(float(parting[0]), 4)
+        first = number(parting[0], 4)
         text += f" Flanks lift off at {parting.size} of {response.speed.size} speeds, from {first} rpm on."
     return text
 
 
 def _headlines(response: ForcedResponse) -> tuple[Headline, ...]:
-    """Return the largest mesh force, and the largest bearing force or where flanks part."""
     parting, force = response.speed[~response.in_contact] / RPM, _bearing_force(response)
     own = [("mesh force of", response.mesh, np.abs(response.mesh_force))]
     own += [("force on bearing", response.bearing, force)]
@@ -181,18 +177,17 @@ def _headlines(response: ForcedResponse) -> tuple[Headline, ...]:
     if not parting.size:
         return tuple(shown)
     at = f"{parting.size} of {response.speed.size} speeds"
-    return (shown[0], Headline("flanks part at", at, f"from {number(float(parting[0]), 4)} rpm on"))
+    return (shown[0], Headline("flanks part at", at, f"from {number(parting[0], 4)} rpm on"))
 
 
 def _largest(what: str, names: Sequence[str], size: FloatArray, response: ForcedResponse) -> Headline:
     """Name the part of the largest amplitude (part, speed, order) with its order and speed."""
     part, s, h = map(int, np.unravel_index(int(np.argmax(size)), size.shape))
     at = f"order {response.order[h]:.4g} at {number(float(response.speed[s]) / RPM, 4)} rpm"
-    return Headline(f"largest {what} {names[part]}", f"{number(float(size[part, s, h]), 3)} N", at)
+    return Headline(f"largest {what} {names[part]}", f"{number(size[part, s, h], 3)} N", at)
 
 
 def _figures(response: ForcedResponse) -> tuple[Figure, ...]:
-    """Return amplitudes, and the power lost if any is."""
     figure = _response_figure(response)
     return (figure, _power_figure(response)) if _loses_power(response) else (figure,)
 

@@ -135,7 +135,7 @@ def _steady_table(states: SteadyStates) -> Table:
 
 def _bearing_cells(states: SteadyStates, index: int, bearing: int) -> tuple[str, ...]:
     state = KINDS[int(states.instability[index])] if not states.status[index] else "not found"
-    return state, number(float(states.rms_bearing_force[index, bearing]), 4)
+    return state, number(states.rms_bearing_force[index, bearing], 4)
 
 
 def _mesh_cells(states: SteadyStates, index: int, mesh: int) -> tuple[str, ...]:
@@ -145,11 +145,11 @@ def _mesh_cells(states: SteadyStates, index: int, mesh: int) -> tuple[str, ...]:
         return (f"{status_name(int(states.status[index]))}, {left} µm left", *("none",) * 7)
     return (
         KINDS[int(states.instability[index])],
-        number(float(np.abs(states.multiplier[index, 0])), 4),
+        number(np.abs(states.multiplier[index, 0]), 4),
         number(1e6 * float(states.rms_error[index, mesh]), 4),
         number(1e6 * float(states.peak_to_peak_error[index, mesh]), 4),
-        number(float(states.least_force[index, mesh]), 4),
-        number(float(states.largest_force[index, mesh]), 4),
+        number(states.least_force[index, mesh], 4),
+        number(states.largest_force[index, mesh], 4),
         _contact_name(float(states.parted[index, mesh]), float(states.coasting[index, mesh])),
         number(1e9 * float(states.step_error[index]), 2),
     )
@@ -173,7 +173,7 @@ def _words(states: SteadyStates) -> str:
     )
     for curve, (before, behind) in zip(states.jump_curve, states.jump_speed / RPM, strict=True):
         sweep = "Rising" if curve == UP else "Falling"
-        text += f" {sweep} speeds jump between {number(float(before), 5)} and {number(float(behind), 5)} rpm."
+        text += f" {sweep} speeds jump between {number(before, 5)} and {number(behind, 5)} rpm."
     return text
 
 
@@ -187,7 +187,7 @@ def _headlines(states: SteadyStates) -> tuple[Headline, ...]:
     if not states.jump_curve.size:
         return (error, _largest(states, "mesh force", states.largest_force, "N"))
     sense = "rising" if states.jump_curve[0] == UP else "falling"
-    before, behind = (number(float(speed), 5) for speed in states.jump_speed[0] / RPM)
+    before, behind = (number(speed, 5) for speed in states.jump_speed[0] / RPM)
     first = f"the first at {sense} speed between {before} and {behind} rpm"
     return (error, Headline("jumps", str(states.jump_curve.size), first))
 
@@ -198,7 +198,7 @@ def _largest(
     """Name the largest of values (motion, mesh) with mesh, or other part, speed and stability."""
     index, mesh = np.unravel_index(int(np.nanargmax(values)), values.shape)
     at = f"{number(float(states.speed[index]) / RPM, 4)} rpm, {KINDS[int(states.instability[index])]}"
-    value = f"{number(float(values[index, mesh]), 3)} {unit}"
+    value = f"{number(values[index, mesh], 3)} {unit}"
     return Headline(f"largest {what} of {(names or states.mesh)[mesh]}", value, at)
 
 

@@ -120,7 +120,6 @@ def largest_orders(signal: Signal, made: Waterfall) -> tuple[int, ...]:
 
 
 def _words(signal: Signal, made: Waterfall, along: FloatArray, unit: str) -> str:
-    """Say where it is loudest, and which order makes it."""
     overall = signal.magnitude(made.rms)
     worst = int(np.argmax(overall))
     orders = range(1, int(made.line[-1]) + 1)
@@ -128,7 +127,7 @@ def _words(signal: Signal, made: Waterfall, along: FloatArray, unit: str) -> str
     order = max(power, key=lambda key: power[key])
     share = min(power[order] / max(float(overall[worst]) ** 2, 1e-300), 1.0)
     return (
-        f"Loudest at {number(float(along[worst]), 3)} {unit}: {number(float(overall[worst]), 3)} "
+        f"Loudest at {number(along[worst], 3)} {unit}: {number(overall[worst], 3)} "
         f"{signal.quantity.unit} rms, {number(100.0 * share, 2)} % of its power at mesh order {order}."
     )
 
@@ -148,8 +147,8 @@ def _table(
     ]:
         at = int(np.argmax(values))
         level = f"{20.0 * np.log10(max(float(values[at]), 1e-300)):.1f}"
-        hertz = number(float(order * made.mesh_frequency[at]), 4) if order else ""
-        rows.append((name, number(float(values[at]), 4), level, number(float(abscissa[at]), 4), hertz))
+        hertz = number(order * made.mesh_frequency[at], 4) if order else ""
+        rows.append((name, number(values[at], 4), level, number(abscissa[at], 4), hertz))
     head = ("mesh order", f"largest, {signal.unit}", "dB", axis.label, "frequency, Hz")
     return Table("Largest value of each line", head, tuple(rows))
 
@@ -164,8 +163,8 @@ def order_map(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
     names = tuple((float(order), f"{order}×") for order in range(1, last + 1))
     orders = Axis("mesh order", limits=(0.0, float(made.line[-1])), names=names)
     block, line = np.unravel_index(int(np.argmax(amplitude[:, 1:])), amplitude[:, 1:].shape)
-    largest = number(float(amplitude[block, line + 1]), 3)
-    where = f"{number(float(along[block]), 3)} {unit_of(axis.label)}"
+    largest = number(amplitude[block, line + 1], 3)
+    where = f"{number(along[block], 3)} {unit_of(axis.label)}"
     return Figure(
         key="order_map",
         title=f"Order map of the {signal.name}",
@@ -173,7 +172,7 @@ def order_map(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
         f"largest, down to −{MAP_DEPTH:g} dB. "
         f"{validity(valid, float(run.mesh_frequency[signal.mesh].max()))}",
         alternative=f"Largest: {largest} {signal.unit} at order "
-        f"{number(float(made.line[line + 1]), 4)} and {where}.",
+        f"{number(made.line[line + 1], 4)} and {where}.",
         content=(Panel(Axis.over(axis.label, shade.x), orders, shade=shade),),
     )
 
@@ -217,16 +216,13 @@ def _panel(
     made: Waterfall, amplitude: FloatArray, axis: Axis, along: FloatArray, top: float, modes: list[ModeLine]
 ) -> Panel:
     shade = _level_map(along, made.line, amplitude, top)
-    lines = [_order(made, along, order, top) for order in range(1, ORDERS + 1)]
+    heights = (order * made.mesh_frequency for order in range(1, ORDERS + 1))
+    shown = (np.where(height <= top, height, np.nan) for height in heights)
+    lines = [Line("mesh orders", along, height, ORDER_COLOUR, "dot", 1.0) for height in shown]
     lines += [Line(mode.name, along, mode.frequency, mode.color, "dash", 1.4) for mode in modes]
     notes = [*_order_notes(made, along, top), *_mode_notes(along, modes)]
     x, y = Axis.over(axis.label, shade.x), Axis("frequency, Hz", limits=(0.0, top))
     return Panel(x, y, tuple(lines), shade=shade, notes=placed(notes, x, y, (0.0, top)))
-
-
-def _order(made: Waterfall, along: FloatArray, order: int, top: float) -> Line:
-    height = order * made.mesh_frequency
-    return Line("mesh orders", along, np.where(height <= top, height, np.nan), ORDER_COLOUR, "dot", 1.0)
 
 
 def _order_notes(made: Waterfall, along: FloatArray, top: float) -> Iterator[Note]:
@@ -253,15 +249,12 @@ def _campbell_words(
     over: tuple[Axis, FloatArray],
     modes: list[ModeLine],
 ) -> str:
-    """Say where the largest amplitude is, and by which mode."""
     axis, along = over
     block, line = np.unravel_index(int(np.argmax(amplitude[:, 1:])), amplitude[:, 1:].shape)
     frequency = float(made.line[line + 1])
     order = frequency / float(made.mesh_frequency[block])
-    where = f"at {number(float(along[block]), 3)} {unit_of(axis.label)}"
-    text = (
-        f"Largest: {number(float(amplitude[block, line + 1]), 3)} {signal.unit} at {number(frequency, 4)} Hz "
-    )
+    where = f"at {number(along[block], 3)} {unit_of(axis.label)}"
+    text = f"Largest: {number(amplitude[block, line + 1], 3)} {signal.unit} at {number(frequency, 4)} Hz "
     text += f"{where}, mesh order {number(order, 3)}."
     if modes:
         there = [float(mode.frequency[block]) for mode in modes]
@@ -276,21 +269,18 @@ def mode_shares(run: RunResult, signal: Signal, made: Waterfall) -> Figure | Non
     shown = [mode for mode in modes if mode.shares]
     if not shown:
         return None
-    names = [f"{number(float(mode.frequency[0]), 4)} Hz" for mode in shown]
+    names = [f"{number(mode.frequency[0], 4)} Hz" for mode in shown]
     where = "whirl modes at the highest speed of the run" if whirling(run) else "natural modes"
+    part, share = max(shown[0].shares.items(), key=lambda item: item[1])
     return Figure(
         key="mode_shares",
         title="What moves in the modes of the Campbell diagram",
         caption=f"Kinetic energy of the {where} by shaft and kind of motion, named by their frequency "
         "at the start of the run. Parts below a twentieth are among the others.",
-        alternative=_mode_words(shown[0], names[0]),
+        alternative=f"In the lowest mode, {names[0]}, {number(100.0 * share, 2)} % of the kinetic energy are "
+        f"of {part}.",
         content=(mode_bars(names, [mode.shares for mode in shown], "kinetic energy"),),
     )
-
-
-def _mode_words(mode: ModeLine, name: str) -> str:
-    part, share = max(mode.shares.items(), key=lambda item: item[1])
-    return f"In the lowest mode, {name}, {number(100.0 * share, 2)} % of the kinetic energy are of {part}."
 
 
 LEAST_PITCHES = 64  # of a run whose orders are shown

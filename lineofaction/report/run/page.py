@@ -41,13 +41,7 @@ from lineofaction.report.run.signals import (
     signal_spectrum,
 )
 from lineofaction.report.run.sound import Heard, sound_of
-from lineofaction.report.run.view import (
-    RunView,
-    Signal,
-    along_direction,
-    run_axis,
-    shown_signal,
-)
+from lineofaction.report.run.view import RunView, Signal, along_direction, run_axis, shown_signal
 
 
 def _planet_sharing(run: RunResult) -> Figure | None:
@@ -56,7 +50,7 @@ def _planet_sharing(run: RunResult) -> Figure | None:
     if not sharings:
         return None
     rows = tuple(
-        (sharing.central, mesh, *(number(float(v)) for v in (mean, np.nanmin(ratio), np.nanmax(ratio))))
+        (sharing.central, mesh, *(number(v) for v in (mean, np.nanmin(ratio), np.nanmax(ratio))))
         for sharing in sharings
         for mesh, mean, ratio in zip(sharing.mesh, sharing.mean, sharing.ratio, strict=True)
     )
@@ -99,9 +93,9 @@ def _dynamic_factor_figure(run: RunResult) -> Figure:
         caption=f"Force of the driving flank over the nominal one, in blocks of {PITCHES} pitches. "
         "The largest is the dynamic factor K_v; where the least is 0 the flanks lift off. The mean "
         "differs from 1 by the torque that accelerates the train.",
-        alternative=f"Largest {number(float(factor.largest[worst]), 4)} at "
-        f"{number(float(abscissa[worst]), 3)} {unit_of(axis.label)}, least "
-        f"{number(float(factor.least.min()), 3)}.",
+        alternative=f"Largest {number(factor.largest[worst], 4)} at "
+        f"{number(abscissa[worst], 3)} {unit_of(axis.label)}, least "
+        f"{number(factor.least.min(), 3)}.",
         content=(Panel(axis, Axis("mesh force over nominal, 1"), lines),),
     )
 
@@ -142,7 +136,7 @@ def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:
     """Mean mesh force, and the balance of energy."""
     headlines = []
     if run.mesh:
-        force, nominal = (number(float(v)) for v in (np.mean(run.mesh_force[0]), run.nominal_force[0]))
+        force, nominal = (number(v) for v in (np.mean(run.mesh_force[0]), run.nominal_force[0]))
         headlines.append(Headline("mean mesh force", f"{force} N", f"nominal {nominal} N"))
     if run.energy is not None:
         headlines.append(
@@ -180,16 +174,28 @@ def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
 
 def dynamic_making(run: RunResult) -> tuple[Section, ...]:
     """Show how exact the run is, what it cost, and what it was made from."""
+    audit = {} if run.energy is None else run.energy.to_json()
     accuracy = Section(
         "Accuracy of the run",
         tables=(_accuracy(run), _sampling(run), _peaks(run)),
-        folded=(_energy(run),),
+        folded=(
+            facts(
+                "Energy audit, J", {name: value for name, value in audit.items() if "relative" not in name}
+            ),
+        ),
         part=Part.ACCURACY,
     )
     text = "The scene with all defaults, in SI."
     scene = Section("Scene", text, folded=(facts("Scene", run.case),), part=Part.INPUT)
     steps = facts("Step statistics", run.statistics.to_json())
-    receipt = Section("Receipt of the run", tables=(_seconds(run),), folded=(steps,), part=Part.RECEIPT)
+    stages = run.receipt.get("seconds", {})
+    rows = tuple((name.replace("_", " "), number(value, 3)) for name, value in stages.items())
+    receipt = Section(
+        "Receipt of the run",
+        tables=(Table("Time of the run by stage", ("stage", "wall s"), rows),),
+        folded=(steps,),
+        part=Part.RECEIPT,
+    )
     return ledger_section(boundary_ledger(run.effect_ledger)), accuracy, scene, receipt
 
 
@@ -257,24 +263,22 @@ def _sampling(run: RunResult) -> Table:
     sampling, error = run.receipt["sampling"], run.receipt["error"].get("sampling", {})
     of = "mesh" if run.mesh else "shaft"
     rows = [
-        ("rate, samples per second", number(float(sampling["rate"]), 6)),
+        ("rate, samples per second", number(sampling["rate"], 6)),
         ("chosen by", str(sampling["chosen"])),
-        ("passed up to, Hz", number(float(sampling["pass_frequency"]), 6)),
+        ("passed up to, Hz", number(sampling["pass_frequency"], 6)),
         *_filter(sampling),
         (f"highest valid {of} order at the highest speed", str(highest_valid_order(run))),
     ]
     for mesh, part in error.get("mesh_force", {}).items():
-        rows.append((f"mesh force of {mesh} above the pass band, N rms", number(float(part["removed"]), 3)))
-        rows.append((f"mesh force of {mesh} that may have folded, N rms", number(float(part["folded"]), 3)))
+        rows.append((f"mesh force of {mesh} above the pass band, N rms", number(part["removed"], 3)))
+        rows.append((f"mesh force of {mesh} that may have folded, N rms", number(part["folded"], 3)))
     return Table("Sampling of the output", ("quantity", "value"), tuple(rows))
 
 
 def _filter(sampling: dict[str, Any]) -> list[tuple[str, str]]:
     if not sampling["stop_band"]:
         return [("anti-alias filter", "none: unfiltered samples")]
-    stop = (
-        f"{number(float(sampling['stop_band']), 3)} dB from {number(float(sampling['stop_frequency']), 6)} Hz"
-    )
+    stop = f"{number(sampling['stop_band'], 3)} dB from {number(sampling['stop_frequency'], 6)} Hz"
     edge = f"{number(1e3 * float(sampling['edge']), 3)} ms"
     return [
         ("anti-alias filter stops", stop),
@@ -290,18 +294,7 @@ def _peaks(run: RunResult) -> Table:
             peaks, rms = np.atleast_1d(part["peak"]), np.atleast_1d(part["rms"])
             axes = ("",) if peaks.size == 1 else (" x", " y", " z")[: peaks.size]
             rows += [
-                (f"{title.replace('_', ' ')}, {name}{axis}", number(float(p), 5), number(float(r), 5))
+                (f"{title.replace('_', ' ')}, {name}{axis}", number(p, 5), number(r, 5))
                 for axis, p, r in zip(axes, peaks, rms, strict=True)
             ]
     return Table("Peaks of the whole run, unfiltered", ("force", "peak, N", "rms, N"), tuple(rows))
-
-
-def _seconds(run: RunResult) -> Table:
-    stages = run.receipt.get("seconds", {})
-    rows = tuple((name.replace("_", " "), number(float(value), 3)) for name, value in stages.items())
-    return Table("Time of the run by stage", ("stage", "wall s"), rows)
-
-
-def _energy(run: RunResult) -> Table:
-    audit = {} if run.energy is None else run.energy.to_json()
-    return facts("Energy audit, J", {name: value for name, value in audit.items() if "relative" not in name})

@@ -80,18 +80,17 @@ def _panel(
 
 def _words(run: RunResult, signal: Signal, window: slice) -> str:
     size = signal.magnitude(getattr(run, signal.quantity.series)[..., window])
-    mean, swing = number(float(size.mean()), 4), number(float(np.ptp(size)), 3)
+    mean, swing = number(size.mean(), 4), number(np.ptp(size), 3)
     unit = signal.quantity.unit
     return f"Magnitude {mean} {unit} on average, {swing} {unit} peak to peak."
 
 
 def _table(run: RunResult, signal: Signal) -> Table:
-    """Mean and standard deviation of the quantity at every part over the run."""
     unit, values = signal.quantity.unit, signal.quantity.factor * getattr(run, signal.quantity.series)
     names = run.bearing if values.ndim == 3 else run.mesh
     parts = ("x", "y", "z") if values.ndim == 3 else ("",)
     moments = np.stack([values.mean(axis=-1), values.std(axis=-1)], axis=1).reshape(len(names), -1)
-    rows = [(name, *(number(float(v), 4) for v in row)) for name, row in zip(names, moments, strict=True)]
+    rows = [(name, *(number(v, 4) for v in row)) for name, row in zip(names, moments, strict=True)]
     head = (
         signal.quantity.part,
         *(f"mean {part}, {unit}".replace(" ,", ",") for part in parts),
@@ -114,7 +113,7 @@ def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
     whole, of = order_frequency(run, signal.mesh), counted_by(run)
     mesh = whole[window]
     valid = highest_valid_order(run, signal.mesh)
-    first, last = (number(float(run.time[at]), 3) for at in (window.start, window.stop - 1))
+    first, last = (number(run.time[at], 3) for at in (window.start, window.stop - 1))
     return Figure(
         key="spectrum",
         title=f"Spectrum of the {signal.name}",
@@ -178,13 +177,12 @@ def _spectrum_panel(
 def _spectrum_words(
     signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray, of: str
 ) -> str:
-    """Name the largest line and where the frequency of the orders is."""
     peak = int(np.argmax(amplitude))
-    low, high = number(float(mesh.min()), 3), number(float(mesh.max()), 3)
+    low, high = number(mesh.min(), 3), number(mesh.max(), 3)
     runs = f"is {low} Hz" if low == high else f"runs from {low} to {high} Hz"
     return (
-        f"The largest line is {number(float(amplitude[peak]), 3)} {signal.unit} at "
-        f"{number(float(frequency[peak]), 4)} Hz; the {of} frequency {runs}."
+        f"The largest line is {number(amplitude[peak], 3)} {signal.unit} at "
+        f"{number(frequency[peak], 4)} Hz; the {of} frequency {runs}."
     )
 
 
@@ -226,7 +224,7 @@ def octave_bands(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure | 
         f"{number(1.0 / float(blocks.line[1]), 2)} s added in power: over the whole run, and the largest of "
         "any block.",
         alternative=f"The band at {_nominal(made.nominal[worst])} Hz is the loudest over the run: "
-        f"{number(float(mean[worst]), 3)} {unit} rms.",
+        f"{number(mean[worst], 3)} {unit} rms.",
         content=(Panel(x, Axis(f"level, dB re 1 {unit} rms"), lines),),
         table=_band_table(made, mean, most, unit),
     )
@@ -238,8 +236,7 @@ def _nominal(frequency: float) -> str:
 
 def _band_table(made: ThirdOctaves, mean: FloatArray, most: FloatArray, unit: str) -> Table:
     rows = tuple(
-        (f"{at:g}", number(float(a), 3), number(float(b), 3))
-        for at, a, b in zip(made.nominal, mean, most, strict=True)
+        (f"{at:g}", number(a, 3), number(b, 3)) for at, a, b in zip(made.nominal, mean, most, strict=True)
     )
     head = ("band, Hz", f"whole run, {unit} rms", f"loudest block, {unit} rms")
     return Table("One-third-octave bands", head, rows)
@@ -277,7 +274,7 @@ def _error_panel(
         Line("static", position, 1e6 * errors[1][window], palette.VERMILLION, "dash"),
     )
     passed = "" if is_steady(way.speed_rpm) else "passed "
-    title = f"{number(speed, 3)} rpm, {passed}at {number(float(run.time[window].mean()), 3)} s"
+    title = f"{number(speed, 3)} rpm, {passed}at {number(run.time[window].mean(), 3)} s"
     return Panel(_X, Axis("transmission error, µm"), lines, title=title)
 
 
@@ -290,7 +287,7 @@ def _error_table(
         cells = [um(float(take(error[window]))) for error in errors for take in (np.mean, np.ptp)]
         mean = run.mesh_force[mesh, window].mean()
         ends = run.least_mesh_force[mesh, window].min(), run.largest_mesh_force[mesh, window].max()
-        rows.append((number(speed, 3), *cells, *(number(float(v), 4) for v in (ends[0], mean, ends[1]))))
+        rows.append((number(speed, 3), *cells, *(number(v, 4) for v in (ends[0], mean, ends[1]))))
     head = (
         "speed, rpm", "DTE mean, µm", "DTE peak to peak, µm", "STE mean, µm", "STE peak to peak, µm",
         "least mesh force, N", "mean mesh force, N", "largest mesh force, N",

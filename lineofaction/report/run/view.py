@@ -211,9 +211,19 @@ class Travel:
     speed_rpm: FloatArray
     position: FloatArray
 
-    def window(self, speed: float) -> slice:
-        """Return the few base pitches around the first passing of a speed, rpm."""
-        return speed_window(self.position, self.speed_rpm, speed)
+    def window(self, target: float) -> slice:
+        """Return the samples of a few whole base pitches around the first passing of a speed, rpm.
+
+        Of a run at one speed the last ones, where what began with it has died away.
+        """
+        traveled, speed = np.abs(self.position - self.position[0]), np.abs(self.speed_rpm)
+        passing = int(np.argmax(speed >= target)) or int(np.argmin(np.abs(speed - target)))
+        if is_steady(speed):
+            passing = traveled.size - 1
+        first = min(np.floor(traveled[passing] - PITCHES / 2), np.floor(traveled[-1]) - PITCHES)
+        start = int(np.searchsorted(traveled, max(first, 0.0)))
+        stop = int(np.searchsorted(traveled, max(first, 0.0) + PITCHES, side="right"))
+        return slice(start, max(stop, start + 2))
 
 
 def travel(run: RunResult, mesh: int = 0) -> Travel:
@@ -262,22 +272,6 @@ def _rounded(value: float, highest: float) -> float:
     """Round to one digit, to two where that would exceed the highest."""
     short = float(f"{value:.1g}")
     return short if short <= highest else float(f"{value:.2g}")
-
-
-def speed_window(position: FloatArray, speed: FloatArray, target: float, pitches: int = PITCHES) -> slice:
-    """Return the samples of `pitches` whole base pitches around the first passing of the speed `target`.
-
-    Of a run at one speed the last ones, where what began with it has died away. `position` (n,) in base
-    pitches is not wrapped and monotone; of `speed` (n,), in the unit of `target`, the magnitude counts.
-    """
-    traveled = np.abs(position - position[0])
-    passing = int(np.argmax(np.abs(speed) >= target)) or int(np.argmin(np.abs(np.abs(speed) - target)))
-    if is_steady(speed):
-        passing = traveled.size - 1
-    first = min(np.floor(traveled[passing] - pitches / 2), np.floor(traveled[-1]) - pitches)
-    start = int(np.searchsorted(traveled, max(first, 0.0)))
-    stop = int(np.searchsorted(traveled, max(first, 0.0) + pitches, side="right"))
-    return slice(start, max(stop, start + 2))
 
 
 ROUNDING = 1e-12  # of the largest value: what varies less is constant

@@ -76,18 +76,13 @@ def ste_shown(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
         position, rows = shown_rows(database)
         return position, database.static_transmission_error[rows][:, :, m, d]
     if database.period > 1:
-        return _over_long_period(database)
+        shown = pitches_shown(database)
+        once, values = _interpolated(database, shown, max(POINTS_PER_PITCH // shown, _FEWEST_POINTS))
+        end = database.ste(float(shown), database.force, *aligned(database))
+        return np.append(once, float(shown)), np.concatenate([values, end[None]])
     once, values = _interpolated(database, 1, POINTS_PER_PITCH)
     position = np.concatenate([once, once + 1.0, [2.0]])
     return position, np.concatenate([values, values, values[:1]])
-
-
-def _over_long_period(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
-    """Return the first pitches of a long period with their end."""
-    shown = pitches_shown(database)
-    once, values = _interpolated(database, shown, max(POINTS_PER_PITCH // shown, _FEWEST_POINTS))
-    end = database.ste(float(shown), database.force, *aligned(database))
-    return np.append(once, float(shown)), np.concatenate([values, end[None]])
 
 
 def _interpolated(database: SteDatabase, pitches: int, per_pitch: int) -> tuple[FloatArray, FloatArray]:
@@ -245,14 +240,18 @@ _FLAT = 1e-3  # µm, the height of a curve without any ripple
 def ste_curves(database: SteDatabase) -> Figure:
     """Draw STE less its mean at a few loads, and at more of them as a Harris map."""
     curves = [load_curve(database, load) for load in range(database.force.size)]
-    ripple = _ripple(database, curves)
+    ripple, shown = _ripple(database, curves), pitches_shown(database)
     panels = (ripple, _harris(database, curves)) if len(shown_loads(database)) > 1 else (ripple,)
+    caption = (
+        "STE: displacement on the transverse line of action by which the driven gear lags, relative to "
+        f"conjugate motion; drawn less its mean. {_bands(ripple)}{_carriers(database)}"
+    )
+    if database.period > 1:
+        caption += f" The teeth have pitch errors: the curve repeats after {database.period} base pitches."
     return Figure(
         key="ste",
-        title=f"Static transmission error over {_pitches(database)}",
-        caption="STE: displacement on the transverse line of action by which the driven gear lags, relative "
-        f"to conjugate motion; drawn less its mean. {_bands(ripple)}{_carriers(database)}"
-        + _period(database),
+        title=f"Static transmission error over {'two' if shown == 2 else shown} base pitches",
+        caption=caption,
         alternative=_words(database, curves),
         content=panels,
         table=_table(database, curves),
@@ -262,7 +261,7 @@ def ste_curves(database: SteDatabase) -> Figure:
 def _ripple(database: SteDatabase, curves: list[Curve]) -> Panel:
     position, ripple = _less_mean(database, curves)
     lines = tuple(
-        replace(line, label=_label(line, curves[load]), band=_half_error(curves[load]))
+        replace(line, label=_label(line, curves[load]), band=0.5e6 * curves[load].peak_to_peak.error)
         for line, load in zip(load_lines(database, position, ripple), few_loads(database), strict=True)
     )
     return Panel(
@@ -303,11 +302,6 @@ def _less_mean(database: SteDatabase, curves: list[Curve]) -> tuple[FloatArray, 
     return position, 1e6 * (values - np.array([curve.mean.value for curve in curves]))
 
 
-def _half_error(curve: Curve) -> float:
-    """Half the error of peak-to-peak, µm: two curves within such a band differ by no more."""
-    return 0.5e6 * curve.peak_to_peak.error
-
-
 def _bands(ripple: Panel) -> str:
     """Say what the bands are, where there are any, and which are cut."""
     if not any(line.has_band for line in ripple.lines):
@@ -322,11 +316,6 @@ def _bands(ripple: Panel) -> str:
     return f"{said}, cut by the axis at {', '.join(cut)}. " if cut else f"{said}. "
 
 
-def _pitches(database: SteDatabase) -> str:
-    shown = pitches_shown(database)
-    return "two base pitches" if shown == 2 else f"{shown} base pitches"
-
-
 def _carriers(database: SteDatabase) -> str:
     load = shown_loads(database)[-1]
     carried = f"At {load_labels(database)[load]} {pairs_in_words(database, load)}"
@@ -335,12 +324,6 @@ def _carriers(database: SteDatabase) -> str:
         if _steps_with_pairs(database, load)
         else f"{carried}."
     )
-
-
-def _period(database: SteDatabase) -> str:
-    if database.period == 1:
-        return ""
-    return f" The teeth have pitch errors: the curve repeats after {database.period} base pitches."
 
 
 def _words(database: SteDatabase, curves: list[Curve]) -> str:
@@ -359,7 +342,7 @@ def _table(database: SteDatabase, curves: list[Curve]) -> Table:
     for load, (label, curve) in enumerate(zip(load_labels(database), curves, strict=True)):
         band = [_band(e) for e in (curve.mean, curve.peak_to_peak)]
         tones = [um(e.value, 3) for e in curve.harmonics[:_TONES]]
-        rows.append((label, number(float(database.force[load]), 5), *band, *tones))
+        rows.append((label, number(database.force[load], 5), *band, *tones))
     head = ("torque", "normal force, N", "mean, µm", "peak to peak, µm")
     orders = tuple(f"harmonic {k}, µm" for k in range(1, _TONES + 1))
     return Table("Static transmission error by load", head + orders, tuple(rows))
@@ -383,6 +366,8 @@ def ste_spectrum(database: SteDatabase) -> Figure:
     load = middle_load(database)
     curve, label = load_curve(database, load), load_labels(database)[load]
     order, amplitude, error = _spectrum_of(curve)
+    chosen = np.sort(np.argsort(-amplitude, kind="stable")[:ORDERS])
+    rows = tuple((f"{order[k]:.4g}", um(amplitude[k], 3), um(error[k], 2)) for k in chosen)
     return Figure(
         key="ste_spectrum",
         title=f"Spectrum of the transmission error at {label}",
@@ -391,7 +376,7 @@ def ste_spectrum(database: SteDatabase) -> Figure:
         + (" Orders between the whole ones come from the pitch errors." if database.period > 1 else ""),
         alternative=_spectrum_words(label, order, amplitude, error),
         content=(_panel(order, amplitude, error),),
-        table=_spectrum_table(order, amplitude, error),
+        table=Table("Orders of the transmission error", ("mesh order", "amplitude, µm", "error, µm"), rows),
     )
 
 
@@ -432,9 +417,3 @@ def _spectrum_words(label: str, order: FloatArray, amplitude: FloatArray, error:
         return f"{text}; the errors were not estimated."
     above = int(np.count_nonzero(amplitude > error))
     return f"{text}; {above} of {order.size} orders exceed their error."
-
-
-def _spectrum_table(order: FloatArray, amplitude: FloatArray, error: FloatArray) -> Table:
-    chosen = np.sort(np.argsort(-amplitude, kind="stable")[:ORDERS])
-    rows = tuple((f"{order[k]:.4g}", um(amplitude[k], 3), um(error[k], 2)) for k in chosen)
-    return Table("Orders of the transmission error", ("mesh order", "amplitude, µm", "error, µm"), rows)

@@ -115,7 +115,7 @@ class _Deviation:
     @property
     def places(self) -> list[str]:
         """Name its values."""
-        return [f"{self.name} {number(float(value), 3)} {unit_of(self.axis.label)}" for value in self.at]
+        return [f"{self.name} {number(value, 3)} {unit_of(self.axis.label)}" for value in self.at]
 
 
 def has_deviations(database: SteDatabase) -> bool:
@@ -168,7 +168,6 @@ def _panel(database: SteDatabase, deviation: _Deviation) -> Panel:
 
 
 def _words(database: SteDatabase, deviation: _Deviation) -> str:
-    """Say where peak to peak is least and largest at the largest load."""
     names = [f"at {name}" for name in deviation.places]
     said = _ripple_words(dict(zip(names, (row[-1] for row in deviation.curves), strict=True)))
     return f"At {load_labels(database)[-1]} {said[0].lower()}{said[1:]}"
@@ -202,9 +201,9 @@ def face_load(database: SteDatabase) -> Figure:
         title="Load along the face",
         caption="Above: distance of the load's centroid from the pinion's mid-face. Below: the largest Hertz "
         f"pressure anywhere on the flanks{waves}; at a tip edge the true pressure is singular.",
-        alternative=f"At {label} the load acts from {number(float(np.nanmin(centroid)), 3)} to "
-        f"{number(float(np.nanmax(centroid)), 3)} mm from mid-face; the largest pressure is "
-        f"{number(float(np.nanmax(pressure)), 3)} MPa.",
+        alternative=f"At {label} the load acts from {number(np.nanmin(centroid), 3)} to "
+        f"{number(np.nanmax(centroid), 3)} mm from mid-face; the largest pressure is "
+        f"{number(np.nanmax(pressure), 3)} MPa.",
         content=(
             Panel(
                 position_axis(database),
@@ -264,18 +263,18 @@ def _centroid(across: Axis, torque: FloatArray, ends: FloatArray) -> Panel:
 def _flanks_words(database: SteDatabase, loads: list[int], pressure: FloatArray) -> str:
     names, torque = load_labels(database), database.torque
     first, last = loads[0], loads[-1]
-    growth = f"{number(float(torque[last] / torque[first]), 3)} times the torque"
+    growth = f"{number(torque[last] / torque[first], 3)} times the torque"
     return (
-        f"The largest pressure grows from {number(float(pressure[0]), 3)} MPa at {names[first]} to "
-        f"{number(float(pressure[-1]), 3)} MPa at {names[last]}: "
-        f"{number(float(pressure[-1] / pressure[0]), 3)} times for {growth}."
+        f"The largest pressure grows from {number(pressure[0], 3)} MPa at {names[first]} to "
+        f"{number(pressure[-1], 3)} MPa at {names[last]}: "
+        f"{number(pressure[-1] / pressure[0], 3)} times for {growth}."
     )
 
 
 def _flanks_table(database: SteDatabase, loads: list[int], pressure: FloatArray, ends: FloatArray) -> Table:
     labels = load_labels(database)
     rows = tuple(
-        (labels[k], number(float(p), 4), *(number(float(end), 3) for end in column))
+        (labels[k], number(p, 4), *(number(end, 3) for end in column))
         for k, p, column in zip(loads, pressure, ends.T, strict=True)
     )
     places = (f"{name} centroid, mm" for name in ("least", "mean", "largest"))

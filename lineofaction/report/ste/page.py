@@ -13,12 +13,7 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.effects import by_size, influence_place, influence_words, trifles_title
 from lineofaction.gearbox.units import boundary_ledger
-from lineofaction.report.drawing.figure import (
-    Figure,
-    Table,
-    number,
-    um,
-)
+from lineofaction.report.drawing.figure import Figure, Table, number, um
 from lineofaction.report.drawing.page import Headline, Part, Section
 from lineofaction.report.drawing.tables import (
     EffectRow,
@@ -134,10 +129,11 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
     accuracy = Section("Accuracy of the table", text, tables=(_accuracy(database),), part=Part.ACCURACY)
     text = "With all defaults filled in. Numbers without a unit are in SI."
     case = Section("Case", text, folded=case_tables(metadata.case), part=Part.INPUT)
+    made = {**metadata.software_versions, "content_hash": metadata.content_hash}
     receipt = Section(
         "Receipt of the table",
         tables=(_stages(metadata.receipt),),
-        folded=(facts("Receipt", _without(metadata.receipt, "stages")), _software(database)),
+        folded=(facts("Receipt", _without(metadata.receipt, "stages")), facts("Made with", made)),
         part=Part.RECEIPT,
     )
     return contact_effects(boundary_ledger(metadata.effect_ledger)), accuracy, case, receipt
@@ -181,13 +177,7 @@ def _stages(receipt: dict[str, Any]) -> Table:
     return Table("Time by stage", ("stage", "CPU s", "wall s"), rows)
 
 
-def _software(database: SteDatabase) -> Table:
-    metadata = database.metadata
-    return facts("Made with", {**metadata.software_versions, "content_hash": metadata.content_hash})
-
-
 def _without(content: dict[str, Any], *names: str) -> dict[str, Any]:
-    """Return the content without some of its fields."""
     return {name: value for name, value in content.items() if name not in names}
 
 
@@ -200,7 +190,7 @@ def _accuracy(database: SteDatabase) -> Table:
         rows += [("error estimate", "not estimated")]
     else:
         rows += [
-            ("largest error estimate, µm", um(float(np.max(database.error_estimate[good])), 2)),
+            ("largest error estimate, µm", um(np.max(database.error_estimate[good]), 2)),
             ("median error estimate, % of STE", number(100.0 * float(np.median(relative)), 2)),
         ]
     worst = np.max(np.abs(database.residuals[good]), axis=0)

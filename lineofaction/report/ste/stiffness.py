@@ -293,7 +293,7 @@ def _budget_panel(parts: dict[str, tuple[float, ...]], mean: float) -> Panel:
         Note(
             float(x) - 0.2,
             max(float(size), 0.0),
-            f"{number(float(size), 3)} µm, {number(100.0 * float(size) / mean, 2)} %",
+            f"{number(size, 3)} µm, {number(100.0 * float(size) / mean, 2)} %",
         )
         for x, size in zip(place, sizes, strict=True)
     )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lineofaction.report.drawing.placing import envelope
-from lineofaction.report.run.view import speed_window, window_speeds
+from lineofaction.report.run.view import Travel, window_speeds
 
 
 def test_the_envelope_keeps_every_peak() -> None:
@@ -35,7 +35,7 @@ def test_a_window_holds_whole_pitches_around_the_speed(target: float, sign: floa
     time = np.linspace(0.0, 5.0, 100_001)
     speed = sign * 191.0 * time
     position = sign * 20 * 191.0 / 60 * time**2 / 2
-    chosen = speed_window(position, speed, target)
+    chosen = Travel(speed, position).window(target)
     traveled = np.abs(position[chosen])
     assert np.ptp(traveled) == pytest.approx(3.0, abs=0.02)
     assert traveled[0] % 1.0 == pytest.approx(0.0, abs=0.02)
@@ -44,7 +44,7 @@ def test_a_window_holds_whole_pitches_around_the_speed(target: float, sign: floa
 
 def test_a_window_at_the_end_of_the_run_stays_inside() -> None:
     time = np.linspace(0.0, 1.0, 1001)
-    chosen = speed_window(10 * time, np.ones_like(time), 5.0)
+    chosen = Travel(np.ones_like(time), 10 * time).window(5.0)
     assert chosen.stop <= time.size
     assert np.ptp(10 * time[chosen]) >= 2.9
 
@@ -55,7 +55,7 @@ def test_a_run_at_one_speed_is_shown_at_that_speed_at_its_end(sign: float) -> No
     speed = sign * (3000.0 + np.cos(400.0 * time))
     (shown,) = window_speeds(speed)
     assert shown == pytest.approx(3000.0, abs=1.0)
-    chosen = speed_window(sign * 50.0 * time, speed, shown)
+    chosen = Travel(speed, sign * 50.0 * time).window(shown)
     assert 50.0 * time[chosen][0] == pytest.approx(47.0) and chosen.stop == time.size
 
 
