@@ -31,8 +31,6 @@ from dynamics.mechanism.connections import (
     CouplingRows,
     Seats,
     elastic_matrices,
-    forces_on_ground,
-    linear_matrices,
 )
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import FREEDOMS, ROTATION, Freedoms
@@ -132,7 +130,7 @@ def _system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws)
     mechanism, freedoms, joined = model.mechanism, model.freedoms, model.connections
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
     vectors = mechanism.vectors
-    stiffness, damping, constant = linear_matrices(joined, freedoms)
+    stiffness, damping, constant = joined.matrices(freedoms)
     constant = constant + freedoms.keep(_weight(scene, rotors))
     own_stiffness, own_damping = elastic_matrices(rotors, freedoms)
     stiffness, damping = stiffness + own_stiffness, damping + own_damping
@@ -372,7 +370,7 @@ def _put_together(model: Model, elements: tuple[Element, ...], arrays: SystemArr
     mechanism, freedoms, joined = model.mechanism, model.freedoms, model.connections
     housed = housed_bearings(mechanism.scene, mechanism.rotors)
     tilted = bool(joined.seats.name) or any(at.tilts for at in mechanism.bearings)
-    stiffness, damping = forces_on_ground(joined, freedoms, tilted)
+    stiffness, damping = joined.on_ground(freedoms, tilted)
     return System(
         mechanism.scene,
         arrays,

@@ -14,7 +14,6 @@ import numpy as np
 
 from dynamics.bearings import RollerBearing
 from dynamics.bearings.ball_elements import RowPlacement, cage_angle
-from dynamics.bearings.rolling_bearing import lamina_places, lamina_stiffness
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
@@ -63,7 +62,7 @@ class RollerElements(NamedTuple):
     def packed(cls, rows: Sequence[tuple[RollerBearing, RowPlacement]]) -> RollerElements:
         """Lay out `rows` and how they are placed."""
         figures = [_figures(bearing, at) for bearing, at in rows]
-        places = [lamina_places(bearing.length, bearing.laminae) for bearing, _ in rows]
+        places = [bearing.lamina_places for bearing, _ in rows]
         drops = [2.0 * bearing.drop(place) for (bearing, _), place in zip(rows, places, strict=True)]
         own = [place / at.lever for (_, at), place in zip(rows, places, strict=True)]
         return cls(
@@ -82,7 +81,7 @@ def _figures(bearing: RollerBearing, at: RowPlacement) -> dict[str, float]:
     """Return the figures of a row by the fields of `RollerElements`."""
     cosine, sine = math.cos(bearing.contact_angle), math.sin(bearing.contact_angle)
     return {
-        "stiffness": lamina_stiffness(bearing.length, bearing.laminae) / at.copies,
+        "stiffness": bearing.lamina_stiffness / at.copies,
         "damping": at.damping,
         "cosine": cosine,
         "sine": sine,

@@ -251,16 +251,6 @@ LINE_STIFFNESS = 35948e6  # N/m^2: 35948 N/mm^2 of [1]_, of steel rollers betwee
 LONG = 2.5  # diameters: longer cylindrical rollers are straight in their middle
 
 
-def lamina_places(length: float, laminae: int) -> FloatArray:
-    """Return the middles of equal laminae along a roller of `length` (m), (laminae,), m from its middle."""
-    return np.asarray((np.arange(laminae) + 0.5) / laminae - 0.5) * length
-
-
-def lamina_stiffness(length: float, laminae: int) -> float:
-    """Return c of one lamina of a roller of `length` (m), N/m^(10/9): both contacts in series [1]_."""
-    return float(LINE_STIFFNESS * length ** (8.0 / 9.0) / laminae)
-
-
 # Cylindrical and tapered roller bearings by their internal geometry, in laminae.
 
 
@@ -307,9 +297,19 @@ class RollerBearing(_Row):
         return self.clearance * (abs(math.sin(self.contact_angle)) if tapered else 0.5)
 
     @property
+    def lamina_places(self) -> FloatArray:
+        """Return the middles of the laminae along a roller, (laminae,), m from its middle."""
+        return np.asarray((np.arange(self.laminae) + 0.5) / self.laminae - 0.5) * self.length
+
+    @property
+    def lamina_stiffness(self) -> float:
+        """Return c of one lamina, N/m^(10/9): both contacts in series [1]_."""
+        return float(LINE_STIFFNESS * self.length ** (8.0 / 9.0) / self.laminae)
+
+    @property
     def element_stiffness(self) -> float:
         """Return c of load = c approach^(10/9) of a straight roller between both raceways, N/m^(10/9)."""
-        return self.laminae * lamina_stiffness(self.length, self.laminae)
+        return self.laminae * self.lamina_stiffness
 
     def drop(self, place: FloatArray) -> FloatArray:
         """Return how far the profile lies below the middle at `place` along the roller, m; one contact."""

@@ -15,7 +15,7 @@ from dynamics.errors import InputError, SolveError
 from dynamics.housings.quadrature import over_surface, over_volume, tetrahedron
 from dynamics.housings.reduced_housing import RigidBody, rigid_body, rigid_motions
 from dynamics.housings.reduced_matrices import MeshedHousing
-from dynamics.housings.supports import Foot, SeatBore, SeatFrame, in_axes, mean_motion, seat_frame, wall_nodes
+from dynamics.housings.supports import Foot, SeatBore, SeatFrame, in_axes, mean_motion
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import Material, Ring
 from dynamics.types import FloatArray, IntArray
@@ -199,7 +199,7 @@ def assemble(housing: MeshedHousing) -> AssembledHousing:
     """
     mesh = housing.mesh
     _check_faces(housing)
-    frames = tuple(seat_frame(seat) for seat in housing.seats)
+    frames = tuple(seat.frame for seat in housing.seats)
     freedoms = _independent_freedoms(mesh.points, _rigid_faces(housing))
     nodal_mass, stiffness = _mass_and_stiffness(mesh, housing.material)
     motion = freedoms.motion
@@ -234,14 +234,14 @@ def _rigid_faces(housing: MeshedHousing) -> tuple[_RigidFace, ...]:
     mesh, faces = housing.mesh, []
     for seat in housing.seats:
         if seat.ring is Ring.RIGID:
-            nodes = wall_nodes(mesh, seat.bore)
+            nodes = np.unique(seat.bore.triangles(mesh))
             faces.append(_RigidFace(f"seats.{seat.name}", nodes, np.array(seat.bore.position)))
     for foot in housing.feet:
-        area, point = over_surface(mesh.points, foot.face.triangles(mesh))
+        triangles = foot.face.triangles(mesh)
+        area, point = over_surface(mesh.points, triangles)
         weight = np.linalg.norm(area, axis=2)
         centroid = np.einsum("tp,tpi->i", weight, point) / weight.sum()
-        nodes = wall_nodes(mesh, foot.face)
-        faces.append(_RigidFace(f"feet.{foot.name}", nodes, centroid, foot.mount is None))
+        faces.append(_RigidFace(f"feet.{foot.name}", np.unique(triangles), centroid, foot.mount is None))
     return tuple(faces)
 
 

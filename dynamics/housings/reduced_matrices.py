@@ -15,7 +15,7 @@ from dynamics.bearings.matrix import check_matrix
 from dynamics.checks import declared_fields, distinct, one_of, within
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import ReducedHousing
-from dynamics.housings.supports import Foot, SeatBore, SeatFrame, check_seats
+from dynamics.housings.supports import Foot, SeatBore, SeatFrame
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.joints.housing import read_archive
 from dynamics.solid_housing import LOSS_FACTOR, MODES, Material
@@ -103,7 +103,10 @@ class MeshedHousing:
 
     def __post_init__(self) -> None:
         declared_fields(self)
-        check_seats(self.seats)
+        if not self.seats:
+            advice = "A housing acts through its bearing seats."
+            raise InputError("seats", self.seats, "at least one seat", advice)
+        distinct("seats", [seat.name for seat in self.seats])
         distinct("feet", [foot.name for foot in self.feet])
         columns = 6 + sum(seat.motions for seat in self.seats)
         if self.modes + columns >= self.mesh.freedoms // 2:

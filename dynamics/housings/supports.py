@@ -8,12 +8,11 @@ import numpy as np
 import scipy.sparse as sp
 
 from dynamics.bearings.matrix import Matrix, check_matrix
-from dynamics.checks import distinct
 from dynamics.errors import InputError
 from dynamics.housings.quadrature import over_surface, triangle
 from dynamics.housings.tetrahedral_mesh import Bore, Face, TetrahedralMesh, unit
 from dynamics.solid_housing import Ring
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import FloatArray
 
 # Bearing seats of a housing: what their motion is, and how a force on them is carried.
 
@@ -44,6 +43,16 @@ class SeatBore:
         if self.motions not in (3, 5, 6):
             raise InputError("motions", self.motions, "3, 5 or 6", "A rolling bearing holds five.")
 
+    @property
+    def frame(self) -> SeatFrame:
+        """Position and axes."""
+        z = unit("axis", self.bore.axis)
+        near = np.eye(3)[0 if abs(z[0]) < 0.9 else 1]
+        x = near - (near @ z) * z
+        x /= np.linalg.norm(x)
+        axes = np.stack([x, np.cross(z, x), z], axis=1)
+        return SeatFrame(self.name, np.array(self.bore.position), axes, self.ring, MOTIONS[: self.motions])
+
 
 @dataclass(frozen=True)
 class SeatFrame:
@@ -68,16 +77,6 @@ class SeatFrame:
     axes: FloatArray
     ring: Ring
     motions: tuple[str, ...]
-
-
-def seat_frame(seat: SeatBore) -> SeatFrame:
-    """Return position and axes of a seat."""
-    z = unit("axis", seat.bore.axis)
-    near = np.eye(3)[0 if abs(z[0]) < 0.9 else 1]
-    x = near - (near @ z) * z
-    x /= np.linalg.norm(x)
-    axes = np.stack([x, np.cross(z, x), z], axis=1)
-    return SeatFrame(seat.name, np.array(seat.bore.position), axes, seat.ring, MOTIONS[: seat.motions])
 
 
 def in_axes(frame: SeatFrame) -> FloatArray:
@@ -105,18 +104,6 @@ def mean_motion(mesh: TetrahedralMesh, face: Face, about: FloatArray) -> sp.csr_
     rows = np.repeat(np.arange(6), freedoms.size)
     entries = (values.ravel(), (rows, np.tile(freedoms.ravel(), 6)))
     return sp.coo_array(entries, shape=(6, mesh.freedoms)).tocsr()
-
-
-def wall_nodes(mesh: TetrahedralMesh, face: Face) -> IntArray:
-    """Return the nodes of a face."""
-    return np.unique(face.triangles(mesh))
-
-
-def check_seats(seats: tuple[SeatBore, ...]) -> None:
-    """Refuse no seats, and names that repeat."""
-    if not seats:
-        raise InputError("seats", seats, "at least one seat", "A housing acts through its bearing seats.")
-    distinct("seats", [seat.name for seat in seats])
 
 
 PRECISION = 1e-6

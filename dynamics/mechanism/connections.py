@@ -15,7 +15,7 @@ from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, elastic_terms, section_rows
 from dynamics.mechanism.freedoms import Freedoms
 from dynamics.mechanism.supports import Supports, gather_supports, seat_axes, seat_error, seat_motion
-from dynamics.scene.scene import Scene, crosses_frames
+from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray
 
 # Couplings between shafts as six strains each, with their matrices.
@@ -71,8 +71,7 @@ def _gather_couplings(scene: Scene, rotors: Bodies) -> CouplingRows:
 
 def _constant(scene: Scene, coupling: Coupling, matrix: FloatArray) -> FloatArray:
     """Return what of a coupling's `matrix` (6, 6) no frame turns: all, or axial motion and rotation."""
-    first, second = scene.shaft(coupling.first), scene.shaft(coupling.second)
-    if not crosses_frames(first, second, coupling):
+    if not scene.crosses_frames(coupling):
         return matrix
     kept = matrix.copy()
     kept[list(ACROSS)], kept[:, list(ACROSS)] = 0.0, 0.0
@@ -116,9 +115,9 @@ def frame_couplings(scene: Scene) -> tuple[_FrameCoupling, ...]:
     """Return all couplings with matrices between shafts of different frames."""
     couplings = []
     for index, coupling in enumerate(scene.couplings):
-        ends = [scene.shaft_index(name) for name in (coupling.first, coupling.second)]
-        if not crosses_frames(scene.shafts[ends[0]], scene.shafts[ends[1]], coupling):
+        if not scene.crosses_frames(coupling):
             continue
+        ends = [scene.shaft_index(name) for name in (coupling.first, coupling.second)]
         z = scene.shafts[ends[0]].origin[2] + coupling.position
         if scene.shafts[ends[1]].frame is None:
             ends.reverse()
@@ -296,6 +295,52 @@ class Connections:
     seats: Seats
     couplings: CouplingRows
 
+    def matrices(self, freedoms: Freedoms) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return stiffness and damping (n, n), and the constant force (n,) of pin errors and preload.
+
+        Bearings in housings that move are force elements instead; their preload is in the constant force.
+        """
+        supports, seats, couplings = self.supports, self.seats, self.couplings
+        moves, held = freedoms.keep(supports.motion), ~supports.carried
+        stiffness = supports.matrix(supports.stiffness * held[:, None], moves, moves)
+        damping = supports.matrix(supports.damping * held[:, None], moves, moves)
+        if couplings.name:
+            strains = freedoms.keep(couplings.motion)
+            stiffness += couplings.matrix(couplings.stiffness, strains, strains)
+            damping += couplings.matrix(couplings.damping, strains, strains)
+        constant = np.einsum("bki,bk,bk->i", moves, supports.stiffness, supports.error)
+        if seats.name:
+            strains, held = freedoms.keep(seats.motion), np.repeat(held[seats.support], SEAT)
+            stiffness += strains.T @ (seats.stiffness * held) @ strains
+            damping += strains.T @ (seats.damping * held) @ strains
+            constant += seats.preload @ strains
+        return stiffness, damping, constant
+
+    def on_ground(self, freedoms: Freedoms, tilted: bool) -> tuple[FloatArray, FloatArray]:
+        """Return the force on the ground at each support per freedom and per its rate, (b, 3, n) each.
+
+        With moments (`tilted`) both, (b, 6, n). Bearings in housings that move are force elements: 0 here.
+        """
+        supports, seats = self.supports, self.seats
+        held = (~supports.carried)[:, None]
+        rows = np.repeat(held[seats.support, 0], SEAT)
+        return (
+            self._pushed(freedoms, supports.stiffness * held, seats.stiffness * rows, tilted),
+            self._pushed(freedoms, supports.damping * held, seats.damping * rows, tilted),
+        )
+
+    def _pushed(
+        self, freedoms: Freedoms, springs: FloatArray, matrix: FloatArray, tilted: bool
+    ) -> FloatArray:
+        """Force on the ground of the plain `springs` (b, 3) and of the seats' `matrix` (5 s, 5 s)."""
+        supports, seats = self.supports, self.seats
+        plain = springs[:, :, None] * freedoms.keep(supports.motion)
+        if not tilted:
+            return plain
+        full = np.concatenate([plain, np.zeros_like(plain)], axis=1)
+        full[seats.support, :SEAT] += (matrix @ freedoms.keep(seats.motion)).reshape(-1, SEAT, plain.shape[2])
+        return full
+
 
 def gather_connections(scene: Scene, rotors: Bodies) -> Connections:
     """Lay out what joins the rotors of `scene`."""
@@ -304,61 +349,8 @@ def gather_connections(scene: Scene, rotors: Bodies) -> Connections:
     return Connections(supports, _gather_seats(scene, rotors, supports.name), couplings)
 
 
-def linear_matrices(
-    connections: Connections, freedoms: Freedoms
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return stiffness and damping (n, n), and the constant force (n,) of pin errors and preload.
-
-    Bearings in housings that move are force elements instead; their preload is in the constant force.
-    """
-    supports, seats, couplings = connections.supports, connections.seats, connections.couplings
-    moves, held = freedoms.keep(supports.motion), ~supports.carried
-    stiffness = supports.matrix(supports.stiffness * held[:, None], moves, moves)
-    damping = supports.matrix(supports.damping * held[:, None], moves, moves)
-    if couplings.name:
-        strains = freedoms.keep(couplings.motion)
-        stiffness += couplings.matrix(couplings.stiffness, strains, strains)
-        damping += couplings.matrix(couplings.damping, strains, strains)
-    constant = np.einsum("bki,bk,bk->i", moves, supports.stiffness, supports.error)
-    if seats.name:
-        strains, held = freedoms.keep(seats.motion), np.repeat(held[seats.support], SEAT)
-        stiffness += strains.T @ (seats.stiffness * held) @ strains
-        damping += strains.T @ (seats.damping * held) @ strains
-        constant += seats.preload @ strains
-    return stiffness, damping, constant
-
-
 def elastic_matrices(rotors: Bodies, freedoms: Freedoms) -> tuple[FloatArray, FloatArray]:
     """Return stiffness and damping (n, n) of shafts and housings themselves."""
     springs, dampers = elastic_terms(rotors)
     motion = freedoms.motion
     return motion.T @ (springs[:, None] * motion), motion.T @ (dampers @ motion)
-
-
-def forces_on_ground(
-    connections: Connections, freedoms: Freedoms, tilted: bool
-) -> tuple[FloatArray, FloatArray]:
-    """Return the force on the ground at each support per freedom and per its rate, (b, 3, n) each.
-
-    With moments (`tilted`) both, (b, 6, n). Bearings in housings that move are force elements: 0 here.
-    """
-    supports, seats = connections.supports, connections.seats
-    held = (~supports.carried)[:, None]
-    rows = np.repeat(held[seats.support, 0], SEAT)
-    return (
-        _on_ground(connections, freedoms, supports.stiffness * held, seats.stiffness * rows, tilted),
-        _on_ground(connections, freedoms, supports.damping * held, seats.damping * rows, tilted),
-    )
-
-
-def _on_ground(
-    connections: Connections, freedoms: Freedoms, springs: FloatArray, matrix: FloatArray, tilted: bool
-) -> FloatArray:
-    """Force on the ground of the plain `springs` (b, 3) and of the seats' `matrix` (5 s, 5 s)."""
-    supports, seats = connections.supports, connections.seats
-    plain = springs[:, :, None] * freedoms.keep(supports.motion)
-    if not tilted:
-        return plain
-    full = np.concatenate([plain, np.zeros_like(plain)], axis=1)
-    full[seats.support, :SEAT] += (matrix @ freedoms.keep(seats.motion)).reshape(-1, SEAT, plain.shape[2])
-    return full

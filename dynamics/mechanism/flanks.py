@@ -106,5 +106,5 @@ def mesh_mobility(mechanism: Mechanism, index: int) -> float:
         gear = scene.gear(name)
         shaft = scene.shaft_index(gear.shaft)
         if shaft not in mechanism.kinematics.imposed:
-            mobility += gear.base_radius**2 / mechanism.polar_inertia[shaft]
+            mobility += gear.base_radius**2 / mechanism.rotors[shaft].inertia.polar
     return mobility

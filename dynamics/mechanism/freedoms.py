@@ -35,26 +35,6 @@ def carried_motion(rotors: Bodies, free: IntArray) -> FloatArray:
     return motion
 
 
-def kinematic_vectors(rotors: Bodies, kinematics: Kinematics) -> FloatArray:
-    """Return (k, N): motion of all rotors per radian of each law, planets' centers with their carriers.
-
-    In the frame of a carrier its planets are at rest in the kinematic motion. These vectors are that motion
-    seen from where the frame was: what a little more rotation of the law does to the freedoms, and what an
-    acceleration of it loads with inertia.
-    """
-    ratio = kinematics.float_ratio
-    vectors = np.zeros((ratio.shape[1], len(rotors), 6))
-    vectors[:, :, 5] = ratio.T
-    for index, rotor in enumerate(rotors):
-        if rotor.carrier is not None:
-            arm = rotor.center - rotors[rotor.carrier].center
-            vectors[:, index, 0] = -arm[1] * ratio[rotor.carrier]
-            vectors[:, index, 1] = arm[0] * ratio[rotor.carrier]
-    full = np.zeros((ratio.shape[1], column_count(rotors)))  # elastic coordinates rest
-    full[:, : 6 * len(rotors)] = vectors.reshape(ratio.shape[1], 6 * len(rotors))
-    return full
-
-
 def rotational_inertia(rotors: Sequence[Rotor]) -> FloatArray:
     """Return (r,): polar inertia of each rotor; on a carrier also its planets' masses about its axis."""
     inertia = np.array([rotor.inertia.polar for rotor in rotors], dtype=float)

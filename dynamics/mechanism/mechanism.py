@@ -24,8 +24,9 @@ from dynamics.mechanism.bearing_elements import (
     supports_by_name,
 )
 from dynamics.mechanism.bodies import Bodies, Rotor, build_rotor
+from dynamics.mechanism.columns import column_count
 from dynamics.mechanism.connections import full_matrix
-from dynamics.mechanism.freedoms import kinematic_vectors, rotational_inertia
+from dynamics.mechanism.freedoms import rotational_inertia
 from dynamics.mechanism.kinematics import Kinematics, mesh_shafts, solve_kinematics
 from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
 from dynamics.mechanism.supports import gather_supports
@@ -251,11 +252,6 @@ class Mechanism:
     passing: frozenset[str] = frozenset()
 
     @property
-    def polar_inertia(self) -> list[float]:
-        """Of each rotor, kg m^2."""
-        return [rotor.inertia.polar for rotor in self.rotors]
-
-    @property
     def rotational_inertia(self) -> FloatArray:
         """Of each rotor with the planets it takes along, (r,), kg m^2."""
         return rotational_inertia(self.rotors)
@@ -273,8 +269,23 @@ class Mechanism:
 
     @property
     def vectors(self) -> FloatArray:
-        """Motion of all rotors per radian of each law, (k, 6 r)."""
-        return kinematic_vectors(self.rotors, self.kinematics)
+        """Motion of all rotors per radian of each law, planets' centers with their carriers, (k, N).
+
+        In the frame of a carrier its planets are at rest in the kinematic motion. These vectors are that
+        motion seen from where the frame was: what a little more rotation of the law does to the freedoms, and
+        what an acceleration of it loads with inertia.
+        """
+        rotors, ratio = self.rotors, self.kinematics.float_ratio
+        vectors = np.zeros((ratio.shape[1], len(rotors), 6))
+        vectors[:, :, 5] = ratio.T
+        for index, rotor in enumerate(rotors):
+            if rotor.carrier is not None:
+                arm = rotor.center - rotors[rotor.carrier].center
+                vectors[:, index, 0] = -arm[1] * ratio[rotor.carrier]
+                vectors[:, index, 1] = arm[0] * ratio[rotor.carrier]
+        full = np.zeros((ratio.shape[1], column_count(rotors)))  # elastic coordinates rest
+        full[:, : 6 * len(rotors)] = vectors.reshape(ratio.shape[1], 6 * len(rotors))
+        return full
 
 
 def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:

@@ -152,7 +152,7 @@ def _check_couplings(scene: Scene) -> None:
         if not on_axis(first, second):
             suggestion = "Leave the matrices out: torsion alone joins any two shafts."
             raise InputError(f"couplings[{index}].second", second.name, "coaxial with the first", suggestion)
-        if not crosses_frames(first, second, coupling):
+        if not scene.crosses_frames(coupling):
             continue
         for side, shaft in (("first", first), ("second", second)):
             if not _on_own_axis(scene, shaft):
@@ -163,11 +163,6 @@ def _check_couplings(scene: Scene) -> None:
                 bound = "the same in all directions across the axis, without terms between these and the axis"
                 suggestion = "The frames of its shafts turn against each other."
                 raise InputError(f"couplings[{index}].{name}", coupling.name, bound, suggestion)
-
-
-def crosses_frames(first: Shaft, second: Shaft, coupling: Coupling) -> bool:
-    """Whether a coupling has matrices and joins shafts of different frames."""
-    return first.frame != second.frame and (coupling.stiffness is not None or coupling.damping is not None)
 
 
 def on_axis(shaft: Shaft, carrier: Shaft) -> bool:
@@ -356,6 +351,11 @@ class Scene(StatedLaws):
     def shaft(self, name: str) -> Shaft:
         """Return the shaft called `name`."""
         return next(shaft for shaft in self.shafts if shaft.name == name)
+
+    def crosses_frames(self, coupling: Coupling) -> bool:
+        """Whether a coupling has matrices and joins shafts of different frames."""
+        apart = self.shaft(coupling.first).frame != self.shaft(coupling.second).frame
+        return apart and (coupling.stiffness is not None or coupling.damping is not None)
 
     def mounted(self, shaft: str) -> tuple[GearBody | DiscBody, ...]:
         """Return the rigid bodies on the shaft called `shaft`: gears, then discs."""
