@@ -13,7 +13,7 @@ from dynamics.mechanism.connections import Connections, elastic_matrices
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import Freedoms
 from dynamics.mechanism.line_of_action import approach, distance_gradient, misalignment_gradient
-from dynamics.mechanism.mechanism import Mechanism, mean_forces, telling_moments
+from dynamics.mechanism.mechanism import Mechanism, mean_forces
 from dynamics.meshes.gear_mesh import GearMesh
 from dynamics.shafts.shaft import OnShaft
 from dynamics.types import FloatArray
@@ -146,8 +146,7 @@ class LoadedTrain:
     @cached_property
     def mean_force(self) -> FloatArray:
         """Forces that balance loads and imposed accelerations, (m, T), N; < 0: the coast flank's."""
-        scene, inertia = self.mechanism.scene, self.mechanism.rotational_inertia
-        return mean_forces(scene, self.mechanism.kinematics, inertia, telling_moments(scene))
+        return mean_forces(self.mechanism)
 
 
 @dataclass(frozen=True)

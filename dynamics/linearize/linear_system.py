@@ -110,8 +110,11 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
     )
 
 
-def _matrices(system: System, time: float) -> list[tuple[str, FloatArray, FloatArray]]:
-    """Names, strains per freedom, and stiffness matrices of bearings and couplings at `time`."""
+def _matrices(system: System, time: float, tangent: FloatArray) -> list[tuple[str, FloatArray, FloatArray]]:
+    """Names, strains per freedom, and stiffness matrices of bearings and couplings at `time`.
+
+    Those of bearings that are not linear are by their `tangent` (R, P) at the equilibrium.
+    """
     seats, couplings, keep = system.seats, system.couplings, system.freedoms.keep
     bearings = [(name, keep(seats.motion[at]), seats.stiffness[at, at]) for name, at in seats.group]
     joints = zip(couplings.name, couplings.motion, couplings.stiffness, strict=True)
@@ -122,13 +125,7 @@ def _matrices(system: System, time: float) -> list[tuple[str, FloatArray, FloatA
     for part, turn in zip(parts, turned[: len(parts)], strict=True):
         motion, matrix = frame_joint(system.scene, system.rotors, part, 2.0 * np.pi * float(turn))
         springs.append((system.couplings.name[part.coupling], keep(motion), matrix))
-    return springs
-
-
-def _tangents(system: System, tangent: FloatArray) -> list[tuple[str, FloatArray, FloatArray]]:
-    """Return the same of bearings that are not linear, by their `tangent` (R, P) at the equilibrium."""
     first = system.arrays.elements.first[len(system.elements) - len(system.bearings) :]
-    springs = []
     for start, at in zip(first, system.bearings, strict=False):
         rows, size = slice(start, start + at.way.shape[0]), at.way.shape[0]
         matrix = 0.5 * (tangent[rows, :size] + tangent[rows, :size].T)
@@ -140,33 +137,29 @@ def _springs(
     system: System, time: float, tangent: FloatArray
 ) -> tuple[tuple[str, ...], FloatArray, FloatArray]:
     """Names, strains per freedom and stiffnesses of all springs."""
-    names = [mesh.name for mesh in system.scene.meshes]
-    first = system.driving_rows
-    rows, stiffness = [system.arrays.direction[first]], [tangent[first, 0]]
-    supports = system.supports
-    moves = system.freedoms.keep(supports.motion)
-    plain = [index for index in range(len(supports.name)) if index not in system.seats.support]
-    names += [f"{supports.name[index]}.{axis}" for index in plain for axis in "xyz"]
-    rows.append(moves[plain].reshape(3 * len(plain), moves.shape[-1]))
-    stiffness.append(supports.stiffness[plain].ravel())
-    for name, motion, matrix in [*_matrices(system, time), *_tangents(system, tangent)]:
+    direction, supports, freedoms = system.arrays.direction, system.supports, system.freedoms
+    moves, meshes = freedoms.keep(supports.motion), zip(system.scene.meshes, system.driving_rows, strict=True)
+    springs: list[tuple[str, FloatArray, float]] = [
+        (mesh.name, direction[row], tangent[row, 0]) for mesh, row in meshes
+    ]
+    for index, name in enumerate(supports.name):
+        if index not in system.seats.support:
+            own = zip("xyz", moves[index], supports.stiffness[index], strict=True)
+            springs += [(f"{name}.{axis}", row, value) for axis, row, value in own]
+    for name, motion, matrix in _matrices(system, time, tangent):
         values, vectors = np.linalg.eigh(matrix)
-        for value, vector in zip(values, vectors.T, strict=True):
-            if value > 0.0:
-                names.append(name)
-                rows.append(np.asarray(vector @ motion)[None, :])
-                stiffness.append(np.array([value]))
-    drives = drive_springs(system.scene, system.kinematics, system.rotors, system.freedoms)
-    for _, drive, row in drives:
-        names.append(drive.name)
-        rows.append(row[None, :])
-        stiffness.append(np.array([drive.stiffness]))
-    springs = elastic_terms(system.rotors)[0][system.freedoms.column]
-    bent = np.flatnonzero(springs > 0.0)
-    names += [system.freedoms.name[freedom] for freedom in bent]
-    rows.append(np.eye(springs.size)[bent])
-    stiffness.append(springs[bent])
-    return tuple(names), np.concatenate(rows), np.concatenate(stiffness)
+        principal = zip(values, vectors.T, strict=True)
+        springs += [(name, np.asarray(vector @ motion), value) for value, vector in principal if value > 0.0]
+    for _, drive, row in drive_springs(system.scene, system.kinematics, system.rotors, freedoms):
+        springs.append((drive.name, row, drive.stiffness or 0.0))
+    elastic = elastic_terms(system.rotors)[0][freedoms.column]
+    unit = np.eye(elastic.size)
+    springs += [(freedoms.name[bent], unit[bent], elastic[bent]) for bent in np.flatnonzero(elastic > 0.0)]
+    return (
+        tuple(name for name, _, _ in springs),
+        np.array([row for _, row, _ in springs]).reshape(len(springs), direction.shape[1]),
+        np.array([value for _, _, value in springs], dtype=float),
+    )
 
 
 # Distribution of the energy of a mode: strain energy by spring, kinetic energy by freedom.

@@ -74,11 +74,13 @@ def _nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, *
     return np.array([b if g is None else g for g, b in zip(stated, balanced, strict=True)], dtype=float)
 
 
-def mean_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, moments: FloatArray) -> FloatArray:
-    """Return what balances loads and imposed accelerations at `moments` (T,), (m, T) in N.
+def mean_forces(mechanism: Mechanism) -> FloatArray:
+    """Return what balances loads and imposed accelerations at moments that show how they run, (m, T) in N.
 
     Negative: the coast flank carries it. Where the balance leaves a choice, the one of least forces.
     """
+    scene, kinematics, inertia = mechanism.scene, mechanism.kinematics, mechanism.rotational_inertia
+    moments = _telling_moments(scene)
     torque = _loads(scene, kinematics, moments)
     imposed = np.array([slope(drive.speed, moments) for drive in scene.drives]).reshape(-1, moments.size)
     ratio = kinematics.float_ratio[:, : len(scene.drives)]
@@ -90,7 +92,7 @@ def mean_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, momen
     return np.asarray(force[: len(scene.meshes)], dtype=float)
 
 
-def telling_moments(scene: Scene) -> FloatArray:
+def _telling_moments(scene: Scene) -> FloatArray:
     """Return times that show how loads and drives run: the laws' knots, just before them, and between."""
     courses = [force.course for force in scene.forces if isinstance(force.course, TimeLaw)]
     laws = [*(drive.speed for drive in scene.drives), *(load.torque for load in scene.loads), *courses]
