@@ -270,22 +270,19 @@ class Layout:
                 part.say(item, "defaulted", "0 mm: the file gives no place")
             return stated or 0.0
         u = shaft.place.along(place.origin)
-        _compare(part, item, stated, u, shaft.off_axis(place.origin))
+        if stated is not None and not math.isclose(stated, u, abs_tol=1e2 * SAME_PLACE):
+            words = (
+                f"{stated * 1e3:.6g} mm; its place (support_vector) is at {u * 1e3:.6g} mm, which is taken"
+            )
+            part.say(item, "ignored", words)
+        if (off_axis := shaft.off_axis(place.origin)) > 1e2 * SAME_PLACE:
+            words = f"{off_axis * 1e3:.4g} mm off the axis of its shaft; taken along the axis alone"
+            part.say("support_vector", "refused", words)
         return u
 
     def z_on(self, shaft: PlacedShaft, part: Part, item: str = "u_coordinate_on_shaft") -> float:
         """Return z of a part on a shaft in the scene, m: see `u_on`."""
         return float(shaft.start[2]) + shaft.sense * self.u_on(shaft, part, item)
-
-
-def _compare(part: Part, item: str, stated: float | None, u: float, off_axis: float) -> None:
-    """State where place and coordinate disagree, or the place is off the shaft's axis."""
-    if stated is not None and not math.isclose(stated, u, abs_tol=1e2 * SAME_PLACE):
-        words = f"{stated * 1e3:.6g} mm; its place (support_vector) is at {u * 1e3:.6g} mm, which is taken"
-        part.say(item, "ignored", words)
-    if off_axis > 1e2 * SAME_PLACE:
-        words = f"{off_axis * 1e3:.4g} mm off the axis of its shaft; taken along the axis alone"
-        part.say("support_vector", "refused", words)
 
 
 # Speeds and torques of a gear train: the ratios of its stages, and the statics that follow from them.

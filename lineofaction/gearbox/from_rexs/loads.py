@@ -70,8 +70,12 @@ class SceneMotion:
             if part is not shaft:
                 part.say("", "taken", f"torque on shaft {by_rotor[layout.rotor(shaft.id)].name}")
             if self._flow.point.torques.get(load) is None:
-                open_torque = f"{placed.sense * torque:.6g} N m in {self._flow.point.name}"
-                _say_open(part, f"{open_torque}: statics of the train")
+                words = f"{placed.sense * torque:.6g} N m in {self._flow.point.name}: statics of the train"
+                if part is shaft:
+                    words = f"the file has none at this end of the train; the scene has {words}"
+                    part.say("external_load", "refused", words)
+                else:
+                    part.say("torque_around_u_axis", "derived", words)
             yield AppliedTorque(part, layout.rotor(shaft.id), z, torque)
 
     def _of_stages(self, cut: Sequence[GearStage]) -> Iterator[AppliedTorque]:
@@ -144,15 +148,6 @@ class SceneMotion:
             for stage in self._shafts.stages
         ]
         return float(min((rate for rate in rates if rate > 0.0), default=0.0))
-
-
-def _say_open(part: Part, words: str) -> None:
-    """State a torque that follows from statics, at a load, or at a shaft for which the file has none."""
-    if part.type == "shaft":
-        words = f"the file has none at this end of the train; the scene has {words}"
-        part.say("external_load", "refused", words)
-    else:
-        part.say("torque_around_u_axis", "derived", words)
 
 
 @dataclass(frozen=True)

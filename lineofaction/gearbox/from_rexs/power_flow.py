@@ -113,22 +113,19 @@ def _point(
 
 def _enter_forces(part: Part, forces: dict[int, tuple[float, ...]]) -> None:
     """Enter the force and moment that a load states, each component in place of one entered before."""
-    former = forces.get(part.id, (0.0,) * len(FORCES))
-    stated = [_component(part, item, words) for item, words in FORCES.items()]
-    for item, value, before in zip(FORCES, stated, former, strict=True):
-        if value == 0.0 == before:
+    wrench = list(forces.get(part.id, (0.0,) * len(FORCES)))
+    is_stated = False
+    for index, (item, words) in enumerate(FORCES.items()):
+        value = part.number(item, words) if words else None
+        if value is None:
+            continue
+        if not abs(value) <= LARGEST:
+            raise part.refusal(item, value, f"from {-LARGEST:g} to {LARGEST:g} N or N m")
+        if value == 0.0 == wrench[index]:
             part.say(item, "ignored", "0")
-    if any(value is not None for value in stated):
-        wrench = (before if value is None else value for value, before in zip(stated, former, strict=True))
+        wrench[index], is_stated = value, True
+    if is_stated:
         forces[part.id] = tuple(wrench)
-
-
-def _component(part: Part, item: str, words: str) -> float | None:
-    """Return a component of a force or moment, None where the file gives none, or it is the torque."""
-    value = part.number(item, words) if words else None
-    if value is not None and not abs(value) <= LARGEST:
-        raise part.refusal(item, value, f"from {-LARGEST:g} to {LARGEST:g} N or N m")
-    return value
 
 
 def _enter_torque(part: Part, torques: dict[int, float | None], powers: dict[int, float]) -> None:

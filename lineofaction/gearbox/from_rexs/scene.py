@@ -200,7 +200,14 @@ def _forces(layout: Layout, points: Sequence[OperatingPoint], shafts: SceneShaft
         if part.number("width_of_external_load", "width of a line load, mm"):
             words = "a line load is not spread: its force acts at u_coordinate_on_shaft"
             part.say("width_of_external_load", "ignored", words)
-        yield _SceneForce(names.of(part), shaft.name, position, part.id, turn, _beyond(part, lever))
+        if abs(lever) <= SAME_PLACE:
+            lever = 0.0
+        else:
+            words = (
+                f"{abs(lever) / MM:.6g} mm beyond the end of its shaft: the force is there, with its moment"
+            )
+            part.say("u_coordinate_on_shaft", "derived", words)
+        yield _SceneForce(names.of(part), shaft.name, position, part.id, turn, lever)
 
 
 def _placed(layout: Layout, load: Part, shafts: SceneShafts) -> tuple[PlacedShaft | None, str]:
@@ -226,15 +233,6 @@ def _refuse(layout: Layout, load: Part, reason: str) -> None:
         for item in FORCES:
             if part.value(item):
                 part.say(item, "refused", reason)
-
-
-def _beyond(load: Part, lever: float) -> float:
-    """Return the distance of a load from the end of its shaft, m, and state it."""
-    if abs(lever) <= SAME_PLACE:
-        return 0.0
-    words = f"{abs(lever) / MM:.6g} mm beyond the end of its shaft: the force is there, with its moment"
-    load.say("u_coordinate_on_shaft", "derived", words)
-    return lever
 
 
 def _digits(vector: FloatArray) -> list[float]:

@@ -84,17 +84,13 @@ def _side(heard: Heard) -> _Side:
 
 
 def _differences(sides: tuple[_Side, ...], orders: tuple[int, ...]) -> Iterator[Difference]:
-    first, second = (_overall(side) for side in sides)
+    largest = (float(side.signal.magnitude(side.blocks.rms).max()) for side in sides)
+    unit = f"{sides[0].signal.quantity.unit} rms"
+    first, second = (Estimate(value, math.nan, unit) for value in largest)  # no error is stated
     yield Difference("overall", "its largest", first, second)
     for order in orders:
         first, second = (_order(side, order) for side in sides)
         yield Difference(f"mesh order {order}", "its largest", first, second)
-
-
-def _overall(side: _Side) -> Estimate:
-    """Return the largest overall rms; its error is not stated."""
-    largest = float(side.signal.magnitude(side.blocks.rms).max())
-    return Estimate(largest, math.nan, f"{side.signal.quantity.unit} rms")
 
 
 def _order(side: _Side, order: int) -> Estimate:

@@ -21,13 +21,7 @@ Curve = tuple[FloatArray, RippleCurve]
 
 
 def _sensitivity_figure(studies: Sequence[PairStudy]) -> Figure:
-    """Draw one line per pair, solid with corner contact, dashed without, as Palermo et al. (2010), Fig. 7.
-
-    Parameters
-    ----------
-    studies : sequence of PairStudy
-        At least one.
-    """
+    """Draw one line per pair, solid with corner contact, dashed without, as Palermo et al. (2010), Fig. 7."""
     return Figure(
         key="sensitivity",
         title="Sensitivity of the transmission error to misalignment and center distance",

@@ -92,15 +92,13 @@ def _folds(states: SteadyStates, ends: tuple[float, float]) -> list[float]:
 def _lines(states: SteadyStates, values: FloatArray) -> Iterator[Line]:
     """Yield the branch in its stable and unstable parts, and the sweeps."""
     on = np.flatnonzero(states.curve == BRANCH)
-    for stable, name, dash in ((True, "branch, stable", "solid"), (False, "branch, unstable", "dash")):
-        here = (states.instability[on] == 0) == stable
-        if not np.any(here):
-            continue
-        shown = here | (np.append(here[1:], False) if not stable else False)
-        shown = shown | (np.append(False, here[:-1]) if not stable else False)
-        style: Dash = "solid" if dash == "solid" else "dash"
-        line = np.where(shown, values[on], np.nan)
-        yield Line(name, states.speed[on] / RPM, line, palette.INK, style, 1.3)
+    stable = states.instability[on] == 0
+    beside = np.append(~stable[1:], False) | np.append(False, ~stable[:-1])
+    looks: tuple[tuple[str, Dash], ...] = (("branch, stable", "solid"), ("branch, unstable", "dash"))
+    for (name, dash), here, joined in zip(looks, (stable, ~stable), (False, beside), strict=True):
+        if np.any(here):
+            line = np.where(here | joined, values[on], np.nan)
+            yield Line(name, states.speed[on] / RPM, line, palette.INK, dash, 1.3)
     for curve, name, color in _SWEEPS:
         there = np.flatnonzero(states.curve == curve)
         if there.size:
