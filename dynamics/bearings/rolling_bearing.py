@@ -234,7 +234,7 @@ class BallBearing(_Row):
 
     @property
     def laminae(self) -> int:
-        """Return the number of parts of an element: a ball is whole."""
+        """Return the number of laminae, of which a ball has one."""
         return 1
 
     def peak_pressure(self, load: float) -> float:
