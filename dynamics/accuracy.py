@@ -23,7 +23,7 @@ from dynamics.mechanism.additions import COAST_FLANKS
 from dynamics.motion.observation import observe, observe_laws, static_deflections
 from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
 from dynamics.scene import Outputs, Scene
-from dynamics.types import FloatArray, IntArray, Json
+from dynamics.types import FloatArray, IntArray
 from model_studies import Outcome, Progress, against_finest, in_unit, knee_above, run_fidelities, silent
 from model_studies.frontier import Errors
 
@@ -350,11 +350,6 @@ class FidelityResult(model_studies.FidelityResult):
     rms_error: float = NAN
     transmission_error_orders: float = NAN
     bearing_force_orders: float = NAN
-
-    def to_json(self) -> Json:
-        """Return plain JSON; errors that are not known are left out."""
-        facts = {name: value for name, value in super().to_json().items() if name not in FIGURES}
-        return {**facts, "errors": self.errors}
 
 
 @dataclass(frozen=True)

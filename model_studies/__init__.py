@@ -22,7 +22,7 @@ from model_studies.frontier import (
     run_variants,
 )
 from model_studies.progress import Progress, silent
-from model_studies.record import NOT_STORED, Record, called, in_unit
+from model_studies.record import NOT_STORED, in_unit
 
 __all__ = [
     "NOT_STORED",
@@ -35,9 +35,7 @@ __all__ = [
     "LeftOut",
     "Outcome",
     "Progress",
-    "Record",
     "against_finest",
-    "called",
     "front_of",
     "in_unit",
     "knee_above",

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
 from bounds.types import FloatArray, Json
-from model_studies.record import Record, called, in_unit
+from model_studies.record import in_unit
 
 
 @dataclass(frozen=True)
-class Figures(Record):
+class Figures:
     """The figures that variants of a model are compared by; a library adds its own arrays.
 
     Attributes
@@ -45,7 +45,7 @@ E = TypeVar("E", bound=Estimate)
 
 
 @dataclass(frozen=True)
-class EffectAblation(Record, Generic[F, E]):
+class EffectAblation(Generic[F, E]):
     """One effect toggled.
 
     Attributes
@@ -64,8 +64,8 @@ class EffectAblation(Record, Generic[F, E]):
     name: str
     on: bool
     reason: str
-    with_effect: F = field(metadata=called("with"))
-    without_effect: F = field(metadata=called("without"))
+    with_effect: F
+    without_effect: F
     estimate: E | None
 
     @property
@@ -93,21 +93,12 @@ class EffectAblation(Record, Generic[F, E]):
         without, whole = (getattr(each, figure) for each in (self.without_effect, self.with_effect))
         return np.asarray(without - whole)
 
-    def to_json(self) -> Json:
-        """Return plain JSON in SI units: the figures, their changes, the ratio of the times."""
-        units = {each.name: each.metadata["unit"] for each in fields(self.with_effect) if each.metadata}
-        changes = {
-            f"{name.removesuffix('s')}_change_{unit}": self.change(name).tolist()
-            for name, unit in units.items()
-        }
-        return {**super().to_json(), **changes, "cost_ratio": self.cost_ratio}
-
 
 A = TypeVar("A", bound=EffectAblation[Any, Any])
 
 
 @dataclass(frozen=True)
-class Ablation(Record, Generic[F, A]):
+class Ablation(Generic[F, A]):
     """All effects of a request, each toggled by itself.
 
     Attributes

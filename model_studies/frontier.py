@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from bounds.types import Json
 from host import cpu_seconds
 from model_studies.progress import Progress
-from model_studies.record import Record, called
 
 # Variants of a model, computed one by one; those that cannot be computed are left out with their reason.
 
@@ -189,7 +187,7 @@ def knee_of(points: Mapping[str, tuple[float, float]]) -> str | None:
 
 
 @dataclass(frozen=True)
-class FidelityResult(Record):
+class FidelityResult:
     """The outcome of one fidelity; a library adds its errors and further figures.
 
     Attributes
@@ -223,7 +221,7 @@ R_co = TypeVar("R_co", bound=FidelityResult, covariant=True)
 
 
 @dataclass(frozen=True)
-class Frontier(Record, Generic[R_co]):
+class Frontier(Generic[R_co]):
     """An accuracy study.
 
     Attributes
@@ -239,7 +237,7 @@ class Frontier(Record, Generic[R_co]):
         The fidelity of the request.
     """
 
-    results: tuple[R_co, ...] = field(metadata=called("rungs"))
+    results: tuple[R_co, ...]
     left_out: dict[str, str]
     knee: str | None
     chosen: str | None
@@ -248,10 +246,6 @@ class Frontier(Record, Generic[R_co]):
     def reference(self) -> R_co:
         """The finest fidelity that was run."""
         return self.results[-1]
-
-    def to_json(self) -> Json:
-        """Return plain JSON in SI units."""
-        return {**super().to_json(), "reference": self.reference.name}
 
 
 def knee_above(results: Sequence[FidelityResult], *shared: float) -> str | None:

@@ -34,7 +34,7 @@ from dynamics.mechanism.columns import section_rows
 from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import LoadCase, check_forces
 from dynamics.types import FloatArray, IntArray
-from model_studies import Record, in_unit
+from model_studies import in_unit
 
 # Basic reference rating life of rolling bearings under load cases, and over all of them.
 
@@ -83,7 +83,7 @@ LIFE_EXPONENT = 10.0 / 3.0
 
 
 @dataclass(frozen=True)
-class BearingLoad(Record):
+class BearingLoad:
     """The load of a bearing under a load case, mean over the mesh cycle; x, y, z, tilt_x, tilt_y.
 
     Attributes
@@ -179,7 +179,7 @@ def equivalent_load(
 
 
 @dataclass(frozen=True)
-class _ShaftLines(Record):
+class _ShaftLines:
     """The axes of all shafts under a load case, mean over the mesh cycle, P points of all shafts in a row.
 
     Attributes
@@ -237,7 +237,7 @@ MOST_POSITIONS = 512
 
 
 @dataclass(frozen=True)
-class CaseDeflection(Record):
+class CaseDeflection:
     """The deflection of a scene under a load case.
 
     Attributes
@@ -274,7 +274,7 @@ class CaseDeflection(Record):
 
 
 @dataclass(frozen=True)
-class Deflection(Record):
+class Deflection:
     """The deflection of a scene under all its load cases.
 
     Attributes

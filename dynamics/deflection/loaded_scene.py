@@ -16,13 +16,13 @@ from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
 from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import DRIVE, CaseForce, LoadCase, Vector
 from dynamics.types import FloatArray
-from model_studies import Record, in_unit
+from model_studies import in_unit
 
 # The forces of a scene under a load case.
 
 
 @dataclass(frozen=True)
-class ForceUnderCase(Record):
+class ForceUnderCase:
     """A force of a scene as it is under a load case, before the factor of its course.
 
     Attributes

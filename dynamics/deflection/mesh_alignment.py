@@ -30,7 +30,7 @@ from dynamics.mechanism.line_of_action import (
 from dynamics.mechanism.supports import carried_seat, seat_motion
 from dynamics.motion.observation import observe
 from dynamics.types import FloatArray, StaticStatus
-from model_studies import Record, in_unit
+from model_studies import in_unit
 
 # The part of a bearing's displacement that is clearance: what it moves before anything presses back.
 
@@ -310,7 +310,7 @@ def _lead_torsion(system: System, index: int, motion: FloatArray) -> float:
 
 
 @dataclass(frozen=True)
-class MeshAlignment(Record):
+class MeshAlignment:
     """The alignment of a mesh under a load case, mean over the mesh cycle.
 
     Misalignment is the growth of the gap over the common face width in the plane of action, towards positive

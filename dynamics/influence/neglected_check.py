@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from dynamics.results.checks import Check, SeriesBlock
 from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds
-from model_studies import Record, in_unit
+from model_studies import in_unit
 
 # The change by leaving an effect out, by linear theory: an ablation before integration.
 
@@ -32,7 +32,7 @@ def _no_orders() -> FloatArray:
 
 
 @dataclass(frozen=True)
-class Influence(Record):
+class Influence:
     """Estimated change by leaving one effect out in all parts of a scene; m meshes, b bearings.
 
     Attributes
@@ -92,10 +92,13 @@ class Influence(Record):
         return f"{words} ({most} % of their order {order + 1})"
 
     def to_json(self) -> Json:
-        """Return plain JSON."""
-        facts = super().to_json()
-        del facts["on"]  # whoever shows an estimate says it beside it
-        return {"words": self.words, **facts}
+        """Return plain JSON without numbers that are not known; whoever shows it says `on` beside it."""
+        facts: Json = {"words": self.words}
+        for each in fields(self):
+            value, unit = getattr(self, each.name), each.metadata.get("unit")
+            if each.name != "on" and (not isinstance(value, float) or np.isfinite(value)):
+                facts[f"{each.name}_{unit}" if unit else each.name] = np.asarray(value).tolist()
+        return facts
 
 
 def estimate_influences(

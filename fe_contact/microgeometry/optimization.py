@@ -25,7 +25,7 @@ from fe_contact.microgeometry.search import Search, SearchRun
 from fe_contact.microgeometry.variables import LENGTHS, DesignVariable, check_variables, figure
 from fe_contact.options import AnalysisOptions, Levels
 from fe_contact.types import Estimate, FloatArray, IntArray, Json
-from model_studies import Record, in_unit
+from model_studies import in_unit
 
 # The request of an optimization.
 
@@ -143,7 +143,7 @@ class Outcome(StrEnum):
 
 
 @dataclass(frozen=True)
-class Perturbation(Record):
+class Perturbation:
     """The change by a small step of one variable from the optimum.
 
     Attributes

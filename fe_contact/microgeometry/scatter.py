@@ -14,7 +14,7 @@ from bounds import SiNote, at_least
 from fe_contact.errors import InputError, finite, integer, positive
 from fe_contact.microgeometry.variables import gear_and_quantity
 from fe_contact.types import FloatArray, Json
-from model_studies import Record, called, in_unit
+from model_studies import in_unit
 
 MISALIGNMENT = "misalignment"
 MOST_NODES = 1024
@@ -161,7 +161,7 @@ NO_SCATTER = Scatter()
 
 
 @dataclass(frozen=True)
-class ScatterNodes(Record):
+class ScatterNodes:
     """Nodes at which a design is assessed.
 
     Attributes
@@ -179,7 +179,7 @@ class ScatterNodes(Record):
     names: tuple[str, ...]
     deviation: FloatArray = field(metadata=in_unit("m"))
     weight: FloatArray
-    finer: ScatterNodes | None = field(default=None, metadata=called(None))
+    finer: ScatterNodes | None = None
 
     @property
     def misalignment(self) -> FloatArray:

@@ -25,7 +25,7 @@ from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import SteDatabase
 from fe_contact.types import BoolArray, FloatArray, Json, Status
-from model_studies import Record, in_unit
+from model_studies import in_unit
 
 # The request of a sweep: one or two axes over operating conditions and figures of the flanks.
 
@@ -172,7 +172,7 @@ none."""
 
 
 @dataclass(frozen=True)
-class SweptQuantity(Record):
+class SweptQuantity:
     """A quantity at all N points.
 
     Attributes
@@ -203,7 +203,7 @@ class SweptQuantity(Record):
 
 
 @dataclass(frozen=True)
-class Sweep(Record):
+class Sweep:
     """A pair over a grid of N points, the first axis running slowest.
 
     Attributes

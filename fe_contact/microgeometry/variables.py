@@ -11,7 +11,7 @@ from fe_contact.effects import Effect, named
 from fe_contact.errors import InputError, finite
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
 from fe_contact.geometry import ParallelAxes
-from model_studies import Record, in_unit
+from model_studies import in_unit
 
 GEARS = ("pinion", "wheel")
 QUANTITIES = fields_of(Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
@@ -22,7 +22,7 @@ ACROSS_FACE = tuple(name for name in QUANTITIES if Direction.FACE in FLANK_FIELD
 
 
 @dataclass(frozen=True)
-class DesignVariable(Record):
+class DesignVariable:
     """One quantity of one gear's modification, free between bounds.
 
     Attributes

@@ -25,7 +25,6 @@ from lineofaction.gearbox.stages import PacedFraction
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.frontier import Inputs
 from lineofaction.gearbox.studies.frontier.run import RUN
-from lineofaction.gearbox.units import in_um
 from service.store import stored_results
 from service.worker import study_work
 from service.worker.order import WorkOrder
@@ -66,7 +65,7 @@ def test_the_ladder_of_a_case_is_that_of_python(served: Served, tmp_path: Path) 
     assert [rung["name"] for rung in told["rungs"]] == CLOSED
     assert told["rungs"][0]["mean_error"] > 1e-3 and told["reference"] == "thin_slices"
     assert all(rung["cpu_seconds"] > 0.0 for rung in told["rungs"])
-    expected = json.loads(json.dumps(in_um(here.to_json()))) | {"warnings": []}
+    expected = json.loads(json.dumps(RUN.figures(here))) | {"warnings": []}
     assert without(MEASURED, told) == without(MEASURED, expected)
     progress = [state.progress for state in seen]
     assert progress == sorted(progress) and progress[-1] == 100
@@ -95,7 +94,7 @@ def test_the_ladder_of_a_scene_is_that_of_python(served: Served, scene: SceneInp
         TabledScene(scene, tables, dynamic_scene(scene, tables), {}), Inputs(rungs=tuple(rungs)), means
     )
     assert told == made and told["reference"] == "10_nm"
-    expected = json.loads(json.dumps(in_um(here.to_json()))) | {"warnings": []}
+    expected = json.loads(json.dumps(RUN.figures(here))) | {"warnings": []}
     assert without(MEASURED, told) == without(MEASURED, expected)
 
 

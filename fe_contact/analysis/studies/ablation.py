@@ -21,7 +21,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning.cost_model import predict_run
 from fe_contact.planning.planned import planned
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import FloatArray
 from model_studies import LeftOut, in_unit, run_variants
 
 HARMONICS = 5
@@ -64,13 +64,15 @@ class EffectAblation(model_studies.EffectAblation[Figures, Influence]):
         """Change (L, 5) of the amplitudes by leaving the effect out, m."""
         return self.change("harmonics")
 
-    def to_json(self) -> Json:
-        """Return plain JSON: changes in m and in parts of the value with the effect."""
-        relative = {
-            f"relative_{name}_change": (self.change(name) / getattr(self.with_effect, name)).tolist()
-            for name in ("mean", "peak_to_peak")
-        }
-        return super().to_json() | relative
+    @property
+    def relative_mean_change(self) -> FloatArray:
+        """Change (L,) of the mean in parts of that with the effect."""
+        return self.mean_change / self.with_effect.mean
+
+    @property
+    def relative_peak_to_peak_change(self) -> FloatArray:
+        """Change (L,) of peak-to-peak in parts of that with the effect."""
+        return self.peak_to_peak_change / self.with_effect.peak_to_peak
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,6 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request, checked_request
 from fe_contact.analysis.studies.measured_full_contact import (
     NAME,
-    ORIGIN,
     FullContactLevel,
     MeasuredFullContact,
     full_contact_refusal,
@@ -42,12 +41,11 @@ from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import FloatArray
 from model_studies import (
     Outcome,
     Progress,
     against_finest,
-    called,
     in_unit,
     knee_above,
     run_fidelities,
@@ -381,19 +379,8 @@ class Frontier(model_studies.Frontier[FidelityResult]):
     """
 
     solves: int
-    full_contact: MeasuredFullContact | None = field(default=None, metadata=called(None))
-    known_full_contact: tuple[FullContactLevel, ...] = field(default=(), metadata=called(None))
-
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        known = [level.to_json(self.solves) for level in self.known_full_contact]
-        measured = {} if self.full_contact is None else {NAME: self.full_contact.to_json(self.solves)}
-        return {
-            **super().to_json(),
-            "full_finite_element_contact": known,
-            "full_finite_element_contact_origin": ORIGIN,
-            **measured,
-        }
+    full_contact: MeasuredFullContact | None = None
+    known_full_contact: tuple[FullContactLevel, ...] = ()
 
 
 def frontier(

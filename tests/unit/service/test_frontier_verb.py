@@ -20,6 +20,7 @@ from fe_contact.full_contact import FullContactPoint, FullContactTable
 from fe_contact.geometry import FlankModification, GearPair
 from fe_contact.types import Status
 from lineofaction.cli.commands import app
+from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.page import html
@@ -68,7 +69,7 @@ def test_no_point_of_another_pair_stands_on_a_case(found: Frontier) -> None:
     assert [line.name for line in figure.content[0].lines if "contact" in line.name] == []
     assert "20/20" not in figure.caption and "Peer" not in figure.caption
     assert len(_frontier_table(found).rows) == len(found.results)
-    assert found.to_json()["full_finite_element_contact"] == []
+    assert RUN.figures(found)["full_finite_element_contact"] == []
 
 
 def test_full_contact_is_known_of_the_very_pair_alone() -> None:
@@ -121,9 +122,12 @@ def test_the_page_says_what_was_not_run(found: Frontier) -> None:
 
 def test_an_error_that_is_not_known_is_left_out(found: Frontier) -> None:
     lonely = ladder("3d_fine", 9.0, float("nan"))
-    whole = Frontier((*found.results[:2], lonely), {}, None, None, 64).to_json()
+    whole = RUN.figures(Frontier((*found.results[:2], lonely), {}, None, None, 64))
     json.dumps(whole, allow_nan=False)
     assert "mean_error" not in whole["rungs"][2]
+    assert whole["rungs"][0]["mean_um"] == [1.0 / 1e-6] and whole["rungs"][0]["mean_error"] == 0.3
+    assert set(whole["rungs"][0]) - set(whole["rungs"][2]) == {"mean_error", "peak_to_peak_error"}
+    assert whole["reference"] == "3d_fine" and "errors" not in whole["rungs"][0]
     _frontier_figure(Frontier((*found.results[:2], lonely), {}, None, None, 64))
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from lineofaction.gearbox.schemas.figures import Figures, Json, Part
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row
+from lineofaction.gearbox.units import in_um
 
 
 class Inputs(BoundaryModel):
@@ -34,6 +35,11 @@ class Toggled(Part):
     bearing_orders_n: list[list[float]] | None = None
 
 
+def _estimate(estimate: Any) -> Json | None:
+    """Return what a library estimates of an effect, its lengths in um."""
+    return None if estimate is None else dict(in_um(estimate.to_json()))
+
+
 class EffectFigures(Part):
     """One effect toggled: the figures with and without it, and their changes without it."""
 
@@ -42,22 +48,22 @@ class EffectFigures(Part):
     reason: str
     with_effect: Toggled = Field(alias="with")
     without_effect: Toggled = Field(alias="without")
-    estimate: Json | None
+    estimate: Annotated[Json | None, Source("estimate", document=True, turned=_estimate)]
+    influence_um: float | None = None
     mean_change_um: list[float]
     peak_to_peak_change_um: list[float]
-    cost_ratio: float
     harmonic_change_um: list[list[float]] | None = None
-    relative_mean_change: list[float] | None = None
-    relative_peak_to_peak_change: list[float] | None = None
-    influence_um: float | None = None
     order_change_um: list[list[float]] | None = None
     bearing_order_change_n: list[list[float]] | None = None
+    cost_ratio: float
+    relative_mean_change: list[float] | None = None
+    relative_peak_to_peak_change: list[float] | None = None
 
 
 class AblateFigures(Figures):
     """All effects, each toggled by itself; of a case the loads, of a scene its meshes and bearings."""
 
-    of: Literal["case", "scene"]
+    of: Annotated[Literal["case", "scene"], Source(lambda own: "scene" if hasattr(own, "mesh") else "case")]
     nominal: Toggled
     effects: list[EffectFigures]
     left_out: dict[str, str]

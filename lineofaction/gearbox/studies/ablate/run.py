@@ -17,7 +17,6 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.ablate import AblateFigures, Inputs
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
-from lineofaction.gearbox.units import in_um
 
 
 class AblateStudy(
@@ -57,10 +56,6 @@ class AblateStudy(
                 return ablate_scene(subject.scene, inputs.only, means.report)
             run = Run(cache=means.home / "compliance", progress=means.report)
             return ablate(*subject.converted, run, only=inputs.only)
-
-    def figures(self, ablation: Ablation | SceneAblation) -> Json:
-        """Return an ablation with lengths in um."""
-        return {"of": "case" if isinstance(ablation, Ablation) else "scene", **in_um(ablation.to_json())}
 
 
 def _requested(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:

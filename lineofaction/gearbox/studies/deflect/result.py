@@ -11,13 +11,13 @@ from dynamics.deflection import Deflection
 from dynamics.effects.ledger import mechanism_of
 from dynamics.scene import Scene
 from dynamics.shafts import Shaft
-from model_studies import Record, in_unit
+from model_studies import in_unit
 
 HARMONICS = 5
 
 
 @dataclass(frozen=True)
-class MeshFlanks(Record):
+class MeshFlanks:
     """A mesh on its flanks under a load case, at the alignment that was found.
 
     Attributes
@@ -65,7 +65,7 @@ class MeshFlanks(Record):
 
 
 @dataclass(frozen=True)
-class Outline(Record):
+class Outline:
     """The gearbox to scale, m: s shafts, c pieces of them, g gears, b bearings.
 
     Attributes
@@ -99,7 +99,7 @@ class Outline(Record):
 
 
 @dataclass(frozen=True)
-class GearboxDeflection(Record):
+class GearboxDeflection:
     """The deflection of a gearbox and what it makes of its meshes.
 
     Attributes

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lineofaction.gearbox.schemas.figures import Figures, Json, Part
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row
 
 MOST_FULL_CONTACT = 64
@@ -53,21 +53,23 @@ class FidelityFigures(Part):
     mean_error: float | None = None
     peak_to_peak_error: float | None = None
     family: str | None = None
-    errors: dict[str, float] | None = None
+    errors: Annotated[
+        dict[str, float] | None, Source(lambda own: own.errors if hasattr(own, "family") else None)
+    ] = None
 
 
 class FrontierFigures(Figures):
     """Error against time; the reference is the finest fidelity, the knee where time buys least."""
 
-    rungs: list[FidelityFigures]
+    rungs: Annotated[list[FidelityFigures], Source("results")]
     left_out: dict[str, str]
     knee: str | None
     chosen: str | None
-    reference: str
     solves: int | None = None
-    full_finite_element_contact: list[Json] | None = None
-    full_finite_element_contact_origin: str | None = None
-    full_contact: Json | None = None
     orders: int | None = None
     blocks: int | None = None
     transmission_error_rms_um: list[list[float]] | None = None
+    reference: Annotated[str, Source("reference.name")]
+    full_finite_element_contact: list[Json] | None = None
+    full_finite_element_contact_origin: str | None = None
+    full_contact: Json | None = None

@@ -9,6 +9,7 @@ from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
 from dynamics.accuracy import Frontier as SceneFrontier
 from dynamics.accuracy import frontier as frontier_of_scene
 from fe_contact.analysis.studies.frontier import FIDELITIES, Frontier, frontier
+from fe_contact.analysis.studies.measured_full_contact import ORIGIN
 from fe_contact.errors import chosen
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, study_options
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -72,10 +73,15 @@ class FrontierStudy(
                 progress=means.report,
             )
 
-    def figures(self, study: Frontier | SceneFrontier) -> Json:
-        """Return all fidelities with lengths in um."""
-        plain: Json = in_um(study.to_json())
-        return plain
+    def _derived(self, study: Frontier | SceneFrontier) -> Json:
+        if isinstance(study, SceneFrontier):
+            return {}
+        solves, measured = study.solves, study.full_contact
+        return {
+            "full_finite_element_contact": [level.to_json(solves) for level in study.known_full_contact],
+            "full_finite_element_contact_origin": ORIGIN,
+            "full_contact": None if measured is None else in_um(measured.to_json(solves)),
+        }
 
 
 def _requested(inputs: Inputs, *, of_scene: bool) -> list[str]:

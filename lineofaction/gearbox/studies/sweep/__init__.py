@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lineofaction.gearbox.schemas.figures import Figures, Json, Part
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, Row
 
 Axis = Annotated[str, Field(min_length=1, max_length=1000)]
@@ -67,4 +67,4 @@ class SweepFigures(Figures):
     points: list[dict[str, float]]
     least: dict[str, dict[str, float]]
     failed: list[dict[str, float | str]]
-    cost: Json
+    cost: Annotated[Json, Source("sweep.cost")]

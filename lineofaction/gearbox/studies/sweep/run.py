@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -39,7 +38,6 @@ from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
 from lineofaction.gearbox.studies.sweep import Inputs, SweepFigures
 from lineofaction.gearbox.units import UM, factor, unit_name
-from model_studies import Record
 
 # What of a case can be swept: names as in the case file, short ones, and the values if none are given.
 
@@ -214,7 +212,7 @@ QUANTITIES = {
 
 
 @dataclass(frozen=True)
-class SweepResult(Record):
+class SweepResult:
     """A sweep, and which of its quantities are shown.
 
     Attributes
@@ -291,16 +289,13 @@ class SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
         known = {quantity.name for quantity in result.quantities}
         return SweepResult(result, tuple(name for name in inputs.show if name in known))
 
-    def figures(self, result: SweepResult) -> Json:
-        """Return axes, points with values and errors, and points without, in the units of the boundary."""
-        swept, axes = result.sweep, result.axes
+    def _derived(self, result: SweepResult) -> Json:
+        swept = result.sweep
         return {
-            "over": [
-                {"path": axis.path, "unit": axis.unit, "values": result.levels(k).tolist()}
-                for k, axis in enumerate(axes)
-            ],
-            "held": dict(_not_swept(swept)),
-            "shown": list(result.shown),
+            "over": [(axis, {"values": result.levels(k)}) for k, axis in enumerate(result.axes)],
+            "held": {
+                SWEEPABLE[n].path.rpartition(".")[2]: v / SWEEPABLE[n].factor for n, v in swept.held.items()
+            },
             "points": [_at(result, k) | _figures(swept, k) for k, why in enumerate(swept.reason) if not why],
             "least": {
                 QUANTITIES[quantity.name].field.format(""): _least(result, quantity)
@@ -308,7 +303,6 @@ class SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
                 if swept.usable
             },
             "failed": [_at(result, k) | {"reason": why} for k, why in enumerate(swept.reason) if why],
-            "cost": swept.cost,
         }
 
     def failure(self, result: SweepResult) -> str:
@@ -320,12 +314,6 @@ def _request(case: CheckedCase, inputs: Inputs) -> SweepRequest:
     axes = tuple(axis_of(case, text) for text in inputs.over)
     point = operating_point(case_at(case.case, FlankPoint()))
     return SweepRequest(case.pair, axes, point, case.options)
-
-
-def _not_swept(swept: Sweep) -> Iterator[tuple[str, float]]:
-    for name, value in swept.held.items():
-        axis = SWEEPABLE[name]
-        yield axis.path.rpartition(".")[2], value / axis.factor
 
 
 def _at(result: SweepResult, point: int) -> Json:

@@ -12,6 +12,7 @@ from dynamics.ablation import Ablation, ablate
 from dynamics.errors import InputError
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate
+from lineofaction.gearbox.studies.ablate.run import RUN
 
 SCENE = gear_pair_scene(duration=0.06)
 
@@ -54,6 +55,8 @@ def test_what_has_no_part_in_the_scene_is_left_out_by_name(made: Ablation) -> No
     assert {entry.name for entry in made.effects} | set(made.left_out) == {
         "lateral", "axial", "tilt", "friction",
     }  # fmt: skip
-    json.dumps(made.to_json(), allow_nan=False)
+    figures = json.loads(json.dumps(RUN.figures(made), allow_nan=False))
+    assert set(figures) == {"of", "nominal", "effects", "left_out", "mesh", "bearing"}
+    assert figures["nominal"]["orders_um"] == (made.nominal.orders / 1e-6).tolist()
     with pytest.raises(InputError, match="only"):
         ablate(SCENE, only=["windage"])

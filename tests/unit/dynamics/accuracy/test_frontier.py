@@ -14,6 +14,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.loads import TimeLaw
 from dynamics.scene import Integration
+from lineofaction.gearbox.studies.frontier.run import RUN
 
 RUN_UP = gear_pair_scene(speed=TimeLaw.ramp(100.0 * RPM, 900.0 * RPM, 0.4), duration=0.4)
 
@@ -81,7 +82,7 @@ def test_the_knee_does_not_go_below_the_error_of_the_table(found):
 
 
 def test_it_can_be_written_as_json(found):
-    written = json.loads(json.dumps(found.to_json(), allow_nan=False))
+    written = json.loads(json.dumps(RUN.figures(found), allow_nan=False))
     assert written["knee"] in {None, *(fidelity["name"] for fidelity in written["rungs"])}
     assert written["knee"] == found.knee
     assert "bearing_force_orders" not in next(r for r in written["rungs"] if r["name"] == "torsion")["errors"]

@@ -18,6 +18,7 @@ from fe_contact.analysis.studies.ablation import Ablation
 from fe_contact.errors import InputError
 from fe_contact.options import Run, TableAxes
 from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.studies.ablate.run import RUN
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 RELIEVED = replace(GEAR, modification=FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3))
@@ -101,8 +102,8 @@ def test_what_no_plane_holds_stays_in(cache: Path) -> None:
 
 
 def test_the_result_is_plain_json(made: Ablation) -> None:
-    told = json.loads(json.dumps(made.to_json(), allow_nan=False))
-    assert told["effects"][0]["estimate"]["mean_m"] == made.effects[0].estimate.mean
+    written = json.loads(json.dumps(RUN.figures(made), allow_nan=False))
+    assert written["effects"][0]["estimate"]["mean_um"] == made.effects[0].estimate.mean / 1e-6
 
 
 def test_an_unknown_effect_is_refused() -> None:

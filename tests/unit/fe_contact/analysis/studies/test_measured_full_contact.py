@@ -25,6 +25,7 @@ from fe_contact.full_contact import FullContactPoint, FullContactTable
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Status
+from lineofaction.gearbox.studies.frontier.run import RUN
 
 GEAR = Gear(teeth=20, normal_module=2e-3, face_width=8e-3, bore_diameter=20e-3)
 PAIR = GearPair(GEAR, GEAR, center_distance=40e-3)
@@ -164,8 +165,8 @@ def test_an_accuracy_study_goes_on_without_it(table: SteDatabase, monkeypatch: p
     fidelities = ["iso6336", "thin_slices"]
     asked = {"normal_forces": FORCES, "positions": 32}
     fake(table, monkeypatch, [])
-    beside = frontier(PAIR, *table_request(**asked), fidelities=fidelities, full_contact=2).to_json()
-    assert beside["full_contact"]["mean_error"] == pytest.approx(SOFTER - 1.0, rel=1e-3)
+    beside = frontier(PAIR, *table_request(**asked), fidelities=fidelities, full_contact=2)
+    assert RUN.figures(beside)["full_contact"]["mean_error"] == pytest.approx(SOFTER - 1.0, rel=1e-3)
     fake(table, monkeypatch, [0])
     failed = frontier(PAIR, *table_request(**asked), fidelities=fidelities, full_contact=1)
     assert failed.full_contact is None
