@@ -253,35 +253,6 @@ class NotFound(_Refused):
     title = "Not found"
 
 
-class NoSuchProcess(NotFound):
-    """No process of this name."""
-
-    type = f"{_OGC}no-such-process"
-    title = "No such process"
-
-
-class NoSuchJob(NotFound):
-    """No job of this identifier."""
-
-    type = f"{_OGC}no-such-job"
-    title = "No such job"
-
-
-class ResultNotReady(NotFound):
-    """The job has not ended."""
-
-    type = f"{_OGC}result-not-ready"
-    title = "The result is not ready"
-
-
-class TooLarge(_Refused):
-    """The request body is beyond the limit."""
-
-    status = 413
-    type = f"{_OURS}too-large"
-    title = "The request is too large"
-
-
 class UnsupportedMediaType(_Refused):
     """The request body is of a type that is not read here."""
 
@@ -345,9 +316,14 @@ Kind = TypeVar("Kind", bound=ServiceError)
 
 
 def _row(
-    base: type[Kind], status: int, name: str, title: str, retry_after_s: int | None = None
+    base: type[Kind],
+    status: int,
+    name: str,
+    title: str,
+    retry_after_s: int | None = None,
+    home: str = _OURS,
 ) -> type[Kind]:
-    facts = {"status": status, "type": f"{_OURS}{name}", "title": title, "retry_after_s": retry_after_s}
+    facts = {"status": status, "type": f"{home}{name}", "title": title, "retry_after_s": retry_after_s}
     own = {"__module__": __name__, "__doc__": f"{title}."}
     kind: type[Kind] = type(name.title().replace("-", ""), (base,), facts | own)
     return kind
@@ -361,6 +337,10 @@ Superseded = _row(_Failed, 409, "superseded", "A later question took its place")
 JobDismissed = _row(_Failed, 410, "job-dismissed", "The job was cancelled")
 DamagedFile = _row(_Failed, 500, "damaged-file", "A stored file is damaged")
 LiveUnavailable = _row(_Failed, 503, "live-unavailable", "No live answer", 1)
+NoSuchProcess = _row(NotFound, 404, "no-such-process", "No such process", home=_OGC)
+NoSuchJob = _row(NotFound, 404, "no-such-job", "No such job", home=_OGC)
+ResultNotReady = _row(NotFound, 404, "result-not-ready", "The result is not ready", home=_OGC)
+TooLarge = _row(_Refused, 413, "too-large", "The request is too large")
 Malformed = _row(_Refused, 400, "malformed", "The request is not HTTP")
 KeyExpired = _row(Unauthorised, 401, "key-expired", "The key has expired")
 NotAcceptable = _row(_Refused, 406, "not-acceptable", "No acceptable type of answer")

@@ -148,7 +148,15 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
 
     @abstractmethod
     def compute(self, subject: Subject, inputs: Inputs, means: Means) -> Result:
-        """Return the result; raises `BadInput`, `JobFailed`."""
+        """Return the result.
+
+        Raises
+        ------
+        BadInput
+            No such pair, scene, part or request.
+        JobFailed
+            No mesh, no equilibrium, or points without a solution.
+        """
 
     def figures(self, result: Result) -> Json:
         """Return the figures of a result in the units of the boundary, as they are printed and served."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache, partial, reduce
+from functools import cache, reduce
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin
 
@@ -95,7 +95,10 @@ class _Declared:
         for each in sources:
             if self.source is None and (value := _member(each, self.name)) is not _MISSING:
                 return value, _same
-            value = _read(each, self.source) if self.source else _member(each, self.bare)
+            value = _member(each, self.bare)
+            if self.source:
+                of = self.source.of
+                value = of(each) if callable(of) else reduce(_member, of.split("."), each)
             if value is not _MISSING:
                 return value, convert
         if self.source and self.source.missing is not REQUIRED:
@@ -130,11 +133,6 @@ def _names(model: type[Part]) -> frozenset[str]:
     return frozenset(name for figure in _declared(model) for name in (figure.name, figure.bare) if name)
 
 
-def _read(result: Any, source: Source) -> Any:
-    """Return what a source says of a result; nothing if it has no such member."""
-    return source.of(result) if callable(source.of) else reduce(_member, source.of.split("."), result)
-
-
 def _member(result: Any, name: str) -> Any:
     if isinstance(result, Mapping):
         return result.get(name, _MISSING)
@@ -148,17 +146,13 @@ def _unit(name: str) -> tuple[str, Callable[[Any], Any]]:
         return name.removesuffix("_deg"), np.degrees
     for suffix, divisor in _DIVISORS.items():
         if name.endswith(suffix):
-            return name.removesuffix(suffix), partial(_divided, divisor)
+            return name.removesuffix(suffix), lambda value, divisor=divisor: value / divisor
     suffix = next((suffix for suffix in _IN_SI if name.endswith(suffix)), "")
     return name.removesuffix(suffix), _same
 
 
 def _same(value: Any) -> Any:
     return value
-
-
-def _divided(divisor: float, value: Any) -> Any:
-    return value / divisor
 
 
 def _figure(kind: Any, value: Any, convert: Callable[[Any], Any]) -> Any:
@@ -169,7 +163,7 @@ def _figure(kind: Any, value: Any, convert: Callable[[Any], Any]) -> Any:
         return None
     parts = get_args(kind)
     if isinstance(kind, type) and issubclass(kind, Part):
-        sources, own = _sources(value)
+        *sources, own = value if isinstance(value, tuple) and not hasattr(value, "_fields") else (value, {})
         return figures_of(kind, *sources, **own)
     if isinstance(value, np.ndarray) and not _holds_none(kind):
         return convert(value).tolist()
@@ -178,14 +172,6 @@ def _figure(kind: Any, value: Any, convert: Callable[[Any], Any]) -> Any:
     if get_origin(kind) is dict:
         return {name: _figure(parts[1], entry, convert) for name, entry in value.items()}
     return value if isinstance(value, str | bool) or convert is _same else convert(value)
-
-
-def _sources(value: Any) -> tuple[Sequence[Any], Json]:
-    """Return the sources of a part, and its own members."""
-    if not isinstance(value, tuple) or hasattr(value, "_fields"):
-        return [value], {}
-    *sources, own = value
-    return sources, own
 
 
 def _present(kind: Any) -> tuple[Any, bool]:

@@ -19,13 +19,11 @@ from lineofaction.gearbox.studies.ablate import AblateFigures, Inputs
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
 
 
-class AblateStudy(
+class _AblateStudy(
     Computation[
         CheckedCase | SceneInput, CheckedCase | TabledScene, Inputs, AblateFigures, Ablation | SceneAblation
     ]
 ):
-    """All effects, each toggled by itself; of a case the loads, of a scene its meshes and bearings."""
-
     inputs, answer = Inputs, AblateFigures
     file = record_file(("ablation of a case", Ablation), ("ablation of a scene", SceneAblation))
 
@@ -42,15 +40,7 @@ class AblateStudy(
     def compute(
         self, subject: CheckedCase | TabledScene, inputs: Inputs, means: Means
     ) -> Ablation | SceneAblation:
-        """Toggle the effects of a case, at its nominal center distance, or of a scene.
-
-        Raises
-        ------
-        BadInput
-            No such pair or effect.
-        JobFailed
-            The case itself cannot be computed.
-        """
+        """Toggle the effects of a case, at its nominal center distance, or of a scene."""
         with boundary_errors():
             if isinstance(subject, TabledScene):
                 return ablate_scene(subject.scene, inputs.only, means.report)
@@ -73,4 +63,4 @@ def _requested(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:
         return chosen("only", only, known, "Or leave it out: all are toggled.")
 
 
-RUN = AblateStudy()
+RUN = _AblateStudy()

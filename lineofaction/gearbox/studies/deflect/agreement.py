@@ -95,7 +95,7 @@ def mesh_contact(
     levels = np.array([LOWEST * loads[0], *loads, HIGHEST * loads[-1]])
     across = database
     too_low = loads[-1] > database.torque[-1] * (1.0 + ALIKE)
-    if case.accuracy.model not in PLANE and (too_low or not _across_face(database)):
+    if case.accuracy.model not in PLANE and (too_low or database.metadata.receipt["plan"]["model"] in PLANE):
         axes = TableAxes(torques=loads, misalignments=[-FIRST_MISALIGNMENT, FIRST_MISALIGNMENT])
         options = replace(analysis_options(case), receipt="minimal", positions=8)
         across = ste_database(pair, axes, options, Run(cache=cache, progress=report))
@@ -105,12 +105,6 @@ def mesh_contact(
     bodies = condensed_pair(pair, across, dict(case.effects), cache, compute=True)
     assert bodies is not None
     return MeshContact(pair, bodies, levels)
-
-
-def _across_face(database: SteDatabase) -> bool:
-    """Whether a table is of three dimensions."""
-    plan: Mapping[str, object] = database.metadata.receipt["plan"]
-    return plan["model"] not in PLANE
 
 
 def _distinct(torques: Sequence[float]) -> list[float]:
@@ -184,20 +178,14 @@ def in_agreement(
     while passes < PASSES:
         passes += 1
         tables = {name: contact.table(knots[name]) for name, contact in contacts.items()}
-        deflection = deflect(_with_tables(scene, tables), cases, positions)
+        meshes = tuple(replace(mesh, table=tables.get(mesh.name, mesh.table)) for mesh in scene.meshes)
+        deflection = deflect(replace(scene, meshes=meshes), cases, positions)
         change = _change(last, deflection, contacts)
         if change <= TOLERANCE or not deflection.converged:
             break
         knots = {name: with_knots(own, _misalignments(deflection, name)) for name, own in knots.items()}
         last = deflection
     return Agreement(deflection, passes, change)
-
-
-def _with_tables(scene: Scene, tables: Mapping[str, MeshTable]) -> Scene:
-    meshes = (
-        replace(mesh, table=tables[mesh.name]) if mesh.name in tables else mesh for mesh in scene.meshes
-    )
-    return replace(scene, meshes=tuple(meshes))
 
 
 def _misalignments(deflection: Deflection, mesh: str) -> list[float]:

@@ -15,7 +15,6 @@ from dynamics.deflection import (
     CAUSES,
     BearingLoad,
     CaseDeflection,
-    MeshAlignment,
     equivalent_load,
     life_duration,
 )
@@ -39,7 +38,8 @@ def _loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
     of_all = ROUNDING_OF_ALL * max(largest, default=0.0)
     least = [max(ROUNDING * own, of_all) for own in largest]
     loads = [load for case in cases for load in case.bearings]
-    moved = max((_largest_part(load) for load in loads), default=0.0)
+    displacements = (part[:3] for load in loads for part in (load.elastic, load.clearance, load.seat))
+    moved = max((float(np.max(np.abs(part))) for part in displacements), default=0.0)
     return [
         [
             _without_rounding(load, each, ROUNDING_OF_ALL * moved)
@@ -47,11 +47,6 @@ def _loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
         ]
         for case in cases
     ]
-
-
-def _largest_part(load: BearingLoad) -> float:
-    """Return the largest displacement in x, y, z, m."""
-    return max(float(np.max(np.abs(part[:3]))) for part in (load.elastic, load.clearance, load.seat))
 
 
 def _without_rounding(load: BearingLoad, least: float, moved: float) -> BearingLoad:
@@ -128,14 +123,11 @@ def _shares(result: GearboxDeflection) -> list[float]:
 def _case(
     case: CaseDeflection, flanks: dict[tuple[str, str], MeshFlanks], loads: Sequence[BearingLoad]
 ) -> tuple[CaseDeflection, Json]:
-    return case, {
-        "meshes": [_mesh(mesh, flanks.get((case.name, mesh.name))) for mesh in case.meshes],
-        "bearings": [(load, _life([load], [1.0])) for load in loads],
-    }
-
-
-def _mesh(mesh: MeshAlignment, flanks: MeshFlanks | None) -> tuple[MeshAlignment, Json]:
-    return mesh, {"causes": dict(zip(CAUSES, mesh.causes, strict=True)), "flanks": flanks}
+    meshes: list[Any] = []
+    for mesh in case.meshes:
+        causes = dict(zip(CAUSES, mesh.causes, strict=True))
+        meshes.append((mesh, {"causes": causes, "flanks": flanks.get((case.name, mesh.name))}))
+    return case, {"meshes": meshes, "bearings": [(load, _life([load], [1.0])) for load in loads]}
 
 
 def _mesh_over_cases(result: GearboxDeflection, name: str) -> Json:
@@ -144,25 +136,16 @@ def _mesh_over_cases(result: GearboxDeflection, name: str) -> Json:
     own = [next(mesh for mesh in case.meshes if mesh.name == name) for case in cases]
     worst = int(np.argmax([abs(mesh.misalignment) for mesh in own]))
     flanks = [part for part in result.flanks if part.mesh == name]
+    ripple = [part.peak_to_peak / UM for part in flanks]
+    factors = [part.face_load_factor for part in flanks if math.isfinite(part.face_load_factor)]
     return {
         "name": name,
         "mean_misalignment_um": float(np.dot(weights, [mesh.misalignment for mesh in own])) / UM,
         "largest_misalignment_um": own[worst].misalignment / UM,
         "largest_in": cases[worst].name,
-        "mean_peak_to_peak_um": _mean(weights, [part.peak_to_peak / UM for part in flanks]),
-        "largest_k_h_beta": _largest([part.face_load_factor for part in flanks]),
+        "mean_peak_to_peak_um": float(np.dot(weights, ripple)) if len(ripple) == len(weights) else None,
+        "largest_k_h_beta": max(factors, default=None),
     }
-
-
-def _mean(weights: Sequence[float], values: Sequence[float]) -> float | None:
-    """Return the weighted mean, None where a value is missing."""
-    return float(np.dot(weights, values)) if len(values) == len(weights) else None
-
-
-def _largest(values: Sequence[float]) -> float | None:
-    """Return the largest value, None where there is none."""
-    known = [value for value in values if math.isfinite(value)]
-    return max(known) if known else None
 
 
 DIGITS = 3
@@ -176,7 +159,8 @@ def optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:
     torque at different misalignments are several. Load cases on the coast side load the other flanks and are
     left aside, unless all are. A plane model has no misalignment: there the inputs have none.
     """
-    in_plane, shares = _in_plane(result, mesh), dict[tuple[float, float], float]()
+    in_plane = all(np.isnan(flanks.face_load_factor) for flanks in result.flanks if flanks.mesh == mesh)
+    shares: dict[tuple[float, float], float] = {}
     for torque, share, misalignment in _points(result, mesh):
         load = _digits(torque), 0.0 if in_plane else round(misalignment / UM, DIGITS) + 0.0
         shares[load] = shares.get(load, 0.0) + share
@@ -187,10 +171,6 @@ def optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:
         **({} if in_plane else {"misalignment_um": list(misalignments)}),
         "objective": {"kind": "weighted_mean", "weights": weights},
     }
-
-
-def _in_plane(result: GearboxDeflection, mesh: str) -> bool:
-    return all(np.isnan(flanks.face_load_factor) for flanks in result.flanks if flanks.mesh == mesh)
 
 
 def _points(result: GearboxDeflection, mesh: str) -> list[tuple[float, float, float]]:

@@ -24,7 +24,7 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
-from lineofaction.gearbox.studies.deflect import CaseForceInput, DeflectFigures, Inputs
+from lineofaction.gearbox.studies.deflect import DeflectFigures, Inputs
 from lineofaction.gearbox.studies.deflect.agreement import Agreement, MeshContact, in_agreement, mesh_contact
 from lineofaction.gearbox.studies.deflect.figures import figures_by_case, write_spectrum
 from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks, outline_of
@@ -32,20 +32,12 @@ from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflec
 ALONG_FACE, ALONG_PROFILE = 41, 40
 
 
-class DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
-    """Misalignment by cause, flanks and bearings under every load case."""
-
+class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
     inputs, answer, file = Inputs, DeflectFigures, record_file(("deflection", GearboxDeflection))
     writers = MappingProxyType({".toml": write_spectrum})
 
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
-        """Refuse load cases that cannot be, or that need what the scene lacks, before tables are computed.
-
-        Raises
-        ------
-        BadInput
-            By the field of the load case.
-        """
+        """Refuse load cases that cannot be, or that need what the scene lacks, before tables are computed."""
         with named(""):
             cases = load_cases(inputs)
             check_forces(cases, [force.name for force in scene.forces])
@@ -59,15 +51,7 @@ class DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
                 )
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
-        """Deflect a scene under its load cases.
-
-        Raises
-        ------
-        BadInput
-            A case that the scene cannot have.
-        JobFailed
-            The contact of a mesh was not solved.
-        """
+        """Deflect a scene under its load cases."""
         began, scene = cpu_seconds() - tabled.seconds, tabled.scene
         with boundary_errors():
             cases = load_cases(inputs)
@@ -119,14 +103,12 @@ def load_cases(inputs: Inputs) -> tuple[LoadCase, ...]:
     cases = []
     for index, case in enumerate(inputs.load_cases):
         with inside(f"load_cases[{index}]"):
-            forces = tuple(_force(k, force) for k, force in enumerate(case.forces))
-            cases.append(LoadCase(**in_si(LoadCase, case), forces=forces))
+            forces = []
+            for number, force in enumerate(case.forces):
+                with inside(f"forces[{number}]"):
+                    forces.append(CaseForce(**in_si(CaseForce, force)))
+            cases.append(LoadCase(**in_si(LoadCase, case), forces=tuple(forces)))
     return tuple(cases)
-
-
-def _force(index: int, force: CaseForceInput) -> CaseForce:
-    with inside(f"forces[{index}]"):
-        return CaseForce(**in_si(CaseForce, force))
 
 
 def _with_case(tabled: TabledScene) -> Iterator[tuple[str, MeshInput]]:
@@ -140,24 +122,21 @@ def _with_case(tabled: TabledScene) -> Iterator[tuple[str, MeshInput]]:
 
 
 def _contacts(tabled: TabledScene, cases: tuple[CaseDeflection, ...], means: Means) -> dict[str, MeshContact]:
-    """Return the contacts of all meshes with a case, by name; equal ones are one."""
+    """Return the contacts of all meshes with a case, by name, at the torques on their pinions."""
     torques: dict[str, list[float]] = {}
     inputs = dict(_with_case(tabled))
     for case in cases:
         for mesh in case.meshes:
             if mesh.name in inputs:
-                torques.setdefault(inputs[mesh.name].name, []).append(_torque(tabled, inputs, mesh))
+                name = inputs[mesh.name].name
+                radius = tabled.databases[name].facts.base_radius[0]
+                torques.setdefault(name, []).append(mesh.force * radius)
     made: dict[str, MeshContact] = {}
     for mesh_input in {known.name: known for known in inputs.values()}.values():
         database, own = tabled.databases[mesh_input.name], torques[mesh_input.name]
         assert isinstance(mesh_input.case, Case)
         made[mesh_input.name] = mesh_contact(mesh_input.case, database, own, means.home, means.report)
     return {name: made[known.name] for name, known in inputs.items()}
-
-
-def _torque(tabled: TabledScene, inputs: Mapping[str, MeshInput], mesh: MeshAlignment) -> float:
-    """Return the torque on the pinion of a mesh's case, N m."""
-    return mesh.force * tabled.databases[inputs[mesh.name].name].facts.base_radius[0]
 
 
 def _flanks(
@@ -227,4 +206,4 @@ def _pattern(
     return rows, pattern
 
 
-RUN = DeflectStudy()
+RUN = _DeflectStudy()

@@ -36,9 +36,7 @@ def flanks_of(checked: CheckedCase, cache: Path | None, progress: Progress = sil
     return replace(results, metadata=replace(results.metadata, warnings=warnings))
 
 
-class FlankStudy(CaseStudy[Inputs, FlankFigures, LoadDistribution]):
-    """Figures of the flanks over a mesh cycle, at one load and one alignment."""
-
+class _FlankStudy(CaseStudy[Inputs, FlankFigures, LoadDistribution]):
     inputs, answer = Inputs, FlankFigures
     file = ResultFile(
         "format", (FORMAT,), LoadDistribution.to_netcdf, LoadDistribution.from_netcdf, LoadDistribution
@@ -78,4 +76,4 @@ class FlankStudy(CaseStudy[Inputs, FlankFigures, LoadDistribution]):
         return flanks.metadata.warnings
 
 
-RUN = FlankStudy()
+RUN = _FlankStudy()

@@ -22,13 +22,11 @@ from lineofaction.gearbox.units import in_um
 LEAST = 2
 
 
-class FrontierStudy(
+class _FrontierStudy(
     Computation[
         CheckedCase | SceneInput, CheckedCase | TabledScene, Inputs, FrontierFigures, Frontier | SceneFrontier
     ]
 ):
-    """Error against time; the reference is the finest fidelity, the knee where time buys least."""
-
     inputs, answer = Inputs, FrontierFigures
     file = record_file(("accuracy study of a case", Frontier), ("accuracy study of a scene", SceneFrontier))
 
@@ -50,15 +48,7 @@ class FrontierStudy(
     def compute(
         self, subject: CheckedCase | TabledScene, inputs: Inputs, means: Means
     ) -> Frontier | SceneFrontier:
-        """Study a case, over all pitches that differ and with the whole receipt, or a scene.
-
-        Raises
-        ------
-        BadInput
-            No such pair or fidelity, or the run is too short.
-        JobFailed
-            Fewer than two fidelities came to their end.
-        """
+        """Study a case, over all pitches that differ and with the whole receipt, or a scene."""
         names = _requested(inputs, of_scene=not isinstance(subject, CheckedCase))
         with boundary_errors():
             if isinstance(subject, TabledScene):
@@ -102,4 +92,4 @@ def _requested(inputs: Inputs, *, of_scene: bool) -> list[str]:
     return names
 
 
-RUN = FrontierStudy()
+RUN = _FrontierStudy()

@@ -73,27 +73,19 @@ class SoundFigures:
 def sound_figures(recording: Recording, run: RunResult) -> SoundFigures:
     """Return the figures of a sound pressure; of a very short one, or without MoSQITo, its levels alone."""
     level, weighted = (sound_pressure_level(recording, weighted=by_ear) for by_ear in (False, True))
-    steady = _steady(run)
+    speed = np.abs(run.speed[run.shaft.index(driving_shaft(run, 0))])
+    steady = bool(np.ptp(speed) <= STEADY * speed.max())
     if recording.samples.size < SHORTEST * recording.sample_rate:
         return SoundFigures(level, weighted, steady)
     try:
         quality = sound_quality(recording)
-        loudness = quality.loudness if steady else _exceeded(recording)
+        loudness = quality.loudness
+        if not steady:
+            loudness = float(np.percentile(loudness_over_time(recording)[1], 100.0 - EXCEEDED))
     except MissingExtra:
         return SoundFigures(level, weighted, steady)
     tones = zip(quality.tone_frequency.tolist(), quality.tone_to_noise.tolist(), strict=True)
     return SoundFigures(level, weighted, steady, loudness, quality.sharpness, tuple(tones) if steady else ())
-
-
-def _steady(run: RunResult) -> bool:
-    """Whether the driving gear of the first mesh turns at one speed."""
-    speed = np.abs(run.speed[run.shaft.index(driving_shaft(run, 0))])
-    return bool(np.ptp(speed) <= STEADY * speed.max())
-
-
-def _exceeded(recording: Recording) -> float:
-    """Return the loudness that is exceeded for 5 % of the time, sone."""
-    return float(np.percentile(loudness_over_time(recording)[1], 100.0 - EXCEEDED))
 
 
 def driving_shaft(run: RunResult, mesh: int) -> str:
@@ -262,9 +254,7 @@ def rms(recording: Recording) -> float:
     return math.sqrt(float((recording.samples**2).mean()))
 
 
-class ListenStudy(Computation[SceneInput, HousedScene, Inputs, ListenFigures, HeardRun]):
-    """Figures of a run at a microphone, or at a point of a housing."""
-
+class _ListenStudy(Computation[SceneInput, HousedScene, Inputs, ListenFigures, HeardRun]):
     inputs, answer, file = Inputs, ListenFigures, record_file((KIND, HeardRun))
     tables = False
 
@@ -276,13 +266,7 @@ class ListenStudy(Computation[SceneInput, HousedScene, Inputs, ListenFigures, He
             _require_point(inputs.point, [point.name for part in scene.housings for point in part.points])
 
     def compute(self, subject: HousedScene, inputs: Inputs, means: Means) -> HeardRun:
-        """Return the run as it is heard.
-
-        Raises
-        ------
-        BadInput
-            The microphone is not in the air, or the run has no forces on the bearings of a housing.
-        """
+        """Return the run as it is heard."""
         assert means.run is not None  # the inputs name it
         receiver = Receiver(tuple(inputs.microphone_mm or ()), inputs.point or "", inputs.direction or "")
         heard = heard_run(inputs.run, means.run, SceneHousings.of(subject), receiver)
@@ -297,4 +281,4 @@ class ListenStudy(Computation[SceneInput, HousedScene, Inputs, ListenFigures, He
         return heard.warnings
 
 
-RUN = ListenStudy()
+RUN = _ListenStudy()

@@ -19,9 +19,7 @@ from lineofaction.gearbox.units import RPM
 LEAST_SHARE = 1e-3
 
 
-class ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
-    """Natural modes at rest, modes over speed, critical speeds."""
-
+class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
     inputs, answer, file = Inputs, ModesFigures, array_file(ModalAnalysis)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ModalAnalysis:
@@ -37,22 +35,17 @@ class ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
         return with_reduction_costs(modes, subject)
 
     def _derived(self, modes: ModalAnalysis) -> Json:
+        energies = modes.natural_strain_energy, modes.natural_kinetic_energy
+        at_rest = zip(modes.natural_frequency, modes.natural_damping_ratio, *energies, strict=True)
         return {
-            "at_rest": [_at_rest(modes, mode) for mode in range(modes.natural_frequency.size)],
+            "at_rest": [
+                {"mode": mode, "frequency": hertz, "damping_ratio": ratio, **_energies(modes, *parts)}
+                for mode, (hertz, ratio, *parts) in enumerate(at_rest, 1)
+            ],
             "mesh_frequency": dict(zip(modes.mesh, modes.mesh_frequency, strict=True)),
             "modes": [_over_speed(modes, mode) for mode in range(modes.frequency.shape[1])],
             "critical_speeds": [_crossing(modes, index) for index in range(modes.critical_speed.size)],
         }
-
-
-def _at_rest(modes: ModalAnalysis, mode: int) -> Json:
-    strain, kinetic = modes.natural_strain_energy[mode], modes.natural_kinetic_energy[mode]
-    return {
-        "mode": mode + 1,
-        "frequency": modes.natural_frequency[mode],
-        "damping_ratio": modes.natural_damping_ratio[mode],
-        **_energies(modes, strain, kinetic),
-    }
 
 
 def _energies(modes: ModalAnalysis, strain: Any, kinetic: Any) -> Json:
@@ -86,4 +79,4 @@ def _crossing(modes: ModalAnalysis, index: int) -> Json:
     }
 
 
-RUN = ModesStudy()
+RUN = _ModesStudy()

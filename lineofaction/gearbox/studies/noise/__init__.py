@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
@@ -123,17 +122,17 @@ class OrderBand(Part):
     there: LevelBandFigures
 
 
-def _by_order(band: Any) -> Iterator[Iterator[tuple[str, Any]]]:
-    """Yield the members of the bands of the orders."""
+def _by_order(band: Any) -> list[dict[str, Any]]:
+    """Return the members of the bands of the orders."""
     rows = zip(band.order, band.largest, band.loudest_speed, band.there, strict=True)
-    return (zip(("order", "largest", "speed", "there"), row, strict=True) for row in rows)
+    return [dict(zip(("order", "largest", "speed", "there"), row, strict=True)) for row in rows]
 
 
 class SoundBandFigures(Part):
     """Bands of levels: the largest total, orders, and the total by speed."""
 
     largest_total: LevelBandFigures
-    orders: Annotated[list[OrderBand], Source(lambda band: [dict(each) for each in _by_order(band)])]
+    orders: Annotated[list[OrderBand], Source(_by_order)]
     total_low_db_a: Annotated[list[float], Source(lambda band: [level.low for level in band.total])]
     total_high_db_a: Annotated[list[float], Source(lambda band: [level.high for level in band.total])]
 

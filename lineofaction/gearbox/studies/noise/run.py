@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from bounds.types import FloatArray, Json
+from bounds.types import Json
 from dynamics.acoustics import (
     Air,
     BoundaryElements,
@@ -25,7 +25,6 @@ from dynamics.acoustics.recording import LOWEST
 from dynamics.housings import ReducedHousing, write_surface
 from dynamics.noise import (
     HousingRadiation,
-    PanelSound,
     RadiatedSound,
     Region,
     SoundOverTime,
@@ -68,9 +67,7 @@ def _write_panels(sound: RadiatedSound, _scene: SceneInput, file: Path) -> None:
     write_surface(file, panels.hull.nodes, panels.hull.triangles, {}, fields)
 
 
-class NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
-    """Sound power levels by order, then by speed; third octaves; the loudest points."""
-
+class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
     inputs, answer, file = Inputs, NoiseFigures, array_file(RadiatedSound)
     writers = MappingProxyType({".vtu": _write_panels})
 
@@ -82,13 +79,7 @@ class NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         require_surface(subject)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSound:
-        """Return the sound power of the housings of a scene that have a surface.
-
-        Raises
-        ------
-        BadInput
-            No housing has a surface.
-        """
+        """Return the sound power of the housings of a scene that have a surface."""
         if means.run is not None:  # the band varies the linear response, and a run is what it is
             inputs = inputs.model_copy(update={"band": False})
         response = bearing_forces(subject, inputs, means)
@@ -101,7 +92,9 @@ class NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
             ]
             if not housings:
                 raise no_surface([part.name for part in subject.inputs.housings])
-            sounds = [_sound(response, housing) for housing in housings]
+            sounds = [
+                radiated_sound(response, own.body, own.bearings, own.radiation, own.name) for own in housings
+            ]
             compared = {
                 housing.name: _compared(response, housing, sound, inputs, means)
                 for housing, sound in zip(housings, sounds, strict=True)
@@ -112,7 +105,9 @@ class NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         about = response.facts
         seconds = {**about["seconds"], "sound": cpu_seconds() - began}
         own = {name: about.get(name) for name in ("leading_shaft", "equilibrium", "effect_ledger", "forces")}
-        own["over_time"] = _figures_over_time(heard)
+        own["over_time"] = heard and figures_of(
+            SoundOverTimeFigures, heard, third_octave_db=sound_power_level(heard.power.T)
+        )
         own["reduction_cost"] = reduction_costs(subject)
         known = {**whole.facts, **own, "models": compared, "seconds": seconds}
         whole = replace(whole, facts=known)
@@ -173,9 +168,11 @@ def _with_regions(
     by_point: list[list[Json]] = []
     for point in loudest(sound):
         at = point.speed_index, point.order_index
-        panels = [_panels(response, housing, at, model) for housing in housings]
+        panels = [panel_sound(response, own.body, own.bearings, own.radiation, at, model) for own in housings]
         if not by_point:
-            sound = _with_panels(sound, side_by_side(panels))
+            joined = side_by_side(panels)
+            nodes, corners = joined.hull.nodes, joined.hull.triangles
+            sound = replace(sound, panel_node=nodes, panel_corner=corners, panel_power=joined.power)
         rows = [
             _region(housing.name, region, float(sound.power[at]))
             for housing, own in zip(housings, panels, strict=True)
@@ -185,27 +182,10 @@ def _with_regions(
     return replace(sound, facts={**sound.facts, "regions": by_point})
 
 
-def _panels(
-    response: BearingHarmonics, housing: _SoundingHousing, at: tuple[int, int], model: PanelModel
-) -> PanelSound:
-    return panel_sound(response, housing.body, housing.bearings, housing.radiation, at, model)
-
-
-def _with_panels(sound: RadiatedSound, panels: PanelSound) -> RadiatedSound:
-    hull = panels.hull
-    return replace(sound, panel_node=hull.nodes, panel_corner=hull.triangles, panel_power=panels.power)
-
-
 def _region(housing: str, region: Region, whole: float) -> Json:
     plain = {name: np.asarray(getattr(region, name)).tolist() for name in ("normal", "center")}
     own = {"facing": region.facing, "points": list(region.points), "area": region.area, "power": region.power}
     return {"housing": housing, **own, **plain, "share": region.power / whole}
-
-
-def _run_frequencies(run: RunResult, frequency: FloatArray) -> FloatArray:
-    """Return frequencies of orders (S, H) with the ends of what is heard of a run, Hz."""
-    ends = [LOWEST, float(run.receipt["sampling"]["pass_frequency"])]
-    return np.append(frequency.ravel(), ends)
 
 
 def _over_time(
@@ -222,22 +202,16 @@ def _over_time(
     return SoundOverTime.of_all(sounds)
 
 
-def _figures_over_time(sound: SoundOverTime | None) -> Json | None:
-    if sound is None:
-        return None
-    return figures_of(SoundOverTimeFigures, sound, third_octave_db=sound_power_level(sound.power.T))
-
-
 def _radiation(
     response: BearingHarmonics, body: ReducedHousing, inputs: Inputs, means: Means
 ) -> HousingRadiation:
-    model, cache = MODELS[inputs.radiation], means.home / FOLDER
-    hertz = response.frequency if means.run is None else _run_frequencies(means.run, response.frequency)
-    return kept_radiation(body, model, hertz, cache=cache, progress=means.report)
-
-
-def _sound(response: BearingHarmonics, housing: _SoundingHousing) -> RadiatedSound:
-    return radiated_sound(response, housing.body, housing.bearings, housing.radiation, housing.name)
+    """Return the radiation of a housing at the orders, and at the ends of what is heard of a run."""
+    hertz = response.frequency
+    if means.run is not None:
+        ends = [LOWEST, float(means.run.receipt["sampling"]["pass_frequency"])]
+        hertz = np.append(hertz.ravel(), ends)
+    cache = means.home / FOLDER
+    return kept_radiation(body, MODELS[inputs.radiation], hertz, cache=cache, progress=means.report)
 
 
 def _compared(
@@ -278,4 +252,4 @@ def _compared(
     }
 
 
-RUN = NoiseStudy()
+RUN = _NoiseStudy()

@@ -50,7 +50,10 @@ def uncertainty(
     with boundary_errors():
         if inputs.band:
             band = band_of(model, sound.speed, inputs.orders, inputs, means)
-            missed = _between_models(sound.facts["models"])
+            levels = [
+                about["level"].values() for about in sound.facts["models"].values() if about.get("level")
+            ]
+            missed = max((max(of) - min(of) for of in levels), default=0.0)
             band = band.with_error("radiation_model", missed, missed)
             facts["band"] = figures_of(SoundBandFigures, band)
         if inputs.sensitivities:
@@ -60,12 +63,6 @@ def uncertainty(
     if inputs.band or inputs.sensitivities:
         facts["seconds"] = {**sound.facts["seconds"], "uncertainty": cpu_seconds() - began}
     return facts
-
-
-def _between_models(compared: Mapping[str, Json]) -> float:
-    """Return how far radiation models lie apart where a housing is loudest, dB, the most of all housings."""
-    levels = [list(about["level"].values()) for about in compared.values() if about.get("level")]
-    return max((max(of) - min(of) for of in levels), default=0.0)
 
 
 def band_of(

@@ -11,7 +11,7 @@ import numpy as np
 
 from bounds import engineering
 from bounds.types import Json
-from fe_contact.microgeometry.confirmation import ConfirmedDesign, HarrisMap
+from fe_contact.microgeometry.confirmation import HarrisMap
 from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest
 from fe_contact.microgeometry.optimize import optimize
@@ -52,9 +52,7 @@ def _write_case(result: Optimization, checked: CheckedCase, target: Path) -> Non
     target.write_text(f"# {result.reason}\n\n{toml_text(content)}", encoding="utf-8")
 
 
-class OptimizeStudy(CaseStudy[Inputs, OptimizeFigures, Optimization]):
-    """The start and the optimum, what was free, and how the search ended."""
-
+class _OptimizeStudy(CaseStudy[Inputs, OptimizeFigures, Optimization]):
     inputs, answer, file = Inputs, OptimizeFigures, record_file(("optimization", Optimization))
     interruptible = True
     writers = MappingProxyType({".toml": _write_case})
@@ -72,13 +70,6 @@ class OptimizeStudy(CaseStudy[Inputs, OptimizeFigures, Optimization]):
         """Optimize the modifications of a case; when it is cancelled, end with the best so far.
 
         Designs are remembered: another attempt, or another deadline, goes on from them.
-
-        Raises
-        ------
-        BadInput
-            No such pair, or something that cannot be varied so.
-        JobFailed
-            The case cannot be computed.
         """
         with boundary_errors():
             run = Run(means.workers, means.home / "compliance", means.report)
@@ -90,15 +81,23 @@ class OptimizeStudy(CaseStudy[Inputs, OptimizeFigures, Optimization]):
             )
 
     def _derived(self, result: Optimization) -> Json:
-        requested = {"scatter": _scattering(result), "limits": _limits_kept(result)}
+        limits = dict(result.asked["limits"])
+        pressure = limits.pop("max_pressure_pa")
+        limits = {"max_pressure_mpa": None if pressure is None else pressure / MPA, **limits}
+        nodes = result.nodes
+        deviation = [
+            [_typed(name, float(x)) for name, x in zip(nodes.names, row, strict=True)]
+            for row in nodes.deviation
+        ]
+        requested = {"scatter": _scattering(result), "limits": limits}
         return {
             "variables": [
                 {"name": boundary_name(var.name), "bounds": _range(var.name, var.low, var.high)}
                 for var in result.variables
             ],
-            "nodes": _nodes(result),
-            "start": _design(result.start),
-            "optimum": _design(result.optimum),
+            "nodes": (nodes, {"names": list(map(boundary_name, nodes.names)), "deviation": deviation}),
+            "start": (result.start, {"values": _at_boundary(result.start.values)}),
+            "optimum": (result.optimum, {"values": _at_boundary(result.optimum.values)}),
             "sensitivity": [
                 {
                     "name": boundary_name(step.name),
@@ -139,26 +138,29 @@ def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest
     if torques is None:
         torques = tuple(float(pair.torque(force)) for force in case.load.normal_force_n or ())
     objective = WeightedMean(study.objective.weights) if study.objective.kind == "weighted_mean" else Worst()
-    return OptimizationRequest(
-        pair,
-        list(torques),
-        tuple(_design_variables(study)),
-        _scatter_of(study.scatter, study.search.seed),
-        np.asarray(study.misalignment_um) * UM,
-        objective,
-        _limits(study),
-        _search(study.search),
-        checked.options,
-    )
-
-
-def _design_variables(study: Inputs) -> list[DesignVariable]:
     gears = {"pinion": study.variables.pinion, "wheel": study.variables.wheel}
-    return [
+    variables = [
         DesignVariable(name, *(end * unit for end in ends))
         for gear, fields in gears.items()
         for name, ends, unit in _stated_fields(gear, fields)
     ]
+    pressure = study.limits.max_pressure_mpa
+    limits = Limits(
+        None if pressure is None else pressure * MPA,
+        study.limits.face_load_factor,
+        study.limits.edge_load_share,
+    )
+    return OptimizationRequest(
+        pair,
+        list(torques),
+        tuple(variables),
+        _scatter_of(study.scatter, study.search.seed),
+        np.asarray(study.misalignment_um) * UM,
+        objective,
+        limits,
+        _search(study.search),
+        checked.options,
+    )
 
 
 def _scatter_of(scatter: ScatterInput, seed: int) -> Scatter:
@@ -182,15 +184,6 @@ def _stated_fields(gear: str, inputs: GearVariablesInput | GearScatterInput) -> 
     ]
 
 
-def _limits(study: Inputs) -> Limits:
-    pressure = study.limits.max_pressure_mpa
-    return Limits(
-        None if pressure is None else pressure * MPA,
-        study.limits.face_load_factor,
-        study.limits.edge_load_share,
-    )
-
-
 def _search(search: SearchInput) -> Search:
     methods: dict[str, Method] = {
         "sequential_linear_programming": SequentialLinearProgramming(search.sample, search.trials),
@@ -210,28 +203,6 @@ def _scattering(result: Optimization) -> Json:
         **_at_boundary(scatter["modification_m"]),
     }
     return {**spread, **rule}
-
-
-def _limits_kept(result: Optimization) -> Json:
-    limits = dict(result.asked["limits"])
-    pressure = limits.pop("max_pressure_pa")
-    return {"max_pressure_mpa": None if pressure is None else pressure / MPA, **limits}
-
-
-def _nodes(result: Optimization) -> Json:
-    names = result.nodes.names
-    return {
-        "names": [boundary_name(name) for name in names],
-        "deviation": [
-            [_typed(name, float(x)) for name, x in zip(names, row, strict=True)]
-            for row in result.nodes.deviation
-        ],
-        "weight": result.nodes.weight,
-    }
-
-
-def _design(design: ConfirmedDesign) -> tuple[ConfirmedDesign, Json]:
-    return design, {"values": _at_boundary(design.values)}
 
 
 def _range(name: str, low: float, high: float) -> list[float]:
@@ -255,10 +226,8 @@ def _typed(name: str, value: float) -> float:
 def _worse_load_warning(before: HarrisMap, after: HarrisMap, index: int) -> Json:
     first, second = (float(design.expected[index]) / UM for design in (before, after))
     error = float(before.expected_error[index] + after.expected_error[index]) / UM
-    torque, reason = (
-        float(before.torque[index]),
-        "the search makes another load better at the cost of this one",
-    )
+    torque = float(before.torque[index])
+    reason = "the search makes another load better at the cost of this one"
     words = f"from {first:.3g} to {second:.3g} um, errors {engineering(error, 2)} um: {reason}"
     return {
         "check": "worse_load",
@@ -274,4 +243,4 @@ def _worse_load_warning(before: HarrisMap, after: HarrisMap, index: int) -> Json
     }
 
 
-RUN = OptimizeStudy()
+RUN = _OptimizeStudy()

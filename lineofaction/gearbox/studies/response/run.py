@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from bounds.types import Json
-from dynamics.linearize import ForcedResponse, PowerBalance, peaks
+from dynamics.linearize import ForcedResponse, peaks
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.figures import Row, rows
@@ -15,9 +15,7 @@ from lineofaction.gearbox.studies.housings import response_of, with_reduction_co
 from lineofaction.gearbox.studies.response import Inputs, ResponseFigures
 
 
-class ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
-    """Amplitudes of meshes and bearings, peaks, and the speeds at which flanks would part."""
-
+class _ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
     inputs, answer, file = Inputs, ResponseFigures, array_file(ForcedResponse)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ForcedResponse:
@@ -25,7 +23,8 @@ class ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
         return with_reduction_costs(response_of(subject.scene, inputs, means), subject)
 
     def _derived(self, response: ForcedResponse) -> Json:
-        force = response.bearing_force
+        force, power = response.bearing_force, response.power
+        sinks = zip(power.sink, power.kind, power.loss, strict=True)
         return {
             "meshes": {name: _mesh(row) for name, row in rows(response, response.mesh).items()},
             "bearings": {
@@ -34,7 +33,11 @@ class ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
             },
             "peaks": peaks(response),
             "parting": response.speed[~response.in_contact],
-            "power": _power_balance(response.power),
+            "power": {
+                "input": {name: own.T for name, own in zip(power.source, power.input, strict=True)},
+                "losses": [{"part": name, "kind": kind, "loss": own.T} for name, kind, own in sinks],
+                "residual": power.residual,
+            },
         }
 
 
@@ -47,13 +50,4 @@ def _mesh(row: Row) -> tuple[Any, ...]:
     }
 
 
-def _power_balance(power: PowerBalance) -> Json:
-    sinks = zip(power.sink, power.kind, power.loss, strict=True)
-    return {
-        "input": {name: own.T for name, own in zip(power.source, power.input, strict=True)},
-        "losses": [{"part": name, "kind": kind, "loss": own.T} for name, kind, own in sinks],
-        "residual": power.residual,
-    }
-
-
-RUN = ResponseStudy()
+RUN = _ResponseStudy()

@@ -64,9 +64,7 @@ class Roots:
     warnings: list[Json]
 
 
-class RootStressStudy(CaseStudy[Inputs, RootStressFigures, Roots]):
-    """The roots of both gears at one load and one alignment."""
-
+class _RootStressStudy(CaseStudy[Inputs, RootStressFigures, Roots]):
     inputs, answer, file = Inputs, RootStressFigures, record_file(("tooth-root stress", Roots))
 
     def narrowed(self, case: CheckedCase, inputs: Inputs) -> CheckedCase:
@@ -82,15 +80,7 @@ class RootStressStudy(CaseStudy[Inputs, RootStressFigures, Roots]):
         return {}
 
     def compute(self, case: CheckedCase, _inputs: Inputs, means: Means) -> Roots:
-        """Return the peaks over a mesh cycle, the passage of a tooth of each gear, receipt and warnings.
-
-        Raises
-        ------
-        BadInput
-            No such pair, or a request that no plan can meet.
-        JobFailed
-            No mesh, or positions without a solution.
-        """
+        """Return the peaks over a mesh cycle, the passage of a tooth of each gear, receipt and warnings."""
         run, pair = Run(cache=means.home / "compliance", progress=means.report), case.pair
         checked = case.at_point
         with boundary_errors():
@@ -122,4 +112,4 @@ def _roots(history: RootStressHistory, nominal: float | None) -> GearRoots:
     return GearRoots(tension, compression, history.critical_coordinate, history.passage(), nominal)
 
 
-RUN = RootStressStudy()
+RUN = _RootStressStudy()

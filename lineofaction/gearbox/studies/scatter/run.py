@@ -23,9 +23,7 @@ MOST_SAMPLES = 100_000
 _PLANE = ("plane_strain", "plane_stress")
 
 
-class ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
-    """Peak-to-peak STE of the sampled pairs by torque, and by what they deviate."""
-
+class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
     inputs, answer, file = Inputs, ScatterFigures, record_file(("tolerance study", ToleranceStudy))
 
     def check(self, case: CheckedCase, inputs: Inputs) -> None:
@@ -41,15 +39,7 @@ class ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         return super().normalized(case, inputs)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> ToleranceStudy:
-        """Sample the pairs of a case; in a plane model helix slopes do not deviate.
-
-        Raises
-        ------
-        BadInput
-            No such pair or tolerance.
-        JobFailed
-            The case cannot be computed.
-        """
+        """Sample the pairs of a case; in a plane model helix slopes do not deviate."""
         with boundary_errors():
             run = Run(means.workers, means.home / "compliance", means.report)
             return sampled(case.request(_drawn, inputs), run)
@@ -81,4 +71,4 @@ def _drawn(checked: CheckedCase, inputs: Inputs) -> ToleranceRequest:
     return ToleranceRequest(pair, list(torques), tolerances, sampling, checked.options, misalignment)
 
 
-RUN = ScatterStudy()
+RUN = _ScatterStudy()

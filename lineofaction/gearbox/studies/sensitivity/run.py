@@ -136,9 +136,7 @@ TABLES = 4
 """Of a pair: over each deviation, without and with corner contact."""
 
 
-class SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
-    """The pairs of a study, at their highest load."""
-
+class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
     inputs, answer = Inputs, SensitivityFigures
     file = ResultFile("format", (FORMAT,), write_studies, read_studies, tuple[PairStudy, ...])
     resumed = True
@@ -152,28 +150,14 @@ class SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         return CheckedCase(checked.case.model_copy(update={"accuracy": across}))
 
     def check(self, case: CheckedCase, inputs: Inputs) -> None:
-        """Refuse what a study cannot compute, without computing anything.
-
-        Raises
-        ------
-        BadInput
-            No such pair, or a deviation at which it cannot run.
-        """
+        """Refuse what a study cannot compute, without computing anything."""
         pair, options = case.pair, study_options(case.options)
         model = "3d" if options.model == "auto" else options.model
         with boundary_errors():
             check_request(pair, _axes(case.case, pair, inputs), replace(options, model=model))
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> Studies:
-        """Study a case at its highest load; its own misalignments and center distances are left aside.
-
-        Raises
-        ------
-        BadInput
-            No such pair, or a deviation at which it cannot run.
-        JobFailed
-            No mesh, or points without a solution.
-        """
+        """Study a case at its highest load; its own misalignments and center distances are left aside."""
         pair, gears = case.pair, case.case.pair
         tables = _TableByTable(means.report)
         run = Run(means.workers, means.home / "compliance", tables.progress, tables.plan)
@@ -237,4 +221,4 @@ def _curves(study: PairStudy) -> list[tuple[Any, ...]]:
     ]
 
 
-RUN = SensitivityStudy()
+RUN = _SensitivityStudy()

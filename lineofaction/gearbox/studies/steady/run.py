@@ -21,9 +21,7 @@ from lineofaction.gearbox.units import RPM
 KINDS = ("stable", "fold", "period doubling", "Neimark-Sacker")
 
 
-class SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
-    """Motions of both sweeps and of the branch, jumps and bifurcations."""
-
+class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
     inputs, answer, file = Inputs, SteadyFigures, array_file(SteadyStates)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> SteadyStates:
@@ -91,4 +89,4 @@ def _motion(states: SteadyStates, index: int) -> tuple[Any, ...]:
     return point, own
 
 
-RUN = SteadyStudy()
+RUN = _SteadyStudy()

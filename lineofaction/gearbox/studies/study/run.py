@@ -45,9 +45,7 @@ from lineofaction.gearbox.studies.study.scenes import (
 from lineofaction.gearbox.units import UM
 
 
-class ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
-    """Factors, statistics of all responses, worst and failed points."""
-
+class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
     inputs, answer, file = Inputs, StudyFigures, array_file(Study)
     resumed = True
 
@@ -56,13 +54,7 @@ class ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
         factor_places(scene, inputs)
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> Study:
-        """Run a study of a scene.
-
-        Raises
-        ------
-        BadInput
-            A factor, a response or a design that there is not.
-        """
+        """Run a study of a scene."""
         places = factor_places(tabled.inputs, inputs)
         with boundary_errors():
             design = design_of(tabled.inputs, inputs, places)
@@ -280,4 +272,4 @@ def _ends(factor: FactorInput) -> tuple[float, ...]:
     return (factor.normal.mean,) if factor.normal is not None else ()
 
 
-RUN = ScenesStudy()
+RUN = _ScenesStudy()

@@ -262,9 +262,7 @@ class SweepResult:
         return np.unique(self.sweep.point[:, axis]) / self.axes[axis].factor
 
 
-class SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
-    """Points of a map with the figures and their errors."""
-
+class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
     inputs, answer, file = Inputs, SweepFigures, record_file(("sweep", SweepResult))
     resumed = True
 
@@ -274,15 +272,7 @@ class SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
             _ = case.request(_request, inputs).checked
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> SweepResult:
-        """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero.
-
-        Raises
-        ------
-        BadInput
-            No such pair or axis, or values that the pair does not take.
-        JobFailed
-            The case cannot be computed.
-        """
+        """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero."""
         with boundary_errors():
             run = Run(means.workers, means.home / "compliance", means.report)
             result = sweep(case.request(_request, inputs), run)
@@ -337,4 +327,4 @@ def _least(result: SweepResult, quantity: SweptQuantity) -> Json:
     return _at(result, quantity.least) | {"points_within_error": int(quantity.like_least.sum())}
 
 
-RUN = SweepStudy()
+RUN = _SweepStudy()

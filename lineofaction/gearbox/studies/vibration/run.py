@@ -74,9 +74,7 @@ def _write_shape(result: HousingVibrationResult, _scene: SceneInput, file: Path)
     write_surface(file, shape.points, shape.triangles, fields)
 
 
-class VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResult]):
-    """Velocities by order and speed, and what makes the motion at one of them."""
-
+class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResult]):
     inputs, answer = Inputs, VibrationFigures
     file = record_file(("housing vibration", HousingVibrationResult))
     writers = MappingProxyType({".vtu": _write_shape})
@@ -88,13 +86,7 @@ class VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResult
             raise BadInput.of("housings", value, "one with mass, a surface or points", _ADVICE)
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> HousingVibrationResult:
-        """Return the vibration of a housing.
-
-        Raises
-        ------
-        BadInput
-            The scene has no such housing, or one without surface and points.
-        """
+        """Return the vibration of a housing."""
         name, housing = _chosen(tabled, inputs.housing)
         with boundary_errors():
             response = bearing_forces(tabled, inputs, means)
@@ -176,4 +168,4 @@ def _contributions(shares: Shares, points: tuple[str, ...]) -> list[Json]:
     ]
 
 
-RUN = VibrationStudy()
+RUN = _VibrationStudy()
