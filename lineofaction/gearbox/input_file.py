@@ -191,7 +191,6 @@ def number_list(option: str, text: str) -> list[float]:
 
 
 def _range(option: str, text: str, first: float, last: float, step: float) -> list[float]:
-    """Return first, first + step ... up to last."""
     usable = all(math.isfinite(value) for value in (first, last, step)) and step > 0.0 and last >= first
     if not usable:
         raise BadInput.of(option, text, "a range FIRST:LAST:STEP that rises by a step above 0", _ADVICE)

@@ -64,7 +64,6 @@ class Fault:
 
 
 def _shown(value: object) -> str:
-    """Value as a short text."""
     if value is None:
         return "nothing"
     text = ""

@@ -153,7 +153,7 @@ Steps: TypeAlias = "Generator[Any, Any, T]"
 """What is wanted of others on the way to a result: a source of tables that needs nobody yields nothing."""
 
 
-class TableSource(Protocol):
+class _TableSource(Protocol):
     """Who holds and computes STE databases."""
 
     def by_hash(self, key: str) -> Steps[SteDatabase]:
@@ -170,10 +170,11 @@ class MeshTables:
     ----------
     folder : Path
         What the files that the scene names are relative to.
-    source : TableSource
+    source : object
+        ``by_hash`` and ``by_case`` return databases.
     """
 
-    def __init__(self, folder: Path, source: TableSource) -> None:
+    def __init__(self, folder: Path, source: _TableSource) -> None:
         self._folder, self._source = folder, source
         self._known: list[tuple[Case, SteDatabase]] = []
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, boundary_errors, case_json
 from lineofaction.gearbox.convert.housings import housings_in
-from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_database, scene_warnings, within
+from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_for, scene_warnings, within
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
@@ -54,7 +54,8 @@ def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = Non
     request = checked.checked
     with boundary_errors():
         database = table_of_checked(request, run, case=case_json(checked.case), on_draft=on_draft)
-    return phrased_database(database, checked.case)
+    warnings = phrased_for(checked.case, database.metadata.warnings)
+    return replace(database, metadata=replace(database.metadata, warnings=warnings))
 
 
 class ComputedTables:

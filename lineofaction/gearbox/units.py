@@ -55,8 +55,6 @@ _OF_SI = {
 ENDINGS = (*BY_SUFFIX, *_OF_SI.values(), "_n_per_m_n", "_m_per_s2", "_matrix")
 """What may follow the name of a field at the boundary."""
 
-_IN_WORDS = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
-
 
 def suffix_of(declaration: Declared) -> str:
     """Return how the boundary's name of a declared field ends."""
@@ -83,21 +81,9 @@ def factor(name: str) -> float:
     return unit.factor if unit else 1.0
 
 
-def unit_in_words(value: float, si: str) -> Unit:
-    """Return the unit in a sentence of a value in the unit `si`: mm for lengths, um for small ones."""
-    if si == "m":
-        return BY_SUFFIX["_um" if 0.0 < abs(value) < 0.1 * MM else "_mm"]
-    return next((BY_SUFFIX[name] for name in _IN_WORDS if BY_SUFFIX[name].si == si), Unit(si, 1.0, si))
-
-
 def as_typed(value: float, unit: float = 1.0) -> float:
     """Return a value in SI in a unit, without the noise of conversions: 60 for 59.99999999999999."""
     return float(f"{value / unit:.12g}")
-
-
-def boundary_text(value: float) -> str:
-    """Return a number as users write it."""
-    return f"{value:.7g}"
 
 
 _RENAMED = {"worth": "influence_m", "worth_relative": "relative_influence", "worths": "influences"}

@@ -181,7 +181,7 @@ def _tabled(scene: SceneInput, folder: Path, progress: Progress) -> TabledScene:
 
 
 @dataclass(frozen=True)
-class StudyCall(Generic[Result]):
+class _StudyCall(Generic[Result]):
     """A study as a function; `name` is its row of `lineofaction.gearbox.registry`."""
 
     name: str
@@ -280,7 +280,6 @@ def _scene(subject: Any) -> tuple[SceneInput, Path]:
 
 
 def _has_shafts(subject: Any) -> bool:
-    """Return whether a subject is a scene."""
     if isinstance(subject, Path | str):
         return "shafts" in read_table(Path(subject))
     return "shafts" in subject if isinstance(subject, Mapping) else not isinstance(subject, Case)
@@ -299,7 +298,7 @@ def _warn(findings: Iterable[Mapping[str, Any]]) -> None:
 
 if TYPE_CHECKING:
 
-    def _function(study: Computation[Any, Any, Any, Any, Result]) -> StudyCall[Result]: ...
+    def _function(study: Computation[Any, Any, Any, Any, Result]) -> _StudyCall[Result]: ...
 
     flank = _function(FLANK)
     ablate = _function(ABLATE)
@@ -318,4 +317,4 @@ if TYPE_CHECKING:
     deflect = _function(DEFLECT)
     study = _function(STUDY)
 else:
-    globals().update({study.package: StudyCall(name) for name, study in STUDIES.items()})
+    globals().update({study.package: _StudyCall(name) for name, study in STUDIES.items()})

@@ -22,7 +22,7 @@ from lineofaction.cli.options import (
 )
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.registry import STUDIES, Study
-from lineofaction.gearbox.schemas.model import is_list, spelling_of
+from lineofaction.gearbox.schemas.model import item_type, spelling_of
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
@@ -104,9 +104,9 @@ def _option(name: str, field: FieldInfo) -> Parameter:
         return _parameter(name, Annotated[bool, option], field.default == spelling.value)
     if spelling and spelling.file:
         return _parameter(name, Annotated[Path | None, option], field.default)
-    kind = str | None if is_list(field) else field.annotation
+    kind = str | None if item_type(field) else field.annotation
     if field.is_required():
-        return _parameter(name, Annotated[str if is_list(field) else kind, option])
+        return _parameter(name, Annotated[str if item_type(field) else kind, option])
     return _parameter(name, Annotated[kind, option], _typed(field.default))
 
 

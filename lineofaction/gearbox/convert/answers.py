@@ -45,11 +45,6 @@ def curve_json(
             if center_distance_change_mm is None
             else center_distance_change_mm * MM,
         )
-    return _curve(curve)
-
-
-def _curve(curve: Curve) -> Json:
-    """Return a curve as plain JSON; a value that is no number is refused rather than written as null."""
     answer = {
         "torque_n_m": as_typed(curve.torque),
         "normal_force_n": curve.point.force,
@@ -61,8 +56,10 @@ def _curve(curve: Curve) -> Json:
         "pair": curve.pair.tolist(),
         "load_share": curve.load_share.tolist(),
         **_figures(curve),
-        **_orders(curve),
     }
+    if curve.period > 1:  # over one base pitch the orders are the harmonics
+        answer["order"] = curve.spectrum.order.tolist()
+        answer["amplitude_um"] = (curve.spectrum.amplitude / UM).tolist()
     if not all(np.all(np.isfinite(answer[name])) for name in ("ste_um", "load_share")):
         raise JobFailed(
             "The curve has points without a solution. Compute the table again with other settings."
@@ -73,31 +70,15 @@ def _curve(curve: Curve) -> Json:
 def _figures(curve: Curve) -> Json:
     """Mean, peak-to-peak and harmonics with their errors; without those if they were not estimated."""
     figures = {
-        "mean_um": _um(curve.mean)[0],
-        "mean_error_um": _um(curve.mean)[1],
-        "peak_to_peak_um": _um(curve.peak_to_peak)[0],
-        "peak_to_peak_error_um": _um(curve.peak_to_peak)[1],
-        "harmonics_um": [_um(item)[0] for item in curve.harmonics],
-        "harmonics_error_um": [_um(item)[1] for item in curve.harmonics],
+        "mean_um": curve.mean.value / UM,
+        "mean_error_um": curve.mean.error / UM,
+        "peak_to_peak_um": curve.peak_to_peak.value / UM,
+        "peak_to_peak_error_um": curve.peak_to_peak.error / UM,
+        "harmonics_um": [item.value / UM for item in curve.harmonics],
+        "harmonics_error_um": [item.error / UM for item in curve.harmonics],
     }
-    known = bool(
-        np.isfinite([item.error for item in (curve.mean, curve.peak_to_peak, *curve.harmonics)]).all()
-    )
+    known = np.isfinite([item.error for item in (curve.mean, curve.peak_to_peak, *curve.harmonics)]).all()
     return {name: value for name, value in figures.items() if known or "error" not in name}
-
-
-def _orders(curve: Curve) -> Json:
-    """All orders over a period of several base pitches; nothing over one, whose orders are the harmonics."""
-    if curve.period == 1:
-        return {}
-    return {
-        "order": curve.spectrum.order.tolist(),
-        "amplitude_um": (curve.spectrum.amplitude / UM).tolist(),
-    }
-
-
-def _um(estimate: Estimate) -> tuple[float, float]:
-    return estimate.value / UM, estimate.error / UM
 
 
 def summary_json(database: SteDatabase) -> Json:

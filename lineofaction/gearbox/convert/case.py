@@ -31,7 +31,7 @@ from fe_contact.plausibility import pair_findings
 from lineofaction.gearbox.convert.declared import in_si, part_of
 from lineofaction.gearbox.convert.errors import translated
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas.case import AccuracyInput, Case, ErrorsInput, LoadInput
+from lineofaction.gearbox.schemas.case import Case, ErrorsInput, LoadInput
 from lineofaction.gearbox.schemas.gear import FlankPoint, ToothingInput
 from lineofaction.gearbox.units import MM, NM, UM
 
@@ -108,7 +108,9 @@ def analysis_options(case: Case) -> AnalysisOptions:
     """Return accuracy, model and effects of a case, in SI."""
     accuracy = case.accuracy
     with boundary_errors():
-        own = {"tolerance": _allowed(accuracy), "effects": dict(case.effects)}
+        relative, floor = accuracy.tolerance, accuracy.tolerance_floor_nm * NM
+        allowed = None if relative is None else AllowedError(relative, floor)
+        own = {"tolerance": allowed, "effects": dict(case.effects)}
         return AnalysisOptions(**in_si(AnalysisOptions, accuracy) | own)
 
 
@@ -151,13 +153,6 @@ def operating_point(case: Case) -> OperatingPoint:
         errors.misalignment_um[0] * UM,
         errors.center_distance_change_mm[0] * MM,
     )
-
-
-def _allowed(accuracy: AccuracyInput) -> AllowedError | None:
-    """Return the tolerance requested."""
-    if accuracy.tolerance is None:
-        return None
-    return AllowedError(accuracy.tolerance, accuracy.tolerance_floor_nm * NM)
 
 
 def case_json(case: Case) -> Json:

@@ -7,7 +7,6 @@ from typing import Any
 
 from bounds import engineering
 from fe_contact.effects.influence.estimate import TRIFLE
-from lineofaction.gearbox.units import boundary_text
 
 # The influence of effects as a ledger tells it: which have a line, at which load, in which words.
 
@@ -38,8 +37,8 @@ def influence_place(ledger: Iterable[Entry]) -> str:
     """Say at which load and misalignment the influences of a ledger are; empty if it has none."""
     for entry in ledger:
         if influence := entry.get("influence"):
-            skew = boundary_text(influence["misalignment_um"])
-            return f"at {boundary_text(influence['torque_n_m'])} N m, misalignment {skew} um"
+            skew, torque = influence["misalignment_um"], influence["torque_n_m"]
+            return f"at {torque:.7g} N m, misalignment {skew:.7g} um"
     return ""
 
 
@@ -54,17 +53,15 @@ def ledger_lines(ledger: Iterable[Mapping[str, Any]]) -> Iterator[str]:
         if entry["decision"].startswith(("neglected", "on after")):
             yield f"       {entry['decision']}"
         if entry["on"] or entry["called_for"]:
-            yield f"       without it {influence_words(entry)}; cost {_cost_words(entry)}"
+            seconds = entry["cost_cpu_seconds"]
+            cost = (
+                f"{engineering(seconds, 2)} CPU s ({entry['cost']})" if seconds is not None else entry["cost"]
+            )
+            yield f"       without it {influence_words(entry)}; cost {cost}"
         if entry["price"] and entry["on"]:
             yield f"       price of the choice: {entry['price']}"
     if trifles:
         yield f"{trifles_title(trifles)}: {', '.join(entry['name'] for entry in trifles)}"
-
-
-def _cost_words(entry: Mapping[str, Any]) -> str:
-    """Say what an effect costs."""
-    seconds = entry["cost_cpu_seconds"]
-    return str(entry["cost"]) if seconds is None else f"{engineering(seconds, 2)} CPU s ({entry['cost']})"
 
 
 def assumption_lines(receipt: Mapping[str, Any]) -> Iterator[str]:
@@ -117,9 +114,11 @@ def effect_lines(ledger: Json) -> Iterator[str]:
     of a run also estimates what leaving the effect out in all its parts changes. Effects that are off
     and change next to nothing share the last line.
     """
-    estimates = ledger.get("influences", {})
+    estimates, effects = ledger.get("influences", {}), dict[str, list[Json]]()
+    for entry in ledger.get("entries", ()):
+        effects.setdefault(entry["effect"], []).append(entry)
     trifles = []
-    for name, entries in _by_effect(ledger).items():
+    for name, entries in effects.items():
         if _is_trifle(entries, estimates.get(name)):
             if any(entry.get("possible", True) for entry in entries):
                 trifles.append(name)
@@ -134,14 +133,6 @@ def effect_lines(ledger: Json) -> Iterator[str]:
                 yield f"       price of the choice: {price}"
     if trifles:
         yield f"{trifles_title(trifles)}: {', '.join(trifles)}"
-
-
-def _by_effect(ledger: Json) -> dict[str, list[Json]]:
-    """Return the entries of every effect, one for each part."""
-    effects: dict[str, list[Json]] = {}
-    for entry in ledger.get("entries", ()):
-        effects.setdefault(entry["effect"], []).append(entry)
-    return effects
 
 
 def _is_trifle(entries: list[Json], estimate: Json | None) -> bool:

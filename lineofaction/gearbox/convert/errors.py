@@ -40,7 +40,7 @@ from lineofaction.gearbox.schemas.declared import figures, parts_of
 from lineofaction.gearbox.schemas.faults import field_advice
 from lineofaction.gearbox.schemas.gear import SHARED
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.units import as_typed, factor, unit_in_words, unit_of
+from lineofaction.gearbox.units import BY_SUFFIX, MM, as_typed, factor, unit_of
 
 # Fields of a case, by the library's name (see fe_contact.geometry and fe_contact.planning).
 _CASE = {figure.name: f"pair.{figure.field}" for figure in (*SHARED, *figures(GearPair))} | {
@@ -167,6 +167,9 @@ def _split_index(part: str) -> tuple[str, str]:
 # Errors of the libraries as the boundary shows them: its field names, its units.
 
 
+_IN_WORDS = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
+
+
 @dataclass(frozen=True)
 class _CaseReader(Reader):
     """Whoever wrote a case file."""
@@ -185,9 +188,15 @@ class _CaseReader(Reader):
         return own if unit else Unit("", own.factor)
 
     def unit(self, value: float, unit: str) -> Unit:
-        """Return the field's unit for what is measured like it, but for lengths."""
+        """Return the field's unit for what is measured like it; of lengths mm, um for small ones."""
         own = unit_of(self.name)
-        return own if own and own.si == unit != "m" else unit_in_words(value, unit)
+        if own and own.si == unit != "m":
+            return own
+        if unit == "m":
+            return BY_SUFFIX["_um" if 0.0 < abs(value) < 0.1 * MM else "_mm"]
+        return next(
+            (BY_SUFFIX[name] for name in _IN_WORDS if BY_SUFFIX[name].si == unit), Unit(unit, 1.0, unit)
+        )
 
     def shown(self, value: Any) -> Any:
         """Return a value in the unit of its field, rounded to what was typed; lists and tables one by one."""

@@ -56,8 +56,6 @@ def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
     return field, suffix, data
 
 
-# Housings of a scene file in the terms of dynamics: by their matrices, or reduced from their solids.
-
 FOLDER = "housings"
 """Of the cache: meshes and reductions."""
 
@@ -87,21 +85,17 @@ def reduced_in(scene: SceneInput, home: Path, progress: Progress = silent) -> di
     return reduced_housings(scene, home / FOLDER, progress)
 
 
-def _modes_in_files(scene: SceneInput, folder: Path) -> dict[str, ReducedHousing]:
-    """Return the housings in files of modes, by name; `folder` is what the names of files are relative to."""
-    files = {part.name: part.modes_file for part in scene.housings if part.modes_file is not None}
-    if not files:
-        return {}
-    from dynamics.housings import ReducedHousing  # noqa: PLC0415 (start-up time)
-
-    return {name: ReducedHousing.from_netcdf(folder / file) for name, file in files.items()}
-
-
 def housings_in(
     scene: SceneInput, home: Path, folder: Path, progress: Progress = silent
 ) -> dict[str, ReducedHousing]:
-    """Return the housings of a scene file by name: solids reduced, modes from their files."""
-    return reduced_in(scene, home, progress) | _modes_in_files(scene, folder)
+    """Return the housings of a scene file by name: solids reduced, modes from their files in `folder`."""
+    reduced = reduced_in(scene, home, progress)
+    files = {part.name: part.modes_file for part in scene.housings if part.modes_file is not None}
+    if not files:
+        return reduced
+    from dynamics.housings import ReducedHousing  # noqa: PLC0415 (start-up time)
+
+    return reduced | {name: ReducedHousing.from_netcdf(folder / file) for name, file in files.items()}
 
 
 def housing_of(index: int, housing: HousingInput, reduced: ReducedHousing | None) -> Housing:

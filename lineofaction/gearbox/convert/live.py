@@ -148,7 +148,10 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Cas
 def live_curves(case: Case, bodies: CondensedPair, change: LiveInput) -> Json:
     """Return the curves of the changed flanks; raises `BadInput` by the fields of the question."""
     try:
-        pair = gear_pair(_changed_case(case, change))
+        facts = case.model_dump(mode="json")
+        for name in ("pinion", "wheel"):
+            facts["pair"][name] |= getattr(change, name).model_dump(mode="json", exclude_none=True)
+        pair = gear_pair(validated(Case, facts))
         with boundary_errors():
             return _answer(bodies, pair, change)
     except BadInput as error:
@@ -180,17 +183,18 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Jso
 
 
 def _curve(table: SteDatabase, k: int) -> Json:
-    """Return the curve at a load with its errors by source."""
     return curve_json(table, force_n=float(table.force[k])) | {
         "error_by_source_um": {
-            source: {name.removesuffix("_m"): _known(values[k] / UM) for name, values in errors.items()}
+            source: {
+                name.removesuffix("_m"): error if np.isfinite(error := values[k] / UM) else None
+                for name, values in errors.items()
+            }
             for source, errors in table.metadata.receipt["curve_error"].items()
         }
     }
 
 
 def _receipt(table: SteDatabase) -> Json:
-    """Return what is known of the making of the curves."""
     receipt, ledger = table.metadata.receipt, cast("list[Json]", table.metadata.effect_ledger)
     assumptions: list[Json] = receipt["assumptions"]
     stages = receipt["stages"]
@@ -206,19 +210,6 @@ def _receipt(table: SteDatabase) -> Json:
             f"{name.replace(' ', '_')}_cpu_seconds": stage["cpu_seconds"] for name, stage in stages.items()
         },
     }
-
-
-def _known(value: float) -> float | None:
-    """Return a number; None for what was not estimated."""
-    return value if np.isfinite(value) else None
-
-
-def _changed_case(case: Case, change: LiveInput) -> Case:
-    """Return the case with the flanks of a question, checked as a case is."""
-    facts = case.model_dump(mode="json")
-    for name in ("pinion", "wheel"):
-        facts["pair"][name] |= getattr(change, name).model_dump(mode="json", exclude_none=True)
-    return validated(Case, facts)
 
 
 def _by_question(fault: Fault) -> Fault:
@@ -265,7 +256,6 @@ def pair_outline(pair: ParallelAxes) -> Json:
 
 
 def _gear(gear: Toothing) -> Json:
-    """Return the outline and the circles of one gear."""
     profile = tooth_profile(gear)
     root = np.linspace(profile.s_space, profile.s_form, _ROOT_POINTS, endpoint=False)
     flank = np.linspace(profile.s_form, profile.s_tip, _FLANK_POINTS)
@@ -295,7 +285,6 @@ def _path(pair: ParallelAxes) -> Json:
 
 
 def _figures(pair: ParallelAxes) -> Json:
-    """Return what an engineer asks first of a pair."""
     return {
         "speed_ratio": pair.speed_ratio,
         "working_pressure_angle_deg": pair.working_pressure_angle / DEGREE,

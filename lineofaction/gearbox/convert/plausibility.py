@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
@@ -12,7 +11,6 @@ from bounds import Unit, finding_of
 from dynamics.plausibility import scene_findings
 from dynamics.scene import Scene
 from fe_contact.plausibility import pair_findings
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.errors import case_field, named, scene_field
 from lineofaction.gearbox.schemas import Case
@@ -58,9 +56,8 @@ def scene_warnings(
     """
     with named(""):
         findings = [finding.to_json() for finding in scene_findings(scene)]
-    warnings = left_out_warnings(inputs.left_out) + _in_own_terms(
-        [each for each in findings if _in_file(inputs, each["field"])], scene_field
-    )
+    of_file = [finding for finding in findings if _in_file(inputs, finding["field"])]
+    warnings = left_out_warnings(inputs.left_out) + _in_own_terms(of_file, scene_field)
     for index, mesh in enumerate(inputs.meshes):
         warnings += [within(warning, f"meshes[{index}]") for warning in tables.get(mesh.name, ())]
     return unique(warnings)
@@ -83,12 +80,6 @@ def phrased_for(case: Case, findings: Iterable[Json]) -> list[Json]:
     return _in_own_terms(findings, _field_in(case))
 
 
-def phrased_database(database: SteDatabase, case: Case) -> SteDatabase:
-    """Return a database whose warnings are in the fields and units of its case."""
-    warnings = phrased_for(case, database.metadata.warnings)
-    return replace(database, metadata=replace(database.metadata, warnings=warnings))
-
-
 def _in_own_terms(findings: Iterable[Json], name: Callable[[str], str]) -> list[Json]:
     """Return findings of a library, as plain JSON in SI, in the fields and units of the boundary."""
     return unique(_phrased(content, name) for content in findings)
@@ -100,7 +91,6 @@ def unique(warnings: Iterable[Json]) -> list[Json]:
 
 
 def _phrased(content: Json, name: Callable[[str], str]) -> Json:
-    """Return one finding."""
     finding, field = finding_of(content), name(content["field"])
     unit = Unit(unit_name(field) or finding.unit, factor(field))
     scaled = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -18,9 +19,10 @@ from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.loads import AngleLaw, AppliedForce, BySpeed, LoadTorque, Orders, SpeedCurve, TimeLaw, Unbalance
 from dynamics.loads.load_course import CONSTANT, Course
 from dynamics.mechanism import with_planets
+from dynamics.mechanism.base_pitches import PRINTED
 from dynamics.mechanism.kinematics import check_motion
 from dynamics.meshes import CoastFlank, GearMesh, MeshTable
-from dynamics.meshes.stiffness_table import straight_table
+from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
 from dynamics.scene import Integration, Outputs, Scene
 from dynamics.shafts import BeamSection, DiscBody, GearBody, Inertia, Shaft, hollow_cylinder
 from fe_contact.ste import PairFacts, SteDatabase
@@ -28,11 +30,11 @@ from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.declared import in_si, part_of
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.housings import ANY_STIFFNESS, housing_of, placeholder
-from lineofaction.gearbox.convert.meshes import Teeth, check_center_distances, closed_forms, teeth_of
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.bearings import BearingInput, BushingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.bodies import DiscInput, GearBodyInput, ShaftInput
 from lineofaction.gearbox.schemas.loads import DriveInput, ForceInput, LoadTorqueInput, SpeedTorqueInput
-from lineofaction.gearbox.schemas.meshes import CoastFlankInput, MeshInput
+from lineofaction.gearbox.schemas.meshes import CoastFlankInput, MeshInput, PeriodicInput, StiffnessMeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import DEGREE, MM, RPM, UM
 
@@ -40,6 +42,73 @@ if TYPE_CHECKING:
     from dynamics.housings import ReducedHousing
 
 T = TypeVar("T")
+
+# The gears that the meshes describe, and their axes.
+
+_SAME = 1e-6  # relative; lengths that are typed with a few digits agree to this
+
+
+@dataclass(frozen=True)
+class _Teeth:
+    """One gear as its mesh describes it; SI units, the helix angle with the hand's sign."""
+
+    teeth: int
+    base_radius: float
+    base_helix_angle: float
+    pitch_diameter: float
+    face_width: float
+    internal: bool = False
+
+
+def _teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, _Teeth]:
+    """Teeth of every gear, by name; a gear in two meshes must be the same in both."""
+    by_name: dict[str, _Teeth] = {}
+    for index, mesh in enumerate(scene.meshes):
+        if mesh.wheel_drives and not facts[mesh.name].internal:
+            bound = "left out: the wheel of this case is no ring gear"
+            advice = "Give a case whose pinion is the gear that drives."
+            raise BadInput.of(f"meshes[{index}].wheel_drives", True, bound, advice)
+        for side, role in enumerate(("driven", "driver") if mesh.wheel_drives else ("driver", "driven")):
+            name, teeth = getattr(mesh, role), _side(facts[mesh.name], side)
+            known = by_name.setdefault(name, teeth)
+            if known.teeth != teeth.teeth or not math.isclose(
+                known.base_radius, teeth.base_radius, rel_tol=PRINTED
+            ):
+                bound = f"the gear of {known.teeth} teeth that its other mesh has ({teeth.teeth} teeth here)"
+                raise BadInput.of(f"meshes[{index}].{role}", name, bound, "Check the cases of both meshes.")
+    for index, gear in enumerate(scene.gears):
+        if gear.name not in by_name:
+            raise BadInput.of(
+                f"gears[{index}].name", gear.name, "part of a mesh", "Add it to a mesh or remove it."
+            )
+    return by_name
+
+
+def _side(facts: PairFacts, side: int) -> _Teeth:
+    """Return one gear of a pair; the hands of external gears are opposite, those in a ring gear the same."""
+    radius = facts.base_radius[side]
+    hand = facts.helix_hand if side == 0 or facts.internal else -facts.helix_hand
+    diameter = 2.0 * radius / math.cos(facts.working_pressure_angle)
+    helix, ring = hand * facts.base_helix_angle, facts.internal and side == 1
+    return _Teeth(facts.teeth[side], radius, helix, diameter, facts.face_width, ring)
+
+
+def _check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:
+    """Refuse axes of meshing gears that are not as far apart as their database says."""
+    origin = {shaft.name: shaft.origin_mm for shaft in scene.shafts}
+    carrier = {gear.name: gear.shaft for gear in scene.gears}
+    number = {shaft.name: index for index, shaft in enumerate(scene.shafts)}
+    for mesh in scene.meshes:
+        first, second = origin[carrier[mesh.driver]], origin[carrier[mesh.driven]]
+        distance = math.hypot(second[0] - first[0], second[1] - first[1])
+        expected = facts[mesh.name].center_distance / MM
+        if not math.isclose(distance, expected, rel_tol=_SAME):
+            field = f"shafts[{number[carrier[mesh.driven]]}].origin_mm"
+            bound = (
+                f"{expected:.7g} mm across the axis from shaft {carrier[mesh.driver]}, not {distance:.7g} mm"
+            )
+            raise BadInput.of(field, list(second), bound, f"That is the center distance of mesh {mesh.name}.")
+
 
 # Parts of a scene file in SI, each by its table; what a table shares with its part is not said here again.
 
@@ -124,7 +193,7 @@ def _disc(table: DiscInput) -> DiscBody:
         return replace(placed, inertia=steel)
 
 
-def _gear(table: GearBodyInput, teeth: Teeth) -> GearBody:
+def _gear(table: GearBodyInput, teeth: _Teeth) -> GearBody:
     inertia = part_of(Inertia, table.inertia, "inertia")
     if inertia is None:
         inertia = hollow_cylinder(teeth.pitch_diameter, teeth.face_width, table.bore_diameter_mm * MM)
@@ -192,12 +261,68 @@ def _course(force: ForceInput) -> Course:
 
 
 def _has_bent_shafts(database: SteDatabase) -> bool:
-    """Return whether a table has the bending of its gears' shafts in it."""
     ledger = database.metadata.effect_ledger
     entries = ledger if isinstance(ledger, list) else ledger.get("entries", [])
     return any(
         isinstance(e, Mapping) and e.get("name") == "shaft_deflection" and e.get("on") for e in entries
     )
+
+
+# Meshes in closed form: the facts of their gears and their tables.
+
+
+def _closed_forms(scene: SceneInput) -> dict[str, tuple[PairFacts, MeshTable]]:
+    """Return facts and table of every mesh that states its stiffness, by name."""
+    return {
+        mesh.name: (_facts(f"meshes[{index}].stiffness", mesh.stiffness), _table(index, mesh.stiffness))
+        for index, mesh in enumerate(scene.meshes)
+        if mesh.stiffness is not None
+    }
+
+
+def _facts(field: str, mesh: StiffnessMeshInput) -> PairFacts:
+    """Return the facts of the pair: base radii in the ratio of the teeth, the center distance from them."""
+    pinion, wheel = mesh.teeth
+    if mesh.internal and wheel <= pinion:
+        raise BadInput.of(
+            f"{field}.teeth", list(mesh.teeth), "more teeth of the ring gear than of its pinion"
+        )
+    radius = mesh.base_radius_mm * MM
+    radii = (radius, radius * wheel / pinion)
+    angle, helix = mesh.working_pressure_angle_deg * DEGREE, mesh.base_helix_angle_deg * DEGREE
+    return PairFacts(
+        teeth=(pinion, wheel),
+        base_radius=radii,
+        base_pitch=2.0 * math.pi * radius / pinion,
+        base_helix_angle=abs(helix),
+        center_distance=(radii[1] + (-radius if mesh.internal else radius)) / math.cos(angle),
+        working_pressure_angle=angle,
+        face_width=mesh.face_width_mm * MM,
+        helix_hand=(helix > 0.0) - (helix < 0.0),
+        internal=mesh.internal,
+    )
+
+
+def _table(index: int, mesh: StiffnessMeshInput) -> MeshTable:
+    stiffness, error = mesh.stiffness_n_per_m, mesh.transmission_error_um
+    where = f"meshes[{index}].stiffness"
+    with named(f"{where}.stiffness_n_per_m"):
+        of_stiffness = _curve(stiffness, 1.0)
+    with named(f"{where}.transmission_error_um"):
+        of_error = None if error is None else _curve(error, UM)
+    with named(f"{where}.stiffness_n_per_m"):
+        return stiffness_table(of_stiffness, of_error)
+
+
+def _curve(law: PeriodicInput, unit: float) -> PeriodicCurve:
+    value = [number * unit for number in law.value]
+    if law.position is not None:
+        return PeriodicCurve.tabulated(law.position, value)
+    if law.amplitude is None:
+        return PeriodicCurve.constant(value[0])
+    phases = law.phase_deg or (0.0,) * len(law.amplitude)
+    sizes = [number * unit for number in law.amplitude]
+    return PeriodicCurve.harmonic(value[0], sizes, [phase * DEGREE for phase in phases])
 
 
 NO_SOLIDS: Mapping[str, ReducedHousing] = {}
@@ -288,7 +413,7 @@ def _moving(
 
     Facts and tables are those of the meshes with a database.
     """
-    closed = closed_forms(scene)
+    closed = _closed_forms(scene)
     facts = {**facts, **{name: pair for name, (pair, _) in closed.items()}}
     tables = {**tables, **{name: table for name, (_, table) in closed.items()}}
     meshes = tuple(
@@ -309,9 +434,8 @@ def _assembled(
     meshes: tuple[GearMesh, ...],
     housings: Sequence[Housing],
 ) -> Scene:
-    """Return the scene with its parts checked one by one and together."""
-    teeth = teeth_of(scene, facts)
-    check_center_distances(scene, facts)
+    teeth = _teeth_of(scene, facts)
+    _check_center_distances(scene, facts)
     gears = _all(scene, "gears", lambda gear: _gear(gear, teeth[gear.name]))
     with named("outputs"):
         outputs = Outputs(**in_si(Outputs, scene.outputs))
@@ -335,7 +459,11 @@ def _assembled(
             rolling_bearings=_all(scene, "rolling_bearings", rolling_bearing_of),
             **laws,
             loads=_all(scene, "loads", _load_torque),
-            forces=_all(scene, "forces", _force),
+            forces=_all(
+                scene,
+                "forces",
+                _force,
+            ),
             unbalances=_all(scene, "unbalances", _plain(Unbalance)),
             outputs=outputs,
             integration=integration,
@@ -343,7 +471,6 @@ def _assembled(
 
 
 def _with_all_planets(inputs: SceneInput, scene: Scene) -> Scene:
-    """Return the scene with every planet there as often as requested."""
     for index, planets in enumerate(inputs.planets):
         angles = None if planets.angles_deg is None else [angle * DEGREE for angle in planets.angles_deg]
         errors = None

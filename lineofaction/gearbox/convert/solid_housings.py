@@ -204,7 +204,6 @@ def _si(point: tuple[float, ...]) -> Vector:
 
 
 def _vector(values: tuple[float, ...]) -> Vector:
-    """Return three numbers."""
     x, y, z = values
     return x, y, z
 

@@ -216,7 +216,6 @@ class BearingInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _holds(self) -> Self:
-        """Something holds the shaft."""
         others = (self.stiffness_matrix, self.rolling_contact, self.spring_curves or None)
         if "radial_stiffness_n_per_m" not in self.model_fields_set and all(part is None for part in others):
             bound = "given, or stiffness_matrix, rolling_contact or spring_curves instead"

@@ -88,7 +88,6 @@ class PlanetsInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _one_each(self) -> Self:
-        """As many values as planets."""
         for field in ("angles_deg", "radial_errors_um", "tangential_errors_um"):
             values = getattr(self, field)
             if values is not None and len(values) != self.number:
@@ -149,7 +148,6 @@ class ShaftInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _one_inertia(self) -> Self:
-        """Exactly one source of inertia."""
         sources = [part for part in (self.diameter_mm, self.sections, self.inertia) if part is not None]
         if len(sources) != 1:
             bound = "given, or sections or inertia instead, one of the three"

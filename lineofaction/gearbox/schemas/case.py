@@ -79,7 +79,6 @@ class WheelInput(ToothingInput):
         return self
 
     def _check_ring(self) -> None:
-        """Refuse a ring gear without its rim, or with a bore."""
         if self.rim_diameter_mm is None:
             advice = "Outer diameter in mm of the ring gear's rim. For example 212.0."
             refuse("rim_diameter_mm", None, "given with internal = true", advice)
@@ -106,7 +105,6 @@ EffectName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 
 
 def _increasing(field: str, values: tuple[float, ...] | None) -> None:
-    """Refuse a list that is not strictly increasing."""
     if values is not None and any(b <= a for a, b in pairwise(values)):
         refuse(field, list(values), "strictly increasing", "Sort the list and drop repeats.")
 
@@ -145,7 +143,6 @@ class LoadInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _one_of_both(self) -> Self:
-        """Exactly one kind of load."""
         if (self.torque_n_m is None) == (self.normal_force_n is None):
             value = None if self.torque_n_m is None else list(self.torque_n_m)
             refuse(

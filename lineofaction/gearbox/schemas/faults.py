@@ -105,7 +105,6 @@ def model_in(annotation: object) -> type[BaseModel] | None:
 
 
 def _constraints(info: FieldInfo | None) -> dict[str, float]:
-    """Numeric bounds of a field: gt, ge, lt, le."""
     limits: dict[str, float] = {}
     for item in _metadata(info.metadata if info else (), info.annotation if info else None):
         for name, kind in _LIMITS.items():
@@ -131,7 +130,6 @@ def _metadata(own: Iterable[object], annotation: object) -> Iterable[object]:
 
 
 def _range(limits: Mapping[str, float]) -> str:
-    """Bounds in words, empty if there are none."""
     if "ge" in limits and "le" in limits:
         return f"from {limits['ge']:g} to {limits['le']:g}"
     words = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
@@ -139,7 +137,6 @@ def _range(limits: Mapping[str, float]) -> str:
 
 
 def _bound(item: Mapping[str, Any], info: FieldInfo | None) -> str:
-    """Say what would be accepted."""
     kind, context = item["type"], item.get("ctx", {})
     span = _range(_constraints(info))
     if kind in _KINDS:
@@ -150,7 +147,6 @@ def _bound(item: Mapping[str, Any], info: FieldInfo | None) -> str:
 
 
 def _other_bound(kind: str, context: Mapping[str, Any], message: str) -> str:
-    """Bound of the kinds that are neither types nor ranges."""
     texts: dict[str, Callable[[], str]] = {
         "missing": lambda: "given",
         "extra_forbidden": lambda: "left out: there is no such field here",
@@ -187,6 +183,5 @@ def _described(info: FieldInfo | None) -> str:
 
 
 def _nearest(name: str, known: Sequence[str]) -> str:
-    """Return the field that was probably meant."""
     close = difflib.get_close_matches(name[:_LONGEST_GUESS], known, n=1)
     return f"Did you mean {close[0]}?" if close else f"Known here: {', '.join(known)}."

@@ -98,11 +98,6 @@ def _with_housing_files(table: Table, find: Find, read: Collection[str]) -> Tabl
     find : callable
     read : collection of str
         The fields whose files are read: `READERS`, or `SENT` of files that came over HTTP.
-
-    Raises
-    ------
-    BadInput
-        A file that cannot be read or holds no housing.
     """
     housings = table.get("housings")
     if not isinstance(housings, list):
@@ -223,11 +218,6 @@ def _with_flank_grids(
         Returns the text of a file, given its name for errors, or raises `BadInput`.
     prefix : str
         Where `table` stands in the file, for errors.
-
-    Raises
-    ------
-    BadInput
-        A file that cannot be read or holds no complete grid.
     """
     resolved = {key: _inside(value, find, read_text, _joined(prefix, key)) for key, value in table.items()}
     if FIELD not in table:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Self
 
-from pydantic import ConfigDict, Field, Strict, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from fe_contact.body import Shaft
 from fe_contact.flank.modification import FlankModification
@@ -33,21 +33,11 @@ class GearShaftInput(BoundaryModel):
     """A round shaft on two bearings that carries a gear."""
 
 
-# Gear of the case file: toothing and flank modifications (ISO 21771 names, units in the names).
-
-GridAxis = Annotated[
-    tuple[Annotated[float, Field(ge=-10_000.0, le=10_000.0)], ...],
-    Strict(False),
-    Field(min_length=2, max_length=500),
-]
-GridRow = Annotated[
-    tuple[Annotated[float, Field(ge=-1000.0, le=1000.0)], ...],
-    Strict(False),
-    Field(min_length=2, max_length=500),
-]
-PitchDeviations = Annotated[
-    tuple[Annotated[float, Field(ge=-1000.0, le=1000.0)], ...], Strict(False), Field(max_length=4000)
-]
+_Deviation = Annotated[float, Field(ge=-1000.0, le=1000.0)]
+_NODES = Field(min_length=2, max_length=500)
+GridAxis = Annotated[Listed[Annotated[float, Field(ge=-10_000.0, le=10_000.0)]], _NODES]
+GridRow = Annotated[Listed[_Deviation], _NODES]
+PitchDeviations = Annotated[Listed[_Deviation], Field(max_length=4000)]
 
 
 class FlankGridInput(BoundaryModel):
@@ -118,7 +108,6 @@ class ToothingInput(_ToothingFigures):
 
     @model_validator(mode="after")
     def _a_deviation_per_tooth(self) -> Self:
-        """Refuse a list that leaves teeth out."""
         count = len(self.pitch_deviation_um)
         if count not in (0, self.teeth):
             bound = f"a list of {self.teeth} values, one per tooth"
@@ -166,7 +155,6 @@ class FlankPoint(BoundaryModel):
 
     @model_validator(mode="after")
     def _one_load(self) -> Self:
-        """At most one kind of load."""
         if self.torque_n_m is not None and self.normal_force_n is not None:
             advice = "Give a torque or a normal force."
             refuse("normal_force_n", self.normal_force_n, "left out when torque_n_m is given", advice)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, ConfigDict, Field, Strict, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from dynamics.joints.housing import Housing
 from dynamics.solid_housing import MATERIALS, Material, ReductionSettings, SeatWall
@@ -26,16 +26,12 @@ from lineofaction.gearbox.schemas.model import (
 # The solid of a housing of a scene: its material, bearing seats, feet and points.
 
 
-Direction = Annotated[
-    tuple[Annotated[float, Field(ge=-1.0, le=1.0)], ...], Strict(False), Field(min_length=3, max_length=3)
-]
-Rates = Annotated[
-    tuple[Annotated[float, Field(ge=0.0, le=1e15)], ...], Strict(False), Field(min_length=3, max_length=3)
-]
+_THREE = Field(min_length=3, max_length=3)
+Direction = Annotated[Listed[Annotated[float, Field(ge=-1.0, le=1.0)]], _THREE]
+Rates = Annotated[Listed[Annotated[float, Field(ge=0.0, le=1e15)]], _THREE]
 
 
 def _material_by_name(value: object) -> object:
-    """Return the figures of a material that is given by its name."""
     if isinstance(value, str) and value in MATERIALS:
         material = MATERIALS[value]
         return {figure.field: figure.own(getattr(material, figure.name)) for figure in figures(Material)}
@@ -299,7 +295,6 @@ class HousingInput(_MatrixHousing):
         return self
 
     def _check_solid(self) -> None:
-        """Refuse a solid that lacks something."""
         advice = {
             "material": 'For example "gray_cast_iron".',
             "seats": 'For example [{bearing = "input left", bore_diameter_mm = 62, bore_length_mm = 18}].',

@@ -187,7 +187,6 @@ class MeshInput(_TabledMesh):
 
     @model_validator(mode="after")
     def _one_source(self) -> Self:
-        """Exactly one source of the table."""
         names = [name for name in _SOURCES if getattr(self, name) is not None]
         if len(names) != 1:
             refuse("case", names or None, f"given once, as one of {', '.join(_SOURCES)}", "Keep one of them.")

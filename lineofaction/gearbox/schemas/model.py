@@ -81,7 +81,6 @@ def _looked_first(node: dict[str, Any]) -> bool:
 
 
 def _not_longer(data: Any, most: int) -> Any:
-    """Refuse a list or table for its length alone."""
     if isinstance(data, list | tuple | dict) and len(data) > most:
         facts = {"field_type": "List", "max_length": most, "actual_length": len(data)}
         raise PydanticKnownError("too_long", facts)
@@ -226,13 +225,8 @@ def spelling_of(field: FieldInfo) -> Spelling | None:
     return next((part for part in field.metadata if isinstance(part, Spelling)), None)
 
 
-def is_list(field: FieldInfo) -> bool:
-    """Tell whether a field holds a list, of which there may be none."""
-    return item_type(field) is not None
-
-
 def item_type(field: FieldInfo) -> object:
-    """Return the type of the items of a list, None of what is no list."""
+    """Return the type of the items of a field's list, of which there may be none; None of what is no list."""
     for kind in map(_bare, (field.annotation, *get_args(field.annotation))):
         if get_origin(kind) is tuple:
             return _bare(get_args(kind)[0])

@@ -53,7 +53,6 @@ def read_table(source: Path | InputFile) -> dict[str, Any]:
 
 
 def _json(text: str, field: str) -> Any:
-    """Return what a JSON text holds; raises `BadInput`."""
     try:
         return json.loads(text)
     except ValueError as error:  # of JSON, or of a number with too many digits

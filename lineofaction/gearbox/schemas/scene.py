@@ -187,6 +187,5 @@ def _refuse_repeated(kind: str, names: list[str]) -> None:
 
 
 def _refuse_unknown(field: str, name: str, known: list[str]) -> None:
-    """Refuse a part that names one that does not exist."""
     if name not in known:
         refuse(field, name, f"one of {', '.join(known)}", "Names are case-sensitive.")

@@ -40,7 +40,6 @@ class OverSpeeds(BoundaryModel):
 
     @model_validator(mode="after")
     def _increasing(self) -> Self:
-        """Refuse speeds that do not increase."""
         if any(later <= earlier for earlier, later in pairwise(self.speed_rpm)):
             shown = list(self.speed_rpm)[:8]
             refuse("speed_rpm", shown, "strictly increasing", "Sort the list and drop repeats.")
@@ -78,7 +77,6 @@ class OverSpeedsOrRun(OverOrders):
 
     @model_validator(mode="after")
     def _speeds_or_run(self) -> Self:
-        """Refuse both and neither."""
         if self.run is not None and self.speed_rpm:
             shown = list(self.speed_rpm)[:8]
             refuse("speed_rpm", shown, "left out with a run", "The run has its own speeds.")
@@ -156,7 +154,6 @@ class CaseOrScene(BoundaryModel):
 
     @model_validator(mode="after")
     def _one_of_both(self) -> Self:
-        """Refuse none of both, and both."""
         if (self.case is None) == (self.scene is None):
             value = None if self.case is None else "beside a scene"
             refuse("case", value, "given without a scene, left out beside one", "Give one of them.")

@@ -15,9 +15,10 @@ from bounds.types import Json
 from dynamics.results import RunResult
 from dynamics.results.array_file import ArrayFile
 from fe_contact.workers import InProcess, Workers
-from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.figures import Figures
+from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.figures import figures_of
@@ -188,6 +189,22 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
 
 class CaseStudy(Computation[CheckedCase, CheckedCase, Inputs, Answer, Result]):
     """The work of a study of a case."""
+
+
+class PointStudy(CaseStudy[FlankPoint, Answer, Result]):
+    """The work of a study of a case at one load and one alignment, which are the case's own then."""
+
+    def narrowed(self, case: CheckedCase, inputs: FlankPoint) -> CheckedCase:
+        """Return the case at one load and one alignment."""
+        return CheckedCase(case_at(case.case, inputs))
+
+    def check(self, case: CheckedCase, _inputs: FlankPoint) -> None:
+        """Refuse a case that cannot be."""
+        _ = case.at_point
+
+    def normalized(self, _case: CheckedCase, _inputs: FlankPoint) -> Json:
+        """Return nothing: the case has all of it."""
+        return {}
 
 
 class SceneStudy(Computation[SceneInput, TabledScene, Inputs, Answer, Result]):

@@ -184,5 +184,4 @@ def _present(kind: Any) -> tuple[Any, bool]:
 
 @cache
 def _holds_none(kind: Any) -> bool:
-    """Whether None may stand in rows of a type."""
     return kind is NoneType or any(_holds_none(part) for part in get_args(kind))

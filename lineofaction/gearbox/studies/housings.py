@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from bounds.types import FloatArray, Json
+from bounds.types import Json
 from dynamics.assembly.assemble import assemble
 from dynamics.joints import Housing
 from dynamics.linearize import ForcedResponse, forced_response
@@ -111,12 +111,11 @@ def _same(housing: Housing, part: Json | None) -> bool:
         return False
     seats = slice(len(housing.stiffness) - housing.modal_coordinates)
     for name in ("stiffness", "mass", "damping"):
-        mine, other = (_matrix(of[name])[seats, seats] for of in (vars(housing), part))
+        both = (
+            np.zeros((0, 0)) if of[name] is None else np.array(of[name], float)
+            for of in (vars(housing), part)
+        )
+        mine, other = (matrix[seats, seats] for matrix in both)
         if mine.shape != other.shape or np.any(np.abs(mine - other) > SAME * np.abs(mine).max(initial=0.0)):
             return False
     return True
-
-
-def _matrix(values: Any) -> FloatArray:
-    """Return a matrix as an array, (0, 0) without one."""
-    return np.zeros((0, 0)) if values is None else np.array(values, dtype=float)

@@ -34,7 +34,6 @@ class _AblateStudy(
         _requested(inputs.only, of_scene=not isinstance(subject, CheckedCase))
 
     def normalized(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> Json:
-        """Return the effects in the order of their registry."""
         return {"only": _requested(inputs.only, of_scene=not isinstance(subject, CheckedCase))}
 
     def compute(
@@ -49,13 +48,7 @@ class _AblateStudy(
 
 
 def _requested(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:
-    """Return the effects to toggle, once each, in the order of their registry.
-
-    Raises
-    ------
-    BadInput
-        A name that no effect of a case, or of a scene, has.
-    """
+    """Return the effects to toggle, once each, in the order of their registry."""
     known = [effect.name for effect in EFFECTS]
     if of_scene:
         known = [effect.name for effect in SCENE_EFFECTS]

@@ -77,7 +77,6 @@ class MeshContact:
         )
 
     def _at(self, misalignment: float) -> SteDatabase:
-        """Return the table of one misalignment; it is kept."""
         if misalignment not in self._tables:
             self._tables[misalignment] = self.bodies.table(self.pair, self.torques, misalignment)
         return self._tables[misalignment]

@@ -62,7 +62,6 @@ def _without_rounding(load: BearingLoad, least: float, moved: float) -> BearingL
 
 
 def _at_least(values: FloatArray, least: float) -> FloatArray:
-    """Return values, zero where they are smaller than `least`."""
     return np.asarray(np.where(np.abs(values) < least, 0.0, values))
 
 

@@ -51,7 +51,6 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
                 )
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
-        """Deflect a scene under its load cases."""
         began, scene = cpu_seconds() - tabled.seconds, tabled.scene
         with boundary_errors():
             cases = load_cases(inputs)

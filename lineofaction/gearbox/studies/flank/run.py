@@ -9,9 +9,10 @@ from bounds.types import Json
 from fe_contact.analysis.flanks.flank_file import FORMAT, flanks_of_checked
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.options import Run
-from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, case_at, case_json
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, case_json
 from lineofaction.gearbox.convert.plausibility import phrased_for
-from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile
+from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.studies.computation import Means, PointStudy, ResultFile
 from lineofaction.gearbox.studies.flank import FlankFigures, Inputs
 from lineofaction.gearbox.units import MM, UM, as_typed
 from model_studies import Progress, silent
@@ -36,26 +37,13 @@ def flanks_of(checked: CheckedCase, cache: Path | None, progress: Progress = sil
     return replace(results, metadata=replace(results.metadata, warnings=warnings))
 
 
-class _FlankStudy(CaseStudy[Inputs, FlankFigures, LoadDistribution]):
+class _FlankStudy(PointStudy[FlankFigures, LoadDistribution]):
     inputs, answer = Inputs, FlankFigures
     file = ResultFile(
         "format", (FORMAT,), LoadDistribution.to_netcdf, LoadDistribution.from_netcdf, LoadDistribution
     )
 
-    def narrowed(self, case: CheckedCase, inputs: Inputs) -> CheckedCase:
-        """Return the case at one load and one alignment."""
-        return CheckedCase(case_at(case.case, inputs))
-
-    def check(self, case: CheckedCase, _inputs: Inputs) -> None:
-        """Refuse a case that cannot be."""
-        _ = case.at_point
-
-    def normalized(self, _case: CheckedCase, _inputs: Inputs) -> Json:
-        """Return nothing: the case has all of it."""
-        return {}
-
-    def compute(self, case: CheckedCase, _inputs: Inputs, means: Means) -> LoadDistribution:
-        """Return what happens on the flanks."""
+    def compute(self, case: CheckedCase, _inputs: FlankPoint, means: Means) -> LoadDistribution:
         return flanks_of(case, means.home / "compliance", means.report)
 
     def _derived(self, flanks: LoadDistribution) -> Json:
@@ -72,7 +60,6 @@ class _FlankStudy(CaseStudy[Inputs, FlankFigures, LoadDistribution]):
         }
 
     def warnings(self, flanks: LoadDistribution) -> list[Json] | None:
-        """Return the warnings in the fields and units of the case."""
         return flanks.metadata.warnings
 
 

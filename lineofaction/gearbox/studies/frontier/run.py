@@ -41,7 +41,6 @@ class _FrontierStudy(
         _requested(inputs, of_scene=not isinstance(subject, CheckedCase))
 
     def normalized(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> Json:
-        """Return the fidelities in their order, and full contact if it is requested."""
         beside = {} if inputs.full_contact is None else {"full_contact": inputs.full_contact}
         return {"rungs": _requested(inputs, of_scene=not isinstance(subject, CheckedCase)), **beside}
 
@@ -75,13 +74,7 @@ class _FrontierStudy(
 
 
 def _requested(inputs: Inputs, *, of_scene: bool) -> list[str]:
-    """Return the fidelities that are requested, once each, in the order of their cost.
-
-    Raises
-    ------
-    BadInput
-        A name that no fidelity of a case, or of a scene, has; or fewer than two of them.
-    """
+    """Return the fidelities that are requested, once each, in the order of their cost."""
     known = [fidelity.name for fidelity in (SCENE_FIDELITIES if of_scene else FIDELITIES)]
     with boundary_errors():
         names = chosen("rungs", inputs.rungs, known, "Or leave it out: all are run.")

@@ -266,7 +266,6 @@ class _ListenStudy(Computation[SceneInput, HousedScene, Inputs, ListenFigures, H
             _require_point(inputs.point, [point.name for part in scene.housings for point in part.points])
 
     def compute(self, subject: HousedScene, inputs: Inputs, means: Means) -> HeardRun:
-        """Return the run as it is heard."""
         assert means.run is not None  # the inputs name it
         receiver = Receiver(tuple(inputs.microphone_mm or ()), inputs.point or "", inputs.direction or "")
         heard = heard_run(inputs.run, means.run, SceneHousings.of(subject), receiver)
@@ -277,7 +276,6 @@ class _ListenStudy(Computation[SceneInput, HousedScene, Inputs, ListenFigures, H
         return {"full_scale": heard.recording.peak, **recording_facts(heard.recording)}
 
     def warnings(self, heard: HeardRun) -> list[Json]:
-        """Return the warnings of housings that the scene of the run did not have so."""
         return heard.warnings
 
 

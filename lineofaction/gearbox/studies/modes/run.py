@@ -23,7 +23,6 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
     inputs, answer, file = Inputs, ModesFigures, array_file(ModalAnalysis)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ModalAnalysis:
-        """Return the modal analysis of a scene."""
         with boundary_errors():
             modes = modal_analysis(
                 assemble(subject.scene),

@@ -123,7 +123,6 @@ class OrderBand(Part):
 
 
 def _by_order(band: Any) -> list[dict[str, Any]]:
-    """Return the members of the bands of the orders."""
     rows = zip(band.order, band.largest, band.loudest_speed, band.there, strict=True)
     return [dict(zip(("order", "largest", "speed", "there"), row, strict=True)) for row in rows]
 

@@ -79,7 +79,6 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         require_surface(subject)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSound:
-        """Return the sound power of the housings of a scene that have a surface."""
         if means.run is not None:  # the band varies the linear response, and a run is what it is
             inputs = inputs.model_copy(update={"band": False})
         response = bearing_forces(subject, inputs, means)

@@ -58,7 +58,6 @@ class _OptimizeStudy(CaseStudy[Inputs, OptimizeFigures, Optimization]):
     writers = MappingProxyType({".toml": _write_case})
 
     def check(self, case: CheckedCase, study: Inputs) -> None:
-        """Raise `BadInput` for what `compute` would, without computing anything."""
         with boundary_errors():
             _ = case.request(_library_request, study).checked
 

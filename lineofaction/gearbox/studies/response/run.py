@@ -19,7 +19,6 @@ class _ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
     inputs, answer, file = Inputs, ResponseFigures, array_file(ForcedResponse)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ForcedResponse:
-        """Return the forced response of a scene."""
         return with_reduction_costs(response_of(subject.scene, inputs, means), subject)
 
     def _derived(self, response: ForcedResponse) -> Json:

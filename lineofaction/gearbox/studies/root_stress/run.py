@@ -14,9 +14,10 @@ from fe_contact.analysis.flanks.root_stress import (
 )
 from fe_contact.options import Run
 from fe_contact.plausibility.pair_checks import nominal_root_stresses
-from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, case_at
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.plausibility import phrased_for
-from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
+from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.studies.computation import Means, PointStudy, record_file
 from lineofaction.gearbox.studies.root_stress import Inputs, RootStressFigures
 from model_studies import in_unit
 
@@ -25,7 +26,7 @@ MPA = 1e6
 
 
 @dataclass(frozen=True)
-class GearRoots:
+class _GearRoots:
     """The roots of one gear: their peaks, where ISO 6336-3 takes its section (m), a tooth's passage.
 
     `nominal` is the stress of ISO 6336-3 in Pa: method B without its load factors, of spur gears.
@@ -44,7 +45,7 @@ class Roots:
 
     Attributes
     ----------
-    pinion, wheel : GearRoots
+    pinion, wheel : _GearRoots
     torque, normal_force : float
         On the driving gear, N m; F_bn, N.
     misalignment, center_distance_change : float
@@ -54,8 +55,8 @@ class Roots:
         In the fields and units of the case.
     """
 
-    pinion: GearRoots
-    wheel: GearRoots
+    pinion: _GearRoots
+    wheel: _GearRoots
     torque: float = field(metadata=in_unit("n_m"))
     normal_force: float = field(metadata=in_unit("n"))
     misalignment: float = field(metadata=in_unit("m"))
@@ -64,22 +65,10 @@ class Roots:
     warnings: list[Json]
 
 
-class _RootStressStudy(CaseStudy[Inputs, RootStressFigures, Roots]):
+class _RootStressStudy(PointStudy[RootStressFigures, Roots]):
     inputs, answer, file = Inputs, RootStressFigures, record_file(("tooth-root stress", Roots))
 
-    def narrowed(self, case: CheckedCase, inputs: Inputs) -> CheckedCase:
-        """Return the case at one load and one alignment."""
-        return CheckedCase(case_at(case.case, inputs))
-
-    def check(self, case: CheckedCase, _inputs: Inputs) -> None:
-        """Refuse a case that cannot be."""
-        _ = case.at_point
-
-    def normalized(self, _case: CheckedCase, _inputs: Inputs) -> Json:
-        """Return nothing: the case has all of it."""
-        return {}
-
-    def compute(self, case: CheckedCase, _inputs: Inputs, means: Means) -> Roots:
+    def compute(self, case: CheckedCase, _inputs: FlankPoint, means: Means) -> Roots:
         """Return the peaks over a mesh cycle, the passage of a tooth of each gear, receipt and warnings."""
         run, pair = Run(cache=means.home / "compliance", progress=means.report), case.pair
         checked = case.at_point
@@ -99,17 +88,15 @@ class _RootStressStudy(CaseStudy[Inputs, RootStressFigures, Roots]):
         )
 
     def figures(self, roots: Roots) -> Json:
-        """Return the figures and the warnings of the result."""
         return super().figures(roots) | {"warnings": roots.warnings}
 
     def warnings(self, roots: Roots) -> list[Json]:
-        """Return the warnings in the fields and units of the case."""
         return roots.warnings
 
 
-def _roots(history: RootStressHistory, nominal: float | None) -> GearRoots:
+def _roots(history: RootStressHistory, nominal: float | None) -> _GearRoots:
     tension, compression = (history.peak(root) for root in ROOTS)
-    return GearRoots(tension, compression, history.critical_coordinate, history.passage(), nominal)
+    return _GearRoots(tension, compression, history.critical_coordinate, history.passage(), nominal)
 
 
 RUN = _RootStressStudy()

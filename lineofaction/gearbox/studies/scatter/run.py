@@ -27,7 +27,6 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
     inputs, answer, file = Inputs, ScatterFigures, record_file(("tolerance study", ToleranceStudy))
 
     def check(self, case: CheckedCase, inputs: Inputs) -> None:
-        """Raise `BadInput` for what `compute` would."""
         with boundary_errors():
             _ = case.request(_drawn, inputs).checked
 

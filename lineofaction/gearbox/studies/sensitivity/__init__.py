@@ -36,7 +36,6 @@ class Inputs(BoundaryModel):
 
     @model_validator(mode="after")
     def _increasing(self) -> Self:
-        """Both are axes."""
         for name in ("misalignment_um", "center_distance_change_percent"):
             values = getattr(self, name)
             if any(b <= a for a, b in pairwise(values)):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -72,7 +72,18 @@ class PairStudy:
 
 def write_studies(studies: Sequence[PairStudy], path: Path) -> None:
     """Write studies of the same numbers of deviations: into a temporary file beside `path`, then renamed."""
-    arrays = _stacked_curves(studies)
+    arrays: dict[str, Any] = {
+        "normal_force": np.array([study.normal_force for study in studies]),
+        "center_distance": np.array([study.center_distance for study in studies]),
+        "corner_contact": np.array([own.corner_contact for own in studies[0].curves], dtype=np.int8),
+    }
+    for axis in _AXES:
+        curves = [[getattr(each, axis) for each in study.curves] for study in studies]
+        arrays[axis] = np.stack([row[0].deviation for row in curves])
+        for name in ("peak_to_peak", "error"):
+            stacked = [np.stack([getattr(curve, name) for curve in row]) for row in curves]
+            arrays[f"{name}_over_{axis}"] = np.stack(stacked)
+    arrays = {name: arrays[name] for name in STORED}
     variables = {
         name: Variable(dimensions, arrays[name], {"units": units, "long_name": text})
         for name, (dimensions, units, text) in STORED.items()
@@ -97,38 +108,20 @@ def read_studies(path: Path) -> tuple[PairStudy, ...]:
         The file is missing, no netCDF-4, of another kind, of a newer schema, or damaged.
     """
     content, attributes = FILES.read(path)
-    names = json_attribute(path, attributes, "names")
-    return tuple(_pair_study(str(name), content, index) for index, name in enumerate(names))
-
-
-def _stacked_curves(studies: Sequence[PairStudy]) -> dict[str, Any]:
-    models = studies[0].curves
-    arrays: dict[str, Any] = {
-        "normal_force": np.array([study.normal_force for study in studies]),
-        "center_distance": np.array([study.center_distance for study in studies]),
-        "corner_contact": np.array([curves.corner_contact for curves in models], dtype=np.int8),
-    }
-    for axis in _AXES:
-        curves = [[getattr(each, axis) for each in study.curves] for study in studies]
-        arrays[axis] = np.stack([row[0].deviation for row in curves])
-        for name in ("peak_to_peak", "error"):
-            stacked = [np.stack([getattr(curve, name) for curve in row]) for row in curves]
-            arrays[f"{name}_over_{axis}"] = np.stack(stacked)
-    return {name: arrays[name] for name in STORED}
-
-
-def _pair_study(name: str, content: dict[str, Any], pair: int) -> PairStudy:
-    curves = tuple(
-        Sensitivity(bool(corners), *(_curve(content, axis, pair, model) for axis in _AXES))
-        for model, corners in enumerate(content["corner_contact"])
+    force, distance, corners = (
+        content[name].tolist() for name in ("normal_force", "center_distance", "corner_contact")
     )
-    force, distance = (float(content[fact][pair]) for fact in ("normal_force", "center_distance"))
-    return PairStudy(name, force, distance, curves)
 
+    def curves(pair: int, model: int) -> Iterator[RippleCurve]:
+        for axis in _AXES:
+            sizes = (content[f"{name}_over_{axis}"][pair, model] for name in ("peak_to_peak", "error"))
+            yield RippleCurve(content[axis][pair], *sizes)
 
-def _curve(content: dict[str, Any], axis: str, pair: int, model: int) -> RippleCurve:
-    sizes = (content[f"{name}_over_{axis}"][pair, model] for name in ("peak_to_peak", "error"))
-    return RippleCurve(content[axis][pair], *sizes)
+    def models(pair: int) -> tuple[Sensitivity, ...]:
+        return tuple(Sensitivity(bool(on), *curves(pair, model)) for model, on in enumerate(corners))
+
+    names = enumerate(json_attribute(path, attributes, "names"))
+    return tuple(PairStudy(str(name), force[pair], distance[pair], models(pair)) for pair, name in names)
 
 
 Studies = tuple[PairStudy, ...]
@@ -150,7 +143,6 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         return CheckedCase(checked.case.model_copy(update={"accuracy": across}))
 
     def check(self, case: CheckedCase, inputs: Inputs) -> None:
-        """Refuse what a study cannot compute, without computing anything."""
         pair, options = case.pair, study_options(case.options)
         model = "3d" if options.model == "auto" else options.model
         with boundary_errors():
@@ -192,33 +184,23 @@ class _TableByTable:
         self._report("tables", min(done / TABLES, 1.0))
 
 
-def _highest_force(case: Case, pair: ParallelAxes) -> float:
-    torques, forces = case.load.torque_n_m, case.load.normal_force_n
-    return float(pair.normal_force(torques[-1])) if torques else float((forces or ())[-1])
-
-
 def _axes(case: Case, pair: ParallelAxes, inputs: Inputs) -> TableAxes:
     """Return the highest load of the case and both axes."""
+    torques, forces = case.load.torque_n_m, case.load.normal_force_n
     percent = inputs.center_distance_change_percent
     return TableAxes(
-        normal_forces=[_highest_force(case, pair)],
+        normal_forces=[float(pair.normal_force(torques[-1])) if torques else float((forces or ())[-1])],
         misalignments=[value * UM for value in inputs.misalignment_um],
         center_distance_changes=[0.01 * value * pair.center_distance for value in percent],
     )
 
 
-def _curves(study: PairStudy) -> list[tuple[Any, ...]]:
-    """Return both curves without and with corner contact, the changes of the distance in parts of it."""
-    percent = [
-        (100.0 * curves.center_distance_change.deviation / study.center_distance) for curves in study.curves
-    ]
-    return [
-        (
-            curves,
-            {"center_distance": (curves.center_distance_change, {"center_distance_change_percent": change})},
-        )
-        for curves, change in zip(study.curves, percent, strict=True)
-    ]
+def _curves(study: PairStudy) -> Iterator[tuple[Any, ...]]:
+    """Yield both curves without and with corner contact, the changes of the distance in parts of it."""
+    for curves in study.curves:
+        moved = curves.center_distance_change
+        percent = {"center_distance_change_percent": 100.0 * moved.deviation / study.center_distance}
+        yield curves, {"center_distance": (moved, percent)}
 
 
 RUN = _SensitivityStudy()

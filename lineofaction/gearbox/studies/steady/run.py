@@ -25,7 +25,6 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
     inputs, answer, file = Inputs, SteadyFigures, array_file(SteadyStates)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> SteadyStates:
-        """Return the periodic steady states of a scene."""
         with boundary_errors():
             states = steady_states(
                 assemble(subject.scene),
@@ -54,7 +53,6 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
         }
 
     def failure(self, states: SteadyStates) -> str:
-        """Say at how many speeds a sweep found no motion."""
         missing = (states.status != 0) & (states.curve != BRANCH)
         if not missing.any():
             return ""

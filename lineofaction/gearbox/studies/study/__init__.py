@@ -88,7 +88,6 @@ class FactorInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        """Exactly one kind of values."""
         names = [name for name in _KINDS if getattr(self, name) is not None]
         if len(names) != 1:
             bound = f"given once, as one of {', '.join(_KINDS)}"

@@ -54,11 +54,13 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
         factor_places(scene, inputs)
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> Study:
-        """Run a study of a scene."""
         places = factor_places(tabled.inputs, inputs)
         with boundary_errors():
             design = design_of(tabled.inputs, inputs, places)
-            responses = _responses_of(tabled.scene, inputs)
+            responses = tuple(
+                Response(r.quantity, r.part or "", r.order or 0, r.mesh or "") for r in inputs.responses
+            )
+            _check_parts(tabled.scene, responses)
             written = tabled.inputs.model_dump_json()
             scenes = VariedScene(written, tabled.databases, places, str(means.home))
             task = StudyTask(scenes, design.names, responses, inputs.start_s, inputs.receipt)
@@ -83,20 +85,21 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
             "points": len(result.reason),
             "factors": [{"path": name, "kind": kind} for name, kind in kinds],
             "responses": [_response_statistics(result, k) for k in range(len(result.response))],
-            "worst": [_responses_at(result, int(k)) for k in result.worst],
+            "worst": [
+                {"point": k, "values": _values(result, k), "responses": _responses_at(result, k)}
+                for k in map(int, result.worst)
+            ],
             "failed": [{"point": k, "values": _values(result, k), "reason": reason} for k, reason in failed],
             "cpu_seconds": {"mean": float(np.mean(result.seconds[:, 0])), "integration_wall_mean": wall},
         }
 
     def kept(self, result: Study, means: Means) -> Mapping[str, Path]:
-        """Return the files of the runs that were kept, by the hash that they are stored under."""
         if means.folder is None:
             return {}
         files = {key: means.folder / f"point_{point}.nc" for point, key in result.facts["runs"].items()}
         return {key: file for key, file in files.items() if file.is_file()}
 
     def failure(self, result: Study) -> str:
-        """Say that no run has figures."""
         return "" if result.usable else f"No run has figures. The first: {result.reason[0]}"
 
 
@@ -133,29 +136,20 @@ def _responses_at(result: Study, point: int) -> Json:
         unit, one = in_boundary_units(result, k)
         value, error = result.figure[point, k] / one, result.error[point, k] / one
         figures[name] = {"value": value, "unit": unit, "error": error}
-    return {"point": point, "values": _values(result, point), "responses": figures}
+    return figures
 
 
 def _values(result: Study, point: int) -> dict[str, float]:
     return dict(zip(result.factor, map(float, result.value[point]), strict=True))
 
 
-# The design and the responses of a study, from its file.
+# The design of a study, from its file.
 
 
 def design_of(scene: SceneInput, inputs: Inputs, places: Mapping[str, tuple[Place, ...]]) -> Design:
     """Return the design; raises `BadInput`, `DynamicsError`."""
     factors = {f.path: _factor(k, f, scene, places[f.path]) for k, f in enumerate(inputs.factors)}
     return Design(factors, inputs.samples, inputs.seed)
-
-
-def _responses_of(scene: Scene, inputs: Inputs) -> tuple[Response, ...]:
-    """Return the responses; raises `BadInput` for a part that the scene has not."""
-    responses = tuple(
-        Response(r.quantity, r.part or "", r.order or 0, r.mesh or "") for r in inputs.responses
-    )
-    _check_parts(scene, responses)
-    return responses
 
 
 def _factor(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Place, ...]) -> Factor:
@@ -175,11 +169,10 @@ def _factor(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Pl
 
 def _by_class(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Place, ...]) -> Normal:
     """Return the distribution within a class of ISO 1328 about the designed value, um."""
-    assert factor.iso1328_class is not None
     limits = set()
     for place in places:
         case = scene.meshes[int(place[1])].case
-        assert case is not None
+        assert case is not None and factor.iso1328_class is not None
         gear, name = str(place[4]), str(place[5])
         widths = iso1328_tolerances(gear_pair(case), factor.iso1328_class).modification
         designed = float(getattr(getattr(case.pair, gear), name))

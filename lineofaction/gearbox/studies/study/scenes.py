@@ -135,20 +135,13 @@ def with_value(table: Json, place: Place, value: float) -> None:
         at = at[key]
     if isinstance(last, int):
         if last >= len(at):
-            raise BadInput.of(_path_of(place), last, f"an entry below {len(at)}")
+            path = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in place)
+            raise BadInput.of(path.lstrip("."), last, f"an entry below {len(at)}")
         at[last] = value
     elif isinstance(at.get(last), list):
         at[last] = [value] * max(len(at[last]), 1)
     else:
         at[last] = value
-
-
-def _path_of(place: Place) -> str:
-    """Return a place as faults name it."""
-    text = ""
-    for key in place:
-        text += f"[{key}]" if isinstance(key, int) else f".{key}" if text else key
-    return text
 
 
 @dataclass(frozen=True)
@@ -246,9 +239,7 @@ class VariedScene:
     def _other_flanks(self, inputs: SceneInput) -> dict[str, SteDatabase]:
         """Solve the contact of other flanks at all loads of the tables, support loads too."""
         tables = {}
-        for mesh in inputs.meshes:
-            if mesh.name not in self._condensed:
-                continue
+        for mesh in (mesh for mesh in inputs.meshes if mesh.name in self._condensed):
             known, bodies = self.databases[mesh.name], self._condensed[mesh.name]
             assert mesh.case is not None
             pair = gear_pair(mesh.case)

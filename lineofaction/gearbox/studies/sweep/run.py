@@ -12,7 +12,6 @@ import numpy as np
 from bounds import Kind
 from bounds.types import Json
 from fe_contact.flank.modification import FlankModification
-from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.sweep import (
     CENTER_DISTANCE,
     TORQUE,
@@ -38,9 +37,6 @@ from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
 from lineofaction.gearbox.studies.sweep import Inputs, SweepFigures
 from lineofaction.gearbox.units import UM, factor, unit_name
-
-# What of a case can be swept: names as in the case file, short ones, and the values if none are given.
-
 
 STEPS = 9
 """Values of an axis whose range is not given."""
@@ -146,27 +142,24 @@ def _named(text: str, name: str) -> Swept:
 def _usual(checked: CheckedCase, swept: Swept) -> list[float]:
     """Return the values of an axis of which only the name is given, in the unit of the boundary."""
     pair, case = checked.pair, checked.case
-    if swept.what is not None:
-        return _flank_range(pair, swept, swept.what)
+    if swept.what is not None:  # about the case's own values, or about a usual one where it has none
+        variables = SweepAxis(swept.name, ()).variables
+        own = max(abs(figure(pair, name)) for name in variables) or float(swept.what.what.example)
+        size, kind = swept.what.own(own), swept.what.what.kind
+        if kind is Kind.LENGTH:
+            return _evenly(0.5 * size, 1.5 * size)
+        return _evenly(-2.0 * size if kind is Kind.SLOPE else 0.0, 2.0 * size)
     if swept.name == TORQUE:
-        own = case.load.torque_n_m or [float(pair.torque(force)) for force in case.load.normal_force_n or ()]
-        return list(own) if len(own) >= _EACH else _evenly(0.2 * own[-1], own[-1])
+        loads = case.load.torque_n_m or [
+            float(pair.torque(force)) for force in case.load.normal_force_n or ()
+        ]
+        return list(loads) if len(loads) >= _EACH else _evenly(0.2 * loads[-1], loads[-1])
     if swept.name == CENTER_DISTANCE:
         changes = case.errors.center_distance_change_mm
         most = _DISTANCE * pair.center_distance / swept.factor
         return list(changes) if len(changes) > 1 else _evenly(0.0, most)
     most = max(map(abs, case.errors.misalignment_um)) or _SKEW_UM
     return _evenly(-most, most)
-
-
-def _flank_range(pair: ParallelAxes, swept: Swept, what: Figure) -> list[float]:
-    """Return values about the case's own, or about a usual one where the case has none."""
-    variables = SweepAxis(swept.name, ()).variables
-    own = max(abs(figure(pair, name)) for name in variables) or float(what.what.example)
-    size = what.own(own)
-    if what.what.kind is Kind.LENGTH:
-        return _evenly(0.5 * size, 1.5 * size)
-    return _evenly(-2.0 * size if what.what.kind is Kind.SLOPE else 0.0, 2.0 * size)
 
 
 def _evenly(first: float, last: float) -> list[float]:
@@ -267,7 +260,6 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
     resumed = True
 
     def check(self, case: CheckedCase, inputs: Inputs) -> None:
-        """Raise `BadInput` for what `compute` would, without computing anything."""
         with boundary_errors():
             _ = case.request(_request, inputs).checked
 
@@ -288,15 +280,15 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
             },
             "points": [_at(result, k) | _figures(swept, k) for k, why in enumerate(swept.reason) if not why],
             "least": {
-                QUANTITIES[quantity.name].field.format(""): _least(result, quantity)
-                for quantity in swept.quantities
+                QUANTITIES[own.name].field.format(""): _at(result, own.least)
+                | {"points_within_error": int(own.like_least.sum())}
+                for own in swept.quantities
                 if swept.usable
             },
             "failed": [_at(result, k) | {"reason": why} for k, why in enumerate(swept.reason) if why],
         }
 
     def failure(self, result: SweepResult) -> str:
-        """Say that no point has figures."""
         return "" if result.sweep.usable else f"No point has figures: {result.sweep.reason[0]}."
 
 
@@ -320,11 +312,6 @@ def _figures(swept: Sweep, point: int) -> Json:
         for quantity in swept.quantities
         for suffix, values in (("", quantity.value), ("_error", quantity.error))
     }
-
-
-def _least(result: SweepResult, quantity: SweptQuantity) -> Json:
-    """Return where a quantity is least, and at how many points it is as low within the errors."""
-    return _at(result, quantity.least) | {"points_within_error": int(quantity.like_least.sum())}
 
 
 RUN = _SweepStudy()

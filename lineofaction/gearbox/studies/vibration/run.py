@@ -86,7 +86,6 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
             raise BadInput.of("housings", value, "one with mass, a surface or points", _ADVICE)
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> HousingVibrationResult:
-        """Return the vibration of a housing."""
         name, housing = _chosen(tabled, inputs.housing)
         with boundary_errors():
             response = bearing_forces(tabled, inputs, means)
@@ -99,14 +98,16 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
                 speed=None if inputs.at_rpm is None else inputs.at_rpm * RPM,
                 order=inputs.at_order,
             )
-            mode = None if inputs.mode is None else _mode(housing, inputs.mode)
+            if inputs.mode is not None and inputs.mode > len(housing.frequency):
+                kept = f"from 1 to {len(housing.frequency)}, the modes kept"
+                raise BadInput.of("mode", inputs.mode, kept, "Keep more modes of the housing.")
+            mode = None if inputs.mode is None else mode_shape(housing, inputs.mode)
         seconds = {**analysis.facts["seconds"], "vibration": cpu_seconds() - began}
         analysis = replace(analysis, facts={**analysis.facts, "seconds": seconds})
         analysis = with_reduction_costs(analysis, tabled)
         return HousingVibrationResult(analysis, housing.frequency, inputs.mode or 0, mode)
 
     def figures(self, result: HousingVibrationResult) -> Json:
-        """Return velocities by order and speed, and contributions where the parts were looked at."""
         analysis, vibration = result.analysis, result.analysis.vibration
         return figures_of(
             VibrationFigures,
@@ -135,13 +136,6 @@ def _chosen(tabled: TabledScene, name: str | None) -> tuple[str, ReducedHousing]
         if own == name or (name is None and (housing.surface is not None or housing.points)):
             return own, housing
     raise BadInput.of("housings", len(tabled.housings), "a housing with a surface or points", _ADVICE)
-
-
-def _mode(housing: ReducedHousing, number: int) -> SurfaceShape:
-    if number > len(housing.frequency):
-        kept = f"from 1 to {len(housing.frequency)}, the modes kept"
-        raise BadInput.of("mode", number, kept, "Keep more modes of the housing.")
-    return mode_shape(housing, number)
 
 
 def _point(velocity: ComplexArray) -> Json:
