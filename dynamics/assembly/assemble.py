@@ -146,21 +146,21 @@ def _system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws)
     held = np.diag(stiffness) + model.flanks.mean_stiffness @ along**2
     held += packed.stiffness @ direction**2
     arrays = SystemArrays(
-        np.ascontiguousarray(mass),
-        damping,
-        stiffness,
-        direction,
-        turn,
-        NO_ENTRIES,
-        constant,
-        freedoms.keep(-times_mass(rotors, vectors)),
-        np.ascontiguousarray(times_mass(rotors, vectors) @ vectors.T),
-        lay_out_drives(mechanism, freedoms, joined, gradient),
-        scale,
-        scale * _reach(np.diag(mass), held),
-        packed,
-        lay_out_reference(mechanism, freedoms),
-        lay_out_loads(mechanism, freedoms),
+        mass=np.ascontiguousarray(mass),
+        damping=damping,
+        stiffness=stiffness,
+        direction=direction,
+        turn=turn,
+        sparse=NO_ENTRIES,
+        constant=constant,
+        inertial=freedoms.keep(-times_mass(rotors, vectors)),
+        total_inertia=np.ascontiguousarray(times_mass(rotors, vectors) @ vectors.T),
+        drive=lay_out_drives(mechanism, freedoms, joined, gradient),
+        scale=scale,
+        rate_scale=scale * _reach(np.diag(mass), held),
+        elements=packed,
+        reference=lay_out_reference(mechanism, freedoms),
+        load=lay_out_loads(mechanism, freedoms),
     )
     return by_address(arrays.with_matrices())
 
@@ -361,36 +361,35 @@ def assemble(scene: Scene) -> System:
 
 
 def _assemble(model: Model) -> System:
+    """Lay out a model; bearings that hold tilt also exert moments."""
     elements, laws = force_elements(model)
-    return _put_together(model, elements, _system_arrays(model, elements, laws))
-
-
-def _put_together(model: Model, elements: tuple[Element, ...], arrays: SystemArrays) -> System:
-    """Gather all parts; bearings that hold tilt also exert moments."""
+    arrays = _system_arrays(model, elements, laws)
     mechanism, freedoms, joined = model.mechanism, model.freedoms, model.connections
     housed = housed_bearings(mechanism.scene, mechanism.rotors)
     tilted = bool(joined.seats.name) or any(at.tilts for at in mechanism.bearings)
     stiffness, damping = joined.on_ground(freedoms, tilted)
     return System(
-        mechanism.scene,
-        arrays,
-        freedoms,
-        mechanism.kinematics,
-        mechanism.lines,
-        model.flanks,
-        elements,
-        mechanism.rotors,
-        joined.supports,
-        joined.seats,
-        mechanism.bearings,
-        housed,
-        joined.couplings,
-        stiffness,
-        damping,
-        _bearing_force_map(stiffness, damping, joined, (*housed, *mechanism.bearings), arrays.elements),
-        choose_sampling(mechanism.scene, mechanism.kinematics, _top_mode(model, arrays)),
-        model.ledger,
-        mechanism.corrected,
+        scene=mechanism.scene,
+        arrays=arrays,
+        freedoms=freedoms,
+        kinematics=mechanism.kinematics,
+        lines=mechanism.lines,
+        flanks=model.flanks,
+        elements=elements,
+        rotors=mechanism.rotors,
+        supports=joined.supports,
+        seats=joined.seats,
+        bearings=mechanism.bearings,
+        housed=housed,
+        couplings=joined.couplings,
+        bearing_stiffness=stiffness,
+        bearing_damping=damping,
+        bearing_map=_bearing_force_map(
+            stiffness, damping, joined, (*housed, *mechanism.bearings), arrays.elements
+        ),
+        sampling=choose_sampling(mechanism.scene, mechanism.kinematics, _top_mode(model, arrays)),
+        ledger=model.ledger,
+        corrected=mechanism.corrected,
     )
 
 

@@ -35,18 +35,23 @@ def lay_out_reference(mechanism: Mechanism, freedoms: Freedoms) -> KinematicMoti
     rates, none = (*kinematics.mesh_rate, *(phase.rate for phase in turns)), len(turns)
     shape = (len(rates), len(laws))
     return KinematicMotion(
-        Cubics.packed([law.polynomials() for law in laws]),
-        np.concatenate([whole for whole, _ in turned]),
-        np.concatenate([fraction for _, fraction in turned]),
-        np.array([[rate.numerator for rate in row] for row in rates], dtype=np.int64).reshape(shape),
-        np.array([[rate.denominator for rate in row] for row in rates], dtype=np.int64).reshape(shape),
-        np.array([[float(rate) for rate in row] for row in rates]).reshape(shape) / (2.0 * math.pi),
-        np.array([*(mesh.position_offset for mesh in scene.meshes), *[0.0] * none], dtype=float),
-        np.array(
+        speed=Cubics.packed([law.polynomials() for law in laws]),
+        whole=np.concatenate([whole for whole, _ in turned]),
+        fraction=np.concatenate([fraction for _, fraction in turned]),
+        numerator=np.array([[rate.numerator for rate in row] for row in rates], dtype=np.int64).reshape(
+            shape
+        ),
+        denominator=np.array([[rate.denominator for rate in row] for row in rates], dtype=np.int64).reshape(
+            shape
+        ),
+        per_radian=np.array([[float(rate) for rate in row] for row in rates]).reshape(shape)
+        / (2.0 * math.pi),
+        offset=np.array([*(mesh.position_offset for mesh in scene.meshes), *[0.0] * none], dtype=float),
+        period=np.array(
             [*(mesh.table.period for mesh in scene.meshes), *(phase.turns for phase in turns)], dtype=np.int64
         ),
-        np.array(free, dtype=np.int64),
-        np.ascontiguousarray(vectors[:, freedoms.column]),
+        freedom=np.array(free, dtype=np.int64),
+        vector=np.ascontiguousarray(vectors[:, freedoms.column]),
     )
 
 

@@ -134,15 +134,17 @@ def _bearing_loads(system: System, rest: Rest, strain: BearingStrain) -> tuple[B
         held = 0.0 if carrier is None else speed[carrier]
         loads.append(
             BearingLoad(
-                name,
-                part.shaft,
-                abs(float(speed[index] - held)),
-                force[:, k].mean(axis=0),
-                float(np.max(np.hypot(force[:, k, 0], force[:, k, 1]))),
-                strain.elastic[k],
-                strain.clearance[k],
-                strain.seat[k],
-                _life_of(rows[name], strain.elastic[k] + strain.clearance[k]) if name in rows else math.nan,
+                name=name,
+                shaft=part.shaft,
+                speed=abs(float(speed[index] - held)),
+                force=force[:, k].mean(axis=0),
+                largest_radial=float(np.max(np.hypot(force[:, k, 0], force[:, k, 1]))),
+                elastic=strain.elastic[k],
+                clearance=strain.clearance[k],
+                seat=strain.seat[k],
+                rating_life=_life_of(rows[name], strain.elastic[k] + strain.clearance[k])
+                if name in rows
+                else math.nan,
             )
         )
     return tuple(loads)
@@ -340,17 +342,17 @@ def _deflected(loaded: Scene, case: LoadCase, positions: int) -> CaseDeflection:
     leader = leader_of(loaded)
     speed = abs(leader.speed)
     return CaseDeflection(
-        case.name,
-        case.direction,
-        case.share,
-        speed,
-        sum(leading_torque(loaded, leader, speed)),
-        rest.status.name.lower(),
-        rest.residual,
-        tuple(mesh_alignment(system, k, rest, strain) for k in range(len(loaded.meshes))),
-        _bearing_loads(system, rest, strain),
-        _shaft_lines(system, motion),
-        tuple(
+        name=case.name,
+        direction=case.direction,
+        share=case.share,
+        speed=speed,
+        torque=sum(leading_torque(loaded, leader, speed)),
+        status=rest.status.name.lower(),
+        residual=rest.residual,
+        meshes=tuple(mesh_alignment(system, k, rest, strain) for k in range(len(loaded.meshes))),
+        bearings=_bearing_loads(system, rest, strain),
+        shafts=_shaft_lines(system, motion),
+        forces=tuple(
             ForceUnderCase(part.name, part.shaft, np.array(part.force), np.array(part.moment))
             for part in loaded.forces
         ),

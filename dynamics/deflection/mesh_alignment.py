@@ -190,13 +190,13 @@ def rest_over(system: System, times: FloatArray) -> Rest:
     largest = float(np.max(np.abs(mesh_force), initial=0.0))
     residual = max(solution.residual for solution in solutions)
     return Rest(
-        max(solution.status for solution in solutions),
-        residual / largest if largest > 0.0 else float("inf"),
-        q @ system.freedoms.motion.T,
-        seen.coordinate.T,
-        mesh_force,
-        _centroids(system, seen.force).T,
-        force,
+        status=max(solution.status for solution in solutions),
+        residual=residual / largest if largest > 0.0 else float("inf"),
+        motion=q @ system.freedoms.motion.T,
+        element=seen.coordinate.T,
+        mesh_force=mesh_force,
+        centroid=_centroids(system, seen.force).T,
+        bearing_force=force,
     )
 
 
@@ -365,14 +365,14 @@ def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain
     axis = np.asarray(mesh.table.misalignment)
     inside = axis.size == 1 or bool(np.all((course >= axis[0]) & (course <= axis[-1])))
     return MeshAlignment(
-        mesh.name,
-        float(rest.mesh_force[:, index].mean()),
-        float(course.mean()),
-        float(course.min()),
-        float(course.max()),
-        causes,
-        mesh.center_distance_change + apart,
-        _lead_torsion(system, index, motion),
-        float(rest.centroid[:, index].mean()),
-        inside,
+        name=mesh.name,
+        force=float(rest.mesh_force[:, index].mean()),
+        misalignment=float(course.mean()),
+        least=float(course.min()),
+        largest=float(course.max()),
+        causes=causes,
+        center_distance_change=mesh.center_distance_change + apart,
+        lead_torsion=_lead_torsion(system, index, motion),
+        face_centroid=float(rest.centroid[:, index].mean()),
+        in_table=inside,
     )

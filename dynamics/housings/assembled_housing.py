@@ -207,14 +207,14 @@ def assemble(housing: MeshedHousing) -> AssembledHousing:
     mounts = _stiffness_and_damping_of_mounts(housing.feet, freedoms)
     seats = [_motion(mesh, pair, freedoms) for pair in zip(housing.seats, frames, strict=True)]
     return AssembledHousing(
-        freedoms,
-        sp.csr_array(motion.T @ mass @ motion),
-        sp.csr_array(motion.T @ stiffness @ motion + mounts[0]),
-        mounts,
-        sp.csr_array(sp.vstack(seats)),
-        frames,
-        _loose(mesh.points, housing.feet, freedoms, mounts[0]),
-        rigid_body(mesh.points, nodal_mass),
+        freedoms=freedoms,
+        mass=sp.csr_array(motion.T @ mass @ motion),
+        stiffness=sp.csr_array(motion.T @ stiffness @ motion + mounts[0]),
+        mounts=mounts,
+        seats=sp.csr_array(sp.vstack(seats)),
+        frames=frames,
+        loose=_loose(mesh.points, housing.feet, freedoms, mounts[0]),
+        body=rigid_body(mesh.points, nodal_mass),
     )
 
 
@@ -402,14 +402,14 @@ def free_modes(housing: AssembledHousing, count: int) -> FreeModes:
     if own.size != count:
         status = ModeStatus.ITERATION_LIMIT
     return FreeModes(
-        rigid,
-        elastic,
-        np.sqrt(np.maximum(own, 0.0)) / (2.0 * math.pi),
-        deflection,
-        status,
-        float(np.max(missed / np.linalg.norm(force, axis=0), initial=0.0)),
-        residual,
-        math.sqrt(float(np.abs(square[:loose]).max()) / own[0]) if loose and own.size else 0.0,
+        rigid=rigid,
+        shape=elastic,
+        frequency=np.sqrt(np.maximum(own, 0.0)) / (2.0 * math.pi),
+        deflection=deflection,
+        status=status,
+        eigen_residual=float(np.max(missed / np.linalg.norm(force, axis=0), initial=0.0)),
+        solve_residual=residual,
+        rigid_ratio=math.sqrt(float(np.abs(square[:loose]).max()) / own[0]) if loose and own.size else 0.0,
     )
 
 

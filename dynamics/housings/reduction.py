@@ -84,21 +84,21 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
     ratio, own = _own_damping(housing, assembled, coordinates, springs)
     nodes, triangles = np.unique(housing.mesh.surface, return_inverse=True)
     return ReducedHousing(
-        coordinates.mass,
-        coordinates.stiffness,
-        own + mounts,
-        assembled.frames,
-        frequency,
-        ratio[: len(frequency)],
-        assembled.body,
-        _residuals(housing, assembled, modes),
-        SurfaceMotion(
+        mass=coordinates.mass,
+        stiffness=coordinates.stiffness,
+        damping=own + mounts,
+        seats=assembled.frames,
+        frequency=frequency,
+        damping_ratio=ratio[: len(frequency)],
+        body=assembled.body,
+        checks=_residuals(housing, assembled, modes),
+        surface=SurfaceMotion(
             housing.mesh.points[nodes], triangles.reshape(-1, 6), _motion_of(nodes, assembled, coordinates)
         ),
-        _points(housing, assembled, coordinates),
-        mounts if np.any(mounts) else None,
-        springs if np.any(springs) else None,
-        law.loss_factor if isinstance(law, MaterialDamping) else None,
+        points=_points(housing, assembled, coordinates),
+        mount_damping=mounts if np.any(mounts) else None,
+        mount_stiffness=springs if np.any(springs) else None,
+        loss_factor=law.loss_factor if isinstance(law, MaterialDamping) else None,
     )
 
 

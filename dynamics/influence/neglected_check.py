@@ -167,19 +167,19 @@ def _influence_of(system: System, on: bool, whole: LinearFigures, without: Linea
         room = [np.inf if mesh.coast is None else mesh.coast.backlash for mesh in system.scene.meshes]
         ripple = np.maximum(ripple, np.maximum(whole.parted - np.array(room), 0.0))
     return Influence(
-        mean,
-        ripple,
-        force,
-        _largest(mean, whole.mean),
-        _largest(ripple, whole.peak_to_peak),
-        _largest(force, np.max(whole.bearing_force, initial=0.0)),
-        whole.freedoms - without.freedoms,
-        whole.rows - without.rows,
-        on,
-        orders,
-        bearing_orders,
-        _by_order(orders, whole.orders),
-        _by_order(bearing_orders, whole.bearing_orders),
+        mean=mean,
+        peak_to_peak=ripple,
+        bearing_force=force,
+        relative_mean=_largest(mean, whole.mean),
+        relative_peak_to_peak=_largest(ripple, whole.peak_to_peak),
+        relative_bearing_force=_largest(force, np.max(whole.bearing_force, initial=0.0)),
+        freedoms=whole.freedoms - without.freedoms,
+        rows=whole.rows - without.rows,
+        on=on,
+        orders=orders,
+        bearing_orders=bearing_orders,
+        relative_orders=_by_order(orders, whole.orders),
+        relative_bearing_orders=_by_order(bearing_orders, whole.bearing_orders),
     )
 
 

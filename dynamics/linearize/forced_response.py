@@ -430,12 +430,12 @@ def _peak(
     frequency = float(sweep.frequency[at])
     near = sweep.natural_frequency[np.argmin(np.abs(sweep.natural_frequency - frequency))]
     return Peak(
-        quantity,
-        name,
-        float(sweep.order[at[1]]),
-        float(sweep.speed[at[0]]),
-        frequency,
-        amplitude,
-        float(gain[at]),
-        float(near),
+        quantity=quantity,
+        name=name,
+        order=float(sweep.order[at[1]]),
+        speed=float(sweep.speed[at[0]]),
+        frequency=frequency,
+        amplitude=amplitude,
+        amplification=float(gain[at]),
+        natural_frequency=float(near),
     )

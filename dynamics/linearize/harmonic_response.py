@@ -156,21 +156,21 @@ def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicRespo
     mesh_force, mean = _mesh_force(at, steady), linear.equilibrium.mesh_force
     order = steady.harmonics / at.period.counted
     return HarmonicResponse(
-        tuple(mesh.name for mesh in system.scene.meshes),
-        system.supports.name,
-        linear.freedom,
-        speed,
-        order,
-        steady.omega / (2.0 * math.pi),
-        steady.static,
-        np.ascontiguousarray(dte),
-        mesh_force,
-        _bearing_force(at, steady.omega, steady.displacement),
-        np.ascontiguousarray(np.moveaxis(steady.displacement, 2, 0)),
-        mean,
-        np.array([cycle.tangent[0, 0] for cycle in at.cycles]),
-        mean[:, None] + extremes(mesh_force, order)[0],
-        steady.residual,
+        mesh=tuple(mesh.name for mesh in system.scene.meshes),
+        bearing=system.supports.name,
+        freedom=linear.freedom,
+        speed=speed,
+        order=order,
+        frequency=steady.omega / (2.0 * math.pi),
+        static_transmission_error=steady.static,
+        dynamic_transmission_error=np.ascontiguousarray(dte),
+        mesh_force=mesh_force,
+        bearing_force=_bearing_force(at, steady.omega, steady.displacement),
+        displacement=np.ascontiguousarray(np.moveaxis(steady.displacement, 2, 0)),
+        mean_force=mean,
+        mean_stiffness=np.array([cycle.tangent[0, 0] for cycle in at.cycles]),
+        least_mesh_force=mean[:, None] + extremes(mesh_force, order)[0],
+        residual=steady.residual,
     )
 
 

@@ -97,16 +97,16 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
     free = arrays.reference.freedom >= 0
     names, strain, coefficient = _springs(system, time, balance.local.tangent)
     return LinearSystem(
-        system.freedoms.name,
-        arrays.scale,
-        arrays.mass,
-        balance.damping,
-        balance.stiffness,
-        arrays.reference.vector[free],
-        names,
-        strain,
-        coefficient,
-        start,
+        freedom=system.freedoms.name,
+        scale=arrays.scale,
+        mass=arrays.mass,
+        damping=balance.damping,
+        stiffness=balance.stiffness,
+        rigid=arrays.reference.vector[free],
+        spring=names,
+        strain=strain,
+        spring_stiffness=coefficient,
+        equilibrium=start,
     )
 
 
@@ -281,14 +281,14 @@ def natural_modes(system: System | LinearSystem, time: float = 0.0) -> Modes:
     still = omega == 0.0
     ratio = np.where(still, 0.0, damping / np.where(still, 1.0, 2.0 * omega))
     return Modes(
-        omega / (2.0 * math.pi),
-        ratio,
-        shape,
-        linear.freedom,
-        linear.scale,
-        linear.spring,
-        strain_shares(linear, shape, still),
-        shape * (shape @ linear.mass),
+        frequency=omega / (2.0 * math.pi),
+        damping_ratio=ratio,
+        shape=shape,
+        freedom=linear.freedom,
+        scale=linear.scale,
+        spring=linear.spring,
+        strain_energy=strain_shares(linear, shape, still),
+        kinetic_energy=shape * (shape @ linear.mass),
     )
 
 

@@ -139,13 +139,13 @@ def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
     frame = scene.frame_index(scene.shaft_index(shaft.name))
     planet = frame is not None and not on_axis(shaft, scene.shafts[frame])
     return Rotor(
-        shaft,
-        inertia,
-        center,
-        tuple(_damped(bushing, share, tilting) for bushing in bushings),
-        tuple(_damped(bearing, share, tilting) for bearing in bearings),
-        frame,
-        frame if planet else None,
+        shaft=shaft,
+        inertia=inertia,
+        center=center,
+        bushings=tuple(_damped(bushing, share, tilting) for bushing in bushings),
+        planet_bearings=tuple(_damped(bearing, share, tilting) for bearing in bearings),
+        frame=frame,
+        carrier=frame if planet else None,
     )
 
 

@@ -227,17 +227,17 @@ def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
         first = rows.stop
     groups += [(name, slice(SEAT * k, SEAT * k + SEAT)) for k, name in enumerate(order) if SEAT * k >= first]
     return Seats(
-        tuple(order),
-        np.array([list(names).index(name) for name in order], dtype=np.int64),
-        tuple(
+        name=tuple(order),
+        support=np.array([list(names).index(name) for name in order], dtype=np.int64),
+        frame=tuple(
             None if isinstance(part, PlanetBearing) else rotors[index].frame
             for index, part in (supports[name] for name in order)
         ),
-        tuple(groups),
-        motion,
-        stiffness,
-        damping,
-        preload,
+        group=tuple(groups),
+        motion=motion,
+        stiffness=stiffness,
+        damping=damping,
+        preload=preload,
     )
 
 

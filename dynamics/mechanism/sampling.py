@@ -156,16 +156,16 @@ def choose_sampling(scene: Scene, kinematics: Kinematics, mode: float) -> Sampli
     factor = max(LEAST_FACTOR, math.ceil(INNER_PER_PITCH * max(mesh, load) / rate))
     stop_band = STOP_BAND if outputs.anti_alias else 0.0
     return Sampling(
-        rate,
-        chosen,
-        mesh,
-        mode,
-        outputs.mesh_orders,
-        rate / PER_BAND,
-        rate - rate / PER_BAND,
-        stop_band,
-        factor * rate,
-        _taps(factor) if outputs.anti_alias else 2 * factor + 1,
+        rate=rate,
+        chosen=chosen,
+        mesh_frequency=mesh,
+        mode_frequency=mode,
+        mesh_orders=outputs.mesh_orders,
+        pass_frequency=rate / PER_BAND,
+        stop_frequency=rate - rate / PER_BAND,
+        stop_band=stop_band,
+        inner_rate=factor * rate,
+        taps=_taps(factor) if outputs.anti_alias else 2 * factor + 1,
     )
 
 

@@ -122,11 +122,11 @@ def gather_supports(rotors: Bodies, seated: frozenset[str]) -> Supports:
         if part.name in seated:
             stiffness[row], damping[row] = [0.0] * 3, [0.0] * 3
     return Supports(
-        tuple(part.name for part in parts),
-        (*(rotors[index].frame for index, _ in on_ground), *(None for _ in on_pins)),
-        np.array(rows).reshape(-1, 3, column_count(rotors)),
-        np.array(seats).reshape(-1, 3, column_count(rotors)),
-        np.array(stiffness).reshape(-1, 3),
-        np.array(damping).reshape(-1, 3),
-        np.array(errors).reshape(-1, 3),
+        name=tuple(part.name for part in parts),
+        frame=(*(rotors[index].frame for index, _ in on_ground), *(None for _ in on_pins)),
+        motion=np.array(rows).reshape(-1, 3, column_count(rotors)),
+        seat=np.array(seats).reshape(-1, 3, column_count(rotors)),
+        stiffness=np.array(stiffness).reshape(-1, 3),
+        damping=np.array(damping).reshape(-1, 3),
+        error=np.array(errors).reshape(-1, 3),
     )

@@ -152,15 +152,15 @@ def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
     ]
     period = np.array([float(table.period) for table in tables])
     packed = PackedTables(
-        np.array(offset, dtype=np.int64).reshape(-1, 6),
-        np.array([float(table.position[0]) for table in tables]),
-        period,
-        np.array([float(part.bucket.size) for part in parts]) / period,
-        np.concatenate([*(part.knot for part in parts), np.empty(0)]),
-        np.concatenate([*(part.bucket for part in parts), np.empty(0, dtype=np.int64)]),
-        np.concatenate([*(part.row for part in parts), np.empty((0, 8))]),
-        np.concatenate([*(part.level for part in parts), np.empty(0)]),
-        np.concatenate([*(part.energy for part in parts), np.empty((0, ORDER + 1))]),
+        offset=np.array(offset, dtype=np.int64).reshape(-1, 6),
+        shift=np.array([float(table.position[0]) for table in tables]),
+        period=period,
+        density=np.array([float(part.bucket.size) for part in parts]) / period,
+        knot=np.concatenate([*(part.knot for part in parts), np.empty(0)]),
+        bucket=np.concatenate([*(part.bucket for part in parts), np.empty(0, dtype=np.int64)]),
+        row=np.concatenate([*(part.row for part in parts), np.empty((0, 8))]),
+        level=np.concatenate([*(part.level for part in parts), np.empty(0)]),
+        energy=np.concatenate([*(part.energy for part in parts), np.empty((0, ORDER + 1))]),
     )
     return by_address(packed)
 

@@ -101,14 +101,14 @@ def stiffness_table(stiffness: PeriodicCurve, error: PeriodicCurve | None = None
     twice = np.ones((1, 1, 1, 2))
     level = np.array([0.0, LEVEL])
     return PlainTable(
-        position,
-        level,
-        np.zeros(1),
-        np.zeros(1),
-        e[:, None] + level / k[:, None] + 0.0 * twice,
-        e_slope[:, None] - level * (k_slope / k**2)[:, None] + 0.0 * twice,
-        k[:, None] * twice,
-        k_slope[:, None] * twice,
+        position=position,
+        level=level,
+        misalignment=np.zeros(1),
+        center_distance_change=np.zeros(1),
+        deflection=e[:, None] + level / k[:, None] + 0.0 * twice,
+        deflection_slope=e_slope[:, None] - level * (k_slope / k**2)[:, None] + 0.0 * twice,
+        stiffness=k[:, None] * twice,
+        stiffness_slope=k_slope[:, None] * twice,
     )
 
 

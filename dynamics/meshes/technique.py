@@ -54,15 +54,15 @@ def table_at(table: MeshTable, misalignment: float, center_distance_change: floa
     levers = {name: here(name) for name in LEVERS if getattr(table, name, None) is not None}
 
     return PlainTable(
-        np.asarray(table.position, dtype=float),
-        np.asarray(table.level, dtype=float),
-        np.array([misalignment]),
-        np.array([center_distance_change]),
-        here("deflection"),
-        here("deflection_slope"),
-        here("stiffness"),
-        here("stiffness_slope"),
-        table.period,
+        position=np.asarray(table.position, dtype=float),
+        level=np.asarray(table.level, dtype=float),
+        misalignment=np.array([misalignment]),
+        center_distance_change=np.array([center_distance_change]),
+        deflection=here("deflection"),
+        deflection_slope=here("deflection_slope"),
+        stiffness=here("stiffness"),
+        stiffness_slope=here("stiffness_slope"),
+        period=table.period,
         **levers,
     )
 
@@ -92,15 +92,15 @@ def secant_table(table: PlainTable, force: float) -> PlainTable:
         return np.stack([first, second], axis=-1)[None, None]
 
     return PlainTable(
-        position,
-        np.array([0.0, force]),
-        table.misalignment,
-        table.center_distance_change,
-        shaped(zero, ste),
-        shaped(zero, slope),
-        shaped(stiffness, stiffness),
-        shaped(stiffness_slope, stiffness_slope),
-        table.period,
+        position=position,
+        level=np.array([0.0, force]),
+        misalignment=table.misalignment,
+        center_distance_change=table.center_distance_change,
+        deflection=shaped(zero, ste),
+        deflection_slope=shaped(zero, slope),
+        stiffness=shaped(stiffness, stiffness),
+        stiffness_slope=shaped(stiffness_slope, stiffness_slope),
+        period=table.period,
         **{
             name: np.repeat(values @ weight, 2, axis=-1)
             for name in LEVERS
@@ -135,15 +135,15 @@ def table_at_operating_point(
         return np.asarray(values[None, None])
 
     return PlainTable(
-        np.asarray(table.position, dtype=float),
-        np.asarray(table.level, dtype=float),
-        np.array([misalignment]),
-        np.array([center_distance_change]),
-        here("deflection", 0),
-        here("deflection", 1),
-        here("stiffness", 0),
-        here("stiffness", 1),
-        table.period,
+        position=np.asarray(table.position, dtype=float),
+        level=np.asarray(table.level, dtype=float),
+        misalignment=np.array([misalignment]),
+        center_distance_change=np.array([center_distance_change]),
+        deflection=here("deflection", 0),
+        deflection_slope=here("deflection", 1),
+        stiffness=here("stiffness", 0),
+        stiffness_slope=here("stiffness", 1),
+        period=table.period,
     )
 
 
@@ -172,15 +172,15 @@ def mirrored(table: MeshTable, thickness: float) -> PlainTable:
         return np.ascontiguousarray(np.take(values, order, axis=-2))
 
     return PlainTable(
-        position[order],
-        table.level,
-        table.misalignment,
-        table.center_distance_change,
-        turned(table.deflection),
-        -turned(table.deflection_slope),
-        turned(table.stiffness),
-        -turned(table.stiffness_slope),
-        table.period,
+        position=position[order],
+        level=table.level,
+        misalignment=table.misalignment,
+        center_distance_change=table.center_distance_change,
+        deflection=turned(table.deflection),
+        deflection_slope=-turned(table.deflection_slope),
+        stiffness=turned(table.stiffness),
+        stiffness_slope=-turned(table.stiffness_slope),
+        period=table.period,
         **{name: turned(values) for name in LEVERS if (values := getattr(table, name, None)) is not None},
         **{
             name: np.array([1.0, -1.0]).reshape(2, 1, 1, 1, 1) * turned(values)

@@ -190,14 +190,14 @@ class PlanetarySet:
     def _gear(self, name: str, member: int, inertia: Inertia, hand: float) -> GearBody:
         """Return a gear; sun and planets are of opposite hand, planets and ring of the same."""
         return GearBody(
-            self.called(name),
-            self.called(name),
-            self.face_width / 2.0,
-            self.teeth[member],
-            self.base_radius[member],
-            self.face_width,
-            hand * self.base_helix_angle,
-            inertia,
+            name=self.called(name),
+            shaft=self.called(name),
+            position=self.face_width / 2.0,
+            teeth=self.teeth[member],
+            base_radius=self.base_radius[member],
+            face_width=self.face_width,
+            base_helix_angle=hand * self.base_helix_angle,
+            inertia=inertia,
             internal=member == 2,
         )
 
