@@ -39,7 +39,10 @@ def micro_geometry(gear: Toothing, loaded: LoadedFlank) -> Table:
         else:
             rest.append(entry)
     if rest:
-        raster = _rasterized(place, rest)
+        for count in _COUNTS:
+            raster = _on_grid(place, rest, count)
+            if raster.difference <= _ALLOWED:
+                break
         fields["flank_grid"] = raster.table
         lines = f"{raster.counts[0]} roll lengths by {raster.counts[1]} face positions"
         words = f"{', '.join(entry.part.name for entry in rest)} on {lines}; differs by at most"
@@ -102,6 +105,7 @@ def _tip_edge(place: FlankPlace, flank: Part) -> Table:
 
 
 _COUNTS = (17, 33, 65, 129)
+"""Lines each way: the grid is refined until it differs from the sum of modifications by less than allowed."""
 _ALLOWED = 0.05e-6  # m; a tenth of what a gear measuring machine resolves
 _SAMPLE = 65
 _BETWEEN = 4  # places between two nodes at which the difference is taken
@@ -109,24 +113,11 @@ _BETWEEN = 4  # places between two nodes at which the difference is taken
 
 @dataclass(frozen=True)
 class _Raster:
-    """A free-form flank and its largest difference in m from what it stands for."""
+    """A free-form flank, its lines, and the largest difference (m) on a grid four times as fine."""
 
     table: dict[str, Any]
     difference: float
     counts: tuple[int, int]
-
-
-def _rasterized(place: FlankPlace, modifications: Sequence[Modification]) -> _Raster:
-    """Return the sum of modifications on a grid over the involute and the face.
-
-    The grid is refined until it differs from the sum by less than 0.05 um, or has 129 lines each way. The
-    difference is the largest on a grid four times as fine.
-    """
-    for count in _COUNTS:
-        raster = _on_grid(place, modifications, count)
-        if raster.difference <= _ALLOWED:
-            break
-    return raster
 
 
 def _on_grid(place: FlankPlace, modifications: Sequence[Modification], count: int) -> _Raster:

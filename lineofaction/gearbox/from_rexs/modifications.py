@@ -189,12 +189,19 @@ class _Growth:
 
 
 def _profile_relief(place: FlankPlace, part: Part) -> Modification:
-    """Return a tip or root relief by the type of its component: it runs to one end of the involute."""
+    """Return a tip or root relief by the type of its component: it runs to one end of the involute.
+
+    It starts at its diameter, or its length before the end.
+    """
     name = part.type
     end = place.tip if name == "tip_relief" else place.root
     depth = part.required(f"{name}_depth", f"{name}_um")
     shape = _shape_of(part)
-    start = _relief_start(place, part, end)
+    start = place.roll_length(part, f"{name}_datum_diameter", f"{name}_length_mm")
+    if start is None:
+        length = part.required(f"{name}_datum_length", f"{name}_length_mm, from a roll length")
+        towards_end = place.towards_tip if end == place.tip else -place.towards_tip
+        start = end - towards_end * abs(length)
     item = f"{name}_evaluation_reference"
     growth = _Growth(depth, shape, start, place.stated_roll(part, item, f"{item}_length", end))
     if not (growth.stated - start) * (end - start) > 0.0:
@@ -208,17 +215,6 @@ def _profile_relief(place: FlankPlace, part: Part) -> Modification:
         )
     fields = growth.fields(place, name, end, place.radial(start, end))
     return Modification(part, lambda roll, _face: growth.at(roll), fields, rolls=(start,))
-
-
-def _relief_start(place: FlankPlace, part: Part, end: float) -> float:
-    """Return the roll length where a relief starts: of its diameter, or its length before the end."""
-    name = part.type
-    start = place.roll_length(part, f"{name}_datum_diameter", f"{name}_length_mm")
-    if start is not None:
-        return start
-    length = part.required(f"{name}_datum_length", f"{name}_length_mm, from a roll length")
-    towards_end = place.towards_tip if end == place.tip else -place.towards_tip
-    return end - towards_end * abs(length)
 
 
 def _transition(place: FlankPlace, part: Part, growth: _Growth) -> tuple[float, float] | None:

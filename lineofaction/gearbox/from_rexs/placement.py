@@ -259,7 +259,7 @@ class PlacedShaft:
 
 
 def _rows(shaft: Part) -> Iterator[tuple[float, BeamSection]]:
-    """Yield u of the left end and the section of each piece, one after the other."""
+    """Yield u of the left end and the section of each piece, one after the other; state other places."""
     pieces = [
         (part.number("u_coordinate_on_shaft", "left end of the section, mm"), part)
         for part in shaft.children("shaft_section")
@@ -270,19 +270,14 @@ def _rows(shaft: Part) -> Iterator[tuple[float, BeamSection]]:
     sections = [_section(shaft, part) for _, part in pieces]
     summed = list(accumulate((section.length for section in sections), initial=first))[:-1]
     for (_, part), at, section in zip(pieces, summed, sections, strict=True):
-        _say_place(part, at)
+        item = "u_coordinate_on_shaft"
+        stated = part.number(item, "left end of the section, mm")
+        derived = f"{at * 1e3:.6g} mm, the sum of the lengths before it"
+        if stated is None:
+            part.say(item, "derived", derived)
+        elif abs(stated - at) > SAME_PLACE:
+            part.say(item, "refused", f"{stated * 1e3:.6g} mm leaves a gap or overlaps; taken: {derived}")
         yield at, section
-
-
-def _say_place(part: Part, at: float) -> None:
-    """State where a section begins if the file does not say so, or says something else."""
-    item = "u_coordinate_on_shaft"
-    stated = part.number(item, "left end of the section, mm")
-    derived = f"{at * 1e3:.6g} mm, the sum of the lengths before it"
-    if stated is None:
-        part.say(item, "derived", derived)
-    elif abs(stated - at) > SAME_PLACE:
-        part.say(item, "refused", f"{stated * 1e3:.6g} mm leaves a gap or overlaps; taken: {derived}")
 
 
 def _section(shaft: Part, part: Part) -> BeamSection:
