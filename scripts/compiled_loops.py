@@ -20,7 +20,6 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
@@ -102,18 +101,12 @@ def _key(source: Path, root: Path) -> str:
         path = waiting.pop()
         if path not in seen:
             seen.add(path)
-            waiting.extend(_imports(path, root, _text(path)))
+            waiting.extend(file for name in imported(path) if (file := _file_of(name, root)) is not None)
     facts = [sys.version, *(version(name) for name in ("numba", "llvmlite", "numpy"))]
     sums = hashlib.sha256("\0".join(facts).encode())
     for path in sorted(seen):
         sums.update(f"\0{path.relative_to(root).as_posix()}\0{_text(path)}".encode())
     return sums.hexdigest()
-
-
-@cache
-def _imports(path: Path, root: Path, _text: str) -> tuple[Path, ...]:
-    """Return the files of the project that a file of this text imports."""
-    return tuple(file for name in imported(path) if (file := _file_of(name, root)) is not None)
 
 
 def _file_of(name: str, root: Path) -> Path | None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import sys
 from collections.abc import Iterator
+from functools import cache
 from html import escape
 from pathlib import Path
 
@@ -37,9 +38,18 @@ def files_of(house: str) -> list[Path]:
     return sorted((ROOT / house.replace(".", "/")).rglob("*.py"))
 
 
-def imported(file: Path) -> Iterator[str]:
-    """Yield the names of the modules that a file imports, on demand too."""
-    for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+def imported(file: Path) -> tuple[str, ...]:
+    """Return the names of the modules that a file imports, on demand too."""
+    return _imports(file.read_text("utf-8"))
+
+
+@cache
+def _imports(code: str) -> tuple[str, ...]:
+    return tuple(_imported(ast.parse(code)))
+
+
+def _imported(tree: ast.Module) -> Iterator[str]:
+    for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.module and not node.level:
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
         elif isinstance(node, ast.Import):

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import cbor2
-import jsonschema
+import jsonschema_rs
 import pytest
 from described_api import DESCRIPTION
 from fastapi.testclient import TestClient
@@ -62,7 +62,7 @@ def schemas(part: Any) -> Iterator[dict[str, Any]]:
 
 def conforms(example: Any, schema: dict[str, Any]) -> None:
     """Check an example against its schema."""
-    jsonschema.validate(example, {"components": DESCRIPTION["components"], **schema})
+    jsonschema_rs.validate({"components": DESCRIPTION["components"], **schema}, example)
 
 
 def test_every_reference_leads_somewhere() -> None:

@@ -10,7 +10,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-import jsonschema
 import numpy as np
 import pytest
 from lxml import etree
@@ -229,6 +228,8 @@ def test_what_is_written_of_every_form_is_valid() -> None:
 
 def _validate(document: Document) -> None:
     """Validate both forms against the published schemas, as they are but for the three numbers of 2.0.0."""
+    import jsonschema  # noqa: PLC0415 (a second that each worker would pay)
+
     schema = etree.XMLSchema(etree.parse(reference("schema/rexs-file.xsd")))
     schema.assertValid(etree.fromstring(serialized(document, "a.rexs")))
     two_numbers = re.sub(r"^2\.0\.0$", "2.0", document.model.version)
