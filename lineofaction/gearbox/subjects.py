@@ -135,8 +135,7 @@ def portable_scene(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInpu
         if mesh.database_file is not None:
             advice = "Give case_file or database_hash, or run the scene here without a service."
             raise BadInput.of(f"{field}.database_file", mesh.database_file, "left out for a service", advice)
-        case = case_of_mesh(mesh, field, folder)
-        meshes.append(mesh.model_copy(update={"case": case, "case_file": None}))
+        meshes.append(with_case(mesh, field, folder))
     return without_modes_files(scene.model_copy(update={"meshes": tuple(meshes)}))
 
 

@@ -192,11 +192,9 @@ def _face(foot: HousingFootInput) -> Plane | Box | BoundedPlane | Group:
         plane = Plane(_si(foot.point_mm), _vector(foot.normal))
     if foot.low_mm is not None and foot.high_mm is not None:
         box = Box(_si(foot.low_mm), _si(foot.high_mm))
-    if plane is not None and box is not None:
-        return BoundedPlane(plane, box)
-    face = plane or box
-    assert face is not None  # the schema comes first
-    return face
+        return box if plane is None else BoundedPlane(plane, box)
+    assert plane is not None  # the schema comes first
+    return plane
 
 
 def _si(point: tuple[float, ...]) -> Vector:

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import Field, create_model
 
-from bounds import Choice, Declared, Direction, Interval, Kind, Unit, declarations
+from bounds import Choice, Declared, Interval, Kind, Unit, declarations
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.units import BY_SUFFIX, as_typed, suffix_of
 
@@ -89,7 +89,8 @@ class Figure:
 
     def as_field(self) -> tuple[Any, Any]:
         """Return type and field of a model that has it with its default."""
-        extra: Any = {"x-kind": self.what.kind.value, "x-along": _names(self.what.along)}
+        along = [direction.name.lower() for direction in self.what.along if direction.name]
+        extra: Any = {"x-kind": self.what.kind.value, "x-along": along}
         field = Field(
             default=... if self.default is MISSING else self.own(self.default),
             description=self.with_unit(self.what.description),
@@ -135,7 +136,11 @@ def parts_in(parts: Mapping[str, Declared]) -> Fields:
     return {
         name: (
             _model_of(fact.part) | None,
-            Field(default=None, description=fact.description, examples=[_example(fact.part)]),
+            Field(
+                default=None,
+                description=fact.description,
+                examples=[{own.field: own.own(own.what.example) for own in figures(fact.part)}],
+            ),
         )
         for name, fact in parts.items()
         if fact.part is not None
@@ -149,10 +154,6 @@ def _model_of(part: Any) -> Any:
     return create_model(name, __base__=BoundaryModel, __module__=__name__, __doc__=doc, **facts)
 
 
-def _example(part: type) -> dict[str, Any]:
-    return {figure.field: figure.own(figure.what.example) for figure in figures(part)}
-
-
 def with_fields(further: Fields) -> Callable[[type[Model]], type[Model]]:
     """Return a decorator that adds fields, as (type, field) by name, to a model."""
 
@@ -163,7 +164,3 @@ def with_fields(further: Fields) -> Callable[[type[Model]], type[Model]]:
         )
 
     return added
-
-
-def _names(along: Direction) -> list[str]:
-    return [direction.name.lower() for direction in along if direction.name]

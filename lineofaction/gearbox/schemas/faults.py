@@ -143,10 +143,6 @@ def _bound(item: Mapping[str, Any], info: FieldInfo | None) -> str:
         return f"{_KINDS[kind]}, each {span}" if kind in _LISTS and span else f"{_KINDS[kind]} {span}".strip()
     if kind in ("greater_than", "greater_than_equal", "less_than", "less_than_equal"):
         return span or _range({name: context[name] for name in _LIMITS if name in context})
-    return _other_bound(kind, context, str(item.get("msg", "")))
-
-
-def _other_bound(kind: str, context: Mapping[str, Any], message: str) -> str:
     texts: dict[str, Callable[[], str]] = {
         "missing": lambda: "given",
         "extra_forbidden": lambda: "left out: there is no such field here",
@@ -157,16 +153,18 @@ def _other_bound(kind: str, context: Mapping[str, Any], message: str) -> str:
         "string_too_long": lambda: f"a text of at most {context['max_length']} characters",
         "string_pattern_mismatch": lambda: f"a text of the form {context['pattern']}",
     }
-    return texts[kind]() if kind in texts else f"valid ({message})"
+    return texts[kind]() if kind in texts else f"valid ({item.get('msg', '')})"
 
 
 def _suggestion(
     item: Mapping[str, Any], parent: type[BaseModel] | None, info: FieldInfo | None, loc: Loc
 ) -> str:
     """Say what to try: the nearest known name, or the field's description with an example."""
-    if item["type"] == "extra_forbidden" and parent is not None:
-        return _nearest(str(loc[-1]), list(parent.model_fields))
-    return _described(info)
+    if item["type"] != "extra_forbidden" or parent is None:
+        return _described(info)
+    known = list(parent.model_fields)
+    close = difflib.get_close_matches(str(loc[-1])[:_LONGEST_GUESS], known, n=1)
+    return f"Did you mean {close[0]}?" if close else f"Known here: {', '.join(known)}."
 
 
 def field_advice(model: type[BaseModel], field: str) -> str:
@@ -180,8 +178,3 @@ def _described(info: FieldInfo | None) -> str:
         return ""
     example = f"For example {info.examples[0]!r}" if info.examples else ""
     return "".join(f"{part}. " for part in (info.description, example) if part).rstrip()
-
-
-def _nearest(name: str, known: Sequence[str]) -> str:
-    close = difflib.get_close_matches(name[:_LONGEST_GUESS], known, n=1)
-    return f"Did you mean {close[0]}?" if close else f"Known here: {', '.join(known)}."

@@ -92,12 +92,7 @@ Contents: TypeAlias = dict[tuple[str, Path], Content]
 def _with_housing_files(table: Table, find: Find, read: Collection[str]) -> Table:
     """Return the table of a scene with the content of the housings' files in place of their names.
 
-    Parameters
-    ----------
-    table : dict
-    find : callable
-    read : collection of str
-        The fields whose files are read: `READERS`, or `SENT` of files that came over HTTP.
+    Files of the fields `read` are: `READERS`, or `SENT` of files that came over HTTP.
     """
     housings = table.get("housings")
     if not isinstance(housings, list):
@@ -111,8 +106,10 @@ def _written_out(
     housing: object, find: Find, read: Collection[str], contents: Contents, index: int
 ) -> object:
     """One housing with the content of its file, which is read once however often it is named."""
-    named = [field for field in READERS if isinstance(housing, dict) and not _is_content(housing.get(field))]
-    if not isinstance(housing, dict) or not named:
+    if not isinstance(housing, dict):
+        return housing
+    named = [field for field in READERS if not isinstance(housing.get(field), dict | None)]
+    if not named:  # its files are left out, or written out already
         return housing
     field, name = f"housings[{index}].{named[0]}", housing[named[0]]
     if not isinstance(name, str):
@@ -128,11 +125,6 @@ def _written_out(
         contents[named[0], file] = READERS[named[0]](file, field)
     below, above = contents[named[0], file]
     return below | own | above
-
-
-def _is_content(value: object) -> bool:
-    """Whether nothing names a file: it is left out, or written out already."""
-    return value is None or isinstance(value, dict)
 
 
 def _matrices(file: Path, field: str) -> Content:
@@ -206,18 +198,9 @@ _HELP = "See docs/case-file.md: one row per node, in any order."
 def _with_flank_grids(
     table: Table, find: Find, read_text: Callable[[Path, str], str], prefix: str = ""
 ) -> dict[str, Any]:
-    """Return `table` with `flank_grid` in place of every `flank_grid_csv`, at any depth.
+    """Return `table`, which stands at `prefix` in its file, with `flank_grid` for every `flank_grid_csv`.
 
-    Parameters
-    ----------
-    table : dict
-        A case or scene as read from a file.
-    find : callable
-        Returns where the CSV file of a name is.
-    read_text : callable
-        Returns the text of a file, given its name for errors, or raises `BadInput`.
-    prefix : str
-        Where `table` stands in the file, for errors.
+    `read_text` returns the text of a file, by its name for errors, or raises `BadInput`.
     """
     resolved = {key: _inside(value, find, read_text, _joined(prefix, key)) for key, value in table.items()}
     if FIELD not in table:
@@ -292,7 +275,12 @@ def _nodes(text: str) -> dict[tuple[float, float], float]:
     rows = [(n, line) for n, line in lines if line.strip() and not line.lstrip().startswith("#")]
     if not rows:
         raise ValueError(f"a CSV file with the columns {', '.join(COLUMNS)}; it is empty")
-    order = _order(_cells(rows[0][1]))
+    heading = _cells(rows[0][1])
+    if sorted(heading) != sorted(COLUMNS):
+        raise ValueError(
+            f"a CSV file whose heading is {','.join(COLUMNS)} in any order, with commas; it is {heading}"
+        )
+    order = [heading.index(column) for column in COLUMNS]
     nodes: dict[tuple[float, float], float] = {}
     for number, line in rows[1:]:
         roll, face, removed = _row(_cells(line), order, number)
@@ -304,15 +292,6 @@ def _nodes(text: str) -> dict[tuple[float, float], float]:
 
 def _cells(line: str) -> list[str]:
     return [cell.strip() for cell in next(csv.reader([line]))]
-
-
-def _order(heading: list[str]) -> list[int]:
-    """Return where the columns stand."""
-    if sorted(heading) != sorted(COLUMNS):
-        raise ValueError(
-            f"a CSV file whose heading is {','.join(COLUMNS)} in any order, with commas; it is {heading}"
-        )
-    return [heading.index(column) for column in COLUMNS]
 
 
 def _row(cells: list[str], order: list[int], number: int) -> list[float]:

@@ -15,11 +15,7 @@ ONE, MANY = Tag("[one]"), Tag("[many]")
 """Marks of the two types; names in brackets are left out of what a fault is called."""
 
 
-def _shape(value: object) -> str:
-    return (MANY if isinstance(value, list | tuple) else ONE).tag
-
-
-ONE_OR_MANY = Discriminator(_shape)
+ONE_OR_MANY = Discriminator(lambda value: (MANY if isinstance(value, list | tuple) else ONE).tag)
 """Chooses the type by the value, so that a fault is that of the type that was meant."""
 
 

@@ -135,7 +135,10 @@ class SceneInput(BoundaryModel):
     def _parts_exist(self) -> Self:
         """Names are unique, and every part names parts that exist."""
         for kind in _with_field("name"):
-            _refuse_repeated(kind, [part.name for part in getattr(self, kind)])
+            names = [part.name for part in getattr(self, kind)]
+            for index, name in enumerate(names):
+                if name in names[:index]:
+                    refuse(f"{kind}[{index}].name", name, "a name that no other one of them has")
         shafts = [shaft.name for shaft in self.shafts]
         for kind in _with_field("shaft"):
             for index, part in enumerate(getattr(self, kind)):
@@ -178,12 +181,6 @@ def _further_shafts(scene: SceneInput) -> Iterator[tuple[str, str]]:
             for name in names:
                 if getattr(part, name) is not None:
                     yield f"{kind}[{index}].{name}", getattr(part, name)
-
-
-def _refuse_repeated(kind: str, names: list[str]) -> None:
-    for index, name in enumerate(names):
-        if name in names[:index]:
-            refuse(f"{kind}[{index}].name", name, "a name that no other one of them has")
 
 
 def _refuse_unknown(field: str, name: str, known: list[str]) -> None:

@@ -187,8 +187,10 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
         raise NotImplementedError
 
 
-class CaseStudy(Computation[CheckedCase, CheckedCase, Inputs, Answer, Result]):
-    """The work of a study of a case."""
+CaseStudy = Computation[CheckedCase, CheckedCase, Inputs, Answer, Result]
+"""The work of a study of a case."""
+SceneStudy = Computation[SceneInput, TabledScene, Inputs, Answer, Result]
+"""The work of a study of a scene with the tables of its meshes."""
 
 
 class PointStudy(CaseStudy[FlankPoint, Answer, Result]):
@@ -205,7 +207,3 @@ class PointStudy(CaseStudy[FlankPoint, Answer, Result]):
     def normalized(self, _case: CheckedCase, _inputs: FlankPoint) -> Json:
         """Return nothing: the case has all of it."""
         return {}
-
-
-class SceneStudy(Computation[SceneInput, TabledScene, Inputs, Answer, Result]):
-    """The work of a study of a scene with the tables of its meshes."""

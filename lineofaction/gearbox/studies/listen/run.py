@@ -149,10 +149,6 @@ class SceneHousings:
                 self.housings[owners[0]], run, point, axis, bearings=self.bearings[owners[0]]
             )
 
-    def strangers(self, run: RunResult) -> tuple[str, ...]:
-        """Return the names of housings in which a run did not move: its forces lack what they do to them."""
-        return other_housings([scene_housing(body, name) for name, body in self.housings.items()], run)
-
 
 def _require_point(point: str, names: Sequence[str]) -> None:
     """Refuse a point that is not one of the names, or several; raises `BadInput`."""
@@ -211,13 +207,11 @@ class HeardRun:
     @property
     def warnings(self) -> list[Json]:
         """Warnings of housings that the scene of the run did not have so."""
-        message = (
-            'run {}: it did not move in housing "{}" as the scene has it; its forces lack what that does'
+        lacking = "as the scene has it; its forces lack what that does"
+        messages = (
+            f'run {self.run}: it did not move in housing "{name}" {lacking}' for name in self.other_housings
         )
-        return [
-            {"check": "other_housing", "message": message.format(self.run, name)}
-            for name in self.other_housings
-        ]
+        return [{"check": "other_housing", "message": message} for message in messages]
 
 
 def heard_run(name: str, run: RunResult, housings: SceneHousings, receiver: Receiver) -> HeardRun:
@@ -235,7 +229,8 @@ def heard_run(name: str, run: RunResult, housings: SceneHousings, receiver: Rece
     else:
         recording = housings.pressure(run, receiver.microphone_mm)
         figures = sound_figures(recording, run)
-    return HeardRun(name, recording, figures, housings.strangers(run), time - time[0], speed)
+    own = [scene_housing(body, part) for part, body in housings.housings.items()]
+    return HeardRun(name, recording, figures, other_housings(own, run), time - time[0], speed)
 
 
 def recording_facts(recording: Recording) -> Json:

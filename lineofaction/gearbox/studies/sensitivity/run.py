@@ -25,9 +25,6 @@ from lineofaction.gearbox.units import UM
 from model_studies import Progress
 from model_studies.netcdf import NetcdfContent, Variable
 
-# Sensitivity studies of pairs, and their netCDF-4 files.
-
-
 FORMAT = "lineofaction sensitivity study"
 SCHEMA_VERSION = 1
 _AXES = ("misalignment", "center_distance_change")
