@@ -61,17 +61,10 @@ STATIC = 1.0
 
 @dataclass(frozen=True)
 class _Leader:
-    """The leading shaft of a scene.
+    """The leading shaft of a scene: its law in the kinematic motion, its speed in the scene, its sense.
 
-    Attributes
-    ----------
-    law : int
-        Its law among those of the kinematic motion.
-    shaft : str
-    speed : float
-        In the scene, rad/s about +z, of largest size; 0 where a free rotation starts from rest.
-    forward : int
-        Its sense about +z.
+    `speed` is in rad/s about +z, of largest size, 0 where a free rotation starts from rest; `forward` is +1
+    or -1.
     """
 
     law: int

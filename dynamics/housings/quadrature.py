@@ -14,14 +14,7 @@ ORDER = 4
 
 
 class _ShapeFunctions(NamedTuple):
-    """Shape functions on the reference element: points p, nodes a, local directions k.
-
-    Attributes
-    ----------
-    weight : (p,) array
-    shape : (a, p) array
-    slope : (a, k, p) array
-    """
+    """Weights (p,), shapes (a, p) and slopes (a, k, p) at points p of nodes a along local directions k."""
 
     weight: FloatArray
     shape: FloatArray

@@ -31,18 +31,10 @@ LOADS = 6
 
 @dataclass(frozen=True)
 class _OperatingCondition:
-    """Speeds under one load.
+    """Speeds (S,) of the leading law, rad/s, > 0, rising, under the loads at a `time`, s.
 
-    Attributes
-    ----------
-    time : float
-        When the loads act, s.
-    speed : (S,) array
-        Of the leading law, rad/s, > 0, rising.
-    rate : (S,) array
-        How fast it changes, rad/s^2, >= 0.
-    weight : (S,) array
-        Part of the run at each, all conditions together 1.
+    `rate` (S,) is how fast they change, rad/s^2, >= 0, `weight` (S,) the part of the run at each; all
+    conditions together have 1.
     """
 
     time: float

@@ -21,12 +21,8 @@ from dynamics.types import ComplexArray, FloatArray, IntArray
 class _SpeedMatrices:
     """P(s, W) = s^2 M + s (C + W G) + K + W S + W^2 T of n freedoms in meters, W the leading law's speed.
 
-    Gyroscopic terms grow with the speed, centripetal ones with its square, dampers across frames with it.
-
-    Attributes
-    ----------
-    mass, damping, stiffness, gyroscopic, swept, centripetal : (n, n) arrays
-        M, C, K, G, S, T.
+    Gyroscopic terms G grow with the speed, centripetal ones T with its square, dampers across frames (S) with
+    it.
     """
 
     mass: FloatArray
@@ -135,15 +131,9 @@ class _Crossing(NamedTuple):
 
 @dataclass(frozen=True)
 class _Between:
-    """Two speeds between which a mode meets a line of `rate` Hz per rad/s.
+    """Two speeds, rad/s, between which a mode of `shape` (2, n) meets a line of `rate` Hz per rad/s.
 
-    Attributes
-    ----------
-    speed, gap : (2,) arrays
-        rad/s; frequency of the mode less that of the line, Hz.
-    frequency, damping_ratio : (2,) arrays
-    shape : (2, n) complex array
-    rate : float
+    `gap` (2,) is the frequency of the mode less that of the line, Hz.
     """
 
     speed: FloatArray

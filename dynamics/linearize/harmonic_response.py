@@ -225,15 +225,10 @@ LEAST_ORDERS = 8
 
 @dataclass(frozen=True)
 class _Family:
-    """Meshes that pass equally many base pitches in the common period, on tables of one pitch.
+    """Meshes (f,) that pass equally many base pitches in the common period, on tables of one pitch.
 
-    Attributes
-    ----------
-    meshes : (f,) int array
-    harmonic : (H,) int array
-        Of the harmonics 1 to H of the mesh frequency among those of the vibration.
-    stiffness : (f, 4 H + 1) complex array
-        Fourier coefficients -2 H to 2 H of the tangent stiffness less its mean, N/m.
+    `harmonic` (H,) are the harmonics 1 to H of their frequency among those of the vibration, `stiffness`
+    (f, 4 H + 1) the Fourier coefficients -2 H to 2 H of the tangent stiffness less its mean, N/m.
     """
 
     meshes: IntArray

@@ -90,18 +90,9 @@ def full_matrix(matrix: Matrix | None, torsional: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class _FrameCoupling:
-    """One coupling across frames.
+    """One coupling across frames: its index in the scene and its rotors, that in the fixed frame first.
 
-    Attributes
-    ----------
-    coupling : int
-        Its index in the scene.
-    first, second : int
-        Rotors: that in the fixed frame first, if there is one.
-    height : float
-        Where it acts on both, along z, m.
-    directions : int
-        2: across the axis alone; 4: tilts too.
+    It acts on both at the `height` along z, m, in 2 `directions`, across the axis alone, or 4: tilts too.
     """
 
     coupling: int

@@ -21,15 +21,9 @@ from dynamics.types import BoolArray, FloatArray, IntArray
 
 @dataclass(frozen=True)
 class _ReducedBody:
-    """Interface freedoms first, then amplitudes of modes of unit modal mass with the interface held.
+    """Interface freedoms first, then amplitudes of b modes of unit modal mass with the interface held.
 
-    Attributes
-    ----------
-    motion : (n, a + b) array
-        Freedoms of the body per reduced freedom.
-    mass, stiffness : (a + b, a + b) arrays
-    frequency : (b,) array
-        Of the modes kept, Hz.
+    `motion` (n, a + b) is that of the body's freedoms per reduced one; `frequency` (b,) is in Hz.
     """
 
     motion: FloatArray
