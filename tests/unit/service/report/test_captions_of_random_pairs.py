@@ -305,6 +305,7 @@ def computed() -> list[GearPair]:
 
 
 @pytest.mark.law
+@pytest.mark.usefixtures("coarse_sectors")
 @pytest.mark.parametrize("pair", computed(), ids=["spur", "relieved", "helical"])
 def test_findings_are_true_of_computed_pairs(pair: GearPair) -> None:
     model = "plane_strain" if pair.base_helix_angle == 0.0 else "3d"
