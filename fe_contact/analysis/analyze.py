@@ -10,7 +10,7 @@ from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.database.compute_database import compute_database, solved_findings
 from fe_contact.analysis.database.kept_tolerance import OnDraft, kept_tolerance
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import check_request
+from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Levels, Run, TableAxes
 from fe_contact.plausibility import unexpected
@@ -81,8 +81,8 @@ def analyze(
 
 
 def ste_database(
-    pair: ParallelAxes,
-    axes: TableAxes,
+    pair: ParallelAxes | Checked,
+    axes: TableAxes | None = None,
     options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     run: Run = Run(),  # noqa: B008 (frozen)
     *,
@@ -93,9 +93,10 @@ def ste_database(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
-        On parallel axes, spur or helical; the wheel external or a ring gear.
-    axes : TableAxes
+    pair : GearPair, InternalGearPair or Checked
+        On parallel axes, spur or helical; the wheel external or a ring gear. A request that is checked
+        already stands for pair, axes and options.
+    axes : TableAxes, optional
     options : AnalysisOptions
     run : Run
         With a tolerance, progress starts again with every pass.
@@ -127,26 +128,12 @@ def ste_database(
         Once for each implausible value, of the request before the run and of its results after it; all are in
         `SteDatabase.warnings`.
     """
-    return table_of_checked(check_request(pair, axes, options), run, case=case, on_draft=on_draft)
-
-
-def table_of_checked(
-    checked: Checked,
-    run: Run = Run(),  # noqa: B008 (frozen)
-    *,
-    case: Json | None = None,
-    on_draft: OnDraft | None = None,
-) -> SteDatabase:
-    """Compute the table of a request that `check_request` has checked; the rest as `ste_database`."""
-    phrased = case or checked.request.to_json()
-    if checked.request.options.refines:
-        database = kept_tolerance(checked, phrased, run, on_draft or _unread)
+    checked = as_checked(pair, axes, options)
+    request = checked.request
+    phrased = case or request.to_json()
+    if request.options.refines:
+        database = kept_tolerance(checked, phrased, run, on_draft)
     else:
         database = compute_database(checked, phrased, run)
-    request = checked.request
     warn_of(unexpected(request.findings, solved_findings(request, database)))
     return database
-
-
-def _unread(table: SteDatabase, refining: str) -> None:
-    """Pass over a draft."""

@@ -9,12 +9,12 @@ from bounds import engineering
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
 from fe_contact.analysis.request.model_choice import Decided, decide, expected_curves
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import check_request
+from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.errors import positive
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import LEVELS, AnalysisOptions, TableAxes
-from fe_contact.planning.cost_model import Prediction, predict_run
-from fe_contact.planning.plan import Plan, make_plan
+from fe_contact.planning.cost_model import Prediction
+from fe_contact.planning.plan import Plan
 from fe_contact.planning.planned import ExpectedCurves, ExpectedError, MeshChoice, expected_error
 from fe_contact.types import Json
 
@@ -84,8 +84,8 @@ class RunPlan:
 
 
 def plan_run(
-    pair: ParallelAxes,
-    axes: TableAxes,
+    pair: ParallelAxes | Checked,
+    axes: TableAxes | None = None,
     options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     *,
     time_budget: float | None = None,
@@ -95,6 +95,8 @@ def plan_run(
 
     Parameters
     ----------
+    pair : GearPair, InternalGearPair or Checked
+        A request that is checked already stands for pair, axes and options.
     time_budget : float, optional
         CPU seconds in place of that of the options. It may stand beside a level: the plan says whether the
         level fits the time.
@@ -106,13 +108,7 @@ def plan_run(
     InputError
         A value that cannot be used, by field name.
     """
-    return plan_of_checked(check_request(pair, axes, options), time_budget=time_budget, cache=cache)
-
-
-def plan_of_checked(
-    checked: Checked, *, time_budget: float | None = None, cache: Path | None = None
-) -> RunPlan:
-    """Plan a request that `check_request` has checked; the rest as `plan_run`."""
+    checked = as_checked(pair, axes, options)
     options = checked.request.options
     budget = options.time_budget if time_budget is None else time_budget
     if options.level is None:
@@ -141,10 +137,9 @@ def _decided(decided: Decided, curves: ExpectedCurves | None, cache: Path | None
 
 
 def _planned(checked: Checked, level: str, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
-    request = checked.request
-    plan = make_plan(request.pair, request.load, replace(request.options, level=None), checked.model, level)
-    cost = predict_run(request.pair, plan, checked.model, request.alignments, cache)
-    error = expected_error(request.pair, plan, curves)
+    options = replace(checked.request.options, level=None)
+    plan = replace(checked, request=replace(checked.request, options=options)).plan(level)
+    cost, error = checked.predicted(plan, cache), expected_error(checked.request.pair, plan, curves)
     return PlannedLevel(checked.model_name, level, plan.discretization.slices, cost, error)
 
 

@@ -29,7 +29,7 @@ from fe_contact.compliance.remote_condensation import condense_remotely, condens
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution, at_edges, contact_pressure
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run
-from fe_contact.planning.cost_model import Prediction, expected_tries, predict_run
+from fe_contact.planning.cost_model import Prediction, expected_tries
 from fe_contact.planning.plan import MOST_ROWS, FaceDiscretization, NodeRule, Plan
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
@@ -80,19 +80,12 @@ def unmeasured_nodes(count: int, columns: int) -> PositionNodes:
 def _adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
     """Bisect the intervals in which the interpolant misses a probe.
 
-    Parameters
-    ----------
-    rule : NodeRule
-        Nodes to begin with, largest error, largest number.
-    solve : callable
-        Positions (P,) to STE (W, P, L) in m: of one base pitch that repeats (W = 1), or of one with the pitch
-        before and the pitch after it (W = 3).
+    `solve` gives the STE (W, P, L) in m at positions (P,): of one base pitch that repeats (W = 1), or of
+    one with the pitch before and the pitch after it (W = 3).
 
-    Notes
-    -----
     The slope of STE jumps where a pair comes into contact, at a position that moves with load, so a few
-    hundred nodes gather at the handovers. The search ends with the tolerance met, after `MAX_ROUNDS`, or at
-    the largest number; the error says which.
+    hundred nodes gather at the handovers. The search ends with the tolerance met, after `MAX_ROUNDS`, or
+    at the largest number; the error says which.
     """
     nodes = np.arange(rule.start) / rule.start
     values = solve(nodes)
@@ -256,8 +249,7 @@ def solve_table(
     with clock.stage("planning"):
         decided = decided or decide(checked, run.cache)
         checked, plan, request = decided.checked, decided.plan, decided.checked.request
-        arguments = request.pair, plan, checked.model, request.alignments
-        prediction = predict_run(*arguments, run.cache, with_errors=full)
+        prediction = checked.predicted(plan, run.cache, with_errors=full)
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
     run.on_plan(prediction.stages)
     report = partial(run.progress, "compliance")
@@ -362,15 +354,7 @@ def table_support(
 def _contact_fields(
     problem: ContactProblem, solution: ContactSolution, pairs: IntArray
 ) -> dict[str, NDArray[Any]]:
-    """Arrays (P, F, ...) of one operating point of the table, by name in the database.
-
-    Pressure is that of `contact_pressure`.
-
-    Parameters
-    ----------
-    pairs : ndarray of int, shape (N,)
-        Pair indices of the table.
-    """
+    """Arrays (P, F, ...) of one operating point by name in the database; `pairs` are those of the table."""
     candidates = problem.candidates
     good = solution.status == Status.CONVERGED
     loaded = solution.force * candidates.torque_share[:, None, :]

@@ -117,7 +117,12 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     works = [inside + sum(moved), float(load[:, 0] @ values[: len(load), 0])]
     works.append(float(load[:, 0] @ gear.ring.blocks[0] @ load[:, 0]))
     moment = _bore_moment(gear, loads, bore_radius)
-    left = left_by_rounding(_stiffness_alone(gear.sector, gear.stiffness), field, load, works[0])
+    sector = gear.sector
+    free = sector.element_freedoms >= 0
+    diagonals = np.einsum("mii->mi", gear.stiffness.matrices)[gear.stiffness.of_element]
+    added = np.bincount(sector.element_freedoms[free], diagonals[free], minlength=sector.size)
+    alone = added.astype(float)  # stiffness of each freedom with all others held: the diagonal
+    left = left_by_rounding(alone, field, load, works[0])
     return ComplianceChecks(
         residual=residual(gear, forces, load[:, 0]),
         reciprocity=_reciprocity(gear, loads),
@@ -127,14 +132,6 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
         residual_rounding=left[0],
         energy_rounding=left[1],
     )
-
-
-def _stiffness_alone(sector: SweptSector, stiffness: ElementStiffness) -> FloatArray:
-    """Return the stiffness (n,) of each freedom with all others held: the diagonal, N/m."""
-    free = sector.element_freedoms >= 0
-    diagonals = np.einsum("mii->mi", stiffness.matrices)[stiffness.of_element]
-    added = np.bincount(sector.element_freedoms[free], diagonals[free], minlength=sector.size)
-    return added.astype(float)
 
 
 def element_forces(sector: SweptSector, stiffness: ElementStiffness, field: FloatArray) -> FloatArray:

@@ -27,7 +27,7 @@ from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.quad_sector import quad_sector, sector_outline
 from fe_contact.mesh.recipe import SectorRecipe
 from fe_contact.mesh.sector_grid import BoreSupport, bore_support
-from fe_contact.mesh.swept_sector import SweptSector, swept_sector
+from fe_contact.mesh.swept_sector import swept_sector
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import Json
 from model_studies.host_speed import kept_speed
@@ -75,14 +75,8 @@ class PredictedCost(NamedTuple):
 class _SectorSizes(NamedTuple):
     """Numbers that the cost follows from.
 
-    Attributes
-    ----------
-    flank, cut : int
-        Flank freedoms, and freedoms of one cut.
-    harmonics, reach : int
-        Harmonics to solve, and largest distance of teeth that is kept.
-    matrices : int
-        Different element matrices.
+    Freedoms of the flank and of one cut, harmonics to solve, the largest distance of teeth that is kept,
+    different element matrices.
     """
 
     flank: int
@@ -111,7 +105,9 @@ def predict_cost(
     grid = sector_outline(tooth_profile(gear), recipe).grid
     sector = swept_sector(grid, gear.face_width, recipe, bore_support(gear), gear.web)
     tree = sector_tree(sector)
-    sizes = _sector_sizes(sector, gear.teeth, usual_reach(gear))
+    matrices = sum(len(batch.quads) for batch in sector.batches)
+    harmonics, reach = gear.teeth // 2 + 1, usual_reach(gear)
+    sizes = _SectorSizes(len(sector.loaded), len(sector.left), harmonics, reach, matrices)
     key = len(sector.key_bore) + len(sector.key_cut)
     answers = float(gear.teeth * sizes.cut * key)  # of all cuts to forces on the bore
     operations = {
@@ -124,11 +120,6 @@ def predict_cost(
     rate = kept_speed(cache, "dense_rate", _dense_rate, _RATES)
     seconds = {part: count / rate for part, count in operations.items()}
     return PredictedCost({"mesh": MESH_SECONDS} | seconds, _working_bytes(tree, sizes) + keyed)
-
-
-def _sector_sizes(sector: SweptSector, teeth: int, reach: int) -> _SectorSizes:
-    matrices = sum(len(batch.quads) for batch in sector.batches)
-    return _SectorSizes(len(sector.loaded), len(sector.left), teeth // 2 + 1, reach, matrices)
 
 
 def _ring_operations(sizes: _SectorSizes) -> float:
@@ -240,7 +231,11 @@ def flank_compliances_3d(
         compliance_key_3d(gear, recipe, usual_reach(gear), support or bore_support(gear.right_handed()))
         for gear, recipe in zip(gears, recipes, strict=True)
     ]
-    progress = by_cost(report, _costs(keys, gears, recipes, cache))
+    costs = {
+        key: 0.0 if kept_size(cache, key) else predict_cost(gear.right_handed(), recipe, cache=cache).seconds
+        for key, gear, recipe in zip(keys, gears, recipes, strict=True)
+    }
+    progress = by_cost(report, costs)
     compliances = once_each(
         keys,
         lambda i: flank_compliance_3d(
@@ -251,16 +246,6 @@ def flank_compliances_3d(
         each if each.base_helix_angle * gear.helix_angle >= 0.0 else each.mirrored()
         for gear, each in zip(gears, compliances, strict=True)
     )
-
-
-def _costs(
-    keys: Sequence[str], gears: Sequence[Toothing], recipes: Sequence[SectorRecipe], cache: Path | None
-) -> dict[str, float]:
-    """Predict the CPU seconds of each key; what is kept costs nothing."""
-    return {
-        key: 0.0 if kept_size(cache, key) else predict_cost(gear.right_handed(), recipe, cache=cache).seconds
-        for key, gear, recipe in zip(keys, gears, recipes, strict=True)
-    }
 
 
 def compliance_key_3d(gear: Toothing, recipe: SectorRecipe, reach: int, support: BoreSupport) -> str:

@@ -118,13 +118,7 @@ _EXTRAPOLATION = _trilinear(REFERENCE) @ np.linalg.inv(_trilinear(INNER))
 
 
 def _sector_elements(gear: Toothing, section: QuadSector, sector: SweptSector) -> _SectorElements:
-    """Place the elements of a sector.
-
-    Parameters
-    ----------
-    gear : Gear or RingGear
-        Right hand or spur, as the sector was made for.
-    """
+    """Place the elements of a sector; the gear is right hand or spur, as the sector was made for."""
     axes = node_axes(gear, section)
     count = len(sector.elements)
     nodes, jacobian = np.empty((count, 20, 3)), np.empty(count)

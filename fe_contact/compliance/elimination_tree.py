@@ -103,18 +103,9 @@ def _elimination_tree(
 ) -> EliminationTree:
     """Bisect the elements along grid lines and eliminate every freedom as soon as it is complete.
 
-    Parameters
-    ----------
-    nodes : (e, p) int array
-        Nodes of the elements, -1 where nothing is free.
-    freedoms : (e, q) int array
-        Freedoms of the elements, 0 .. n - 1, -1 where held.
-    position : (e, d) array
-        Position of each element on the logical grid.
-    kept : int array
-        Freedoms not to be eliminated.
-    leaf : int
-        Most elements gathered in one front.
+    Elements have `nodes` (e, p), -1 where nothing is free, `freedoms` (e, q) of 0 .. n - 1, -1 where
+    held, and a `position` (e, d) on the logical grid. Freedoms `kept` are not eliminated; `leaf` is the
+    most elements gathered in one front.
     """
     builder = _Builder(nodes, freedoms, position, kept, leaf)
     draft = builder.build(np.arange(len(nodes)))

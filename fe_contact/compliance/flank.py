@@ -51,14 +51,7 @@ def left_by_rounding(
 def _disc_rounding(slenderness: float, helix_angle: float, layers: int, material: Material) -> float:
     """Return about what rounding leaves of the energy of a solid disc, to a factor of 3.
 
-    Parameters
-    ----------
-    slenderness : float
-        Depth from bore to root over width, D/w.
-    helix_angle : float
-        rad.
-    layers : int
-        Of elements across the face.
+    `slenderness` is the depth from bore to root over the width, D/w; the helix angle is in rad.
     """
     nu = material.poissons_ratio
     stretching = (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))

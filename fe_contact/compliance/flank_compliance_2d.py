@@ -148,14 +148,10 @@ def _recovered(ring: Ring, u: FloatArray, load: FloatArray) -> FloatArray:
 
 
 def _ring_checks(ring: Ring, tooth_index: int, load: _FlankLoad, matrix: FloatArray) -> ComplianceChecks:
-    """Check the compliance of a ring.
+    """Check the compliance of a ring under a load on the tooth of an index.
 
-    Parameters
-    ----------
-    tooth_index : int
-        Index of the tooth that is loaded.
-    matrix : (n, n) array
-        Flank compliance as computed, before it is made symmetric; the loaded tooth is the middle one.
+    `matrix` is the flank compliance as computed, before it is made symmetric; the loaded tooth is the
+    middle one.
     """
     field = field_under(ring, tooth_index, load.forces)
     bore = ring.mesh.bore_nodes

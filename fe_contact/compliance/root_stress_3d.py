@@ -83,7 +83,9 @@ def compute_root_stress_3d(
     checks = _checks(tooth, functionals, loads, cuts, stress[reach])
     clock.finish("checks")
     stations, ends = between_nodes(root.s), tooth.sector.layers.ends
-    across = between_nodes(_with_middles(ends))
+    planes = np.empty(2 * len(ends) - 1)
+    planes[::2], planes[1::2] = ends, 0.5 * (ends[1:] + ends[:-1])
+    across = between_nodes(planes)
     shape = (2 * reach + 1, 2, COMPONENTS, across.size, stations.size, len(loads))
     return refuse_broken_stress(
         UnitRootStress(
@@ -185,12 +187,6 @@ def _checks(
     )
 
 
-def _with_middles(ends: FloatArray) -> FloatArray:
-    planes = np.empty(2 * len(ends) - 1)
-    planes[::2], planes[1::2] = ends, 0.5 * (ends[1:] + ends[:-1])
-    return planes
-
-
 # The surface of the tooth root in eight-node quadrilaterals, and the stress on it.
 
 
@@ -198,15 +194,12 @@ def _quad_root(section: QuadSector, profile: FlankProfile) -> RootSurface:
     """Return the root of a sector of eight-node quadrilaterals."""
     grid = section.grid
     land = grid.number[2 * grid.body_rows]
-    tooth = grid.number[2 * grid.body_rows : 2 * (grid.body_rows + _below_form(section, profile)) + 1]
+    below_form = int(np.argmin(np.abs(section.s[::2] - profile.s_form)))
+    tooth = grid.number[2 * grid.body_rows : 2 * (grid.body_rows + below_form) + 1]
     low, high = 2 * grid.land, 2 * (grid.land + grid.across)
     right = np.concatenate([land[:low], tooth[:, low]])
     left = np.concatenate([land[:high:-1], tooth[:, high]])
     return RootSurface(np.array([right, left]), root_coordinate(profile, section.points[right]))
-
-
-def _below_form(section: QuadSector, profile: FlankProfile) -> int:
-    return int(np.argmin(np.abs(section.s[::2] - profile.s_form)))
 
 
 class _SurfaceElements(NamedTuple):
@@ -228,23 +221,11 @@ class _SurfaceElements(NamedTuple):
 
 
 def _face_stress(elements: _SurfaceElements, material: Material, size: int) -> sp.csr_array:
-    """Return the stresses of surface elements by the freedoms of a mesh.
+    """Return the stresses of surface elements by the freedoms of a mesh, (3 * 4 m, size) in Pa/m.
 
-    Parameters
-    ----------
-    elements : _SurfaceElements
-        m of them.
-    material : Material
-        E and nu.
-    size : int
-        Number of free freedoms.
-
-    Returns
-    -------
-    (3 * 4 m, size) sparse array
-        Pa/m; all stations of one component stand together, those of an element by position across, then
-        along. "Along" is the profile in the transverse section; "across" is perpendicular to it in the
-        surface, towards larger z.
+    All stations of one component stand together, those of an element by position across, then along.
+    "Along" is the profile in the transverse section; "across" is perpendicular to it in the surface,
+    towards larger z.
     """
     strains = _surface_strains(elements.nodes)  # (3, m, 4, 8, 3)
     nu = material.poissons_ratio

@@ -34,19 +34,10 @@ QUADRATURE_ORDER = 5  # three Gauss points each way
 
 
 def _layer_nodes(section: FloatArray, thickness: float, turn: float) -> FloatArray:
-    """Return the nodes of the hexahedra between two turned copies of quadrilaterals.
+    """Return the nodes (m, 20, 3) of the hexahedra between two turned copies of quadrilaterals, m.
 
-    Parameters
-    ----------
-    section : (m, 8, 2) array
-        Corners counter-clockwise, middles of sides 0-1, 1-2, 2-3, 3-0, at the middle of the layer, m.
-    thickness, turn : float
-        Of the layer, m, and the angle by which its top is turned against its bottom, rad.
-
-    Returns
-    -------
-    (m, 20, 3) array
-        m; z = 0 at the middle of the layer.
+    `section` (m, 8, 2) has corners counter-clockwise and middles of sides 0-1, 1-2, 2-3, 3-0 at the
+    middle of the layer, where z = 0. Its top is turned against its bottom by `turn` in rad.
     """
     return above(section[:, SECTION], 0.5 * REFERENCE[:, 2], thickness, turn)
 
@@ -59,19 +50,9 @@ def above(points: FloatArray, level: FloatArray, thickness: float, turn: float) 
 
 
 def _stiffness_of(nodes: FloatArray, lame: tuple[float, float]) -> FloatArray:
-    """Return the stiffness of isoparametric hexahedra.
+    """Return the stiffness (m, 60, 60) of hexahedra with `nodes` (m, 20, 3) in m as in `REFERENCE`, N/m.
 
-    Parameters
-    ----------
-    nodes : (m, 20, 3) array
-        m, in the order of `REFERENCE`.
-    lame : (float, float)
-        lambda and mu, Pa.
-
-    Returns
-    -------
-    (m, 60, 60) array
-        Freedom 3 i + c is the Cartesian component c of node i, N/m.
+    Freedom 3 i + c is the Cartesian component c of node i; `lame` are lambda and mu, Pa.
 
     Raises
     ------
@@ -185,16 +166,10 @@ class _CoarseFace:
 
 
 def _coarse_face(section: FloatArray, thickness: float, turn: float, half: int) -> _CoarseFace:
-    """Return the face that elements hang on.
+    """Return the face that elements hang on, on its lower half (`half` -1) or its upper one (+1).
 
-    Parameters
-    ----------
-    section : (m, 8, 2) array
-        Section nodes of the elements at the middle of the thin layer, m.
-    thickness, turn : float
-        Of the thin layer, m and rad.
-    half : int
-        -1: the elements are on the lower half of the coarse face; +1: on the upper half.
+    `section` (m, 8, 2) are their section nodes at the middle of the thin layer, which turns by `turn` in
+    rad, m.
     """
     nodes = above(section[:, SIDE], ACROSS - 0.5 * half, thickness, turn)
     return _CoarseFace(nodes, face_functions(ALONG, 0.5 * (ACROSS + half)))
@@ -228,19 +203,8 @@ def _seat_stiffness(gear: Toothing, grid: SectorGrid, thickness: float, seat: Bo
     """Return the matrix (60, 60) of the seat below one element on the bore, N/m.
 
     Nodes on the bore are equally spaced in angle, so the radial, tangential and axial displacements are
-    quadratic over a rectangle of the unrolled cylinder: a turn of the whole bore is met exactly, on helical
-    meshes too.
-
-    Parameters
-    ----------
-    gear : Toothing
-        Its bore radius and teeth.
-    grid : SectorGrid
-        Its columns share one pitch.
-    thickness : float
-        Of the layer, m.
-    seat : BoreSeat
-        Only its finite stiffnesses count; freedoms in rigid directions are held.
+    quadratic over a rectangle of the unrolled cylinder: a turn of the whole bore is met exactly, on
+    helical meshes too. Only the finite stiffnesses count; freedoms in rigid directions are held.
     """
     area = gear.held_radius * 2.0 * math.pi / gear.teeth / grid.columns * thickness
     mass = 0.25 * area * _face_mass()

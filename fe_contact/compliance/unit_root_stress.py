@@ -43,9 +43,9 @@ from fe_contact.compliance.root_stress import (
     relative_difference,
     root_coordinate,
 )
+from fe_contact.errors import InputError
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.geometry.flank_profile import FlankProfile, tangent_angle
-from fe_contact.geometry.gear import refuse_key
 from fe_contact.material import Material
 from fe_contact.mesh import MeshRecipe, SectorRecipe, mesh_gear
 from fe_contact.mesh.sector_grid import BoreSupport, bore_support
@@ -103,7 +103,8 @@ def unit_root_stress_3d(
     """
     recipe, support = recipe or SectorRecipe.standard(gear), support or bore_support(gear.right_handed())
     distance = usual_reach(gear) if reach is None else reach
-    refuse_key(gear, "root stress")
+    if gear.seat.key is not None:  # only what is the same at every tooth can be computed
+        raise InputError("seat.key", "given", "left out for root stress", "Leave the key out for it.")
 
     def compute() -> UnitRootStress:
         # A cached result needs no numba.
@@ -223,21 +224,16 @@ def _checks_in_plane(
 def _triangle_root(sector: ToothSector, profile: FlankProfile) -> RootSurface:
     """Return the root of a sector of six-node triangles; it is found by walking along the boundary."""
     form = int(np.argmin(np.abs(sector.s[::2] - profile.s_form)))
-    ahead = _boundary(sector.triangles)
+    edges = np.concatenate([sector.triangles[:, [*side, 3 + i]] for i, side in enumerate(SIDES)])
+    ends = np.sort(edges[:, :2], axis=1)
+    _, first, count = np.unique(ends, axis=0, return_index=True, return_counts=True)
+    ahead = {int(a): (int(middle), int(b)) for a, b, middle in edges[first[count == 1]]}
     back = {after: (middle, before) for before, (middle, after) in ahead.items()}
     if profile.gear.sign < 0:  # teeth that point inwards
         ahead, back = back, ahead
     right = _walk(ahead, int(sector.right_side[-1]), int(sector.flank[2 * form]))
     left = _walk(back, int(sector.left_side[-1]), int(sector.coast_flank[2 * form]))
     return RootSurface(np.array([right, left]), root_coordinate(profile, sector.points[right]))
-
-
-def _boundary(triangles: IntArray) -> dict[int, tuple[int, int]]:
-    """Return the middle and the end of the boundary edge that begins at each corner, counter-clockwise."""
-    edges = np.concatenate([triangles[:, [*side, 3 + i]] for i, side in enumerate(SIDES)])
-    ends = np.sort(edges[:, :2], axis=1)
-    _, first, count = np.unique(ends, axis=0, return_index=True, return_counts=True)
-    return {int(a): (int(middle), int(b)) for a, b, middle in edges[first[count == 1]]}
 
 
 def _walk(following: dict[int, tuple[int, int]], start: int, stop: int) -> list[int]:
@@ -251,21 +247,10 @@ def _walk(following: dict[int, tuple[int, int]], start: int, stop: int) -> list[
 def _edge_stress(
     points: FloatArray, nodes: IntArray, material: Material, hypothesis: PlaneHypothesis
 ) -> sp.csr_array:
-    """Return the stresses of a chain of quadratic edges by the displacement of a plane mesh.
+    """Return the stresses of a chain of quadratic edges by displacements of a plane mesh, (3 * 2e, 2n), Pa/m.
 
-    Parameters
-    ----------
-    points : (n, 2) array
-        Nodes of the mesh, m.
-    nodes : (2e + 1,) int array
-        The chain.
-    material : Material
-        E and nu.
-
-    Returns
-    -------
-    (3 * 2e, 2n) sparse array
-        Pa/m; all stations of one component stand together. There is no shear between profile and axis.
+    The chain is of `nodes` (2e + 1,) of `points` (n, 2). All stations of one component stand together.
+    There is no shear between profile and axis.
     """
     edges = np.stack([nodes[:-2:2], nodes[1::2], nodes[2::2]], axis=1)
     slopes = np.stack([STATIONS - 0.5, -2.0 * STATIONS, STATIONS + 0.5], axis=1)

@@ -46,7 +46,10 @@ def in_pitches(problem: ContactProblem, model: ContactModel, pitch: IntArray) ->
     """
     candidates = problem.candidates
     times = pitch.size // candidates.position.size
-    touch = _repeated(candidates.touch, times)
+    tiled: dict[str, FloatArray] = {
+        name: np.concatenate([values] * times) for name, values in vars(candidates.touch).items()
+    }
+    touch = Touch(**tiled)
     if model.tooth_gaps:
         meeting = pitch[:, None] - candidates.pair
         touch = replace(touch, gap=touch.gap + sum(term(meeting) for term in model.tooth_gaps))
@@ -57,14 +60,6 @@ def in_pitches(problem: ContactProblem, model: ContactModel, pitch: IntArray) ->
         width=np.concatenate([candidates.width] * times),
     )
     return problem.touching(moved)
-
-
-def _repeated(touch: Touch, times: int) -> Touch:
-    """Write arrays (P, m) or (P, m, B) out so many times, one below the other."""
-    tiled: dict[str, FloatArray] = {
-        name: np.concatenate([values] * times) for name, values in vars(touch).items()
-    }
-    return Touch(**tiled)
 
 
 # Compliance of what carries the gears, added to that of the teeth and bodies.

@@ -74,7 +74,10 @@ def contact_candidates(
     Candidates
         Of plain involutes: m = pairs x slices x points, pairs that touch nowhere left out.
     """
-    index = _pair_indices(pair, position, slices)
+    lead = slices.point_center * math.tan(pair.base_helix_angle)
+    ends = float(lead.min()), float(lead.max())
+    first, last = _pair_range(pair, float(position.min()), float(position.max()), ends)
+    index = np.arange(first, last + 1)
     touch, part = _touching(pair, model, position, index, slices.point_center, slices.point_width)
     meets = np.isfinite(touch.gap).any(axis=0).reshape(index.size, -1).any(axis=1)
     index, keep = index[meets], np.repeat(meets, slices.point_center.size)
@@ -142,14 +145,6 @@ def teeth_in_reach(pair: ParallelAxes) -> int:
     """
     first, last = _pair_range(pair, 0.0, 1.0, (0.0, 0.0))
     return 2 * max(math.ceil(pair.transverse_contact_ratio), -first, last) + 1
-
-
-def _pair_indices(pair: ParallelAxes, position: FloatArray, slices: Slices) -> IntArray:
-    """Return all pairs between A and E in any slice, and one more beyond either end."""
-    lead = slices.point_center * math.tan(pair.base_helix_angle)
-    ends = float(lead.min()), float(lead.max())
-    first, last = _pair_range(pair, float(position.min()), float(position.max()), ends)
-    return np.arange(first, last + 1)
 
 
 def _pair_range(pair: ParallelAxes, low: float, high: float, lead: tuple[float, float]) -> tuple[int, int]:

@@ -56,14 +56,12 @@ class GapTerm(Protocol):
     @property
     def along_profile(self) -> bool:
         """Whether the gap depends on the roll lengths."""
-        ...
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """Return where the gap's slope or curvature along the profile jumps.
 
         At `face`, as many distances (n,) from the pinion's mid-face in m as there are touching points.
         """
-        ...
 
     def __call__(
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
@@ -73,7 +71,6 @@ class GapTerm(Protocol):
         Taken at the touching roll lengths of the two flanks and at `face`, the distance from the pinion's
         mid-face, in m; the three broadcast.
         """
-        ...
 
 
 class ToothGap(Protocol):
@@ -82,7 +79,6 @@ class ToothGap(Protocol):
     @property
     def period(self) -> int:
         """Number of base pitches after which it repeats."""
-        ...
 
     def __call__(self, meeting: IntArray) -> FloatArray:
         """Gap in m, > 0 where material is missing, of the `meeting`-th tooth pair since position 0.
@@ -90,7 +86,6 @@ class ToothGap(Protocol):
         Meeting 0 is pair 0 at position 0; meeting k touches at the pitch point at position k, with the k-th
         next teeth of both gears. Values repeat with the period, also below 0.
         """
-        ...
 
 
 class ComplianceTerm(Protocol):
@@ -107,7 +102,6 @@ class ComplianceTerm(Protocol):
         Symmetric and positive semidefinite; taken at the touching roll lengths (P, n) of the two flanks and
         at `face` (n,), the distance from the pinion's mid-face, in m.
         """
-        ...
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,8 @@ class CornerContact(Effect):
         deflection = _largest_deflection(scene)
         relief = _least_tip_gap(pair)
         clear = relief > 2.0 * deflection
-        missing = _what_is_missing(pair)
+        sharp = all(gear.tip_form_radius == gear.tip_radius for gear in (pair.pinion, pair.wheel))
+        missing = "tip relief" if sharp else "relief, rounding or chamfer of the tips"
         reason = (
             f"{missing} leaves {1e6 * relief:.1f} um, over twice the bending of {1e6 * deflection:.1f} um"
             if clear
@@ -58,19 +59,11 @@ def _least_tip_gap(pair: ParallelAxes) -> float:
     curved flanks and the relief together are least. The edges must be clear all over the face.
     """
     path = pair.path_of_contact
-    radii = [_curvature_radius(pair, end) for end in (path.end, path.start)]
+    ends = [(end, pair.wheel.sign * float(pair.mating_roll_length(end))) for end in (path.end, path.start)]
+    radii = [float(relative_radius(*rolls)) for rolls in ends]
     return min(
         _gap_at_tip(gear, radius) for gear, radius in zip((pair.pinion, pair.wheel), radii, strict=True)
     )
-
-
-def _what_is_missing(pair: ParallelAxes) -> str:
-    sharp = all(gear.tip_form_radius == gear.tip_radius for gear in (pair.pinion, pair.wheel))
-    return "tip relief" if sharp else "relief, rounding or chamfer of the tips"
-
-
-def _curvature_radius(pair: ParallelAxes, roll_1: float) -> float:
-    return float(relative_radius(roll_1, pair.wheel.sign * float(pair.mating_roll_length(roll_1))))
 
 
 def _gap_at_tip(gear: Toothing, radius: float) -> float:

@@ -18,12 +18,8 @@ from fe_contact.types import FloatArray, IntArray
 class _PitchGap:
     """Gap of every tooth along the line of action, m, in the order of meshing.
 
-    Attributes
-    ----------
-    pinion, wheel : tuple of float
-        As many as the gear has teeth, or one for all of them.
-    period : int
-        Base pitches after which both gears are taken to show the same teeth again.
+    Gears have as many entries as teeth, or one for all of them; after `period` base pitches both are
+    taken to show the same teeth again.
     """
 
     pinion: tuple[float, ...]

@@ -49,7 +49,11 @@ class FlankGrid:
 
     def __post_init__(self) -> None:
         for name in ("roll_length", "face_position"):
-            object.__setattr__(self, name, _axis(name, getattr(self, name)))
+            values = getattr(self, name)
+            nodes = increasing(name, values)
+            if nodes.size < 2:
+                raise InputError(name, list(values), "a list of at least two")
+            object.__setattr__(self, name, tuple(nodes.tolist()))
         shape = (len(self.roll_length), len(self.face_position))
         if len(self.removed) != shape[0]:
             bound = f"{shape[0]} rows, one per roll length"
@@ -89,13 +93,6 @@ class FlankGrid:
                 _slope(along_roll, self.face_position, 1),
             ]
         )
-
-
-def _axis(name: str, values: Sequence[float]) -> tuple[float, ...]:
-    nodes = increasing(name, values)
-    if nodes.size < 2:
-        raise InputError(name, list(values), "a list of at least two")
-    return tuple(nodes.tolist())
 
 
 def _row(index: int, row: Sequence[float], length: int) -> tuple[float, ...]:

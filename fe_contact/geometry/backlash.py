@@ -48,12 +48,6 @@ def base_circle_backlash(pinion: Toothing, wheel: Toothing, working_pressure_ang
     return pinion.base_pitch - teeth + 2.0 * radii * involute_function(working_pressure_angle)
 
 
-def allowance_backlash(pinion: Toothing, wheel: Toothing) -> float:
-    """Backlash in m along the transverse line of action that the thickness allowances make."""
-    allowances = pinion.thickness_allowance + wheel.thickness_allowance
-    return allowances * math.cos(pinion.transverse_pressure_angle) / math.cos(pinion.helix_angle)
-
-
 def tight_center_distance(pinion: Toothing, wheel: Toothing) -> float:
     """Center distance in m at which the teeth, as thick as they are, have no backlash.
 

@@ -26,7 +26,7 @@ from bounds import (
     required,
 )
 from fe_contact.body import CLAMPED, BoreSeat, GearBlank, Web
-from fe_contact.errors import InfeasibleGeometry, InputError
+from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.basic_rack import BasicRack
 from fe_contact.geometry.fillet_curve import FormPoint, Trochoid, find_form_point
 from fe_contact.geometry.toothing import Toothing, counted
@@ -69,27 +69,11 @@ def _refuse_misfit_seat(gear: Toothing) -> None:
         raise InfeasibleGeometry("key", "seat.key.width", seat.key.width, bound, "Lower the width.")
 
 
-def refuse_key(gear: Toothing, purpose: str) -> None:
-    """Refuse a key where only what is the same at every tooth can be computed."""
-    if gear.seat.key is not None:
-        raise InputError("seat.key", "given", f"left out for {purpose}", "Leave the key out for it.")
-
-
 # Refusal of gears that cannot exist, by the standard term for what is wrong.
 
 
 THINNEST_RIM = 0.5  # in normal modules
 THINNEST_WEB = 0.02  # in face widths
-
-
-def _refuse_infeasible_gear(gear: Toothing, blank: GearBlank | None) -> None:
-    _refuse_bore(gear)
-    if blank is not None:
-        _refuse_rim(gear, blank)
-        _refuse_web(gear, blank)
-    _refuse_misfit_seat(gear)
-    _refuse_undercut(gear)
-    _refuse_pointed_tooth(gear)
 
 
 def _refuse_bore(gear: Toothing) -> None:
@@ -194,7 +178,14 @@ class Gear(Toothing):
     def __post_init__(self) -> None:
         self._check_fields()
         _ = self.basic_rack
-        _refuse_infeasible_gear(self, self.blank)
+        blank = self.blank
+        _refuse_bore(self)
+        if blank is not None:
+            _refuse_rim(self, blank)
+            _refuse_web(self, blank)
+        _refuse_misfit_seat(self)
+        _refuse_undercut(self)
+        _refuse_pointed_tooth(self)
         self.modification.check_fits(self)
         self.pitch_deviation.check_fits(self.teeth)
 

@@ -74,12 +74,8 @@ _EDGE_SAMPLES = 1025
 class _EdgePath(NamedTuple):
     """A tip edge in the mating gear.
 
-    Attributes
-    ----------
-    radius : (n,) array
-        Distance from the mate's center, m.
-    depth : (n,) array
-        Arc in m by which the edge is inside the mate's tooth; negative outside.
+    Its distance (n,) from the mate's center in m, and the arc (n,) in m by which it is inside the mate's
+    tooth; negative outside.
     """
 
     radius: FloatArray

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import LIMIT_SLACK, Declared, Kind, declared, described, up_to
-from fe_contact.geometry.backlash import allowance_backlash, base_circle_backlash, working_pressure_angle
+from fe_contact.geometry.backlash import base_circle_backlash, working_pressure_angle
 from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.types import FloatArray
 
@@ -258,7 +258,10 @@ class ParallelAxes:
         computed = base_circle_backlash(self.pinion, self.wheel, self.working_pressure_angle)
         largest = backlash_rounding(self.pinion, self.wheel, self.center_distance)
         largest += LIMIT_SLACK * self.center_distance
-        jams = (allowance_backlash(self.pinion, self.wheel) - computed, -computed)
+        allowances = self.pinion.thickness_allowance + self.wheel.thickness_allowance
+        by_allowances = allowances * math.cos(self.pinion.transverse_pressure_angle)
+        by_allowances /= math.cos(self.pinion.helix_angle)
+        jams = (by_allowances - computed, -computed)
         return next((jam for jam in jams if 0.0 < jam <= largest), 0.0)
 
     @property

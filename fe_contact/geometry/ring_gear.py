@@ -232,13 +232,6 @@ class _CutterTrochoid(FilletCurve):
 _OTHER_CUTTER = "Choose another number of teeth or profile shift of the cutter."
 
 
-def _refuse_infeasible_ring(gear: Toothing, cutter: _PinionCutter) -> None:
-    _refuse_rounding(gear, cutter)
-    _refuse_tip_diameter(gear, cutter)
-    _refuse_cut_tips(gear, cutter)
-    _refuse_pointed_tooth(gear)
-
-
 def _refuse_shift_sum_of_cutter(gear: Toothing, teeth: int, profile_shift: float, involute: float) -> None:
     """Refuse a cutter too thick for the tooth space at any center distance (`involute` below 0)."""
     if involute <= 0.0:
@@ -346,7 +339,11 @@ class RingGear(Toothing):
         integer("cutter_teeth", self.cutter_teeth, 6, self.teeth - 1, "Fewer teeth than the ring gear.")
         _ = self.basic_rack
         _refuse_narrow_rim(self)
-        _refuse_infeasible_ring(self, self.cutter)
+        cutter = self.cutter
+        _refuse_rounding(self, cutter)
+        _refuse_tip_diameter(self, cutter)
+        _refuse_cut_tips(self, cutter)
+        _refuse_pointed_tooth(self)
         self.modification.check_fits(self)
         self.pitch_deviation.check_fits(self.teeth)
 

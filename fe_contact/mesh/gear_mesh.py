@@ -105,17 +105,7 @@ def _inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tu
 
 
 def _divided_circle(radius: float, depth: float, distance: float, recipe: MeshRecipe) -> Outline:
-    """Return a circle, clockwise.
-
-    Parameters
-    ----------
-    radius : float
-        m.
-    depth : float
-        Of the thinner ring beside it, m.
-    distance : float
-        From the sectors, m.
-    """
+    """Return a circle, clockwise; `depth` of the thinner ring beside it, `distance` from the sectors, m."""
     size = min(recipe.body_size + recipe.growth * distance, HALF * depth)
     step = min(size / radius, LARGEST_ARC)
     ends = divide(0.0, 2.0 * np.pi, lambda angle: np.full_like(angle, step))
@@ -129,20 +119,10 @@ def _joined_hub(
     teeth: IntArray,
     sign: int = 1,
 ) -> _Hub:
-    """Join the meshes of the rings and name their boundary nodes.
+    """Join the meshes of the rings, from the sectors to the circle that the gear is held by.
 
-    Parameters
-    ----------
-    meshes : sequence of QuadraticMesh
-        Of `_inner_rings`, from the sectors to the circle that the gear is held by.
-    toothed : Outline
-        The one that follows the sectors.
-    thickness : sequence of float
-        Of the rings over the face width.
-    teeth : (t,) int array
-        Numbers of the real teeth.
-    sign : int
-        -1 for a ring gear, whose toothed outline is the inner one.
+    Their boundary nodes get names. `toothed` is the outline that follows the sectors of `teeth` (t,), the
+    inner one where `sign` is -1; `thickness` is that of the rings over the face width.
     """
     mesh, parts = meshes[0], [np.full(len(meshes[0].triangles), thickness[0])]
     for ring, thick in zip(meshes[1:], thickness[1:], strict=True):
@@ -256,17 +236,7 @@ def real_teeth(teeth: int, modeled: int | None) -> IntArray:
 def _assemble(
     sector: ToothSector, hub: _Hub | None, teeth: IntArray, pitch_angle: float, normals: FloatArray
 ) -> GearMesh:
-    """Join the sectors of `teeth` and the hub.
-
-    Parameters
-    ----------
-    teeth : (t,) int array
-        Consecutive tooth numbers.
-    pitch_angle : float
-        rad.
-    normals : (k, 2) array
-        Outward normals at `sector.flank` in the tooth frame.
-    """
+    """Join the sectors of `teeth` and the hub; `normals` (k, 2) at `sector.flank` are in the tooth frame."""
     closed = len(teeth) == round(2.0 * np.pi / pitch_angle)
     sector_nodes = _number_sectors(sector, len(teeth), closed)
     hub_nodes = _number_hub(sector, sector_nodes, hub)
@@ -345,7 +315,10 @@ def mesh_gear(
     profile = tooth_profile(gear)
     teeth = real_teeth(gear.teeth, recipe.real_teeth)
     bottom_radius = _sector_bottom(gear, profile, all_real=len(teeth) == gear.teeth)
-    sector = _mesh_sector(profile, bottom_radius, recipe, limits)
+    outline = tooth_outline(profile, bottom_radius, recipe)
+    outlines, module = {"tooth sector": (outline.outline,)}, profile.gear.normal_module
+    (mesh,) = quadratic_meshes(outlines, module, recipe.growth, limits)
+    sector = tooth_sector(mesh, outline)
     rest = None if bottom_radius == gear.held_radius else _mesh_hub(gear, sector, teeth, recipe, limits)
     # Copies of the sector are as good as the sector, which is checked.
     return _assemble(sector, rest, teeth, profile.pitch_angle, profile.normal(sector.s))
@@ -358,15 +331,6 @@ def _sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> flo
     if gear.web is None and all_real and not slender and gear.held_radius >= TAPER * gear.root_radius:
         return gear.held_radius
     return gear.root_radius - gear.sign * min(RIM_DEPTH * gear.normal_module, 0.5 * depth)
-
-
-def _mesh_sector(
-    profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe, limits: QualityLimits
-) -> ToothSector:
-    outline = tooth_outline(profile, bottom_radius, recipe)
-    outlines, module = {"tooth sector": (outline.outline,)}, profile.gear.normal_module
-    (mesh,) = quadratic_meshes(outlines, module, recipe.growth, limits)
-    return tooth_sector(mesh, outline)
 
 
 def _mesh_hub(

@@ -235,24 +235,11 @@ class _Block:
 def _fill_blocks(
     blocks: Sequence[_Block], scale: float, seconds: float = 60.0, command: Sequence[str] | None = None
 ) -> list[FloatArray]:
-    """Fill each block with quadrilaterals.
+    """Fill each block with quadrilaterals, all in one child process: the gmsh worker, or `command`.
 
-    Parameters
-    ----------
-    blocks : sequence of Block
-        Meshed one by one in the same child process.
-    scale : float
-        Length of the size of the blocks, m: gmsh works in multiples of it (its tolerances are absolute).
-    seconds : float
-        Time limit of the child.
-    command : sequence of str, optional
-        Program to run in place of the gmsh worker.
-
-    Returns
-    -------
-    list of (rows, columns, 2) arrays
-        Corner points of the quadrilaterals, m, from the bottom up and from left to right. Points on the
-        sides are the given ones, bit for bit.
+    `scale` is the length in m of which gmsh works in multiples (its tolerances are absolute), `seconds`
+    the time limit. Corner points (rows, columns, 2) are from the bottom up and from left to right; those
+    on the sides are the given ones, bit for bit.
 
     Raises
     ------

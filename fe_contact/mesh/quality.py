@@ -51,15 +51,12 @@ class _MeshQuality:
 def mesh_quality(points: FloatArray, triangles: IntArray) -> _MeshQuality:
     """Return the quality of six-node triangles (m, 6) on points (n, 2)."""
     nodes = points[triangles]
-    return _MeshQuality(_least_angle(nodes[:, :3]), _least_jacobian(nodes))
-
-
-def _least_angle(corners: FloatArray) -> FloatArray:
-    """Return the least angle of straight triangles (m, 3, 2), rad."""
+    corners = nodes[:, :3]
     sides = np.roll(corners, -1, axis=1) - corners
     sides /= np.linalg.norm(sides, axis=2, keepdims=True)
     cosines = -np.sum(sides * np.roll(sides, 1, axis=1), axis=2)
-    return np.asarray(np.arccos(np.clip(cosines, -1.0, 1.0)).min(axis=1))
+    angle = np.arccos(np.clip(cosines, -1.0, 1.0)).min(axis=1)
+    return _MeshQuality(angle, _least_jacobian(nodes))
 
 
 def _least_jacobian(nodes: FloatArray) -> FloatArray:
@@ -102,15 +99,12 @@ def quad_quality(points: FloatArray, quads: IntArray) -> _MeshQuality:
     )
     determinant = gradients[..., 0, 0] * gradients[..., 1, 1] - gradients[..., 0, 1] * gradients[..., 1, 0]
     largest = np.abs(determinant).max(axis=1)
-    return _MeshQuality(_corner_angle(nodes[:, :4]), determinant.min(axis=1) / largest)
-
-
-def _corner_angle(corners: FloatArray) -> FloatArray:
-    """Return how far the corners of (m, 4, 2) stay from folding and from being straight, rad."""
+    corners = nodes[:, :4]
     ahead, behind = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
     cross = ahead[..., 0] * behind[..., 1] - ahead[..., 1] * behind[..., 0]
-    angle = np.arctan2(cross, np.sum(ahead * behind, axis=2))
-    return np.asarray(np.minimum(angle, np.pi - angle).min(axis=1))
+    angle = np.arctan2(cross, np.sum(ahead * behind, axis=2))  # far from folding and from being straight
+    angle = np.minimum(angle, np.pi - angle).min(axis=1)
+    return _MeshQuality(angle, determinant.min(axis=1) / largest)
 
 
 def _shape_derivatives(at: FloatArray) -> FloatArray:

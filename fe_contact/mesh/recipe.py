@@ -158,9 +158,6 @@ class SectorRecipe:
         within("layer_growth", self.layer_growth, 1.0, 10.0, "1.5 is usual.")
         if self.tip_size > self.flank_size:
             raise InputError("tip_size", self.tip_size, at_most(self.flank_size, name="flank_size ="))
-        self._check_merging()
-
-    def _check_merging(self) -> None:
         rows = self.merge_rows
         if any(row > -1 for row in rows) or any(b >= a for a, b in pairwise(rows)):
             raise InputError("merge_rows", rows, "negative and strictly decreasing", "(-2,) is usual.")

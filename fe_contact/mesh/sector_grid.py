@@ -165,13 +165,7 @@ class PlaneStrain:
 
 @dataclass(frozen=True)
 class _SeatedBore:
-    """The bore is held where its seat is, in the directions in which that is rigid.
-
-    Attributes
-    ----------
-    face_width : float
-        m.
-    """
+    """The bore is held where its seat is, in the directions in which that is rigid; `face_width` in m."""
 
     seat: BoreSeat
     face_width: float

@@ -52,18 +52,10 @@ class _Layers:
 def _layers_to_mid_face(
     width: float, count: int, growth: float = 1.0, breaks: Sequence[float] = ()
 ) -> _Layers:
-    """Divide the upper half of a face into layers that thicken from its end towards mid-face.
+    """Divide the upper half of a face of `width` into layers that thicken from its end towards mid-face.
 
-    Parameters
-    ----------
-    width : float
-        Of the whole face, m.
-    count : int
-        Number of layers.
-    growth : float
-        Thickness of the layer at mid-face over that of the end layer.
-    breaks : sequence of float
-        Axial positions above 0 where a layer must end, m, increasing.
+    The layer at mid-face is `growth` times as thick as the end layer. A layer ends at each of `breaks`,
+    increasing axial positions above 0, m.
     """
     if len(breaks):
         below = [-z for z in reversed(breaks)]
@@ -81,19 +73,11 @@ def _layers_to_mid_face(
 def _layers_across(
     width: float, count: int, group: int = 1, growth: float = 1.0, breaks: Sequence[float] = ()
 ) -> _Layers:
-    """Divide `width` into `count` layers.
+    """Divide `width` into `count` layers of which every `group` successive ones are equally thick.
 
-    Parameters
-    ----------
-    width : float
-        Face width, m.
-    count, group : int
-        Number of layers; every `group` successive ones are equally thick. `group` divides `count`.
-    growth : float
-        Thickness of a middle layer over that of an end layer.
-    breaks : sequence of float
-        Axial positions where a group of layers must end, m, increasing. Each part of the face has groups
-        about as thick as without them, and at least one; so there may be more than `count` layers.
+    `group` divides `count`; a middle layer is `growth` times as thick as an end layer. A group ends at
+    each of `breaks`, increasing axial positions, m. Each part of the face has groups about as thick as
+    without them, and at least one; so there may be more than `count` layers.
     """
     if len(breaks):
         return _broken(width, width * group / count, group, growth, breaks)
@@ -173,14 +157,9 @@ def _stacked(
 ) -> Stack:
     """Stack the elements layer by layer.
 
-    Parameters
-    ----------
-    nodes : (2 L + 1, n) int array
-        Node above each section node in each plane, -1 where there is none.
-    level, node_level : (m,), (n,) int array
-        How often layers were merged at each quadrilateral and each section node.
-    extent : (m, 2) int array
-        First layer of each quadrilateral, and the first one above it.
+    `nodes` (2 L + 1, n) are those above each section node in each plane, -1 where there is none; `level`
+    (m,) and `node_level` (n,) say how often layers were merged there; `extent` (m, 2) is the first layer
+    of each quadrilateral, and the first one above it.
     """
     alike = np.column_stack([level, node_level[grid.quads[:, 0]] > level, extent])
     elements: list[IntArray] = []

@@ -53,7 +53,8 @@ def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecip
     bottom_radius : float
         Radius of the sector's lower end, away from the tip, m.
     """
-    s_low = _lowest_flank_node(profile, recipe)
+    end = profile.s_form - recipe.flank_margin
+    s_low = end if end > profile.s_root + SNAP * recipe.fillet_size else profile.s_root
     ends = _flank_divisions(profile, s_low, recipe)
     flank = piece("flank", profile.flank, ends)
     surface = [*_root_pieces(profile, s_low, recipe), flank, _tip_piece(profile, recipe)]
@@ -61,12 +62,6 @@ def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecip
     s = np.empty(2 * len(ends) - 1)
     s[::2], s[1::2] = ends, middles(ends)
     return _ToothOutline(Outline((*inner[:2], *surface, inner[2])), s)
-
-
-def _lowest_flank_node(profile: ToothProfile, recipe: MeshRecipe) -> float:
-    """Return where the fine division ends: the margin below the form point, or the end of the fillet."""
-    end = profile.s_form - recipe.flank_margin
-    return end if end > profile.s_root + SNAP * recipe.fillet_size else profile.s_root
 
 
 def _rim_limit(profile: ToothProfile, recipe: MeshRecipe, s: FloatArray) -> FloatArray:

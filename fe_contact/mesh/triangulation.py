@@ -80,20 +80,9 @@ def _triangulate(
 ) -> list[_Triangulation]:
     """Fill each region with triangles that keep the edges of its loops undivided.
 
-    The size of the triangles grows from that of the boundary edges.
-
-    Parameters
-    ----------
-    regions : sequence of Region
-        Meshed one by one in the same child process.
-    scale : float
-        Length of the size of the regions, m: gmsh works in multiples of it (its tolerances are absolute).
-    growth : float
-        Growth of the element size per unit distance from the boundary.
-    seconds : float
-        Time limit; the child is killed after it.
-    command : sequence of str, optional
-        Program to run in place of the gmsh worker.
+    The size of the triangles grows from that of the boundary edges by `growth` per unit distance. All
+    regions are meshed in one child process, killed after `seconds`: the gmsh worker, or `command`.
+    `scale` is the length in m of which gmsh works in multiples (its tolerances are absolute).
 
     Raises
     ------

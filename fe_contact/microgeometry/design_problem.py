@@ -37,11 +37,9 @@ class _Memory(Protocol):
 
     def find(self, values: FloatArray, position: FloatArray) -> tuple[float, float] | None:
         """Return what is known."""
-        ...
 
     def add(self, values: FloatArray, position: FloatArray, figures: tuple[float, float]) -> None:
         """Keep the figures of a design."""
-        ...
 
 
 @dataclass(frozen=True)

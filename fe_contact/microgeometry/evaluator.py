@@ -144,9 +144,11 @@ class Evaluator:
 
     def scattered(self, values: Mapping[str, float], node: int) -> ParallelAxes:
         """Return the pair with a design as it comes out at a node."""
-        return modified(
-            self.contact.pair, _deviated(self.contact.pair, values, self.nodes.modification(node))
-        )
+        out = dict(values)
+        designed = modified(self.contact.pair, values)
+        for name, amount in self.nodes.modification(node).items():
+            out[name] = figure(designed, name) + max(amount, least_deviation(designed, name))
+        return modified(self.contact.pair, out)
 
     def _at_node(
         self, values: Mapping[str, float], node: int, group: IntArray, touches: dict[tuple[float, ...], Touch]
@@ -165,17 +167,6 @@ class Evaluator:
         touch = modified_touch(pair, touches[key], face, steady) if steady else touches[key]
         problem = _in_all_pitches(bodies.touching(bodies.candidates.touching(touch)), model)
         return pair, problem, solve_contact(problem, load)
-
-
-def _deviated(
-    pair: ParallelAxes, values: Mapping[str, float], deviation: Mapping[str, float]
-) -> dict[str, float]:
-    """Add deviations to a design; material removed stays at least zero, and a length above it."""
-    out = dict(values)
-    designed = modified(pair, values)
-    for name, amount in deviation.items():
-        out[name] = figure(designed, name) + max(amount, least_deviation(designed, name))
-    return out
 
 
 def least_deviation(pair: ParallelAxes, name: str) -> float:

@@ -19,19 +19,15 @@ class Objective(Protocol):
 
     def check(self, loads: int) -> None:
         """Raise `InputError` if it is not for that many loads."""
-        ...
 
     def of(self, expected: FloatArray) -> float:
         """Return the number in m of the expectations (L,) in m."""
-        ...
 
     def rows(self, loads: int) -> FloatArray:
         """Return weights (R, L) of that many loads: the number is the largest of the R weighted sums."""
-        ...
 
     def to_json(self) -> Json:
         """Return plain JSON."""
-        ...
 
 
 @dataclass(frozen=True)

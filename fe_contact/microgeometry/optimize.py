@@ -51,13 +51,7 @@ Figures = tuple[float, float]
 
 @dataclass(frozen=True)
 class _DesignMemory:
-    """Objective in m and violation of designs of one problem, by their values and the positions.
-
-    Attributes
-    ----------
-    known : dict
-        What is in it.
-    """
+    """Objective in m and violation of designs of one problem, `known` by their values and the positions."""
 
     file: Path
     known: dict[bytes, Figures] = field(default_factory=dict, repr=False)
@@ -65,10 +59,16 @@ class _DesignMemory:
     @classmethod
     def of(cls, directory: Path, request: OptimizationRequest, evaluator: Evaluator) -> _DesignMemory:
         """Open the file of a problem; one that is damaged counts up to the damage."""
+        digest = hashlib.sha256()
+        contact = evaluator.contact
+        for body in contact.plane or ():
+            digest.update(body.matrix.tobytes())
+        for solid in contact.face or ():
+            digest.update(solid.blocks.tobytes())
         content = {
             "pair": written(request.pair),
             "variables": [variable.name for variable in request.variables],
-            "bodies": _digest_of_bodies(evaluator),
+            "bodies": digest.hexdigest(),
             "effects": dict(evaluator.choices),
             "load": evaluator.load.tolist(),
             "misalignment": evaluator.misalignment.tolist(),
@@ -80,7 +80,9 @@ class _DesignMemory:
         memory = cls(directory / f"designs-{key}.bin")
         with contextlib.suppress(OSError):
             directory.mkdir(parents=True, exist_ok=True)
-            _prune(directory)
+            files = sorted(directory.glob("designs-*.bin"), key=lambda file: file.stat().st_mtime)
+            for file in files[:-KEPT_FILES]:
+                file.unlink(missing_ok=True)
             memory._read(_POSITIONS + 8 * len(request.variables))
         return memory
 
@@ -116,23 +118,6 @@ def _name(values: FloatArray, position: FloatArray) -> bytes:
     return hashlib.sha256(position.tobytes()).digest()[:_POSITIONS] + np.asarray(values, "<f8").tobytes()
 
 
-def _digest_of_bodies(evaluator: Evaluator) -> str:
-    """Digest of the compliance of both gears: its bits decide those of the objective."""
-    digest = hashlib.sha256()
-    contact = evaluator.contact
-    for body in contact.plane or ():
-        digest.update(body.matrix.tobytes())
-    for solid in contact.face or ():
-        digest.update(solid.blocks.tobytes())
-    return digest.hexdigest()
-
-
-def _prune(directory: Path) -> None:
-    files = sorted(directory.glob("designs-*.bin"), key=lambda file: file.stat().st_mtime)
-    for file in files[:-KEPT_FILES]:
-        file.unlink(missing_ok=True)
-
-
 # The best design of all searches, assessed by full analyses of it and of the design to begin with.
 
 SLACK = 0.005
@@ -147,15 +132,7 @@ STEP = 0.05
 
 @dataclass(frozen=True)
 class _Choice:
-    """Both designs in full, and the search that the better one came from.
-
-    Attributes
-    ----------
-    problem : DesignProblem
-        By which `run` was assessed.
-    best : int
-        Index of the run of the optimum.
-    """
+    """Both designs in full, and the search that the better one came from: `best` is its run of `problem`."""
 
     problem: DesignProblem
     start: ConfirmedDesign

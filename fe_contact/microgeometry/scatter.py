@@ -25,15 +25,12 @@ class _ScatterRule(Protocol):
 
     def nodes(self, dimensions: int) -> tuple[FloatArray, FloatArray]:
         """Return nodes (S, d) in standard deviations and weights (S,) that sum to 1."""
-        ...
 
     def finer(self, dimensions: int) -> _ScatterRule:
         """Return a rule by which the error of this one is estimated."""
-        ...
 
     def to_json(self) -> Json:
         """Return plain JSON."""
-        ...
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
 from fe_contact.microgeometry.objective import LinearMerit
 from fe_contact.types import FloatArray, Json
 from host import cpu_seconds
+from model_studies.progress import unreported
 
 # The merit of designs as a search sees it: counted, ended when enough are evaluated, the best remembered.
 
@@ -33,12 +34,8 @@ class Cancelled(Exception):
 class _Budget:
     """Designs that one search may evaluate, of whatever cost.
 
-    Parameters
-    ----------
-    cancel : callable
-        Asked before every design whether the search is to end.
-    report : callable
-        Called after every design with the part of all that is used.
+    Before every design it is asked whether to `cancel`; after it, the part of all that is used is
+    reported.
     """
 
     def __init__(self, total: int, cancel: Callable[[], bool], report: Callable[[float], None]) -> None:
@@ -147,11 +144,9 @@ class Method(Protocol):
         _BudgetUsed, Cancelled
             By the merit: the search is over.
         """
-        ...
 
     def to_json(self) -> Json:
         """Return plain JSON."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -249,15 +244,7 @@ class SequentialLinearProgramming:
 
 
 class _Walk:
-    """Steps of linear programmes from one design on.
-
-    Attributes
-    ----------
-    place : ndarray, shape (d,)
-        The best so far.
-    value : float
-        Its merit.
-    """
+    """Steps of linear programmes from one design on; `place` (d,) is the best so far, `value` its merit."""
 
     def __init__(self, merit: _CountedMerit, start: FloatArray, region: float = FIRST_REGION) -> None:
         self._merit, self.place, self._region = merit, start, region
@@ -435,7 +422,7 @@ def search_from(
         By which it is cancelled.
     """
     begun = cpu_seconds()
-    budget = _Budget(search.evaluations, cancel or never, report or _silent)
+    budget = _Budget(search.evaluations, cancel or never, report or unreported)
     merit = _CountedMerit(problem, budget, search.evaluations)
     rough = _CountedMerit(problem.rough(search.exploration), budget, int(EXPLORED * search.evaluations))
     ended = Ended.CONVERGED
@@ -464,7 +451,3 @@ def _best(
 def never() -> bool:
     """Nobody cancels."""
     return False
-
-
-def _silent(part: float) -> None:
-    """Report no progress."""

@@ -274,7 +274,8 @@ def sweep(request: SweepRequest, run: Run = Run()) -> Sweep:  # noqa: B008 (froz
         if name in names
     )
     reason = tuple("" if np.isfinite(row).all() else "the contact was not solved" for row in value)
-    point = _points(request)
+    grids = np.meshgrid(*(axis.values for axis in request.axes), indexing="ij")
+    point = np.stack([grid.ravel() for grid in grids], axis=1)
     return Sweep(
         tuple(axis.name for axis in request.axes), point, quantities, reason, _held(request), clock.to_json()
     )
@@ -333,12 +334,6 @@ def _on_flanks(solved: SolvedOperatingPoint, every: int = 1) -> FloatArray:
     clear = np.where(at_edges(problem, force, pressure), 0.0, pressure)[::every].max(axis=(0, 2))
     load = over_face(problem, force[::every])
     return np.stack([clear, load.max(axis=1) / load.mean(axis=1)], axis=1)
-
-
-def _points(request: SweepRequest) -> FloatArray:
-    """Return the grid (N, axes), the first axis slowest."""
-    grids = np.meshgrid(*(axis.values for axis in request.axes), indexing="ij")
-    return np.stack([grid.ravel() for grid in grids], axis=1)
 
 
 def _on_grid(request: SweepRequest, rows: FloatArray) -> FloatArray:

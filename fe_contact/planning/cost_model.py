@@ -100,14 +100,11 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     if plan.positions is not None:
         middles, assessed = _SOLVED_MIDDLES * kept, min(alignments[0] * alignments[1], _JUDGED)
         seconds += work.of(middles * alignments[1], middles * period * assessed * some)
-    held = rows * (_held_out_loads(loads) + (alignments[0] - 1) * some)
+    held_out_loads = (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
+    held = rows * (held_out_loads + (alignments[0] - 1) * some)
     apart = _HELD_OUT_DISTANCES * (alignments[1] - 1)
     seconds += work.of(apart, held + apart * some)
     return _PLANE_CHECK + seconds + _TABLE_POINT * kept * period * alignments[0] * alignments[1] * loads
-
-
-def _held_out_loads(loads: int) -> int:
-    return (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
 
 
 def _contact_bytes(pair: ParallelAxes, plan: Plan) -> float:

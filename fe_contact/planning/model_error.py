@@ -30,16 +30,11 @@ Of 12 pairs in plane strain, 17 to 90 teeth, external and internal, steel and 9 
 
 
 def _flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
-    """Return the part of the mean transmission error that the tilt of the flanks takes off.
+    """Return the part of the mean transmission error that the tilt of the flanks takes off; `force` in N.
 
-    The approach falls by 3 R tau^2/2 on a pair of teeth, R the relative radius of curvature, and the tilt tau
-    grows with p/(E* m). In gears of one material those of both flanks nearly cancel
+    The approach falls by 3 R tau^2/2 on a pair of teeth, R the relative radius of curvature, and the tilt
+    tau grows with p/(E* m). In gears of one material those of both flanks nearly cancel
     (docs/theory/contact.md, "What a fixed place leaves out").
-
-    Parameters
-    ----------
-    force : ndarray
-        Normal forces, N.
     """
     first, second = (gear.material for gear in (pair.pinion, pair.wheel))
     soft, stiff = 1.0 / first.plane_strain_modulus, 1.0 / second.plane_strain_modulus

@@ -345,7 +345,9 @@ def make_plan(
     nodes = FACE_NODES if model.across_face else PLANE_NODES
     if options.tolerance is not None:
         nodes = nodes.for_tolerance(options.tolerance)
-    support = _support_loads(levels)
+    low, high = SMALLEST_SUPPORT * levels[-1], levels[0]
+    below = max(math.ceil(math.log(high / low) / math.log(SUPPORT_RATIO)), 0) if high > low else 0
+    support = np.concatenate([np.geomspace(low, high, below + 1)[:-1], [LARGEST_SUPPORT * levels[-1]]])
     return Plan(
         discretization,
         patch,
@@ -356,12 +358,6 @@ def make_plan(
         model.parts,
         level,
     )
-
-
-def _support_loads(levels: FloatArray) -> FloatArray:
-    low, high = SMALLEST_SUPPORT * levels[-1], levels[0]
-    below = max(math.ceil(math.log(high / low) / math.log(SUPPORT_RATIO)), 0) if high > low else 0
-    return np.concatenate([np.geomspace(low, high, below + 1)[:-1], [LARGEST_SUPPORT * levels[-1]]])
 
 
 def _patch_rule(pair: ParallelAxes, force: float, made: Discretization) -> PatchRule:

@@ -310,22 +310,6 @@ def _percent(value: float) -> str:
     return engineering(100.0 * value, 2)
 
 
-def planned(
-    pair: ParallelAxes,
-    load: FloatArray,
-    options: AnalysisOptions,
-    model: ContactModel,
-    alignments: tuple[int, int] = (1, 1),
-    cache: Path | None = None,
-) -> Plan:
-    """Return the plan of a request: with the mesh and slices that its accuracy asks for.
-
-    Parameters are those of `chosen_mesh`.
-    """
-    choice = chosen_mesh(pair, load, options, model, alignments, cache)
-    return make_plan(pair, load, options, model, choice.level, choice.slices)
-
-
 def chosen_mesh(
     pair: ParallelAxes,
     load: FloatArray,

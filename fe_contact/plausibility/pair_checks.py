@@ -261,16 +261,12 @@ def _findings(pair: ParallelAxes) -> Iterator[Finding]:
         )
         yield from assessed("tip_clearance", field, clearance / module, "1", reason=words)
         field, words = f"{name} tip thickness over module", "the tooth is nearly pointed"
-        yield from assessed("tip_thickness", field, _tip_thickness(gear) / module, "1", reason=words)
+        helix = atan(tan(gear.helix_angle) * gear.tip_radius / gear.reference_radius)
+        thickness = gear.tip_tooth_thickness * cos(helix)
+        yield from assessed("tip_thickness", field, thickness / module, "1", reason=words)
     words = "the teeth hardly take over from each other"
     ratio = pair.active_contact_ratio
     yield from assessed("contact_ratio", "transverse contact ratio", ratio, "1", reason=words)
-
-
-def _tip_thickness(gear: Toothing) -> float:
-    """Return the normal tooth thickness at the tip circle, m."""
-    helix = atan(tan(gear.helix_angle) * gear.tip_radius / gear.reference_radius)
-    return gear.tip_tooth_thickness * cos(helix)
 
 
 # Checks of what was computed: contact pressure, root stress, transmission error.

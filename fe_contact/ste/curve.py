@@ -182,12 +182,6 @@ def _load_share(database: SteFields, position: FloatArray, point: OperatingPoint
     return np.asarray(share / share.sum(axis=1, keepdims=True))
 
 
-def _error_band(database: SteFields, position: FloatArray, point: OperatingPoint) -> FloatArray:
-    """Interpolate the stored error estimate, (Q,) in m between the stored points."""
-    stored = _at_operating_point(database, database.error_estimate, point)
-    return interpolate(Axis(database.position, float(database.period)), stored, position)
-
-
 def _at_operating_point(database: SteFields, values: FloatArray, point: OperatingPoint) -> FloatArray:
     """Reduce (P, F, M, D, ...) to (P, ...) at one load and alignment."""
     along_force = np.moveaxis(values, (1, 2, 3), (0, 1, 2))
@@ -335,7 +329,8 @@ def _evaluate(
     alignment = (point.misalignment, point.center_distance_change)
     transverse = math.cos(database.facts.base_helix_angle)
     ste, _ = force.deflection_at(position, point.force * transverse, *alignment)
-    error = _error_band(database, position, point)
+    stored = _at_operating_point(database, database.error_estimate, point)
+    error = interpolate(Axis(database.position, float(database.period)), stored, position)
     smallest_load = min([database.force[0], *database.support_force[:1]])
     if point.force >= smallest_load:
         return ste, error, np.zeros_like(ste)

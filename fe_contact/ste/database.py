@@ -94,14 +94,17 @@ def _monotone_repaired(table: Table) -> tuple[Table, Repair]:
         If any point failed.
     """
     table.require_complete()
-    levels = _deflection_levels(table)
+    loaded = np.moveaxis(table.static_transmission_error, 1, -1)
+    levels = np.concatenate([table.no_load_transmission_error[..., None], loaded], axis=-1)
     falling = np.argwhere(np.any(np.diff(levels, axis=-1) <= 0.0, axis=-1))
     least = _LEAST_COMPLIANCE * float(table.tangent_compliance.min())
     mended = levels.copy()
     for index in map(tuple, falling):
         mended[index] = _isotonic(levels[index], table.force, least)
     change = np.moveaxis(np.abs(mended - levels)[..., 1:], -1, 1)
-    report = _report(table, len(falling), change)
+    worst = np.unravel_index(int(np.argmax(change)), change.shape)
+    where = {name: float(getattr(table, name)[i]) for name, i in zip(GRID, worst, strict=True)}
+    report = Repair(len(falling), float(change[worst]), **where)
     metadata = replace(table.metadata, receipt=table.metadata.receipt | {"monotone_repair": asdict(report)})
     repaired = replace(
         table,
@@ -113,12 +116,6 @@ def _monotone_repaired(table: Table) -> tuple[Table, Repair]:
         support_force=np.empty(0),
     )
     return repaired, report
-
-
-def _deflection_levels(database: SteFields) -> FloatArray:
-    """Lift-off and the loads as one stack of deflections (P, M, D, F + 1) in m."""
-    loaded = np.moveaxis(database.static_transmission_error, 1, -1)
-    return np.concatenate([database.no_load_transmission_error[..., None], loaded], axis=-1)
 
 
 def _complete_rows(failed: BoolArray) -> dict[str, IntArray]:
@@ -139,12 +136,6 @@ def _isotonic(levels: FloatArray, force: FloatArray, least: float) -> FloatArray
     weights = np.ones_like(levels)
     weights[0] = _LIFT_OFF_WEIGHT
     return np.asarray(isotonic_regression(levels - tilt, weights=weights).x + tilt)
-
-
-def _report(table: SteFields, curves: int, change: FloatArray) -> Repair:
-    worst = np.unravel_index(int(np.argmax(change)), change.shape)
-    where = {name: float(getattr(table, name)[i]) for name, i in zip(GRID, worst, strict=True)}
-    return Repair(curves, float(change[worst]), **where)
 
 
 # The derivatives along all axes of a mesh-force table: plain arrays that make it C1 in every coordinate.

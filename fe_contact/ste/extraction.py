@@ -19,7 +19,7 @@ from fe_contact.ste.force_table import (
     stiffness_grid,
 )
 from fe_contact.ste.interpolation import Axis, monotone_slopes, ordered_slopes
-from fe_contact.types import BoolArray, FloatArray, IntArray
+from fe_contact.types import FloatArray, IntArray
 
 # Levels between the stored loads, with the kink where a further tooth pair comes into contact.
 
@@ -48,7 +48,9 @@ def _refined(levels: _LoadLevels, pairs: IntArray) -> _LoadLevels:
     `pairs` (P, M, D, L) counts the pairs in contact; level 0 is lift-off. At positions without a kink in the
     step the inserted levels lie on the cubic that is there anyway.
     """
-    kinked = _kinked(levels, pairs)
+    secant = np.diff(levels.force) / np.diff(levels.deflection, axis=-1)
+    below, above = levels.stiffness[..., :-1], levels.stiffness[..., 1:]
+    kinked = np.asarray((np.diff(pairs, axis=-1) > 0) & (below < secant) & (secant < above))
     steps = [k for k in range(1, levels.force.size - 1) if kinked[..., k].any()]
     if not steps:
         return levels
@@ -63,13 +65,6 @@ def _refined(levels: _LoadLevels, pairs: IntArray) -> _LoadLevels:
         )
         pieces.append(_LoadLevels(force, *chosen))
     return _load_refinement_merged(pieces)
-
-
-def _kinked(levels: _LoadLevels, pairs: IntArray) -> BoolArray:
-    """Find the steps (P, M, D, L - 1) in which a pair is added and the two tangents meet."""
-    secant = np.diff(levels.force) / np.diff(levels.deflection, axis=-1)
-    below, above = levels.stiffness[..., :-1], levels.stiffness[..., 1:]
-    return np.asarray((np.diff(pairs, axis=-1) > 0) & (below < secant) & (secant < above))
 
 
 def _on_branches(
@@ -184,7 +179,10 @@ def force_table(database: SteFields) -> ForceTable:
         If the transmission error does not increase with load everywhere.
     """
     database.require_complete()
-    levels = _refined(_stored_levels(database), _pairs_in_contact(database))
+    _, order = _all_loads(database)
+    loaded = _merged(database.pairs_in_contact, database.support_pairs_in_contact, order).astype(np.int64)
+    pairs = np.concatenate([np.zeros_like(loaded[..., :1]), loaded], axis=-1)
+    levels = _refined(_stored_levels(database), pairs)
     axis = Axis(database.position, float(database.period))
     deflection = deflection_grid((axis,), levels.deflection, (ordered_slopes(axis, levels.deflection),))
     unlimited = stiffness_grid((axis,), levels.stiffness, (monotone_slopes(axis, levels.stiffness),))
@@ -245,13 +243,6 @@ def _all_loads(database: SteFields) -> tuple[FloatArray, IntArray]:
 def _merged(stored: NDArray[Any], support: NDArray[Any], order: IntArray) -> NDArray[Any]:
     """Merge stored (P, F, M, D) and support values in order of load, (P, M, D, F + S)."""
     return np.moveaxis(np.concatenate([stored, support], axis=1)[:, order], 1, -1)
-
-
-def _pairs_in_contact(database: SteFields) -> IntArray:
-    """Count the pairs that carry load at every level, none at lift-off."""
-    _, order = _all_loads(database)
-    loaded = _merged(database.pairs_in_contact, database.support_pairs_in_contact, order).astype(np.int64)
-    return np.concatenate([np.zeros_like(loaded[..., :1]), loaded], axis=-1)
 
 
 def _require_increasing(database: SteFields, force: FloatArray, deflection: FloatArray) -> None:

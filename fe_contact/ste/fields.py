@@ -137,18 +137,21 @@ class SteFields:
     edge_pressure: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
 
     def __post_init__(self) -> None:
-        self._default_support()
-        for name in (*DIMENSIONS, *OPTIONAL):
-            object.__setattr__(self, name, _frozen_copy(name, getattr(self, name)))
-        _check_shapes(self)
-        _check_axes(self)
-        _check_values(self)
-
-    def _default_support(self) -> None:
         if np.size(self.support_force) == 0:
             shape = tuple(np.size(getattr(self, name)) for name in SUPPORT)
             for name in ("transmission_error", "tangent_compliance", "pairs_in_contact"):
                 object.__setattr__(self, f"support_{name}", np.empty(shape))
+        for name in (*DIMENSIONS, *OPTIONAL):
+            values = getattr(self, name)
+            try:
+                array = np.array(values, dtype=INTEGER_TYPES.get(name, np.float64), order="C")
+            except (TypeError, ValueError) as error:
+                raise DatabaseError(f"{name} is no array of numbers") from error
+            array.flags.writeable = False
+            object.__setattr__(self, name, array)
+        _check_shapes(self)
+        _check_axes(self)
+        _check_values(self)
 
     @property
     def failed(self) -> BoolArray:
@@ -210,16 +213,6 @@ class SteFields:
                 _same_bits(getattr(self, name), getattr(other, name)) for name in (*DIMENSIONS, *OPTIONAL)
             )
         )
-
-
-def _frozen_copy(name: str, values: Any) -> NDArray[Any]:
-    """Return a read-only, C-ordered copy in the stored type."""
-    try:
-        array = np.array(values, dtype=INTEGER_TYPES.get(name, np.float64), order="C")
-    except (TypeError, ValueError) as error:
-        raise DatabaseError(f"{name} is no array of numbers") from error
-    array.flags.writeable = False
-    return array
 
 
 def _check_shapes(table: SteFields) -> None:

@@ -35,16 +35,12 @@ def _read_variables(path: Path) -> tuple[dict[str, Any], Json]:
         # arrays by h5py: h5netcdf looks for unwritten ends of unlimited dimensions, at several times the cost
         with opened(path) as content, h5netcdf.File(content.id, "r") as file:
             arrays = {
-                str(name): np.asarray((variable if _is_text(content[name]) else content[name])[...])
+                str(name): np.asarray((variable if content[name].dtype.kind in "OS" else content[name])[...])
                 for name, variable in file.variables.items()
             }
             return arrays, dict(file.attrs)
     except UnreadableFile as error:
         raise DatabaseError(str(error)) from error
-
-
-def _is_text(dataset: Any) -> bool:
-    return bool(dataset.dtype.kind in "OS")
 
 
 @dataclass(frozen=True)
@@ -177,9 +173,15 @@ def read(path: Path) -> dict[str, Any]:
     content, attributes = FILES.read(path, lambda attributes: _before(_period(path, attributes)))
     if content.get("curve_error", np.empty(0)).shape[0] == len(SOURCES) - 1:  # of schema version 1
         content["curve_error"] = np.insert(content["curve_error"], AT_NODES.index("model"), 0.0, axis=0)
+    documents = {name: json_attribute(path, attributes, name) for name in _JSON_ATTRIBUTES}
     return content | {
         "facts": _facts(path, attributes),
-        "metadata": _metadata(path, attributes),
+        "metadata": Metadata(
+            content_hash=str(attributes.get("content_hash", "")),
+            schema_version=int(attributes["schema_version"]),
+            warnings=json_attribute(path, {WARNINGS: "[]", **attributes}, WARNINGS),  # older files hold none
+            **documents,
+        ),
         "period": _period(path, attributes),
     }
 
@@ -231,13 +233,3 @@ def _facts(path: Path, attributes: Json) -> PairFacts:
     if not isinstance(content, dict):
         raise DatabaseError(f"{path.name}: damaged, its facts are no JSON object")
     return PairFacts.from_json(content)
-
-
-def _metadata(path: Path, attributes: Json) -> Metadata:
-    documents = {name: json_attribute(path, attributes, name) for name in _JSON_ATTRIBUTES}
-    return Metadata(
-        content_hash=str(attributes.get("content_hash", "")),
-        schema_version=int(attributes["schema_version"]),
-        warnings=json_attribute(path, {WARNINGS: "[]", **attributes}, WARNINGS),  # older files hold none
-        **documents,
-    )

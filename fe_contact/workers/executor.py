@@ -203,7 +203,6 @@ class Workers(Protocol):
     @property
     def cost(self) -> RunCost:
         """Cost of remote tasks, beside the CPU time of this process."""
-        ...
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
         """Yield ``function(shared, item)`` of every item, in their order.
@@ -216,7 +215,6 @@ class Workers(Protocol):
         WorkersLost
             There is nobody left to do the tasks.
         """
-        ...
 
 
 @dataclass(frozen=True)

@@ -109,17 +109,14 @@ class Remembering:
     ) -> list[Path] | None:
         """Return where the results of tasks are kept; None if nobody knows what tells the tasks apart."""
         try:
-            context = f"{self.version} {function.__module__}.{function.__qualname__} {self._digest(shared)}"
+            known = self._digests.get(id(shared))
+            if known is None:
+                known = self._digests[id(shared)] = shared, content_digest(shared)
+            context = f"{self.version} {function.__module__}.{function.__qualname__} {known[1]}"
             names = [f"{context} {content_digest(item)}" for item in items]
         except TypeError:
             return None
         return [self.folder / hashlib.sha256(name.encode()).hexdigest() for name in names]
-
-    def _digest(self, shared: object) -> str:
-        known = self._digests.get(id(shared))
-        if known is None:
-            known = self._digests[id(shared)] = shared, content_digest(shared)
-        return known[1]
 
 
 def _write(file: Path, result: Any) -> None:

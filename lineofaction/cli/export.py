@@ -15,7 +15,7 @@ from dynamics.engines.fmu import export_fmu
 from dynamics.export import FUNCTIONS, write_universal_file
 from dynamics.mechanism.flanks import DAMPING_REACH
 from dynamics.meshes import CoastFlank
-from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pairs_of_checked
+from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pairs
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
@@ -74,7 +74,7 @@ def _export_deformed(
     checked = case.at_point
     with progress_bar() as report, boundary_errors():
         run = Run(cache=cache_home() / "compliance", progress=report)
-        pairs = deformed_pairs_of_checked(checked, run, at=where, beside=beside)
+        pairs = deformed_pairs(checked, run=run, at=where, beside=beside)
     written = _written(pairs, output)
     if as_json:
         print_json({"written": [str(path) for path in written], "positions": _figures(pairs)})

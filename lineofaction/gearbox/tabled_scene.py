@@ -10,7 +10,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from fe_contact.analysis.analyze import table_of_checked
+from fe_contact.analysis.analyze import ste_database
 from fe_contact.options import Run
 from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers
@@ -53,7 +53,7 @@ def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = Non
     """Compute the STE database of a case, its warnings in the fields and units of the case."""
     request = checked.checked
     with boundary_errors():
-        database = table_of_checked(request, run, case=case_json(checked.case), on_draft=on_draft)
+        database = ste_database(request, run=run, case=case_json(checked.case), on_draft=on_draft)
     warnings = phrased_for(checked.case, database.metadata.warnings)
     return replace(database, metadata=replace(database.metadata, warnings=warnings))
 

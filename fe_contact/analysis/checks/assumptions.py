@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -11,14 +11,14 @@ import numpy as np
 from bounds import engineering
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.pairs.contact_lines import assemble_remotely
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
+from fe_contact.analysis.pairs.pair_contact import OperatingPoint
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedRun
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution
 from fe_contact.effects.effect import across_face
-from fe_contact.effects.influence.estimate import EstimatedInfluence, estimate_influence
+from fe_contact.effects.influence.estimate import estimate_influence
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
@@ -32,12 +32,6 @@ from fe_contact.types import FloatArray, Json
 
 OUTSIDE = 1e-3
 """Base pitches before A and after E at which the gap of an edge is assessed: it grows from there on."""
-
-
-def _put_edges(points: OperatingPoints, solved: Sequence[tuple[ContactProblem, ContactSolution]]) -> None:
-    """Let workers assemble the compliance at the tip edges of all places, as `_edge_depth` needs it."""
-    models = [replace(point.model, corner_contact=True) for point in points.places]
-    assemble_remotely(points, models, _phase(solved[0][0]))
 
 
 def _deepest_edge(
@@ -169,7 +163,8 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     effect = request.named("corner_contact")
     if run.checked.model.corner_contact or effect in request.neglected:
         return
-    _put_edges(run.places, run.solved)
+    models = [replace(point.model, corner_contact=True) for point in run.places.places]
+    assemble_remotely(run.places, models, _phase(run.solved[0][0]))
     pairs = zip(run.places.places, run.solved, strict=True)
     depth = np.stack([_deepest_edge(point, run.plan.load, *solved) for point, solved in pairs], axis=1)
     change = float(np.max(depth / np.maximum(_allowed(run).scale(size), 1e-12 * np.abs(_means(run)))))
@@ -186,17 +181,12 @@ def _neglected(run: SolvedTable) -> Iterator[Assumption]:
     for name in request.neglected:
         influence = estimate_influence(*run.checked.assessing(name), name)
         if influence is not None:
-            change = _relative(influence, run)
+            mean = np.abs(influence.mean)[:, None] / _allowed(run).scale(_means(run))
+            ripple = np.abs(influence.peak_to_peak)[:, None] / _allowed(run).scale(_ripples(run))
+            change = float(np.max(np.maximum(mean, ripple)))
             reason = f"estimated at {_allowed(run).part_words(change)} of what was computed"
             holds = change <= _allowed(run).relative
             yield Assumption(name, "neglected effects are negligible", holds, change, reason)
-
-
-def _relative(influence: EstimatedInfluence, run: SolvedTable) -> float:
-    """Return the larger of both estimated changes over the computed values, at the worst load and place."""
-    mean = np.abs(influence.mean)[:, None] / _allowed(run).scale(_means(run))
-    ripple = np.abs(influence.peak_to_peak)[:, None] / _allowed(run).scale(_ripples(run))
-    return float(np.max(np.maximum(mean, ripple)))
 
 
 def _plane(run: SolvedRun) -> Iterator[Assumption]:
@@ -283,10 +273,6 @@ def _over_nodes(run: SolvedRun, figure: Callable[..., Any]) -> FloatArray:
     return np.array(figures).T
 
 
-def _violated(assumptions: Sequence[Assumption]) -> tuple[Assumption, ...]:
-    return tuple(assumption for assumption in assumptions if assumption.holds is False)
-
-
 # Repetition of a run that shows that something it took for granted is wrong.
 
 Run = TypeVar("Run", bound=SolvedRun)
@@ -321,7 +307,7 @@ def settled(
     while True:
         with clock.stage("assumptions"):
             assumptions = check(run)
-        wrong = _violated(assumptions)
+        wrong = tuple(assumption for assumption in assumptions if assumption.holds is False)
         request = run.checked.request
         if wrong and request.options.on_violation == "fail":
             reasons = "; ".join(f"{flaw.what}: {flaw.reason}" for flaw in wrong)

@@ -14,9 +14,7 @@ from fe_contact.effects import LedgerEntry
 from fe_contact.effects.composer import flipped
 from fe_contact.effects.influence.estimate import Influence
 from fe_contact.errors import InputError
-from fe_contact.planning.cost_model import predict_run
-from fe_contact.planning.plan import Plan, make_plan
-from fe_contact.planning.planned import planned
+from fe_contact.planning.plan import Plan
 from fe_contact.types import Json
 
 NOT_CHECKED = "no; toggling it measures it (ablation)"
@@ -92,14 +90,10 @@ def _cost(
 
 def _predicted(checked: Checked, cache: Path | None, run: Plan | None) -> float:
     """CPU seconds of a request, on the mesh and in the slices of the run if that is over the face as well."""
-    request = checked.request
-    arguments = request.pair, request.load, request.options, checked.model
     if run is None:
-        plan = planned(*arguments, request.alignments, cache)
-    else:
-        slices = run.discretization.slices
-        plan = make_plan(*arguments, run.level, slices if slices > 1 else None)
-    return predict_run(request.pair, plan, checked.model, request.alignments, cache).cpu_seconds
+        return checked.predicted(checked.planned(cache), cache).cpu_seconds
+    slices = run.discretization.slices
+    return checked.predicted(checked.plan(run.level, slices if slices > 1 else None), cache).cpu_seconds
 
 
 def _price(entry: LedgerEntry, influence: Influence | None, seconds: float | None) -> str:

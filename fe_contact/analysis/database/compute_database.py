@@ -22,7 +22,7 @@ from fe_contact.analysis.estimates.assessed_table import (
     worst_residual,
 )
 from fe_contact.analysis.request.model_choice import Decided
-from fe_contact.analysis.request.request import Checked, Influences, Request, started_influences
+from fe_contact.analysis.request.request import Checked, Influences, Request, estimated_influences
 from fe_contact.analysis.tables import SolvedTable, condensed_bodies, solve_table
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.contact.problem import condition_numbers
@@ -53,14 +53,9 @@ def _contact_receipt(
 ) -> Json:
     """Return figures over all places of a table, at its own loads and at the support loads.
 
-    Parameters
-    ----------
-    solved, support : sequence of (ContactProblem, ContactSolution)
-        Of every place. Support loads that failed anywhere are not in the table, and are named here.
-    condition : bool
-        Whether the condition number is computed, which takes some per cent of the contact; else it is None.
-    known : ndarray, optional
-        Condition numbers that were found with the solutions.
+    Support loads that failed anywhere are not in the table, and are named here. Without `condition` the
+    condition number is None: it takes some per cent of the contact, unless it was `known` with the
+    solutions.
     """
     solutions = [solution for _, solution in solved]
     iterations = np.concatenate([solution.iterations.ravel() for solution in solutions])
@@ -222,12 +217,18 @@ def compute_pass(
 
 
 def _started_influences(planned: SolvedTable, run: Run, before: RunCost) -> Iterator[Influences]:
-    """Start the estimate of influences: beside what is assessed, where tasks were handed out for this table.
+    """Start the estimate of the plan's influences.
 
-    They are those of the plan, whatever the run found.
+    Workers do it beside other tasks, where any were handed out for this table and it takes longer than to
+    hand it out: springs over the face take half a second, those of a plane hundredths.
     """
-    workers = run.workers if run.workers.cost.since(before).tasks else InProcess()
-    return started_influences(planned.checked, workers, planned.places.nominal.bodies)
+    remote = planned.checked.model.across_face and run.workers.cost.since(before).tasks
+    workers = run.workers if remote else InProcess()
+    return workers.run(_influences_of_request, planned.places.nominal.bodies, [planned.checked])
+
+
+def _influences_of_request(_bodies: object, checked: Checked) -> Influences:
+    return estimated_influences(checked)
 
 
 def _full(made: SolvedTable) -> bool:

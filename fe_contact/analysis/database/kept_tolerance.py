@@ -52,16 +52,8 @@ _MESH, _SLICES, _SOLVER, _WIDTH, _POSITION, _METHOD = range(len(AT_NODES))
 class _Refinement:
     """The next pass.
 
-    Attributes
-    ----------
-    decided : Decided
-        Model and discretization of the pass.
-    source : str
-        The source that takes most of the tolerance where most of it is used.
-    steps : tuple of str
-        What is refined, in words.
-    expected : float
-        Part of the tolerance that the pass is predicted to use.
+    `source` takes most of the tolerance where most of it is used, `steps` say in words what is refined,
+    and `expected` is the part of the tolerance that the pass is predicted to use.
     """
 
     decided: Decided
@@ -109,7 +101,15 @@ class _Resolution:
         if source == _SLICES and across_face:
             return self._more_slices()
         if source == _POSITION and plan.positions is None:
-            return self._closer_positions()
+            usual = self.decided.usual_nodes.tolerance
+            if self.nodes.tolerance * CLOSER < usual * CLOSEST:
+                return None
+            nodes = replace(self.nodes, tolerance=CLOSER * self.nodes.tolerance, most=2 * self.nodes.most)
+            step = (
+                f"positions {engineering(100 * self.nodes.tolerance, 2)} "
+                f"-> {engineering(100 * nodes.tolerance, 2)} % of the ripple"
+            )
+            return replace(self._with(_POSITION, CLOSER, step), nodes=nodes)
         return None
 
     def _next_level(self, *, across_face: bool) -> _Resolution | None:
@@ -142,17 +142,6 @@ class _Resolution:
         part = (self.slices / count) ** SLICE_ORDER
         return replace(self._with(_SLICES, part, f"slices {self.slices} -> {count}"), slices=count)
 
-    def _closer_positions(self) -> _Resolution | None:
-        usual = self.decided.usual_nodes.tolerance
-        if self.nodes.tolerance * CLOSER < usual * CLOSEST:
-            return None
-        nodes = replace(self.nodes, tolerance=CLOSER * self.nodes.tolerance, most=2 * self.nodes.most)
-        step = (
-            f"positions {engineering(100 * self.nodes.tolerance, 2)} "
-            f"-> {engineering(100 * nodes.tolerance, 2)} % of the ripple"
-        )
-        return replace(self._with(_POSITION, CLOSER, step), nodes=nodes)
-
     def _with(self, source: int, part: float, step: str) -> _Resolution:
         factors = np.ones(len(AT_NODES))
         factors[source] = part
@@ -161,22 +150,11 @@ class _Resolution:
 
 
 def _next_pass(decided: Decided, shares: FloatArray) -> _Refinement | str:
-    """Choose what to refine: of the sources that dominate as much as is predicted to keep the tolerance.
+    """Choose what to refine, of the sources that dominate, to keep the tolerance; or say why no pass pays.
 
     A pass goes up one mesh level at most, since the level between costs a third of the finer one.
-
-    Parameters
-    ----------
-    decided : Decided
-        What the last pass ran.
-    shares : ndarray, shape (6 or more, ...)
-        Its errors by source `AT_NODES` in parts of what is allowed, of every quantity at every node; more
-        sources are not looked at.
-
-    Returns
-    -------
-    Refinement or str
-        Why none pays.
+    `shares` (6 or more, ...) are the errors by source `AT_NODES` in parts of what is allowed, of every
+    quantity at every node; more sources are not looked at.
     """
     plan = decided.plan
     begun = _Resolution(
@@ -306,17 +284,7 @@ class _Pass:
 
 
 def _of_all_passes(passes: Sequence[_Pass], kept: SteDatabase, reason: str) -> SteDatabase:
-    """Return the table of one pass with the receipt of all of them.
-
-    Parameters
-    ----------
-    passes : sequence of Pass
-        In the order in which they ran.
-    kept : SteDatabase
-        The table of one of them.
-    reason : str
-        Why no further pass was made.
-    """
+    """Return the table of one pass with the receipt of all, and the reason why there was no further one."""
     receipt = kept.metadata.receipt | _summed([done.cost for done in passes])
     receipt["tolerance"] = receipt["tolerance"] | {"reason": reason}
     receipt["passes"] = [done.to_json() | {"kept": done.table is kept} for done in passes]
@@ -352,7 +320,7 @@ class _Passes:
 
     case: Json
     run: Run
-    on_draft: OnDraft
+    on_draft: OnDraft | None
 
     def first(self, checked: Checked) -> _Pass:
         """Run what the accuracy is expected to ask for."""
@@ -374,7 +342,7 @@ class _Passes:
         return _Pass(done.decided, done.table.metadata.receipt, done.table, made)
 
 
-def kept_tolerance(checked: Checked, case: Json, run: Run, on_draft: OnDraft) -> SteDatabase:
+def kept_tolerance(checked: Checked, case: Json, run: Run, on_draft: OnDraft | None) -> SteDatabase:
     """Compute the table of a request with a tolerance, in at most `MOST_PASSES` passes.
 
     Parameters
@@ -385,7 +353,7 @@ def kept_tolerance(checked: Checked, case: Json, run: Run, on_draft: OnDraft) ->
         Echoed into the result and hashed.
     run : Run
         Its cache is what passes share; None: one for this run. Progress begins anew with every pass.
-    on_draft : callable
+    on_draft : callable, optional
         Called with every table that is refined, and what is refined.
 
     Returns
@@ -417,7 +385,8 @@ def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
             reason = made if isinstance(made, str) else _ended(made, passes, shared.run.cache)
         if isinstance(made, str) or reason:
             return _of_all_passes(passes, table, reason)
-        shared.on_draft(table, made.words)
+        if shared.on_draft is not None:
+            shared.on_draft(table, made.words)
         last = shared.refined(made, clock)
         passes.append(last)
         if last.table is None:

@@ -242,7 +242,7 @@ def estimate_errors(
         The largest of the assessed operating points stand for every place.
     """
     made, pair = plan.discretization, points.places[0].contact.pair
-    missing = left_out(pair, made)
+    missing, nominal = left_out(pair, made), points.nominal.pair
 
     def left(these: FloatArray, those: FloatArray, part: float) -> FloatArray:
         """Return a part of the differences of STE, at all points."""
@@ -258,14 +258,11 @@ def estimate_errors(
         np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *points.shape)),
         points.gathered([_contact_error(solution) for solution in solutions]),
         free_ends,
-        points.gathered([_left_by_model(solution, points, plan) for solution in solutions]),
+        points.gathered(
+            [point_error(nominal, plan.load, np.nan_to_num(each.deflection)) for each in solutions]
+        ),
         missing,
     )
-
-
-def _left_by_model(solution: ContactSolution, points: OperatingPoints, plan: Plan) -> FloatArray:
-    """Return what the method leaves out at points (P, F), m."""
-    return point_error(points.nominal.pair, plan.load, np.nan_to_num(solution.deflection))
 
 
 def _contact_error(solution: ContactSolution) -> FloatArray:
@@ -400,11 +397,6 @@ def with_axes(at_nodes: FloatArray, axes: Mapping[str, AxisError]) -> FloatArray
     return np.concatenate([at_nodes, np.stack(between)])
 
 
-def _unestimated(points: OperatingPoints, plan: Plan) -> FloatArray:
-    """Return the errors of a run in which none was estimated, (9, 22, F, M, D): NaN."""
-    return np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
-
-
 def _summary(errors: FloatArray) -> Json:
     """Return the largest over the alignments of each source by load, m, and what was not estimated.
 
@@ -482,4 +474,5 @@ def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) ->
     """Return the errors of a table of which none was estimated, but for what is known in closed form."""
     left = {"plane_for_finite_width_relative": left_out(points.places[0].contact.pair, plan.discretization)}
     unknown = np.full(table.error_estimate.shape, np.nan)
-    return AssessedTable(unknown, _unestimated(points, plan), left, {})
+    errors = np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
+    return AssessedTable(unknown, errors, left, {})

@@ -73,7 +73,9 @@ def position_errors(
         return _told(nodes, _by_middles(nodes, 1), load.size)
     some = sample_of(load.size, LOADS)
     measured, left = _measured(nodes.position, points, solutions, plan, some)
-    curves = _by_middles(measured, period) + _by_bands(measured, left, period)
+    band = np.maximum(left, np.roll(left, 1, axis=0))
+    bound = error_bound(_knots(measured, period), band, measured.value, period)
+    curves = _by_middles(measured, period) + bound
     errors = _told(measured, curves, some.size)
     return PositionErrors(spread(load, some, errors.band, 1), spread(load, some, errors.curves, 1))
 
@@ -107,25 +109,10 @@ def _measured_nodes(
 ) -> tuple[PositionNodes, FloatArray]:
     """Measure the error between positions where it is largest, and bound it at the others.
 
-    Parameters
-    ----------
-    position : ndarray, shape (P,)
-        Increasing in [0, 1).
-    value : ndarray, shape (T P, C)
-        STE in m at them in each of T base pitches.
-    solve : callable
-        Positions (Q,) to STE (T Q, C) in m.
-    period : int
-        Base pitches T.
-    rule : NodeRule
-        Intervals that are predicted to miss less than a search would allow are not solved.
-
-    Returns
-    -------
-    PositionNodes
-        Middles that were not solved are those of the interpolant.
-    ndarray, shape (T P, C)
-        Predicted error in m of the intervals that were not solved, 0 for the others.
+    `value` (T P, C) is the STE in m at `position` (P,) in each of T = `period` base pitches, and `solve`
+    gives it (T Q, C) at positions (Q,). Intervals that are predicted to miss less than a search by `rule`
+    would allow are not solved: their middles are those of the interpolant, and their predicted errors (T
+    P, C) in m are returned beside the nodes, 0 for the others.
     """
     count = position.size
     axis = Axis((np.arange(period)[:, None] + position).ravel(), float(period))
@@ -168,12 +155,6 @@ def _by_middles(nodes: PositionNodes, period: int) -> FloatArray:
     missed = np.ptp(both, axis=0) - np.ptp(nodes.value, axis=0) + missed_peaks(everywhere, both, period)
     change[PEAK_TO_PEAK] = np.maximum(change[PEAK_TO_PEAK], missed)
     return LEFT_BY_MIDDLES * change
-
-
-def _by_bands(nodes: PositionNodes, left: FloatArray, period: int) -> FloatArray:
-    """Bound what intervals that were not solved can do to the curves, (22, C) in m."""
-    band = np.maximum(left, np.roll(left, 1, axis=0))
-    return error_bound(_knots(nodes, period), band, nodes.value, period)
 
 
 def _told(nodes: PositionNodes, curves: FloatArray, loads: int) -> PositionErrors:

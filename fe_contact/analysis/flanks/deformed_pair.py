@@ -14,7 +14,7 @@ from fe_contact.analysis.flanks.solved_operating_point import (
     solve_operating_point,
 )
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import check_point
+from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance.deformation_3d import deformed_solids
 from fe_contact.compliance.deformed_gear import DeformedGear, deformed_sections
@@ -76,8 +76,8 @@ class DeformedPair:
 
 
 def deformed_pairs(
-    pair: ParallelAxes,
-    point: OperatingPoint,
+    pair: ParallelAxes | Checked,
+    point: OperatingPoint | None = None,
     options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     run: Run = Run(),  # noqa: B008 (frozen)
     *,
@@ -91,8 +91,9 @@ def deformed_pairs(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
-    point : OperatingPoint
+    pair : GearPair, InternalGearPair or Checked
+        A request that is checked already stands for pair, point and options.
+    point : OperatingPoint, optional
     options : AnalysisOptions
         `positions`, `receipt` and `on_violation` are ignored.
     run : Run
@@ -115,17 +116,7 @@ def deformed_pairs(
     MeshError, SolveError
         No acceptable mesh, or positions without a solution.
     """
-    return deformed_pairs_of_checked(check_point(pair, point, options), run, at=at, beside=beside)
-
-
-def deformed_pairs_of_checked(
-    checked: Checked,
-    run: Run = Run(),  # noqa: B008 (frozen)
-    *,
-    at: ArrayLike = 0.0,
-    beside: int = 1,
-) -> tuple[DeformedPair, ...]:
-    """Solve a request that `check_point` has checked; the rest as `deformed_pairs`."""
+    checked = as_checked(pair, point, options)
     integer("beside", beside, 0, 100)
     solved = solve_operating_point(checked, checked_positions(at), StageClock(run.workers.cost), run)
     gears = _deformed_gears(solved, beside)

@@ -15,7 +15,7 @@ from fe_contact.analysis.database.compute_database import software_versions
 from fe_contact.analysis.flanks.load_distribution import FlankScene, LoadDistribution, load_distribution
 from fe_contact.analysis.flanks.solved_operating_point import solved_point
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import check_point
+from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.plausibility import flank_findings, merged, unexpected
@@ -72,20 +72,15 @@ def contact_pattern(
     touched = distribution.on_path | (distribution.force > 0.0)
     low, high = float(roll[touched].min()), float(roll[touched].max())
     span = high - low or 1.0  # a single point is a cell of its own
-    count = max(int(span / _step(distribution, roll)), 1)
+    both = distribution.on_path[1:] & distribution.on_path[:-1]
+    steps = np.abs(np.diff(roll, axis=0))[both]
+    count = max(int(span / float(steps.max())), 1) if steps.size else 1
     cell = np.clip(((roll - low) * (count / span)).astype(int), 0, count - 1)
     pressure = np.zeros((count, distribution.face_position.size))
     index = np.nonzero(touched)
     np.maximum.at(pressure, (cell[index], index[2]), distribution.pressure[index])
     middles = np.asarray(low + (np.arange(count) + 0.5) * (span / count), dtype=np.float64)
     return ContactPattern(middles, distribution.face_position, pressure)
-
-
-def _step(distribution: LoadDistribution, roll: FloatArray) -> float:
-    """Longest way in m that a contact on the path rolls from one position to the next."""
-    both = distribution.on_path[1:] & distribution.on_path[:-1]
-    ways = np.abs(np.diff(roll, axis=0))[both]
-    return float(ways.max()) if ways.size else np.inf
 
 
 FORMAT = "lineofaction flank results"
@@ -195,8 +190,8 @@ def _attributes(results: LoadDistribution, arrays: dict[str, Any]) -> Json:
 
 
 def flank_results(
-    pair: ParallelAxes,
-    point: OperatingPoint,
+    pair: ParallelAxes | Checked,
+    point: OperatingPoint | None = None,
     options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     run: Run = Run(),  # noqa: B008 (frozen)
     *,
@@ -207,8 +202,9 @@ def flank_results(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
-    point : OperatingPoint
+    pair : GearPair, InternalGearPair or Checked
+        A request that is checked already stands for pair, point and options.
+    point : OperatingPoint, optional
     options : AnalysisOptions
         `positions` and `receipt` are ignored.
     run : Run
@@ -227,17 +223,7 @@ def flank_results(
         No acceptable mesh, positions without a solution, or a violated assumption if `on_violation` is
         "fail".
     """
-    return flanks_of_checked(check_point(pair, point, options), run, at=at, case=case)
-
-
-def flanks_of_checked(
-    checked: Checked,
-    run: Run = Run(),  # noqa: B008 (frozen)
-    *,
-    at: ArrayLike | None = None,
-    case: Json | None = None,
-) -> LoadDistribution:
-    """Solve a request that `check_point` has checked; the rest as `flank_results`."""
+    checked = as_checked(pair, point, options)
     solved, receipt = solved_point(checked, at, StageClock(run.workers.cost), run)
     checked, request = solved.checked, solved.checked.request
     results = load_distribution(

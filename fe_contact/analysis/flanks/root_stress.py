@@ -9,10 +9,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bounds import Finding, warn_of
+from bounds import warn_of
 from fe_contact.analysis.flanks.solved_operating_point import solved_point
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import check_point
+from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance import PlaneHypothesis, UnitRootStress, unit_root_stresses, unit_root_stresses_3d
 from fe_contact.contact import face_flank_forces, plane_flank_forces
@@ -173,18 +173,10 @@ class RootStressHistory:
 
 
 def _crest_values(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the largest value along the last axis and its place, by a parabola through its neighbors.
+    """Return the largest value (...) along the last axis and its place, by a parabola through its neighbors.
 
-    Parameters
-    ----------
-    s : ndarray, shape (p,)
-        Increasing, p >= 3.
-    values : ndarray, shape (..., p)
-        Minus infinity does not count; beside it there is no parabola.
-
-    Returns
-    -------
-    value, place : ndarray, shape (...)
+    `s` (p >= 3,) increases; in `values` (..., p) minus infinity does not count, and beside it there is no
+    parabola.
     """
     middle = np.clip(np.argmax(values, axis=-1), 1, s.size - 2)
     low, here, high = (s[middle + step] for step in (-1, 0, 1))
@@ -211,13 +203,7 @@ FINER_LAND, FINER_DEPTH = 2, 2.0 / 3.0
 
 @dataclass(frozen=True)
 class _PlaneRootMeshes:
-    """Sections of both gears: those of the contact.
-
-    Attributes
-    ----------
-    recipes, coarse_recipes : (MeshRecipe, MeshRecipe)
-        Driving and driven gear; the coarse ones are half as fine.
-    """
+    """Sections of both gears, driving gear first: those of the contact, and others half as fine."""
 
     hypothesis: PlaneHypothesis
     recipes: tuple[MeshRecipe, MeshRecipe]
@@ -229,12 +215,9 @@ class _PlaneRootMeshes:
 
 @dataclass(frozen=True)
 class _FaceRootMeshes:
-    """Sectors of both gears: those of the contact, finer at the root.
+    """Sectors of both gears, driving gear first: those of the contact, finer at the root.
 
-    Attributes
-    ----------
-    recipes, coarse_recipes : (SectorRecipe, SectorRecipe)
-        Driving and driven gear; the coarse ones are the contact's own, with layers of the next coarser mesh.
+    The coarse ones are the contact's own, with layers of the next coarser mesh.
     """
 
     recipes: tuple[SectorRecipe, SectorRecipe]
@@ -296,8 +279,8 @@ class RootStress:
 
 
 def root_stress(
-    pair: ParallelAxes,
-    point: OperatingPoint,
+    pair: ParallelAxes | Checked,
+    point: OperatingPoint | None = None,
     options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     run: Run = Run(),  # noqa: B008 (frozen)
     *,
@@ -307,18 +290,8 @@ def root_stress(
 
     Parameters and errors are those of `flank_results`.
     """
-    return root_stress_of_checked(check_point(pair, point, options), run, at=at)
-
-
-def root_stress_of_checked(
-    checked: Checked,
-    run: Run = Run(),  # noqa: B008 (frozen)
-    *,
-    at: ArrayLike | None = None,
-) -> RootStress:
-    """Solve a request that `check_point` has checked; the rest as `root_stress`."""
     clock = StageClock(run.workers.cost)
-    solved, receipt = solved_point(checked, at, clock, run)
+    solved, receipt = solved_point(as_checked(pair, point, options), at, clock, run)
     with clock.stage("root stress"):
         pinion, wheel = _histories(solved, _root_meshes(solved.contact.plan.discretization), run.cache)
     run.progress("root stress", 1.0)
@@ -329,6 +302,7 @@ def root_stress_of_checked(
         for finding in root_findings(name, history.peak("tension").stress.value)
     ]
     warn_of(unexpected(request.findings, tuple(findings)))
+    nominal = (finding for finding in request.findings if finding.check != "root_stress")
     return RootStress(
         pinion,
         wheel,
@@ -337,12 +311,8 @@ def root_stress_of_checked(
         misalignment=float(request.misalignment[0]),
         center_distance_change=float(request.center_distance_change[0]),
         receipt=receipt | clock.to_json(),
-        warnings=[finding.to_json() for finding in (*_not_root(request.findings), *findings)],
+        warnings=[finding.to_json() for finding in (*nominal, *findings)],
     )
-
-
-def _not_root(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
-    return tuple(finding for finding in findings if finding.check != "root_stress")
 
 
 def _histories(
@@ -380,13 +350,7 @@ def _unit_stresses(
 def _pair_histories(
     solved: SolvedOperatingPoint, units: UnitStresses
 ) -> tuple[RootStressHistory, RootStressHistory]:
-    """Return the stress of both gears under the solved contact.
-
-    Parameters
-    ----------
-    units : (UnitRootStress, UnitRootStress)
-        Of the driving and the driven gear, on any mesh.
-    """
+    """Return the stress of both gears under the solved contact; `units` may be of any mesh."""
     pair, candidates = solved.contact.pair, solved.problem.candidates
     carrying = np.unique(candidates.pair)
     stressed = np.arange(carrying[0] - 1, carrying[-1] + 2)

@@ -14,15 +14,15 @@ from fe_contact.analysis.pairs.pair_contact import operating_points, pair_contac
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
-from fe_contact.contact import ContactSolution
 from fe_contact.errors import InputError, SolveError, finite
 from fe_contact.options import Run
-from fe_contact.planning.planned import planned
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json, Status
 
 POSITIONS = 64
 """Over one mesh cycle, where none are requested."""
+SHOWN = 5
+"""Positions without a solution that a message names."""
 
 
 def solved_point(
@@ -33,7 +33,7 @@ def solved_point(
     Parameters
     ----------
     checked : Checked
-        Of `check_point`.
+        Of one load and one alignment.
     at : array_like, optional
         Positions in base pitches; default: 64 over one mesh cycle.
 
@@ -81,7 +81,7 @@ def solve_operating_point(
         request = replace(checked.request, pitches=None)
         checked = checked_request(request, whole_table=False, neglect=False)
     request = checked.request
-    plan = planned(request.pair, request.load, request.options, checked.model, cache=run.cache)
+    plan = checked.planned(run.cache)
     run.progress("compliance", 0.0)
     with clock.stage("compliance"):
         changes, report = request.center_distance_change, partial(run.progress, "compliance")
@@ -94,16 +94,13 @@ def solve_operating_point(
         problem, solution = point.solve(position - pitch, plan.load, pitch if pitch.any() else None)
     run.progress("contact", 1.0)
     if not solution.converged:
-        raise SolveError(_failure(position, solution), partial=solution)
+        codes = solution.status[:, 0]
+        failed = np.flatnonzero(codes)
+        names = [f"position {position[i]:.6g}: {Status(int(codes[i])).name}" for i in failed[:SHOWN]]
+        more = f"; and {failed.size - SHOWN} more" if failed.size > SHOWN else ""
+        reason = f"{failed.size} of {position.size} positions have no solution ({'; '.join(names)}{more})"
+        raise SolveError(reason, partial=solution)
     return SolvedOperatingPoint(checked, plan, points, [(problem, solution)])
-
-
-def _failure(position: FloatArray, solution: ContactSolution, shown: int = 5) -> str:
-    codes = solution.status[:, 0]
-    failed = np.flatnonzero(codes)
-    listed = "; ".join(f"position {position[i]:.6g}: {Status(int(codes[i])).name}" for i in failed[:shown])
-    more = f"; and {failed.size - shown} more" if failed.size > shown else ""
-    return f"{failed.size} of {position.size} positions have no solution ({listed}{more})"
 
 
 def checked_positions(at: ArrayLike) -> FloatArray:

@@ -83,17 +83,12 @@ def _condensed_errors(
         sources = replace(sources, discretization=np.broadcast_to(band, sources.contact.shape))
     if contacts.patched is not None:
         wider, part = solved(contacts.patched, own), contacts.left_by_patches
-        errors[BY_MESH] = np.hypot(errors[BY_MESH], _changed(sample, own, wider, part))
+        first, second = (values.reshape(sample.knots.size, -1) for values in (own, wider))
+        change = part * quantity_changes(sample.knots, first, second, sample.period)
+        errors[BY_MESH] = np.hypot(errors[BY_MESH], sample.spread(change.reshape(QUANTITIES, *own.shape[1:])))
         band = sample.spread_points(part * np.nan_to_num(np.abs(own - wider)))
         sources = replace(sources, discretization=sources.discretization + band)
     return AssessedTable(sources.total, with_axes(errors, {}), sources.to_json(), {})
-
-
-def _changed(sample: TableSample, own: FloatArray, other: FloatArray, part: float) -> FloatArray:
-    """Return a part of the changes of the quantities of curves (T R, f, 1, 1), (22, F, 1, 1) in m."""
-    first, second = (values.reshape(sample.knots.size, -1) for values in (own, other))
-    change = part * quantity_changes(sample.knots, first, second, sample.period)
-    return sample.spread(change.reshape(QUANTITIES, *own.shape[1:]))
 
 
 def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:
@@ -112,16 +107,8 @@ def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[Flo
     return errors, errors[MEAN][None] + 0.5 * errors[MEAN + 1][None]
 
 
-# Assumptions of a condensed pair's table: what costs nothing is checked, the rest is named.
-
-
-def _check_condensed(run: SolvedRun, neglected: Mapping[str, str]) -> tuple[Assumption, ...]:
-    """Check what can be checked on the solution alone.
-
-    `neglected` are effects of the bodies that the tolerance of the table's case neglected, and why: off here
-    too. What was not checked has no verdict (`holds` None) and says so.
-    """
-    return (*check_cheaply(run), *_edges(run), *_neglected(neglected))
+# Assumptions of a condensed pair's table: what can be checked on the solution alone is, the rest is named and
+# has no verdict (`holds` None).
 
 
 def _edges(run: SolvedRun) -> Iterator[Assumption]:
@@ -258,7 +245,8 @@ class CondensedPair:
             table = assembled_table(checked.request, points, nodes, solved.solved, [])
         with clock.stage("error estimate"):
             assessed = _condensed_errors(table, solved, contacts, sample)
-        receipt = _condensed_receipt(solved, assessed, _check_condensed(solved, self.neglected), clock)
+        checks = (*check_cheaply(solved), *_edges(solved), *_neglected(self.neglected))
+        receipt = _condensed_receipt(solved, assessed, checks, clock)
         receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
         metadata = Metadata(effect_ledger=ledger, receipt=receipt)
@@ -307,17 +295,13 @@ class CondensedPair:
         return checked, *self._placed(checked), nodes, plan
 
     def _asked(self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float) -> Checked:
-        self._refuse_other_bodies(pair)
-        axes = TableAxes(torques=torques, misalignments=[misalignment], center_distance_changes=[change])
-        self._refuse_beyond_patches(pair, torques, axes.load(pair))
-        return self._checked(pair, axes)
-
-    def _refuse_other_bodies(self, pair: ParallelAxes) -> None:
-        """Refuse gears or a center distance that this compliance is not of."""
         known = self.checked.request.pair
         if _plain(pair) != _plain(known):
             bound = "with the gears and the center distance of the table; only flank modifications may differ"
             raise InputError("pair", "another", bound, "Analyze the other pair first.")
+        axes = TableAxes(torques=torques, misalignments=[misalignment], center_distance_changes=[change])
+        self._refuse_beyond_patches(pair, torques, axes.load(pair))
+        return self._checked(pair, axes)
 
     def _refuse_beyond_patches(self, pair: ParallelAxes, torques: FloatArray, load: FloatArray) -> None:
         if load[-1] > self.largest_load * (1.0 + 1e-9):

@@ -17,7 +17,7 @@ from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.effects import EFFECTS
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions
-from fe_contact.planning.plan import Plan, make_plan
+from fe_contact.planning.plan import Plan
 from fe_contact.ste import SteDatabase
 
 # The condensed bodies of a stored table, from the cache of compliances.
@@ -60,7 +60,14 @@ def condensed_pair(
     if compute or bodies_are_kept(pair, plan, cache, changes, coarse=True):
         coarse = pair_contact(pair, plan, cache, True, changes)
     contacts = CondensedContacts.of(pair_contact(pair, plan, cache, False, changes), coarse)
-    return CondensedPair(checked, contacts, _neglected(database))
+    entries = [entry for entry in database.metadata.effect_ledger if isinstance(entry, dict)]
+    neglected = {  # effects of the bodies that the scene called for and nobody switched off, and why
+        entry["name"]: str(entry["decision"])
+        for entry in entries
+        if entry["name"] in OF_BODIES
+        and (entry["on"], entry["called_for"], entry["choice"]) == (False, True, "auto")
+    }
+    return CondensedPair(checked, contacts, neglected)
 
 
 def _as_computed(
@@ -84,18 +91,7 @@ def _as_computed(
         database.period if database.period > 1 else None,
     )
     checked = checked_request(request, whole_table=False, neglect=False)
-    return checked, make_plan(pair, request.load, options, checked.model, choice["level"], choice["slices"])
-
-
-def _neglected(database: SteDatabase) -> dict[str, str]:
-    """Return the effects of the bodies that the scene called for and nobody switched off, and why."""
-    entries = [entry for entry in database.metadata.effect_ledger if isinstance(entry, dict)]
-    return {
-        entry["name"]: str(entry["decision"])
-        for entry in entries
-        if entry["name"] in OF_BODIES
-        and (entry["on"], entry["called_for"], entry["choice"]) == (False, True, "auto")
-    }
+    return checked, checked.plan(choice["level"], choice["slices"])
 
 
 def condense(pair: ParallelAxes, acting: Checked, cache: Path | None) -> CondensedPair:

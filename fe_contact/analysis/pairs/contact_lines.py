@@ -75,16 +75,9 @@ class _ContactBlock:
 
 @dataclass(frozen=True)
 class _SolvedBlock:
-    """The solution at the positions of a block.
+    """The problem of each model of a block, its solution for each set of loads, and condition numbers.
 
-    Attributes
-    ----------
-    problems : tuple of ContactProblem
-        Of each model.
-    solutions : tuple of tuple of ContactSolution
-        Of each model, for each set of loads.
-    condition : ndarray or None
-        Condition numbers of the compliance at the positions, if they were wanted.
+    The latter are of the compliance at the positions, if they were wanted.
     """
 
     problems: tuple[ContactProblem, ...]
@@ -322,7 +315,12 @@ def solve_operating_points(
         return here, None
     sent = [line for line, _ in lines.values()]
     solved_each = _solved_lines(sent, points.workers, conditioned=conditioned, report=report)
-    each = _each_place(lines, solved_each)
+    by_place = {
+        k: (problem, solutions)
+        for (_, members), line in zip(lines.values(), solved_each, strict=True)
+        for k, problem, solutions in zip(members, line.problems, line.solutions, strict=True)
+    }
+    each = [by_place[k] for k in sorted(by_place)]
     solved = [[(problem, solutions[k]) for problem, solutions in each] for k in range(len(loads))]
     known = [line.condition for line in solved_each if line.condition is not None]
     return solved, np.concatenate(known) if known else None
@@ -430,14 +428,3 @@ def _sent_lines(
         lines[key] = (_Line(contact, whole), numbers)
     seconds = sum(line.seconds_a_position * line.whole.candidates.position.size for line, _ in lines.values())
     return lines if seconds > TASK_SECONDS else {}
-
-
-def _each_place(
-    lines: Lines, solved: Sequence[_SolvedBlock]
-) -> list[tuple[ContactProblem, tuple[ContactSolution, ...]]]:
-    by_place = {
-        k: (problem, solutions)
-        for (_, members), line in zip(lines.values(), solved, strict=True)
-        for k, problem, solutions in zip(members, line.problems, line.solutions, strict=True)
-    }
-    return [by_place[k] for k in sorted(by_place)]

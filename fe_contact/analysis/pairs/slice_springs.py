@@ -128,14 +128,7 @@ def _slice_stiffness(pair: ParallelAxes, candidates: Candidates, law: SliceLaw) 
 
 
 def _solve_springs(candidates: Candidates, stiffness: FloatArray, load: FloatArray) -> ContactSolution:
-    """Solve positions (P,) at normal forces (L,) in N, exactly.
-
-    Parameters
-    ----------
-    stiffness : ndarray, shape (P, n)
-        Normal force per normal approach, N/m.
-    load : ndarray, shape (L,)
-    """
+    """Solve at normal forces (L,) in N, exactly; `stiffness` (P, n) is force per normal approach, N/m."""
     arm, share, gap = candidates.motion_arm, candidates.torque_share, candidates.gap
     weight = np.where(np.isfinite(gap), share * stiffness * arm, 0.0)
     order = np.argsort(gap, axis=1)

@@ -20,8 +20,8 @@ from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.effects.influence.estimate import estimate_influence
 from fe_contact.options import LEVELS, AnalysisOptions
-from fe_contact.planning.cost_model import Prediction, effort, predict_run
-from fe_contact.planning.plan import FaceDiscretization, NodeRule, Plan, make_plan
+from fe_contact.planning.cost_model import Prediction, effort
+from fe_contact.planning.plan import FaceDiscretization, NodeRule, Plan
 from fe_contact.planning.planned import ExpectedCurves, MeshChoice, MeshOption, chosen_mesh, expected_error
 from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of
 from fe_contact.types import FloatArray, Json
@@ -50,7 +50,7 @@ def expected_curves(checked: Checked) -> ExpectedCurves | None:
     request, model = checked.request, checked.model
     if request.pair.internal or model.compliances:
         return None
-    plan = make_plan(request.pair, request.load, request.options, model)
+    plan = checked.plan()
     scene = replace(
         request.scene,
         misalignment=_some(request.misalignment, ALIGNMENTS),
@@ -103,11 +103,11 @@ class Decided:
     @property
     def usual_nodes(self) -> NodeRule:
         """The rule by which positions are placed before any refinement."""
-        return self._plan(self.plan.level, None).nodes
+        return self.checked.plan(self.plan.level).nodes
 
     def refined(self, level: str, slices: int, nodes: NodeRule, reason: str) -> Decided:
         """Return the same model on another mesh, in other slices, with its positions placed by `nodes`."""
-        plan = replace(self._plan(level, slices), nodes=nodes)
+        plan = replace(self.checked.plan(level, slices), nodes=nodes)
         request, model = self.checked.request, self.checked.model
         error = expected_error(request.pair, plan, expected_curves(self.checked))
         work = effort(request.pair, plan, model, request.alignments)
@@ -116,12 +116,7 @@ class Decided:
 
     def predicted(self, cache: Path | None) -> Prediction:
         """Predict what the run costs, with the compliances that are in the cache."""
-        request = self.checked.request
-        return predict_run(request.pair, self.plan, self.checked.model, request.alignments, cache)
-
-    def _plan(self, level: str, slices: int | None) -> Plan:
-        request = self.checked.request
-        return make_plan(request.pair, request.load, request.options, self.checked.model, level, slices)
+        return self.checked.predicted(self.plan, cache)
 
     def to_json(self) -> Json:
         """Return what was chosen, as plain JSON."""
@@ -311,6 +306,4 @@ def _reason(tells: bool, text: str, parts: str) -> str:
 
 
 def _planned(checked: Checked, mesh: MeshChoice) -> Decided:
-    request = checked.request
-    plan = make_plan(request.pair, request.load, request.options, checked.model, mesh.level, mesh.slices)
-    return Decided(checked, mesh, plan)
+    return Decided(checked, mesh, checked.plan(mesh.level, mesh.slices))

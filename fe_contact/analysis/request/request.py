@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 
 from bounds import Finding, written
 from fe_contact.contact import ContactModel
@@ -24,10 +25,11 @@ from fe_contact.effects.influence.estimate import (
 )
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning.plan import CycleCost
+from fe_contact.planning.cost_model import Prediction, predict_run
+from fe_contact.planning.plan import CycleCost, Plan, make_plan
+from fe_contact.planning.planned import chosen_mesh
 from fe_contact.plausibility import pair_findings
 from fe_contact.types import FloatArray, Json
-from fe_contact.workers import InProcess, Workers
 
 
 @dataclass(frozen=True)
@@ -152,6 +154,23 @@ class Checked:
         """Every effect "on" or "off", as the whole request decides it."""
         return {entry.name: "on" if entry.on else "off" for entry in self.ledger}
 
+    def plan(self, level: str = "standard", slices: int | None = None) -> Plan:
+        """Return the plan on meshes of a level, unless the accuracy names one; see `make_plan`."""
+        request = self.request
+        return make_plan(request.pair, request.load, request.options, self.model, level, slices)
+
+    def planned(self, cache: Path | None) -> Plan:
+        """Return the plan with the mesh and slices that the accuracy asks for; see `chosen_mesh`."""
+        request = self.request
+        wish = request.pair, request.load, request.options, self.model
+        choice = chosen_mesh(*wish, request.alignments, cache)
+        return self.plan(choice.level, choice.slices)
+
+    def predicted(self, plan: Plan, cache: Path | None, *, with_errors: bool = True) -> Prediction:
+        """Predict the cost of the table by a plan; see `predict_run`."""
+        pair, alignments = self.request.pair, self.request.alignments
+        return predict_run(pair, plan, self.model, alignments, cache, with_errors=with_errors)
+
     @property
     def model_name(self) -> str:
         """The model in words."""
@@ -206,20 +225,6 @@ def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -
         name: None if influence is None else _influence(influence, whole)
         for name, influence in influences.items()
     }
-
-
-def started_influences(checked: Checked, workers: Workers, shared: object) -> Iterator[Influences]:
-    """Start the estimate of every effect, and yield it.
-
-    Workers do it beside other tasks where it takes longer than to hand it out: springs over the face take
-    half a second, those of a plane hundredths. `shared` is what the workers have already.
-    """
-    by = workers if checked.model.across_face else InProcess()
-    return by.run(_influences_of_request, shared, [checked])
-
-
-def _influences_of_request(_shared: object, checked: Checked) -> Influences:
-    return estimated_influences(checked)
 
 
 def _influence(influence: EstimatedInfluence, scene: ContactScene) -> Influence:

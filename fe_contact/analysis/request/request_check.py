@@ -13,7 +13,7 @@ from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.compliance.flank import LARGEST_ROUNDING, least_face_width
 from fe_contact.contact import ContactModel
 from fe_contact.effects import ContactScene, LedgerEntry, compose
-from fe_contact.effects.influence.estimate import EstimatedInfluence, estimate_influences
+from fe_contact.effects.influence.estimate import estimate_influences
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import fields_of
 from fe_contact.geometry import FlankModification, ParallelAxes
@@ -33,17 +33,8 @@ def _neglected_effects(
 ) -> dict[str, str]:
     """Return the automatic effects whose estimated influence is below the tolerance's share, and why.
 
-    Parameters
-    ----------
-    ledger : sequence of LedgerEntry
-        As the scene alone decides.
-    tolerance : AllowedError or None
-        Of mean and peak-to-peak; None: nothing is neglected.
-
-    Returns
-    -------
-    dict of str to str
-        The smallest first, until their sum would exceed the share.
+    The smallest come first, until their sum would exceed the share of mean and peak-to-peak; none without
+    a tolerance. The ledger is as the scene alone decides.
     """
     if tolerance is None:
         return {}
@@ -58,14 +49,10 @@ def _neglected_effects(
         total += influence.largest
         if total > SHARE * tolerance.relative:
             break
-        neglected[name] = _reason(influence, tolerance)
+        # an estimate of another size than the tolerance bounds nothing
+        estimated = f"within a factor of two in most cases, at {tolerance.part_words(influence.largest)}"
+        neglected[name] = f"neglected: estimated, {estimated} where it is largest"
     return neglected
-
-
-def _reason(influence: EstimatedInfluence, tolerance: AllowedError) -> str:
-    """Say why an effect is neglected: an estimate of another size than the tolerance bounds nothing."""
-    part = tolerance.part_words(influence.largest)
-    return f"neglected: estimated, within a factor of two in most cases, at {part} where it is largest"
 
 
 # Limits of a plane model: all that acts across the face.
@@ -74,20 +61,10 @@ def _reason(influence: EstimatedInfluence, tolerance: AllowedError) -> str:
 def _refuse_beyond_plane(scene: ContactScene, model: ContactModel, ledger: Sequence[LedgerEntry]) -> None:
     """Refuse what acts across the face, and what effects that are on have there, where the model is a plane.
 
-    Raises
-    ------
-    InputError
-        Helix, flanks that vary along the face, shafts, misalignment; what effects refuse; by field name.
+    That is helix, flanks that vary along the face, shafts, misalignment; and what effects refuse.
     """
     if model.across_face:
         return
-    _refuse_face_effects(scene)
-    for entry in ledger:
-        if entry.on:
-            scene.effect(entry.name).refuse_plane(scene)
-
-
-def _refuse_face_effects(scene: ContactScene) -> None:
     pair, advice = scene.pair, "Use the 3-D model for it."
     if pair.pinion.helix_angle != 0.0:
         raise InputError("pinion.helix_angle", pair.pinion.helix_angle, "0 for a plane model", advice)
@@ -97,6 +74,9 @@ def _refuse_face_effects(scene: ContactScene) -> None:
             raise InputError(f"{name}.shaft", "given", "left out for a plane model", advice)
     if np.any(scene.misalignment != 0.0):
         raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", advice)
+    for entry in ledger:
+        if entry.on:
+            scene.effect(entry.name).refuse_plane(scene)
 
 
 def _refuse_varying_flanks(field: str, along_face: FlankModification, advice: str) -> None:
@@ -141,10 +121,26 @@ def check_request(
     return checked
 
 
-def check_point(pair: ParallelAxes, point: OperatingPoint, options: AnalysisOptions) -> Checked:
-    """Check the inputs of one load and one alignment, as `check_request` does."""
+def as_checked(
+    pair: ParallelAxes | Checked, at: TableAxes | OperatingPoint | None, options: AnalysisOptions
+) -> Checked:
+    """Check the inputs of a table or of one point, as `check_request` does; what is checked stays as it is.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, by field name.
+    TypeError
+        A pair alone.
+    """
+    if isinstance(pair, Checked):
+        return pair
+    if at is None:
+        raise TypeError("a pair needs the axes of its table, or its operating point")
+    if isinstance(at, TableAxes):
+        return check_request(pair, at, options)
     # what does not show in the transmission error may show in pressures and stresses
-    return check_request(pair, point.axes, options, whole_table=False, neglect=False)
+    return check_request(pair, at.axes, options, whole_table=False, neglect=False)
 
 
 def checked_request(request: Request, *, whole_table: bool = True, neglect: bool = True) -> Checked:

@@ -19,8 +19,6 @@ from fe_contact.effects.influence.estimate import Influence
 from fe_contact.errors import InputError, MeshError, SolveError, chosen
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
-from fe_contact.planning.cost_model import predict_run
-from fe_contact.planning.planned import planned
 from fe_contact.types import FloatArray
 from model_studies import LeftOut, in_unit, run_variants
 
@@ -182,8 +180,7 @@ def _figures(checked: Checked, run: Run) -> Figures:
     table.require_complete()
     skew = checked.request.whole_scene.largest_misalignment
     curves = [table.curve(force=float(force), misalignment=skew) for force in table.force]
-    plan = planned(request.pair, request.load, request.options, checked.model, request.alignments, run.cache)
-    predicted = predict_run(request.pair, plan, checked.model, request.alignments, None)
+    predicted = checked.predicted(checked.planned(run.cache), None)
     return Figures(
         np.array([curve.mean.value for curve in curves]),
         np.array([curve.peak_to_peak.value for curve in curves]),

@@ -32,11 +32,10 @@ from fe_contact.analysis.studies.measured_full_contact import (
     measure_full_contact,
 )
 from fe_contact.analysis.tables import table_fields, table_support
-from fe_contact.contact import ContactSolution
 from fe_contact.errors import InputError, MeshError, SolveError, chosen, integer
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
-from fe_contact.planning.plan import PLANE_REFINEMENT, Plan, make_plan
+from fe_contact.planning.plan import PLANE_REFINEMENT, Plan
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
@@ -138,7 +137,7 @@ class _ClosedFormFidelity:
         """Compute the table."""
         clock = StageClock()
         request = checked.request
-        plan = make_plan(request.pair, request.load, request.options, checked.model)
+        plan = checked.plan()
         with clock.stage("contact"):
             nominal = SpringContact(request.pair, plan, law=self.law)
             points = operating_points(request.scene, request.choices, nominal)
@@ -155,7 +154,7 @@ class _ClosedFormFidelity:
         position, pitches = np.arange(count) / count, np.arange(points.period)
         solved = [point.solve_pitches(position, plan.load, pitches) for point in points.places]
         support = [point.solve_pitches(position, plan.support, pitches) for point in points.places]
-        error = [self._error(solution) for _, solution in solved]
+        elastic = [solution.deflection - solution.no_load[:, None] for _, solution in solved]
         return SteDatabase(
             position=(pitches[:, None] + position).ravel(),
             force=plan.load,
@@ -164,15 +163,11 @@ class _ClosedFormFidelity:
             center_distance_change=request.center_distance_change,
             facts=PairFacts.of(request.pair),
             period=points.period,
-            error_estimate=points.gathered(error),
+            error_estimate=points.gathered([self.relative_error * np.abs(part) for part in elastic]),
             metadata=Metadata(),
             **table_fields(points, solved),
             **table_support(points, support),
         )
-
-    def _error(self, solution: ContactSolution) -> FloatArray:
-        """State the error (P, L) as a part of the elastic deflection, m."""
-        return self.relative_error * np.abs(solution.deflection - solution.no_load[:, None])
 
 
 ISO6336 = _ClosedFormFidelity(
@@ -193,14 +188,8 @@ SECTOR_FLANK_SIZE = {"draft": 0.2, "standard": 0.15, "fine": 0.1}
 class _FiniteElementFidelity:
     """A model and a mesh of `analyze`.
 
-    Attributes
-    ----------
-    model : str
-        "plane_strain", "3d", or "auto" for the plane corrected for its finite width.
-    level : str
-        "draft", "standard" or "fine".
-    slices : int, optional
-        Of the face; default: those that usually go with the mesh.
+    The model is "plane_strain", "3d", or "auto" for the plane corrected for its finite width; without
+    `slices` it has those that usually go with the mesh.
     """
 
     name: str
@@ -313,14 +302,6 @@ class FidelityResult(model_studies.FidelityResult):
     peak_to_peak_error: float = NAN
 
 
-def _fidelity_results(outcomes: Sequence[Outcome[_Fidelity, SteDatabase]]) -> tuple[FidelityResult, ...]:
-    read = [Outcome(outcome.fidelity, _result(outcome), outcome.cpu_seconds) for outcome in outcomes]
-    errors = against_finest(read, _errors, _remaining)
-    return tuple(
-        replace(outcome.result, **dict[str, Any](error)) for outcome, error in zip(read, errors, strict=True)
-    )
-
-
 def _errors(result: FidelityResult, reference: FidelityResult) -> Errors:
     """Return the relative differences, the worst over the curves."""
     pairs = (result.mean, reference.mean), (result.peak_to_peak, reference.peak_to_peak)
@@ -428,7 +409,11 @@ def frontier(
         (MeshError, SolveError),
         progress,
     )
-    results = _fidelity_results(outcomes)
+    read = [Outcome(outcome.fidelity, _result(outcome), outcome.cpu_seconds) for outcome in outcomes]
+    errors = against_finest(read, _errors, _remaining)
+    results = tuple(
+        replace(outcome.result, **dict[str, Any](error)) for outcome, error in zip(read, errors, strict=True)
+    )
     solves = outcomes[-1].result.status.size
     known = known_full_contact(checked.request.pair)
     study = Frontier(

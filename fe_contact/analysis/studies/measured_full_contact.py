@@ -182,11 +182,6 @@ class MeasuredFullContact:
             for torque, lag in zip(table.torque, table.transmission_error.T, strict=True):
                 yield misalignment, float(torque), table.position, lag
 
-    def _whole_positions(self) -> int:
-        """Return at how many positions all loads and misalignments have a solution."""
-        rows = zip(*(table.points for table in self.tables), strict=True)
-        return sum(all(point.status.usable for row in own for point in row) for own in rows)
-
     def to_json(self, solves: int) -> Json:
         """Return plain JSON; errors that are not known are left out."""
         errors = {
@@ -196,6 +191,7 @@ class MeasuredFullContact:
             "plane_strain_peak_to_peak_difference": self.plane_strain_peak_to_peak,
             "own_error_estimate": self.own_error,
         }
+        rows = zip(*(table.points for table in self.tables), strict=True)
         return {name: error for name, error in errors.items() if np.isfinite(error)} | {
             "program": PROGRAM,
             "unknowns": self.unknowns,
@@ -204,7 +200,7 @@ class MeasuredFullContact:
             "torque_n_m": float(self.tables[0].torque[-1]),
             "torques_n_m": self.tables[0].torque.tolist(),
             "positions_run": self.positions,
-            "positions_solved": self._whole_positions(),
+            "positions_solved": sum(all(point.status.usable for row in own for point in row) for own in rows),
             "cpu_seconds_measured": self.cpu_seconds,
             "cpu_seconds_predicted": self.predicted_cpu_seconds,
             "cpu_seconds_of_table": self.seconds(solves),

@@ -78,15 +78,14 @@ def study_sensitivity(
         No acceptable mesh, or points without a solution.
     """
     options = replace(options, model="3d" if options.model == "auto" else options.model)
+    effect = named(EFFECTS, "corner_contact")
     without, with_corners = (
-        Sensitivity(corners == "on", *_curves(pair, axes, _with_corners(options, corners), run))
-        for corners in ("off", "on")
+        replace(options, effects={**options.effects, effect: choice}) for choice in ("off", "on")
     )
-    return without, with_corners
-
-
-def _with_corners(options: AnalysisOptions, choice: str) -> AnalysisOptions:
-    return replace(options, effects={**options.effects, named(EFFECTS, "corner_contact"): choice})
+    return (
+        Sensitivity(False, *_curves(pair, axes, without, run)),
+        Sensitivity(True, *_curves(pair, axes, with_corners, run)),
+    )
 
 
 def _curves(

@@ -68,20 +68,16 @@ class Springs:
         if model.tooth_gaps:
             pitches = np.arange(min(model.period, MOST_PITCHES))
             problem = in_pitches(problem, model, np.repeat(pitches, count))
-        curve = self._solved(problem, model, load)
+        key = repr(model.gaps), problem.candidates.position.size, load.size
+        solution = solve_contact(problem, load, self._last.get(key))
+        self._last[key] = Start(problem.candidates, solution.force)
+        curve = solution.deflection  # (P, L), m; started from the last one with the same gaps
         return EstimatedCurve(np.nanmean(curve, axis=0), np.nanmax(curve, axis=0) - np.nanmin(curve, axis=0))
 
     def problem(self, model: ContactModel) -> ContactProblem:
         """Return the contact problem of one base pitch with the gaps and compliances of a model."""
         problem = with_compliances(self.pair, self._springs(model), model)
         return problem.touching(with_gaps(self.pair, problem.candidates, model))
-
-    def _solved(self, problem: ContactProblem, model: ContactModel, load: FloatArray) -> FloatArray:
-        """Solve a problem (P, L) in m, started from the last one with the same gaps."""
-        key = repr(model.gaps), problem.candidates.position.size, load.size
-        solution = solve_contact(problem, load, self._last.get(key))
-        self._last[key] = Start(problem.candidates, solution.force)
-        return solution.deflection
 
     def _springs(self, model: ContactModel) -> ContactProblem:
         """Return the springs of a model in one base pitch, flanks as plain involutes."""

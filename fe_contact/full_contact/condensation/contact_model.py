@@ -67,19 +67,10 @@ WEIGHTS = 0.5 * np.repeat([0.223381589678011, 0.109951743655322], 3)
 
 
 def _plane_strain_stiffness(points: FloatArray, triangles: IntArray, material: Material) -> sp.csc_array:
-    """Assemble the stiffness of linear elasticity.
+    """Assemble the stiffness of linear elasticity, symmetric (2 n, 2 n), N/m per m.
 
-    Parameters
-    ----------
-    points : (n, 2) array
-        Nodes, m.
-    triangles : (m, 6) int array
-        Corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0.
-
-    Returns
-    -------
-    (2 n, 2 n) sparse array
-        Symmetric, N/m per m; freedom 2 i + c is component c of node i.
+    Triangles (m, 6) have corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0. Freedom 2 i
+    + c is component c of node i.
     """
     local = _element_stiffness(points[triangles], _elasticity(material))
     freedoms = (2 * triangles[:, :, None] + np.arange(2)).reshape(len(triangles), 12)
@@ -207,23 +198,6 @@ def _trailing_product(factor: SuperLU, count: int) -> FloatArray:
 Bodies = tuple[_CondensedBody, _CondensedBody]
 
 
-def _bore_checks(bodies: Bodies, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
-    """Return the largest relative breach of the laws, and the torque of gear 2 over that of gear 1.
-
-    The moment of the reactions at gear 1's bore is the torque, at gear 2's bore that of the contact forces;
-    the work u f of both gears is p C p. Nothing condensed enters the reactions: all nodes are solved for.
-    """
-    reactions, work = zip(*(_of_body(bodies, number, solutions) for number in range(2)), strict=True)
-    checks = []
-    for i, (contact, pressure, torque) in enumerate(solutions):
-        driven = _moment(bodies[1], contact.forces[1] @ pressure)
-        balance = max(abs(float(reactions[0][i]) / torque + 1.0), abs(float(reactions[1][i]) / driven + 1.0))
-        elastic = float(pressure @ contact.system.compliance @ pressure)
-        energy = abs(float(work[0][i] + work[1][i]) / elastic - 1.0)
-        checks.append((max(balance, energy), abs(driven) / torque))
-    return checks
-
-
 def _of_body(bodies: Bodies, number: int, solutions: Sequence[Solution]) -> tuple[FloatArray, FloatArray]:
     """Return the moments of the bore's reactions about the center, and the work of the forces, (T,)."""
     body = bodies[number]
@@ -271,8 +245,23 @@ class _PairGeometry:
         return self.pair.face_width
 
     def checks(self, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
-        """Return breach of the laws and ratio of the torques, as `_bore_checks`."""
-        return _bore_checks(self.bodies, solutions)
+        """Return the largest relative breach of the laws, and the torque of gear 2 over that of gear 1.
+
+        The moment of the reactions at gear 1's bore is the torque, at gear 2's bore that of the contact
+        forces; the work u f of both gears is p C p. Nothing condensed enters the reactions: all nodes are
+        solved for.
+        """
+        reactions, work = zip(*(_of_body(self.bodies, number, solutions) for number in range(2)), strict=True)
+        checks = []
+        for i, (contact, pressure, torque) in enumerate(solutions):
+            driven = _moment(self.bodies[1], contact.forces[1] @ pressure)
+            balance = max(
+                abs(float(reactions[0][i]) / torque + 1.0), abs(float(reactions[1][i]) / driven + 1.0)
+            )
+            elastic = float(pressure @ contact.system.compliance @ pressure)
+            energy = abs(float(work[0][i] + work[1][i]) / elastic - 1.0)
+            checks.append((max(balance, energy), abs(driven) / torque))
+        return checks
 
     def linearized(self, at: Configuration) -> LinearizedContact:
         turn, center = rotation(self.lag_rate * at.lag), self.bodies[1].body.center

@@ -15,7 +15,7 @@ from fe_contact.full_contact.condensation.sites import (
     Resolution,
     SizedStrip,
     kinks,
-    modified_flank,
+    material_removed,
 )
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
 from fe_contact.mesh.gear_mesh import real_teeth
@@ -58,15 +58,7 @@ class _GearBoundary:
 def _gear_boundary(
     gear: Toothing, teeth: IntArray, strips: Mapping[int, SizedStrip], resolution: Resolution
 ) -> _GearBoundary:
-    """Divide the boundary of a gear.
-
-    Parameters
-    ----------
-    teeth : (t,) int array
-        Consecutive numbers of the real teeth.
-    strips : mapping of int to SizedStrip
-        By tooth that may touch.
-    """
+    """Divide the boundary of a gear with consecutive real `teeth`; `strips` are by tooth that may touch."""
     size = _size_near(gear, strips, resolution)
     pieces: list[Piece] = []
     s = {}
@@ -83,10 +75,16 @@ def _size_near(gear: Toothing, strips: Mapping[int, SizedStrip], resolution: Res
     points, sizes = [], []
     for tooth, strip in strips.items():
         at = np.clip(strip.at, tooth_profile(gear).s_space, tooth_profile(gear).s_tip)
-        points.append(rotated(modified_flank(gear, at), tooth * pitch))
+        points.append(rotated(_modified_flank(gear, at), tooth * pitch))
         sizes.append(strip.size)
     largest = resolution.part(BODY, gear.normal_module)
     return spread(np.concatenate(points), np.concatenate(sizes), resolution.growth, largest)
+
+
+def _modified_flank(gear: Toothing, s: FloatArray) -> FloatArray:
+    """Return points (n, 2) of the loaded right flank in the tooth frame at flank coordinates (n,), m."""
+    profile = tooth_profile(gear)
+    return np.asarray(profile.flank(s) - material_removed(gear, s)[:, None] * profile.normal(s))
 
 
 def _tooth(
@@ -99,7 +97,7 @@ def _tooth(
     flank_size, fillet_size, land_size = (resolution.part(share, module) for share in shares)
 
     def flank(s: FloatArray) -> FloatArray:
-        return rotated(modified_flank(gear, s), turn)
+        return rotated(_modified_flank(gear, s), turn)
 
     def coast(s: FloatArray) -> FloatArray:
         return rotated(profile.flank(s) * [-1.0, 1.0], turn)

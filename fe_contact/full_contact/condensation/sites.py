@@ -91,12 +91,6 @@ def removed_at_roll(gear: Toothing, roll: FloatArray, face: float = 0.0) -> Floa
     return np.asarray(gear.modification.material_removed(gear, within, face), dtype=float)
 
 
-def modified_flank(gear: Toothing, s: FloatArray) -> FloatArray:
-    """Return points (n, 2) of the loaded right flank in the tooth frame at flank coordinates (n,), m."""
-    profile = tooth_profile(gear)
-    return np.asarray(profile.flank(s) - material_removed(gear, s)[:, None] * profile.normal(s))
-
-
 def kinks(gear: Toothing) -> FloatArray:
     """Return the flank coordinates where the slope or the curvature of the flank jumps, m, rising."""
     profile = tooth_profile(gear)

@@ -147,21 +147,9 @@ def _solve_position(
     position: float,
     resolution: Resolution,
 ) -> _SolvedPosition:
-    """Solve one position.
+    """Solve one position, in base pitches of the driving gear, for torques on gear 1 in N m.
 
-    Parameters
-    ----------
-    pair : GearPair or InternalGearPair
-        That the model holds.
-    torques : sequence of float
-        On gear 1, N m, > 0.
-    position : float
-        By the driving gear, base pitches; any.
-
-    Returns
-    -------
-    SolvedPosition
-        Without unknowns, and points that say why, where there is no mesh or no body.
+    Where there is no mesh or no body it has no unknowns, and points that say why.
     """
     try:
         return _solved(model, pair, torques, position, resolution)

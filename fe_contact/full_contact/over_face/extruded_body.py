@@ -233,7 +233,11 @@ def _half(
     order = np.concatenate([dissected(graph, inner), nodes])
     free, starts = _columns(stiffness, order, len(body.points), odd=odd)
     lower = _bordered(stiffness.matrix, free, _turned_circle(stiffness, body))
-    matrix = _ColumnMatrix(lower, np.append(starts, starts[-1] + 1), _with_circle(graph, order, body.held))
+    beside = sp.csr_array((graph[body.held].sum(axis=0)[order] > 0.0).astype(float)[None])
+    own = sp.hstack([graph[order][:, order], beside.T])
+    circle = sp.hstack([beside, sp.csr_array(np.ones((1, 1)))])
+    joined = sp.csr_array(sp.vstack([own, circle], format="csr"))
+    matrix = _ColumnMatrix(lower, np.append(starts, starts[-1] + 1), joined)
     complement = _schur_complement(matrix, len(nodes) + 1)
     kept = free[starts[len(inner)] :]
     in_plane = stiffness.component[kept] != Z
@@ -278,12 +282,6 @@ def _bordered(matrix: sp.csc_array, free: IntArray, turned: FloatArray) -> sp.cs
             format="csc",
         )
     )
-
-
-def _with_circle(graph: sp.csr_array, order: IntArray, held: IntArray) -> sp.csr_array:
-    beside = sp.csr_array((graph[held].sum(axis=0)[order] > 0.0).astype(float)[None])
-    own = sp.hstack([graph[order][:, order], beside.T])
-    return sp.csr_array(sp.vstack([own, sp.hstack([beside, sp.csr_array(np.ones((1, 1)))])], format="csr"))
 
 
 def _expansion(

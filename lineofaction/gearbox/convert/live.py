@@ -15,7 +15,7 @@ from fe_contact.analysis.flanks.deformed_pair import mesh_angles
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution, pressure_map
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condensed_pair
-from fe_contact.analysis.run_plan import RunPlan, plan_of_checked
+from fe_contact.analysis.run_plan import RunPlan, plan_run
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
 from fe_contact.microgeometry.linearized_design import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.ste import SteDatabase
@@ -42,7 +42,7 @@ def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) 
     """
     checked = case.checked
     with boundary_errors():
-        return plan_of_checked(checked, time_budget=time_budget_s, cache=cache)
+        return plan_run(checked, time_budget=time_budget_s, cache=cache)
 
 
 def plan_json(plan: RunPlan) -> Json:

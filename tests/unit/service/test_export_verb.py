@@ -84,7 +84,7 @@ def test_one_position_is_two_files_and_several_are_numbered(small: Path, tmp_pat
 def test_bad_arguments_are_one_line_before_the_work(
     small: Path, tmp_path: Path, arguments: list[str], said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("lineofaction.cli.export.deformed_pairs_of_checked", None)  # called: code 5
+    monkeypatch.setattr("lineofaction.cli.export.deformed_pairs", None)  # called: code 5
     result = loa(small, "-o", tmp_path / "out", *arguments)
     assert (result.exit_code, result.stdout) == (2, "")
     assert said in result.stderr

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from bounds.types import Json
-from fe_contact.analysis.flanks.flank_file import FORMAT, flanks_of_checked
+from fe_contact.analysis.flanks.flank_file import FORMAT, flank_results
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, case_json
@@ -32,7 +32,7 @@ def flanks_of(checked: CheckedCase, cache: Path | None, progress: Progress = sil
     """
     run, case, point = Run(cache=cache, progress=progress), checked.case, checked.at_point
     with boundary_errors():
-        results = flanks_of_checked(point, run, case=case_json(case))
+        results = flank_results(point, run=run, case=case_json(case))
     warnings = phrased_for(case, results.metadata.warnings)
     return replace(results, metadata=replace(results.metadata, warnings=warnings))
 

@@ -10,7 +10,7 @@ from fe_contact.analysis.flanks.root_stress import (
     RootPassage,
     RootPeak,
     RootStressHistory,
-    root_stress_of_checked,
+    root_stress,
 )
 from fe_contact.options import Run
 from fe_contact.plausibility.pair_checks import nominal_root_stresses
@@ -73,7 +73,7 @@ class _RootStressStudy(PointStudy[RootStressFigures, Roots]):
         run, pair = Run(cache=means.home / "compliance", progress=means.report), case.pair
         checked = case.at_point
         with boundary_errors():
-            stress = root_stress_of_checked(checked, run)
+            stress = root_stress(checked, run=run)
         helical = bool(pair.pinion.helix_angle)
         nominal = (None, None) if helical else nominal_root_stresses(pair, stress.normal_force)
         return Roots(
