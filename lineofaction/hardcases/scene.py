@@ -8,16 +8,18 @@ import signal
 import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
-from typing import Any
+from typing import Any, TypeVar
 
 from bounds import PlausibilityWarning
 from host import cpu_seconds, kill_group, lead_session
 
 TIME_LIMIT = 60.0
 """Seconds after which a scene is ended from outside, unless it says otherwise."""
+
+_M = TypeVar("_M", bound="Callable[[], Sequence[Measured]]")
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,23 @@ class HardScene:
         begin, busy = time.perf_counter(), cpu_seconds()
         figures = tuple(self.measure())
         return Outcome(self, figures, time.perf_counter() - begin, cpu_seconds=cpu_seconds() - busy)
+
+
+@dataclass(frozen=True)
+class Scenes:
+    """Scenes of one family, in the order in which their file declares them."""
+
+    family: str
+    listed: list[HardScene] = field(default_factory=list)
+
+    def add(self, name: str, hard_because: str, criterion: str) -> Callable[[_M], _M]:
+        """Return the decorator that makes a scene of the function that measures it."""
+
+        def declare(measure: _M) -> _M:
+            self.listed.append(HardScene(name, self.family, hard_because, criterion, measure))
+            return measure
+
+        return declare
 
 
 @dataclass(frozen=True)

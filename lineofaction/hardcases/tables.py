@@ -13,7 +13,9 @@ from fe_contact.errors import FeContactError, InputError
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.types import FloatArray
 from lineofaction.hardcases.contact.laws import even_positions, off
-from lineofaction.hardcases.scene import HardScene, Measured
+from lineofaction.hardcases.scene import Measured, Scenes
+
+SCENES = Scenes("table")
 
 BASE_RADIUS = 0.04 * math.cos(math.radians(20.0))
 COMPLIANCE = 2.5e-9
@@ -70,14 +72,6 @@ _PLAIN = (
 )
 
 
-def _over_misalignment(table: SteDatabase, misalignment: FloatArray, factor: FloatArray) -> SteDatabase:
-    """Return the table at each misalignment with its transmission errors `factor` times as large."""
-    names = ("static_transmission_error", "tangent_compliance", "no_load_transmission_error")
-    scaled: dict[str, Any] = {name: _along(getattr(table, name), factor) for name in names}
-    scaled |= {name: _along(getattr(table, name), np.ones(factor.size)) for name in _PLAIN}
-    return replace(table, misalignment=misalignment, **scaled)
-
-
 def _along(values: FloatArray, factor: FloatArray) -> FloatArray:
     """Repeat values (P, [F,] 1, D, ...) along the axis of misalignment, each times its factor."""
     axis = 1 if values.ndim == 3 else 2
@@ -98,6 +92,12 @@ _SEED = 20260102
 _FORCE = np.array([500.0, 1000.0, 2500.0, 5000.0])
 
 
+@SCENES.add(
+    "square_wave_ste",
+    "STE doubles between two knots, at every load: any smooth interpolant wants to swing.",
+    "No value leaves the wave's range, force grows with approach, and force and STE are inverse to each "
+    "other.",
+)
 def _square_wave_ste() -> Sequence[Measured]:
     """Extract forces from an STE that jumps to its double between two knots."""
     position = even_positions(64)
@@ -120,6 +120,11 @@ def _square_wave_ste() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "two_loads_only",
+    "Two stored loads, or one, leave nothing to take a curvature from, and lift-off below them.",
+    "Force and STE are inverse to each other; a linear table stays linear between its loads.",
+)
 def _two_loads() -> Sequence[Measured]:
     """Extract forces from a table of two loads, and of one."""
     position = even_positions(16)
@@ -131,11 +136,12 @@ def _two_loads() -> Sequence[Measured]:
         straight = compliance[:, None] * between
         growth = np.diff(table.ste(position[:, None], between), axis=1)
         loads = f"{force.size} load" + "s" * (force.size > 1)
+        stored = between >= table.force[0]
         figures += [
             *(Measured(f"{f.name}, {loads}", f.value, f.most, f.least) for f in _inverse(table, position)),
             Measured(
                 f"from the lowest load on, off the straight law, {loads}",
-                _above(table, straight, between),
+                off(table.ste(table.position[:, None], between[stored]), straight[:, stored]),
                 1e-12,
             ),
             Measured(f"least growth of STE with load, {loads}, m", float(growth.min()), least=1e-9),
@@ -143,6 +149,11 @@ def _two_loads() -> Sequence[Measured]:
     return figures
 
 
+@SCENES.add(
+    "force_at_lift_off",
+    "The force sets in along a curve in position and approach; at it stiffness is zero by convention.",
+    "Force and stiffness are zero at and below lift-off, continuous through it, and positive above.",
+)
 def _lift_off() -> Sequence[Measured]:
     """Move across lift-off, where the force sets in, with a gap that varies over the pitch."""
     position = even_positions(32)
@@ -167,6 +178,11 @@ def _lift_off() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "queries_outside",
+    "Positions of a million pitches, approaches far beyond the highest load, and what is no number.",
+    "Position repeats; beyond the top the curve goes on straight and is flagged; no number is refused.",
+)
 def _queries_outside() -> Sequence[Measured]:
     """Ask beyond every end of the table, far away, and for what is no number."""
     position = even_positions(32)
@@ -197,7 +213,10 @@ def _queries_outside() -> Sequence[Measured]:
 def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     """Ask a table of three misalignments at each of them, between and beyond."""
     misalignment, factor = np.array([-20e-6, 0.0, 30e-6]), np.array([1.2, 1.0, 1.5])
-    wide = _over_misalignment(table, misalignment, factor)
+    names = ("static_transmission_error", "tangent_compliance", "no_load_transmission_error")
+    scaled: dict[str, Any] = {name: _along(getattr(table, name), factor) for name in names}
+    scaled |= {name: _along(getattr(table, name), np.ones(factor.size)) for name in _PLAIN}
+    wide = replace(table, misalignment=misalignment, **scaled)
     here = table.ste(x, 2500.0)
     at = [wide.ste(x, 2500.0, misalignment=m) / here for m in misalignment]
     between = wide.ste(x, 2500.0, misalignment=15e-6) / here
@@ -217,6 +236,12 @@ def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     )  # fmt: skip
 
 
+@SCENES.add(
+    "nearly_parallel_curves",
+    "Curves of neighboring loads lie a picometer apart over a wave of microns: where they cross a force "
+    "has two values.",
+    "Their order holds everywhere, and force and STE are inverse to each other.",
+)
 def _nearly_parallel() -> Sequence[Measured]:
     """Keep loads apart whose curves run a picometer from each other over a square wave."""
     position = even_positions(48)
@@ -264,57 +289,12 @@ def _slope_error(table: SteDatabase) -> Measured:
     return Measured("stiffness off the difference of forces", float(off.max()), most=1e-3)
 
 
-def _above(table: SteDatabase, straight: FloatArray, force: FloatArray) -> float:
-    """Largest relative difference to a straight law, from the lowest stored load on."""
-    stored = force >= table.force[0]
-    return off(table.ste(table.position[:, None], force[stored]), straight[:, stored])
-
-
 def _refused(table: SteDatabase, position: float, deflection: float) -> bool:
     try:
         table.force_at(position, deflection)
     except InputError:
         return True
     return False
-
-
-SQUARE_WAVE = HardScene(
-    "square_wave_ste",
-    "table",
-    "STE doubles between two knots, at every load: any smooth interpolant wants to swing.",
-    "No value leaves the wave's range, force grows with approach, and force and STE are inverse to each "
-    "other.",
-    _square_wave_ste,
-)
-TWO_LOADS = HardScene(
-    "two_loads_only",
-    "table",
-    "Two stored loads, or one, leave nothing to take a curvature from, and lift-off below them.",
-    "Force and STE are inverse to each other; a linear table stays linear between its loads.",
-    _two_loads,
-)
-LIFT_OFF = HardScene(
-    "force_at_lift_off",
-    "table",
-    "The force sets in along a curve in position and approach; at it stiffness is zero by convention.",
-    "Force and stiffness are zero at and below lift-off, continuous through it, and positive above.",
-    _lift_off,
-)
-OUTSIDE = HardScene(
-    "queries_outside",
-    "table",
-    "Positions of a million pitches, approaches far beyond the highest load, and what is no number.",
-    "Position repeats; beyond the top the curve goes on straight and is flagged; no number is refused.",
-    _queries_outside,
-)
-NEARLY_PARALLEL = HardScene(
-    "nearly_parallel_curves",
-    "table",
-    "Curves of neighboring loads lie a picometer apart over a wave of microns: where they cross a force "
-    "has two values.",
-    "Their order holds everywhere, and force and STE are inverse to each other.",
-    _nearly_parallel,
-)
 
 
 # Noise that breaks what a table must be: an STE that falls with load.
@@ -324,6 +304,12 @@ _SEED_NOISE = 20260103
 _AMPLITUDE = 0.4e-6
 
 
+@SCENES.add(
+    "noise_breaks_monotonicity",
+    "Noise larger than what STE gains from load to load: there is no force to a given STE.",
+    "Refused with place and amount; repaired by isotonic regression STE grows with load, no value moves by "
+    "more than the noise, the table comes nearer to the truth, and the change is reported.",
+)
 def _broken_monotonicity() -> Sequence[Measured]:
     """Add noise of a fraction of a micrometer to a table of close loads; refuse it, then repair it."""
     position, force = even_positions(32), np.linspace(500.0, 3000.0, 26)
@@ -371,13 +357,3 @@ def _refusal(table: SteDatabase) -> str:
     except FeContactError as error:
         return str(error)
     return ""
-
-
-NOISE = HardScene(
-    "noise_breaks_monotonicity",
-    "table",
-    "Noise larger than what STE gains from load to load: there is no force to a given STE.",
-    "Refused with place and amount; repaired by isotonic regression STE grows with load, no value moves by "
-    "more than the noise, the table comes nearer to the truth, and the change is reported.",
-    _broken_monotonicity,
-)

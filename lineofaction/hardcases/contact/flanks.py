@@ -25,11 +25,20 @@ from lineofaction.hardcases.contact.laws import (
     range_off,
     soundness,
 )
-from lineofaction.hardcases.scene import HardScene, Measured
+from lineofaction.hardcases.scene import Measured, Scenes
+
+SCENES = Scenes("contact")
 
 _DECADES = np.geomspace(1e-4, 1e3, 29)
 
 
+@SCENES.add(
+    "load_seven_decades",
+    "One table holds 1e-4 and 1e3 times the nominal load: patches fit for the highest load are wider than "
+    "the tooth, and forces differ by 1e7.",
+    "STE grows with load, the tangent compliance never does, two solvers agree, and the curve at nominal "
+    "load is that of a table which holds nothing else.",
+)
 def _seven_decades() -> Sequence[Measured]:
     """Solve one table over seven decades of load, and its nominal curve alone."""
     wide = posed(nominal_pair(), NOMINAL_TORQUE * _DECADES)
@@ -55,6 +64,11 @@ def _seven_decades() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "zero_load",
+    "At zero load no tangent stiffness exists and every figure is 0/0.",
+    "STE tends to the rigid gap, where the table's force is exactly zero; a load of zero is refused by name.",
+)
 def _zero_load() -> Sequence[Measured]:
     """Go to zero load in the solver, in the table and at the entry point."""
     relief = FlankModification(tip_relief=20e-6, tip_relief_length=2e-3, profile_crowning=5e-6)
@@ -79,24 +93,6 @@ def _zero_load() -> Sequence[Measured]:
     )
 
 
-SEVEN_DECADES = HardScene(
-    "load_seven_decades",
-    "contact",
-    "One table holds 1e-4 and 1e3 times the nominal load: patches fit for the highest load are wider than "
-    "the tooth, and forces differ by 1e7.",
-    "STE grows with load, the tangent compliance never does, two solvers agree, and the curve at nominal "
-    "load is that of a table which holds nothing else.",
-    _seven_decades,
-)
-ZERO_LOAD = HardScene(
-    "zero_load",
-    "contact",
-    "At zero load no tangent stiffness exists and every figure is 0/0.",
-    "STE tends to the rigid gap, where the table's force is exactly zero; a load of zero is refused by name.",
-    _zero_load,
-)
-
-
 # A tooth pair that just touches under load: on the border of the active set.
 
 
@@ -107,6 +103,14 @@ _LENGTH = 2.5e-3
 _NUDGES = np.array([-1e-3, -1e-6, -1e-9, -1e-12, -1e-15, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
 
 
+@SCENES.add(
+    "handover_touching",
+    "Tip relief equal to the deflection to the last digit: the entering pair touches without force, so that"
+    " rounding decides whether it belongs to the active set.",
+    "The gap is that of a straight ramp; STE rises with relief and never faster than it (the deflection is "
+    "non-expansive in the gaps), and the pair carries a millionth above the load that brings it into touch; "
+    "through nudges of 1e-15 to 1e-3; two solvers agree.",
+)
 def _relief_that_touches() -> Sequence[Measured]:
     """Find the tip relief with which the second pair carries nothing and gapes nowhere; nudge it."""
     case = posed(nominal_pair())
@@ -177,18 +181,6 @@ def _share(problem: ContactProblem, solution: ContactSolution) -> float:
     return float(force[-2] / force.sum())
 
 
-RELIEF_THAT_TOUCHES = HardScene(
-    "handover_touching",
-    "contact",
-    "Tip relief equal to the deflection to the last digit: the entering pair touches without force, so that"
-    " rounding decides whether it belongs to the active set.",
-    "The gap is that of a straight ramp; STE rises with relief and never faster than it (the deflection is "
-    "non-expansive in the gaps), and the pair carries a millionth above the load that brings it into touch; "
-    "through nudges of 1e-15 to 1e-3; two solvers agree.",
-    _relief_that_touches,
-)
-
-
 # Contact at the tip edges, with teeth whose tips are sharp, pointed or rounded.
 
 
@@ -198,6 +190,12 @@ _ROUNDING = 0.15e-3
 """Radial height of the rounded tip edge in m."""
 
 
+@SCENES.add(
+    "tip_edge_high_load",
+    "At ten times the nominal load whole pairs hang on a tip edge, off the line of action, with arms that "
+    "differ between the gears.",
+    "More places to touch never raise STE; the curve is continuous; two solvers agree.",
+)
 def _tip_edge_at_high_load() -> Sequence[Measured]:
     """Load the nominal pair tenfold and look at how its tip edges enter and leave."""
     case = posed(nominal_pair(), [10.0 * NOMINAL_TORQUE])
@@ -212,6 +210,11 @@ def _tip_edge_at_high_load() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "sharp_tips",
+    "Teeth of 0.02 modules thickness at the tip: a wedge of elements, and no room for a load patch.",
+    "Two meshes agree, the curve is continuous, two solvers agree.",
+)
 def _sharp_tips() -> Sequence[Measured]:
     """Raise the tips until next to nothing is left of them."""
     highest = brentq(lambda h: _tall(h).tip_tooth_thickness - _POINTED * 4e-3, 1.0, 1.7, xtol=1e-10)
@@ -230,6 +233,12 @@ def _sharp_tips() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "rounded_tips",
+    "A tip edge rounded over 0.15 mm: the relief is so steep that the touching point leaves the line of "
+    "action.",
+    "STE changes by less than 1 nm with 1 nm of rounding, rises with its depth, and is continuous.",
+)
 def _rounded_tips() -> Sequence[Measured]:
     """Round the tip edges off, by a relief steep enough to take them out of contact."""
     sharp = posed(nominal_pair(), [2.0 * NOMINAL_TORQUE])
@@ -237,7 +246,15 @@ def _rounded_tips() -> Sequence[Measured]:
     plain = sharp.ste(position)
     curves = []
     for depth in (0.0, 1e-9, 2e-6, 20e-6, 200e-6):
-        pair = nominal_pair(modification=_rounding(depth))
+        pair = nominal_pair(
+            modification=(
+                FlankModification(
+                    tip_relief=depth,
+                    tip_relief_length=_ROUNDING if depth else 0.0,
+                    tip_relief_shape="parabolic",
+                )
+            )
+        )
         case = posed(pair, [2.0 * NOMINAL_TORQUE], bodies=sharp.contact)
         problem, solution = case.solve(position)
         curves.append(solution.deflection)
@@ -259,12 +276,6 @@ def _tall(addendum: float) -> Gear:
     )  # fmt: skip
 
 
-def _rounding(depth: float) -> FlankModification:
-    return FlankModification(
-        tip_relief=depth, tip_relief_length=_ROUNDING if depth else 0.0, tip_relief_shape="parabolic"
-    )
-
-
 def _smoothness(case: Posed) -> Measured:
     """Return how the largest step of STE shrinks on positions four times as close: 1/4 if smooth."""
     steps = []
@@ -278,31 +289,6 @@ def _largest(values: FloatArray) -> float:
     return float(np.abs(values).max())
 
 
-TIP_EDGE = HardScene(
-    "tip_edge_high_load",
-    "contact",
-    "At ten times the nominal load whole pairs hang on a tip edge, off the line of action, with arms that "
-    "differ between the gears.",
-    "More places to touch never raise STE; the curve is continuous; two solvers agree.",
-    _tip_edge_at_high_load,
-)
-SHARP_TIPS = HardScene(
-    "sharp_tips",
-    "contact",
-    "Teeth of 0.02 modules thickness at the tip: a wedge of elements, and no room for a load patch.",
-    "Two meshes agree, the curve is continuous, two solvers agree.",
-    _sharp_tips,
-)
-ROUNDED_TIPS = HardScene(
-    "rounded_tips",
-    "contact",
-    "A tip edge rounded over 0.15 mm: the relief is so steep that the touching point leaves the line of "
-    "action.",
-    "STE changes by less than 1 nm with 1 nm of rounding, rises with its depth, and is continuous.",
-    _rounded_tips,
-)
-
-
 # Gaps larger than any deflection: deep relief, teeth out of their places, noise on the flanks.
 
 
@@ -313,6 +299,12 @@ _NOISE = 2e-6
 _SEED = 20260101
 
 
+@SCENES.add(
+    "gap_beyond_deflection",
+    "Relief of 0.3 mm where teeth bend by 8 um: gaps and deflections differ by orders of magnitude, and "
+    "most candidates never touch.",
+    "Out of reach means without effect: taking those candidates away, or a meter further, changes no bit.",
+)
 def _gap_beyond_deflection() -> Sequence[Measured]:
     """Relieve both tips by 0.3 mm, so that most pairs cannot touch whatever the load."""
     relief = FlankModification(tip_relief=300e-6, tip_relief_length=3e-3)
@@ -333,6 +325,12 @@ def _gap_beyond_deflection() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "pitch_error_beyond_deflection",
+    "One tooth stands 50 um ahead where teeth bend by 8 um: its neighbors lose contact and STE jumps.",
+    "The tooth ahead carries alone, on the curve shifted by its deviation on the line of action; all teeth "
+    "ahead shift the whole curve (superposition of rigid offsets).",
+)
 def _pitch_error_beyond_deflection() -> Sequence[Measured]:
     """Put one tooth 50 um ahead of its place, then all of them."""
     position = even_positions(48)
@@ -362,6 +360,13 @@ def _pitch_error_beyond_deflection() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "noisy_flanks",
+    "Flanks from a measurement with 2 um of noise: bumps as high as the deflection, touching points that "
+    "wander.",
+    "STE grows by no less than the least and no more than the most removed, and with load; two solvers "
+    "agree.",
+)
 def _noisy_flanks() -> Sequence[Measured]:
     """Put noise on both flanks, as a measurement would."""
     rng = np.random.default_rng(_SEED)
@@ -408,30 +413,3 @@ def _heights(gear: Gear) -> FloatArray:
     """Material removed all along the profile."""
     roll = np.linspace(gear.form_roll_length, gear.tip_roll_length, 20_001)
     return gear.modification.material_removed(gear, roll)
-
-
-GAP_BEYOND_DEFLECTION = HardScene(
-    "gap_beyond_deflection",
-    "contact",
-    "Relief of 0.3 mm where teeth bend by 8 um: gaps and deflections differ by orders of magnitude, and "
-    "most candidates never touch.",
-    "Out of reach means without effect: taking those candidates away, or a meter further, changes no bit.",
-    _gap_beyond_deflection,
-)
-PITCH_ERROR = HardScene(
-    "pitch_error_beyond_deflection",
-    "contact",
-    "One tooth stands 50 um ahead where teeth bend by 8 um: its neighbors lose contact and STE jumps.",
-    "The tooth ahead carries alone, on the curve shifted by its deviation on the line of action; all teeth "
-    "ahead shift the whole curve (superposition of rigid offsets).",
-    _pitch_error_beyond_deflection,
-)
-NOISY_FLANKS = HardScene(
-    "noisy_flanks",
-    "contact",
-    "Flanks from a measurement with 2 um of noise: bumps as high as the deflection, touching points that "
-    "wander.",
-    "STE grows by no less than the least and no more than the most removed, and with load; two solvers "
-    "agree.",
-    _noisy_flanks,
-)

@@ -12,7 +12,7 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning.plan import Plan, make_plan
+from fe_contact.planning.plan import Plan
 from fe_contact.types import FloatArray, IntArray
 from lineofaction.hardcases.contact.interior_point import GapAbout, Problem, solve
 from lineofaction.hardcases.scene import Measured
@@ -91,8 +91,9 @@ def posed(
     axes = TableAxes(torques, misalignments=[misalignment], pitches=pitches)
     checked = check_request(pair, axes, AnalysisOptions(level=level, model=model, effects=effects or {}))
     request = checked.request
-    plan = make_plan(pair, request.load, request.options, checked.model)
-    contact = pair_contact(pair, plan, None) if bodies is None else _again(bodies, pair, plan)
+    plan = checked.plan()
+    known = None if bodies is None else replace(bodies, pair=pair, plan=plan, _problems={})
+    contact = known or pair_contact(pair, plan, None)
     (point,) = operating_points(request.scene, request.choices, contact).places
     return Posed(point.contact, point.model)
 
@@ -115,10 +116,6 @@ def mean_off(values: FloatArray, expected: FloatArray) -> float:
 def range_off(values: FloatArray, expected: FloatArray) -> float:
     """Return the relative difference of the ranges."""
     return abs(float(np.ptp(values) / np.ptp(expected)) - 1.0)
-
-
-def _again(bodies: PairContact, pair: ParallelAxes, plan: Plan) -> PairContact:
-    return replace(bodies, pair=pair, plan=plan, _problems={})
 
 
 # Laws of every contact scene: the conditions of contact, and a second solver that agrees.

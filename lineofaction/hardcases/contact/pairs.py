@@ -27,12 +27,21 @@ from lineofaction.hardcases.contact.laws import (
     range_off,
     soundness,
 )
-from lineofaction.hardcases.scene import HardScene, Measured
+from lineofaction.hardcases.scene import Measured, Scenes
+
+SCENES = Scenes("contact")
 
 _MISALIGNMENT = 300e-6
 _WIDE = 60e-3
 
 
+@SCENES.add(
+    "misaligned_to_5_percent",
+    "0.3 mm of misalignment over the face: one slice of nineteen carries, and gaps are 40 times the "
+    "deflection.",
+    "The side that comes closer carries; both sides are mirror images, in STE and in the place of the load; "
+    "the rigid gap is that of the wedge.",
+)
 def _five_per_cent() -> Sequence[Measured]:
     """Misalign a wide pair until one slice of nineteen carries all, to either side."""
     case, other = (
@@ -49,12 +58,15 @@ def _five_per_cent() -> Sequence[Measured]:
     mirrored_problem, mirrored = other.solve(position)
     slices = case.plan.discretization.slices
     wedge = 0.5 * _MISALIGNMENT * (1.0 - 1.0 / (slices * POINTS))
+    face = problem.candidates.face_position
+    loaded = [np.unique(face[force > 0.0]).size for force in solution.force[:, 0]]
     return (
         *soundness(problem, solution, 8),
-        Measured("part of the face that carries, %", 100.0 * _carrying(problem, solution), most=6.0),
+        Measured("part of the face that carries, %", 100.0 * (max(loaded) / np.unique(face).size), most=6.0),
         Measured(
             "centroid over half the face width, to the side that comes closer, least",
-            _eccentricity(problem, solution),
+            # positive misalignment opens the gap towards larger face positions: the load is at the lower ones
+            float(-_centroid(problem, solution).max() / (0.5 * _WIDE)),
             least=0.9,
         ),
         Measured(
@@ -71,6 +83,12 @@ def _five_per_cent() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "single_slice",
+    "One slice over the whole face: the load may not spread as it likes, and patches are as wide as the "
+    "gear.",
+    "Dividing the slice frees the load: STE falls everywhere (least complementary energy), by less than 5 %.",
+)
 def _single_slice() -> Sequence[Measured]:
     """Spread the load evenly: one slice in three dimensions, then three, then nine."""
     full = posed(nominal_pair(), model="3d")
@@ -92,6 +110,11 @@ def _single_slice() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "identical_positions",
+    "Positions given twice make spacings of zero.",
+    "Equal positions have equal STE to the last bit, whatever stands beside them.",
+)
 def _duplicates() -> Sequence[Measured]:
     """Ask for the same position several times, in any order, alone and among others."""
     case = posed(nominal_pair())
@@ -110,51 +133,10 @@ def _duplicates() -> Sequence[Measured]:
     )
 
 
-def _carrying(problem: ContactProblem, solution: ContactSolution) -> float:
-    """Return the largest part of the face width under load at any position."""
-    face = problem.candidates.face_position
-    loaded = [np.unique(face[force > 0.0]).size for force in solution.force[:, 0]]
-    return max(loaded) / np.unique(face).size
-
-
 def _centroid(problem: ContactProblem, solution: ContactSolution) -> FloatArray:
     """Return where along the face the load acts, m."""
     force = solution.force[:, 0]
     return np.asarray(force @ problem.candidates.face_position / force.sum(axis=1))
-
-
-def _eccentricity(problem: ContactProblem, solution: ContactSolution) -> float:
-    """Return the least distance of the load from mid-face over half the face width, to the closer side.
-
-    Positive misalignment opens the gap towards larger face positions: the load is at the lower ones.
-    """
-    return float(-_centroid(problem, solution).max() / (0.5 * _WIDE))
-
-
-FIVE_PER_CENT = HardScene(
-    "misaligned_to_5_percent",
-    "contact",
-    "0.3 mm of misalignment over the face: one slice of nineteen carries, and gaps are 40 times the "
-    "deflection.",
-    "The side that comes closer carries; both sides are mirror images, in STE and in the place of the load; "
-    "the rigid gap is that of the wedge.",
-    _five_per_cent,
-)
-SINGLE_SLICE = HardScene(
-    "single_slice",
-    "contact",
-    "One slice over the whole face: the load may not spread as it likes, and patches are as wide as the "
-    "gear.",
-    "Dividing the slice frees the load: STE falls everywhere (least complementary energy), by less than 5 %.",
-    _single_slice,
-)
-DUPLICATES = HardScene(
-    "identical_positions",
-    "contact",
-    "Positions given twice make spacings of zero.",
-    "Equal positions have equal STE to the last bit, whatever stands beside them.",
-    _duplicates,
-)
 
 
 # Contact ratios where pairs hand over in no time, or all at once.
@@ -167,7 +149,11 @@ _TIP_CLEARANCE = 0.25
 
 def _handover_at_ratio(ratio: float) -> Sequence[Measured]:
     """Choose the addendum for the contact ratio, load the pair, and follow it past the end of the pitch."""
-    pair = _pair_of_ratio(ratio)
+    low, high = (0.587, 1.0) if ratio < 1.5 else (1.0, 1.75)
+    addendum = brentq(
+        lambda height: _pair(height, ratio).transverse_contact_ratio - ratio, low, high, xtol=1e-13
+    )
+    pair = _pair(addendum, ratio)
     case = posed(pair, NOMINAL_TORQUE * pair.pinion.base_radius / 0.0376 * np.array([1e-3, 1.0]))
     position = even_positions(240)
     problem, solution = case.solve(position)
@@ -186,15 +172,6 @@ def _handover_at_ratio(ratio: float) -> Sequence[Measured]:
         Measured("load shares off one", float(np.abs(shares - 1.0).max()), most=1e-12),
         Measured("smallest share", float(loaded.min()), least=0.0),
     )
-
-
-def _pair_of_ratio(ratio: float) -> GearPair:
-    """Return two equal gears whose tips are as high as the contact ratio asks for."""
-    low, high = (0.587, 1.0) if ratio < 1.5 else (1.0, 1.75)
-    addendum = brentq(
-        lambda height: _pair(height, ratio).transverse_contact_ratio - ratio, low, high, xtol=1e-13
-    )
-    return _pair(addendum, ratio)
 
 
 def _pair(addendum: float, ratio: float) -> GearPair:
@@ -219,32 +196,37 @@ def _mean_pairs(case: Posed) -> float:
     return float((solution.force[:, 0] > 0.0).sum(axis=1).mean())
 
 
-def _scene(name: str, ratio: float, hard_because: str) -> HardScene:
-    criterion = (
+for _name, _ratio, _because in (
+    ("contact_ratio_1.01", 1.01, "Two pairs share the load over one per cent of the pitch only."),
+    (
+        "contact_ratio_2.0",
+        2.0,
+        "One pair enters at the very position at which another leaves: two ties at once.",
+    ),
+    (
+        "contact_ratio_2.6",
+        2.6,
+        "Two and three pairs in turn: the coupling of teeth two apart decides the ripple.",
+    ),
+):
+    SCENES.add(
+        _name,
+        _because,
         "The mean number of touching pairs is the contact ratio; STE repeats after one base pitch; load "
-        "shares are positive and sum to one; two solvers agree."
-    )
-    return HardScene(name, "contact", hard_because, criterion, partial(_handover_at_ratio, ratio))
-
-
-RATIO_1_01 = _scene(
-    "contact_ratio_1.01", 1.01, "Two pairs share the load over one per cent of the pitch only."
-)
-RATIO_2 = _scene(
-    "contact_ratio_2.0",
-    2.0,
-    "One pair enters at the very position at which another leaves: two ties at once.",
-)
-RATIO_2_6 = _scene(
-    "contact_ratio_2.6",
-    2.6,
-    "Two and three pairs in turn: the coupling of teeth two apart decides the ripple.",
-)
+        "shares are positive and sum to one; two solvers agree.",
+    )(partial(_handover_at_ratio, _ratio))
 
 
 # Few teeth and many: undercut, and gears of very different size.
 
 
+@SCENES.add(
+    "undercut_9_teeth",
+    "Nine teeth of profile shift 0.15: the fillet cuts into the involute, the root is thinner than the "
+    "flank, and the tooth is softer than any formula knows.",
+    "Three meshes converge to one curve; the mean number of touching pairs is the contact ratio; two "
+    "solvers agree.",
+)
 def _undercut_pinion() -> Sequence[Measured]:
     """Drive 60 teeth by 9 that the tool has undercut."""
     pair = _undercut_pair()
@@ -278,6 +260,11 @@ def _undercut_pair() -> GearPair:
     return GearPair(pinion, replace(wheel, tip_diameter=2.0 * (highest - 1e-3 * module)))
 
 
+@SCENES.add(
+    "teeth_20_to_200",
+    "One gear is ten times as large as the other, with ten times the elements, and nearly rigid beside it.",
+    "STE is the same whichever gear drives: position x by the one is -x by the other.",
+)
 def _twenty_to_two_hundred() -> Sequence[Measured]:
     """Drive 200 teeth by 20, and back."""
     common = {"normal_module": 2e-3, "face_width": 20e-3}
@@ -298,21 +285,3 @@ def _twenty_to_two_hundred() -> Sequence[Measured]:
         ),
         Measured("positions compared", float(problem.candidates.position.size), least=50.0),
     )
-
-
-UNDERCUT = HardScene(
-    "undercut_9_teeth",
-    "contact",
-    "Nine teeth of profile shift 0.15: the fillet cuts into the involute, the root is thinner than the "
-    "flank, and the tooth is softer than any formula knows.",
-    "Three meshes converge to one curve; the mean number of touching pairs is the contact ratio; two "
-    "solvers agree.",
-    _undercut_pinion,
-)
-TWENTY_TO_TWO_HUNDRED = HardScene(
-    "teeth_20_to_200",
-    "contact",
-    "One gear is ten times as large as the other, with ten times the elements, and nearly rigid beside it.",
-    "STE is the same whichever gear drives: position x by the one is -x by the other.",
-    _twenty_to_two_hundred,
-)

@@ -23,7 +23,9 @@ from lineofaction.hardcases.contact.laws import (
     posed,
     soundness,
 )
-from lineofaction.hardcases.scene import HardScene, Measured
+from lineofaction.hardcases.scene import Measured, Scenes
+
+SCENES = Scenes("contact")
 
 # Very small and very large gears, narrow and wide faces, helix angles near zero and steep.
 
@@ -50,6 +52,67 @@ def _module_of(module: float) -> Sequence[Measured]:
     return figures
 
 
+for _module, _because in (
+    (0.2e-3, "Elements of 1 um: any length written into the mesher or the solver shows."),
+    (40e-3, "Gears of 0.8 m: any length written into the mesher or the solver shows."),
+):
+    SCENES.add(
+        f"module_{1e3 * _module:g}_mm",
+        _because,
+        "All lengths by s and forces by s^2: STE by s, in the plane and in three dimensions.",
+    )(partial(_module_of, _module))
+
+
+@SCENES.add(
+    "helix_0.1_deg",
+    "A tenth of a degree: contact lines enter the mesh nearly all at once, where a spur pair's do so "
+    "exactly.",
+    "The spur pair's mean within 0.2 %, no value below the spur pair's least, both hands alike.",
+)
+def _slight_helix() -> Sequence[Measured]:
+    """Turn a spur pair by a tenth of a degree, to either hand."""
+    position = even_positions(48)
+    spur, right, left = (_helical(degrees) for degrees in (0.0, 0.1, -0.1))
+    plain = spur.ste(position)[:, 0]
+    problem, solution = right.solve(position)
+    mirrored = left.ste(position)[:, 0]
+    curve = solution.deflection[:, 0]
+    return (
+        *soundness(problem, solution, 8),
+        Measured("mean STE against the spur pair's", mean_off(curve, plain), most=2e-3),
+        Measured("least slip below the spur pair's curve, m", float(np.max(plain.min() - curve)), most=5e-8),
+        Measured("left hand against right hand", off(mirrored, curve), most=1e-9),
+    )
+
+
+@SCENES.add(
+    "helix_40_deg",
+    "At 40 degrees contact lines cross three teeth, and layers of elements are turned against each other.",
+    "Both hands alike, periodic, load shares sum to one, two solvers agree.",
+)
+def _steep_helix() -> Sequence[Measured]:
+    """Turn the teeth by 40 degrees."""
+    position = even_positions(48)
+    right, left = _helical(40.0), _helical(-40.0)
+    problem, solution = right.solve(position)
+    mirrored = left.ste(position)
+    further = right.contact.solve(right.model, position + 1.0, right.plan.load)[1].deflection
+    shares = (solution.force * problem.candidates.torque_share[:, None, :]).sum(axis=2) / right.plan.load
+    curve = solution.deflection
+    return (
+        *soundness(problem, solution, 8),
+        Measured("total contact ratio", right.pair.total_contact_ratio, least=2.0),
+        Measured("left hand against right hand", off(mirrored, curve), most=1e-9),
+        Measured("STE one pitch further", off(further, curve), most=1e-9),
+        Measured("load shares off one", float(np.abs(shares - 1.0).max()), most=1e-12),
+    )
+
+
+@SCENES.add(
+    "face_0.3_and_30_modules",
+    "A disc thinner than its teeth are thick, and a roller six times as long as its diameter is thick.",
+    "The mean STE per unit of line load lies between plane strain and plane stress, the narrow one's higher.",
+)
 def _faces() -> Sequence[Measured]:
     """Compare gears of 0.3 and of 30 modules face width with the plane between them."""
     plane = posed(nominal_pair())
@@ -72,40 +135,6 @@ def _faces() -> Sequence[Measured]:
     )
 
 
-def _slight_helix() -> Sequence[Measured]:
-    """Turn a spur pair by a tenth of a degree, to either hand."""
-    position = even_positions(48)
-    spur, right, left = (_helical(degrees) for degrees in (0.0, 0.1, -0.1))
-    plain = spur.ste(position)[:, 0]
-    problem, solution = right.solve(position)
-    mirrored = left.ste(position)[:, 0]
-    curve = solution.deflection[:, 0]
-    return (
-        *soundness(problem, solution, 8),
-        Measured("mean STE against the spur pair's", mean_off(curve, plain), most=2e-3),
-        Measured("least slip below the spur pair's curve, m", float(np.max(plain.min() - curve)), most=5e-8),
-        Measured("left hand against right hand", off(mirrored, curve), most=1e-9),
-    )
-
-
-def _steep_helix() -> Sequence[Measured]:
-    """Turn the teeth by 40 degrees."""
-    position = even_positions(48)
-    right, left = _helical(40.0), _helical(-40.0)
-    problem, solution = right.solve(position)
-    mirrored = left.ste(position)
-    further = right.contact.solve(right.model, position + 1.0, right.plan.load)[1].deflection
-    shares = (solution.force * problem.candidates.torque_share[:, None, :]).sum(axis=2) / right.plan.load
-    curve = solution.deflection
-    return (
-        *soundness(problem, solution, 8),
-        Measured("total contact ratio", right.pair.total_contact_ratio, least=2.0),
-        Measured("left hand against right hand", off(mirrored, curve), most=1e-9),
-        Measured("STE one pitch further", off(further, curve), most=1e-9),
-        Measured("load shares off one", float(np.abs(shares - 1.0).max()), most=1e-12),
-    )
-
-
 def _scaled(scale: float, model: str) -> Posed:
     """Return the nominal pair with all lengths scaled, under the same strain."""
     gear = Gear(
@@ -122,40 +151,6 @@ def _helical(degrees: float) -> Posed:
     return posed(pair, model="3d")
 
 
-def _module_scene(module: float, hard_because: str) -> HardScene:
-    criterion = "All lengths by s and forces by s^2: STE by s, in the plane and in three dimensions."
-    name = f"module_{1e3 * module:g}_mm"
-    return HardScene(name, "contact", hard_because, criterion, partial(_module_of, module))
-
-
-MODULE_0_2 = _module_scene(
-    0.2e-3, "Elements of 1 um: any length written into the mesher or the solver shows."
-)
-MODULE_40 = _module_scene(40e-3, "Gears of 0.8 m: any length written into the mesher or the solver shows.")
-FACES = HardScene(
-    "face_0.3_and_30_modules",
-    "contact",
-    "A disc thinner than its teeth are thick, and a roller six times as long as its diameter is thick.",
-    "The mean STE per unit of line load lies between plane strain and plane stress, the narrow one's higher.",
-    _faces,
-)
-HELIX_0_1 = HardScene(
-    "helix_0.1_deg",
-    "contact",
-    "A tenth of a degree: contact lines enter the mesh nearly all at once, where a spur pair's do so "
-    "exactly.",
-    "The spur pair's mean within 0.2 %, no value below the spur pair's least, both hands alike.",
-    _slight_helix,
-)
-HELIX_40 = HardScene(
-    "helix_40_deg",
-    "contact",
-    "At 40 degrees contact lines cross three teeth, and layers of elements are turned against each other.",
-    "Both hands alike, periodic, load shares sum to one, two solvers agree.",
-    _steep_helix,
-)
-
-
 # Materials and bodies far from solid steel.
 
 
@@ -163,6 +158,13 @@ _PLASTIC = Material(youngs_modulus=2.1e9, poissons_ratio=0.3)
 _RUBBERY = Material(youngs_modulus=210e9, poissons_ratio=0.49)
 
 
+@SCENES.add(
+    "plastic_on_steel",
+    "Moduli of 2.1 and 210 GPa: one gear does all the bending, contact strips are ten times as wide, and "
+    "compliances differ by a hundred.",
+    "The mean STE is below that of two equal gears of the mean compliance (unlike springs in parallel share"
+    " the load better), by less than 10 %, and the same whichever gear is the soft one; two solvers agree.",
+)
 def _plastic_on_steel() -> Sequence[Measured]:
     """Let a steel pinion drive a wheel a hundred times as soft, and compare with two gears half as soft."""
     steel, soft = nominal_gear(), nominal_gear(material=_PLASTIC)
@@ -189,6 +191,11 @@ def _plastic_on_steel() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "poisson_0.49",
+    "Poisson's ratio 0.49 in plane strain: elements of low order lock, and read far too stiff.",
+    "Three meshes in the plane and two in three dimensions agree.",
+)
 def _nearly_incompressible() -> Sequence[Measured]:
     """Give both gears Poisson's ratio 0.49 in plane strain, on three meshes and in three dimensions."""
     pair = nominal_pair(material=_RUBBERY)
@@ -206,6 +213,11 @@ def _nearly_incompressible() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "thin_rim",
+    "A rim of half a module over a web of 4 mm bends like a belt under the teeth.",
+    "STE grows with every bit taken off the rim; two meshes agree; two solvers agree.",
+)
 def _thin_rim() -> Sequence[Measured]:
     """Hang the teeth on ever thinner rims over a narrow web."""
     position = even_positions(48)
@@ -237,28 +249,3 @@ def _on_rim(modules: float) -> GearPair:
 def _mean(case: Posed, position: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
     """Mean STE at the highest load, m."""
     return float(case.ste(position)[:, -1].mean())
-
-
-SOFT_ON_STEEL = HardScene(
-    "plastic_on_steel",
-    "contact",
-    "Moduli of 2.1 and 210 GPa: one gear does all the bending, contact strips are ten times as wide, and "
-    "compliances differ by a hundred.",
-    "The mean STE is below that of two equal gears of the mean compliance (unlike springs in parallel share"
-    " the load better), by less than 10 %, and the same whichever gear is the soft one; two solvers agree.",
-    _plastic_on_steel,
-)
-NEARLY_INCOMPRESSIBLE = HardScene(
-    "poisson_0.49",
-    "contact",
-    "Poisson's ratio 0.49 in plane strain: elements of low order lock, and read far too stiff.",
-    "Three meshes in the plane and two in three dimensions agree.",
-    _nearly_incompressible,
-)
-THIN_RIM = HardScene(
-    "thin_rim",
-    "contact",
-    "A rim of half a module over a web of 4 mm bends like a belt under the teeth.",
-    "STE grows with every bit taken off the rim; two meshes agree; two solvers agree.",
-    _thin_rim,
-)

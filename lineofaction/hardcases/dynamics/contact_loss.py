@@ -48,13 +48,23 @@ from lineofaction.hardcases.dynamics.laws import (
     spring,
     torsional,
 )
-from lineofaction.hardcases.scene import HardScene, Measured
+from lineofaction.hardcases.scene import Measured, Scenes
+
+GAPS = Scenes("dynamics")
+STIFFNESSES = Scenes("dynamics")
 
 _BACKLASH, _RIPPLE = 20e-6, 15e-6
 _PERIODS, _SAMPLES = 60, 64
 _IMPACTS, _SPEED, _TOLERANCE = 40, 0.1, 1e-9
 
 
+@GAPS.add(
+    "rattle_without_load",
+    "No load presses the teeth to either side: there is no equilibrium to start from, and every "
+    "impact starts anew.",
+    "Steady rattle is mirrored in the gap half a period later, and repeats; integrators agree to their "
+    "measured errors, energy balances.",
+)
 def _no_mean_load() -> Sequence[Measured]:
     """Throw an unloaded gear to and fro by the other's transmission error."""
     frequency = 6000.0 / 60.0 * TEETH
@@ -79,6 +89,12 @@ def _no_mean_load() -> Sequence[Measured]:
     )
 
 
+@GAPS.add(
+    "torque_reversal",
+    "The load reverses and takes the teeth through backlash: for a while nothing holds the gear.",
+    "Teeth rest at T/(r k) on the driving flank before, and a backlash further on the coast flank after; "
+    "integrators agree, energy balances.",
+)
 def _reversal() -> Sequence[Measured]:
     """Reverse the load slowly enough to settle: teeth cross the gap and rest on their backs."""
     torque = TimeLaw((0.0, 0.01, 0.03), (TORQUE, TORQUE, -TORQUE))
@@ -104,6 +120,11 @@ def _reversal() -> Sequence[Measured]:
     )
 
 
+@GAPS.add(
+    "impacts_on_both_sides",
+    "Forty undamped impacts: what is wrong after one is wrong in all that follow, and grows in every flight.",
+    "The closed form of flights and half sines, to one tolerance per impact; so does the energy.",
+)
 def _impacts() -> Sequence[Measured]:
     """Throw a gear between both flanks, without load or damping, twenty times to and fro."""
     coarse, fine = _TOLERANCE, 1e-2 * _TOLERANCE
@@ -111,7 +132,10 @@ def _impacts() -> Sequence[Measured]:
         (method, tolerance): _thrown(method, tolerance) for method in METHODS for tolerance in (coarse, fine)
     }
     off = {key: rms(_place(run) - bounce(run.time, _BACKLASH, _SPEED, NATURAL)) for key, run in runs.items()}
-    energy = {key: _lost(run) for key, run in runs.items()}
+    energy = {
+        key: (abs(float(np.diff(run.stored.sum(axis=1))[0] - run.work.sum())) / (0.5 * MASS * _SPEED**2))
+        for key, run in runs.items()
+    }
     depth = _SPEED / NATURAL
     # an error of one tolerance at an impact is one of speed, which every flight after it makes more of
     grown = _TOLERANCE * _BACKLASH / depth * _IMPACTS**2 / 2.0
@@ -153,36 +177,6 @@ def _place(run: Trajectory) -> FloatArray:
     return np.asarray(run.q[:, 0] * BASE_RADIUS)
 
 
-def _lost(run: Trajectory) -> float:
-    return abs(float(np.diff(run.stored.sum(axis=1))[0] - run.work.sum())) / (0.5 * MASS * _SPEED**2)
-
-
-NO_MEAN_LOAD = HardScene(
-    "rattle_without_load",
-    "dynamics",
-    "No load presses the teeth to either side: there is no equilibrium to start from, and every "
-    "impact starts anew.",
-    "Steady rattle is mirrored in the gap half a period later, and repeats; integrators agree to their "
-    "measured errors, energy balances.",
-    _no_mean_load,
-)
-REVERSAL = HardScene(
-    "torque_reversal",
-    "dynamics",
-    "The load reverses and takes the teeth through backlash: for a while nothing holds the gear.",
-    "Teeth rest at T/(r k) on the driving flank before, and a backlash further on the coast flank after; "
-    "integrators agree, energy balances.",
-    _reversal,
-)
-IMPACTS = HardScene(
-    "impacts_on_both_sides",
-    "dynamics",
-    "Forty undamped impacts: what is wrong after one is wrong in all that follow, and grows in every flight.",
-    "The closed form of flights and half sines, to one tolerance per impact; so does the energy.",
-    _impacts,
-)
-
-
 # Resonance with loss of contact: two motions at one speed, and jumps between them.
 
 
@@ -202,6 +196,13 @@ _CONVERGED = {
 _JUMP_UP, _JUMP_DOWN = 0.8285, 0.7080
 
 
+@GAPS.add(
+    "jumps_of_resonance",
+    "Between two jumps three motions exist at one speed, the middle one unstable; at the folds Newton's "
+    "matrix is singular.",
+    "Sixteen converged rms values of rising and falling speeds to 0.05 %, both jumps to 3e-4; integrators "
+    "agree.",
+)
 def _both_sweeps() -> Sequence[Measured]:
     """Sweep up and down through the jumps by shooting, and find where the branch turns back."""
     by_method = {method: [_sweep(method, side) for side in (0, 1)] for method in METHODS}
@@ -279,17 +280,6 @@ def _oscillator(frequency: float, method: str = "implicit") -> System:
     return replace(system, arrays=system.arrays.with_matrices(damping=np.array([[2.0 * _ZETA]])))
 
 
-BOTH_SWEEPS = HardScene(
-    "jumps_of_resonance",
-    "dynamics",
-    "Between two jumps three motions exist at one speed, the middle one unstable; at the folds Newton's "
-    "matrix is singular.",
-    "Sixteen converged rms values of rising and falling speeds to 0.05 %, both jumps to 3e-4; integrators "
-    "agree.",
-    _both_sweeps,
-)
-
-
 # A mesh whose stiffness changes by three as the teeth pass.
 
 
@@ -298,6 +288,13 @@ _FREQUENCIES = (1.5, 2.0)
 """Of the mesh over that of the gear on the mean stiffness: stable, and in the widest unstable band."""
 
 
+@STIFFNESSES.add(
+    "stiffness_changing_threefold",
+    "The stiffness goes from k to 3 k and back with every tooth, undamped: at twice the natural frequency "
+    "motions grow without an error of the teeth.",
+    "Floquet multipliers are those of Mathieu's equation, their product is one (Liouville); integrators "
+    "agree, energy balances.",
+)
 def _threefold() -> Sequence[Measured]:
     """Compare the multipliers of the motion with Mathieu's equation, in and out of its unstable band."""
     figures: list[Measured] = []
@@ -339,17 +336,6 @@ def _mathieu(frequency: float) -> FloatArray:
     return np.asarray(end.reshape(2, 2))
 
 
-THREEFOLD = HardScene(
-    "stiffness_changing_threefold",
-    "dynamics",
-    "The stiffness goes from k to 3 k and back with every tooth, undamped: at twice the natural frequency "
-    "motions grow without an error of the teeth.",
-    "Floquet multipliers are those of Mathieu's equation, their product is one (Liouville); integrators "
-    "agree, energy balances.",
-    _threefold,
-)
-
-
 # Bearings that make a system stiff in the mathematical sense, or that hold nothing.
 
 
@@ -358,6 +344,13 @@ _LENGTH, _SHAFT = 0.2, Inertia(2.0, 1e-3, 8e-3)
 _MASS, _WALL, _CLEARANCE, _SPEED_SUPPORTS, _TOLERANCE_SUPPORTS, _BOUNCES = 2.0, 5e8, 20e-6, 0.05, 1e-9, 20
 
 
+@STIFFNESSES.add(
+    "bushings_1e5_and_1e12",
+    "Stiffnesses seven decades apart in one matrix: natural motions of 0.03 s and of microseconds, and a "
+    "shaft that all but pivots about one end.",
+    "Each bushing carries half the load, gears move apart by F/2 (1/k1 + 1/k2); integrators agree, energy "
+    "balances.",
+)
 def _unlike_bushings() -> Sequence[Measured]:
     """Hold shafts at one end by 1e5 and at the other by 1e12 N/m, free to tilt."""
     scene = _on_bushings()
@@ -395,6 +388,13 @@ def _on_bushings() -> Scene:
     return replace(scene, shafts=shafts, gears=gears, bushings=bushings, effects=effects)
 
 
+@STIFFNESSES.add(
+    "unloaded_in_clearance",
+    "Nothing presses the disc against its bearing: within the clearance it has no stiffness and no place to "
+    "rest.",
+    "The closed form of flights and half sines between the walls, to one tolerance per impact; so does the "
+    "energy.",
+)
 def _unloaded_in_clearance() -> Sequence[Measured]:
     """Throw an unloaded disc to and fro in the clearance of its bearing."""
     natural = math.sqrt(_WALL / _MASS)
@@ -449,23 +449,3 @@ def _thrown_between_supports(system: System) -> tuple[Trajectory, FloatArray]:
     scene = system.scene
     run = integrate(system, replace(start, displacement=displacement), scene.integration, velocity=velocity)
     return run, run.q[:, across]
-
-
-UNLIKE_BUSHINGS = HardScene(
-    "bushings_1e5_and_1e12",
-    "dynamics",
-    "Stiffnesses seven decades apart in one matrix: natural motions of 0.03 s and of microseconds, and a "
-    "shaft that all but pivots about one end.",
-    "Each bushing carries half the load, gears move apart by F/2 (1/k1 + 1/k2); integrators agree, energy "
-    "balances.",
-    _unlike_bushings,
-)
-UNLOADED = HardScene(
-    "unloaded_in_clearance",
-    "dynamics",
-    "Nothing presses the disc against its bearing: within the clearance it has no stiffness and no place to "
-    "rest.",
-    "The closed form of flights and half sines between the walls, to one tolerance per impact; so does the "
-    "energy.",
-    _unloaded_in_clearance,
-)

@@ -6,6 +6,7 @@ import math
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -40,13 +41,23 @@ from lineofaction.hardcases.dynamics.laws import (
     spring,
     torsional,
 )
-from lineofaction.hardcases.scene import HardScene, Measured
+from lineofaction.hardcases.scene import Measured, Scenes
+
+STEPS = Scenes("dynamics")
+TRAINS = Scenes("dynamics")
 
 _RIPPLE = 1e-6
 _FASTEST = 100.0  # rad/s
 _LARGE_RIPPLE = 1.5e-6
 
 
+@STEPS.add(
+    "start_from_rest_and_stop",
+    "At standstill no tooth passes, so nothing but the speed law says how long a step may be; and there is "
+    "no speed to scale by.",
+    "The driven gear ends at rest, at the static deflection of the place to which the law's integral leads; "
+    "integrators agree, energy balances.",
+)
 def _rest_to_rest() -> Sequence[Measured]:
     """Start from rest, turn, stop, and stand still for a while."""
     top = _FASTEST
@@ -83,6 +94,13 @@ def _rest_to_rest() -> Sequence[Measured]:
     )
 
 
+@STEPS.add(
+    "contact_lost_in_run_up",
+    "Force and stiffness are zero between impacts: what Newton's method and the step control scale by "
+    "is gone.",
+    "In flight the gear falls with the acceleration of its load; integrators agree to their measured errors, "
+    "energy balances.",
+)
 def _contact_lost() -> Sequence[Measured]:
     """Run up with a ripple that in resonance exceeds the load: teeth part, with nothing behind them."""
     fastest = 1.3 * NATURAL / TEETH
@@ -111,26 +129,6 @@ def _contact_lost() -> Sequence[Measured]:
     )
 
 
-REST_TO_REST = HardScene(
-    "start_from_rest_and_stop",
-    "dynamics",
-    "At standstill no tooth passes, so nothing but the speed law says how long a step may be; and there is "
-    "no speed to scale by.",
-    "The driven gear ends at rest, at the static deflection of the place to which the law's integral leads; "
-    "integrators agree, energy balances.",
-    _rest_to_rest,
-)
-CONTACT_LOST = HardScene(
-    "contact_lost_in_run_up",
-    "dynamics",
-    "Force and stiffness are zero between impacts: what Newton's method and the step control scale by "
-    "is gone.",
-    "In flight the gear falls with the acceleration of its load; integrators agree to their measured errors, "
-    "energy balances.",
-    _contact_lost,
-)
-
-
 # Closed forms of the undamped driven gear: extreme speeds, a torque step, extreme tolerances, many steps.
 
 
@@ -139,6 +137,12 @@ _STEP_TIME, _STEP_TORQUE, _RISE = 1e-3, 150.0, 1e-7
 _MANY, _ROUNDING = 10_000_000, 1e-9
 
 
+@STEPS.add(
+    "speeds_0.1_and_30000_rpm",
+    "A tooth passes in 30 s or in 100 us, the gear rings in 0.3 ms: steps too short or too long by 1e5 if "
+    "chosen by the wrong of the two.",
+    "The closed form of a damped oscillator to the tolerance; integrators agree, energy balances.",
+)
 def _extreme_speeds() -> Sequence[Measured]:
     """Mesh once in half a minute, and ten thousand times a second."""
     figures: list[Measured] = []
@@ -174,6 +178,11 @@ def _ringing(rate: float) -> Callable[[FloatArray], FloatArray]:
     return exact
 
 
+@STEPS.add(
+    "torque_step",
+    "The load rises to 2.5 times within 1e-4 of a natural period, without damping.",
+    "The closed form to the measured error, a peak of twice the step; integrators agree, energy balances.",
+)
 def _torque_step() -> Sequence[Measured]:
     """Raise the load to two and a half times within a tenth of a microsecond."""
     torque = TimeLaw.ramp(TORQUE, TORQUE + _STEP_TORQUE, _RISE, begin=_STEP_TIME)
@@ -183,16 +192,10 @@ def _torque_step() -> Sequence[Measured]:
     )  # fmt: skip
     runs = run_both(scene)
     step = _STEP_TORQUE / BASE_RADIUS / STIFFNESS
-
-    def exact(time: FloatArray) -> FloatArray:
-        since, past = (np.maximum(time - begin, 0.0) for begin in (_STEP_TIME, _STEP_TIME + _RISE))
-        ramp = since - np.sin(NATURAL * since) / NATURAL - past + np.sin(NATURAL * past) / NATURAL
-        return np.asarray(DEFLECTION + step / _RISE * ramp)
-
     peak = float(runs.implicit.mesh_force.max()) * BASE_RADIUS
     return (
         *common_figures(runs, scene),
-        off_closed_form(runs, scene, exact),
+        off_closed_form(runs, scene, lambda time: _after_ramp(time, NATURAL, step, _STEP_TIME, _RISE)),
         Measured(
             "peak force over the load before plus twice the step",
             peak / (TORQUE + 2.0 * _STEP_TORQUE),
@@ -202,6 +205,18 @@ def _torque_step() -> Sequence[Measured]:
     )
 
 
+def _after_ramp(time: FloatArray, natural: float, step: float, begin: float, rise: float) -> FloatArray:
+    """Return d(t) without damping as the load rises straight and the static deflection by `step` in m."""
+    since, past = (np.maximum(time - start, 0.0) for start in (begin, begin + rise))
+    ramp = since - np.sin(natural * since) / natural - past + np.sin(natural * past) / natural
+    return np.asarray(DEFLECTION + step / rise * ramp)
+
+
+@STEPS.add(
+    "tolerances_1e-2_and_1e-9",
+    "A tolerance that lets every step through, and one of 7e-15 m, close to rounding.",
+    "The closed form of a damped oscillator to the tolerance requested, by both integrators.",
+)
 def _tolerances() -> Sequence[Measured]:
     """Ask for a hundredth and for a billionth of the deflection."""
     rate = 1000.0
@@ -223,14 +238,6 @@ def _tolerances() -> Sequence[Measured]:
     return figures
 
 
-def _implicit_steps() -> Sequence[Measured]:
-    return _many_steps("implicit")
-
-
-def _explicit_steps() -> Sequence[Measured]:
-    return _many_steps("explicit")
-
-
 def _many_steps(method: str) -> Sequence[Measured]:
     """Ring on without damping at a fixed place for ten million steps, and for ten times fewer."""
     tenth, whole = (_drift(method, steps) for steps in (_MANY // 10, _MANY))
@@ -240,6 +247,14 @@ def _many_steps(method: str) -> Sequence[Measured]:
         Measured("energy drift", whole, most=1e-6),
         Measured("drift over ten times that of a tenth of the steps", in_proportion, most=1.1),
     )
+
+
+for _method in METHODS:
+    STEPS.add(
+        f"ten_million_undamped_steps_{_method}",
+        "Without damping every step's error stays, and rounding adds up over 1e7 of them.",
+        "Energy drifts by less than 1e-6 of the vibration's, and no faster than in proportion to the steps.",
+    )(partial(_many_steps, _method))
 
 
 def _drift(method: str, steps: int) -> float:
@@ -263,46 +278,19 @@ def _drift(method: str, steps: int) -> float:
     return abs(float(np.diff(run.stored.sum(axis=1))[0] - run.work.sum())) / (0.5 * MASS * speed**2)
 
 
-EXTREME_SPEEDS = HardScene(
-    "speeds_0.1_and_30000_rpm",
-    "dynamics",
-    "A tooth passes in 30 s or in 100 us, the gear rings in 0.3 ms: steps too short or too long by 1e5 if "
-    "chosen by the wrong of the two.",
-    "The closed form of a damped oscillator to the tolerance; integrators agree, energy balances.",
-    _extreme_speeds,
-)
-TORQUE_STEP = HardScene(
-    "torque_step",
-    "dynamics",
-    "The load rises to 2.5 times within 1e-4 of a natural period, without damping.",
-    "The closed form to the measured error, a peak of twice the step; integrators agree, energy balances.",
-    _torque_step,
-)
-TOLERANCES = HardScene(
-    "tolerances_1e-2_and_1e-9",
-    "dynamics",
-    "A tolerance that lets every step through, and one of 7e-15 m, close to rounding.",
-    "The closed form of a damped oscillator to the tolerance requested, by both integrators.",
-    _tolerances,
-)
-IMPLICIT_STEPS, EXPLICIT_STEPS = (
-    HardScene(
-        f"ten_million_undamped_steps_{method}",
-        "dynamics",
-        "Without damping every step's error stays, and rounding adds up over 1e7 of them.",
-        "Energy drifts by less than 1e-6 of the vibration's, and no faster than in proportion to the steps.",
-        measure,
-    )
-    for method, measure in (("implicit", _implicit_steps), ("explicit", _explicit_steps))
-)
-
-
 # A pinion ten thousand times as light as its wheel, and the other way round.
 
 
 _RATIO, _SPEED, _BEGIN, _RISE_INERTIAS, _STEP = 1e4, 50.0, 1e-3, 1e-6, 20.0
 
 
+@TRAINS.add(
+    "mass_ratio_1e4",
+    "One gear is ten thousand times as heavy as the other, and nothing but torques holds the train: the mass "
+    "matrix loses four digits.",
+    "The closed form of two masses on a spring to the measured error; momentum gained is the impulse; "
+    "integrators agree, energy balances.",
+)
 def _unlike_masses() -> Sequence[Measured]:
     """Kick a free train of two gears by a step of the motor's torque."""
     figures: list[Measured] = []
@@ -313,12 +301,7 @@ def _unlike_masses() -> Sequence[Measured]:
         mass = [value / BASE_RADIUS**2 for value in inertia]
         natural = math.sqrt(STIFFNESS * (1.0 / mass[0] + 1.0 / mass[1]))
         step = _STEP / BASE_RADIUS / mass[0] / natural**2
-
-        def exact(time: FloatArray, natural: float = natural, step: float = step) -> FloatArray:
-            since, past = (np.maximum(time - begin, 0.0) for begin in (_BEGIN, _BEGIN + _RISE_INERTIAS))
-            ramp = since - np.sin(natural * since) / natural - past + np.sin(natural * past) / natural
-            return np.asarray(TORQUE / BASE_RADIUS / STIFFNESS + step / _RISE_INERTIAS * ramp)
-
+        exact = partial(_after_ramp, natural=natural, step=step, begin=_BEGIN, rise=_RISE_INERTIAS)
         gained = _STEP * (float(runs.implicit.time[-1]) - _BEGIN - _RISE_INERTIAS / 2.0) / sum(inertia)
         pace = natural * scene.integration.tolerance / BASE_RADIUS
         off = max(abs(_mean_speed(run, inertia) - _SPEED - gained) for run in runs.both)
@@ -354,17 +337,6 @@ def _free_train(inertia: Sequence[float]) -> Scene:
     return replace(scene, gears=gears, drives=(), free_rotations=free, loads=loads)
 
 
-UNLIKE_MASSES = HardScene(
-    "mass_ratio_1e4",
-    "dynamics",
-    "One gear is ten thousand times as heavy as the other, and nothing but torques holds the train: the mass "
-    "matrix loses four digits.",
-    "The closed form of two masses on a spring to the measured error; momentum gained is the impulse; "
-    "integrators agree, energy balances.",
-    _unlike_masses,
-)
-
-
 # A planetary set of which one planet carries nothing.
 
 
@@ -373,6 +345,12 @@ _STIFFNESS, _BEARING, _ALPHA = 5e8, 1e8, math.radians(24.6)
 _SUN_FORCE, _ERROR, _PLANET_WAVE = 8000.0, 200e-6, 0.2e-6
 
 
+@TRAINS.add(
+    "one_planet_without_load",
+    "A pin 0.2 mm back takes its planet out of both meshes: it turns as it likes, and its row of the "
+    "stiffness matrix is zero.",
+    "The others carry a third each; integrators agree, energy balances.",
+)
 def _one_without_load() -> Sequence[Measured]:
     """Set one pin back so far that its planet touches nothing, and run."""
     gears = _set()
@@ -435,22 +413,17 @@ def _driven(gears: PlanetarySet) -> Scene:
     )
 
 
-ONE_WITHOUT_LOAD = HardScene(
-    "one_planet_without_load",
-    "dynamics",
-    "A pin 0.2 mm back takes its planet out of both meshes: it turns as it likes, and its row of the "
-    "stiffness matrix is zero.",
-    "The others carry a third each; integrators agree, energy balances.",
-    _one_without_load,
-)
-
-
 # A run that is interrupted in the middle of impacts, and taken up again.
 
 
 _BACKLASH, _COAST_WAVE = 20e-6, 30e-6
 
 
+@TRAINS.add(
+    "restart_from_checkpoint",
+    "In chaotic rattle one bit lost at an interruption is another motion a few impacts later.",
+    "Interrupted every seventh block and taken up again, all series are those of the whole run, bit by bit.",
+)
 def _taken_up_again() -> Sequence[Measured]:
     """Cancel a chaotic rattle every few blocks and resume it, until it has ended."""
     scene = torsional(
@@ -467,7 +440,15 @@ def _taken_up_again() -> Sequence[Measured]:
             legs = _in_legs(own, parts)
             unbroken, resumed = (RunResult.from_netcdf(path) for path in (whole, parts))
         extra = abs(unbroken.statistics.accepted - resumed.statistics.accepted)
-        changed = [name for name in _arrays(unbroken) if _bits(unbroken, name) != _bits(resumed, name)]
+        changed = [
+            name
+            for name in [
+                entry.name
+                for entry in fields(unbroken)
+                if isinstance(getattr(unbroken, entry.name), np.ndarray)
+            ]
+            if _bits(unbroken, name) != _bits(resumed, name)
+        ]
         impacts = int(np.count_nonzero(np.diff(unbroken.contact[0] % 2.0) == 1.0))
         figures += [
             Measured(f"{method}: times it was taken up again", float(legs - 1), least=5.0),
@@ -493,18 +474,5 @@ def _after(blocks: int) -> Callable[[], bool]:
     return lambda: next(left, None) is None
 
 
-def _arrays(result: RunResult) -> list[str]:
-    return [entry.name for entry in fields(result) if isinstance(getattr(result, entry.name), np.ndarray)]
-
-
 def _bits(result: RunResult, name: str) -> bytes:
     return bytes(getattr(result, name).tobytes())
-
-
-TAKEN_UP_AGAIN = HardScene(
-    "restart_from_checkpoint",
-    "dynamics",
-    "In chaotic rattle one bit lost at an interruption is another motion a few impacts later.",
-    "Interrupted every seventh block and taken up again, all series are those of the whole run, bit by bit.",
-    _taken_up_again,
-)

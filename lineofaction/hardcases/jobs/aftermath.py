@@ -105,18 +105,15 @@ class JobService:
 def _fresh_service(**settings: Any) -> Iterator[JobService]:
     """Run a service with one worker on a directory of its own, its log kept from the terminal."""
     with tempfile.TemporaryDirectory(prefix="loa-hard-jobs-") as name, capture_logs() as log:
-        service = _service(Path(name).resolve(), log, settings)
+        directory = Path(name).resolve()
+        chosen = Settings(data_directory=directory, workers=1, **settings)
+        parts = job_machinery(chosen, default_registry())
+        service = JobService(directory, parts.submissions, parts.store, parts.scheduler, log)
         service.scheduler.start()
         try:
             yield service
         finally:
             service.scheduler.stop()
-
-
-def _service(directory: Path, log: list[Any], settings: dict[str, Any]) -> JobService:
-    chosen = Settings(data_directory=directory, workers=1, **settings)
-    parts = job_machinery(chosen, default_registry())
-    return JobService(directory, parts.submissions, parts.store, parts.scheduler, log)
 
 
 # A job that cannot end well, with jobs behind it: what became of all of them.
@@ -219,25 +216,18 @@ def _left(service: JobService) -> tuple[Measured, ...]:
     waiting = sum(service.submissions.counts().get(state, 0) for state in ("accepted", "running"))
     with closing(sqlite3.connect(service.directory / DATABASE_FILE)) as table:
         sound = table.execute("PRAGMA integrity_check").fetchone()[0] == "ok"
-    return (
-        Measured("processes left", float(len(service.processes())), most=0.0),
-        Measured("workspaces left", float(_workspaces_left(service)), most=0.0),
-        Measured("jobs that never end", float(waiting), most=0.0),
-        Measured("job table sound", float(sound), least=1.0),
-        Measured("turns of the scheduler that failed", float(_failed_turns(service)), most=0.0),
-    )
-
-
-def _workspaces_left(service: JobService) -> int:
-    """Count workspaces; a job is reported as ended just before its own is removed."""
+    failed = sum("exception" in entry or entry["log_level"] == "error" for entry in service.log)
+    # a job is reported as ended just before its own workspace is removed
     end = time.monotonic() + _SETTLING_S
     while (left := len(list((service.directory / "work").iterdir()))) and time.monotonic() < end:
         time.sleep(0.05)
-    return left
-
-
-def _failed_turns(service: JobService) -> int:
-    return sum("exception" in entry or entry["log_level"] == "error" for entry in service.log)
+    return (
+        Measured("processes left", float(len(service.processes())), most=0.0),
+        Measured("workspaces left", float(left), most=0.0),
+        Measured("jobs that never end", float(waiting), most=0.0),
+        Measured("job table sound", float(sound), least=1.0),
+        Measured("turns of the scheduler that failed", float(failed), most=0.0),
+    )
 
 
 def _others(service: JobService, ended: list[Job], before: FloatArray) -> tuple[Measured, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -21,19 +21,32 @@ from lineofaction.hardcases.jobs.aftermath import (
     LONG,
     MEDIUM,
     Aftermath,
-    Disturb,
     JobService,
     aftermath,
     largest_difference,
     undisturbed,
 )
-from lineofaction.hardcases.scene import HardScene, Measured
+from lineofaction.hardcases.scene import Measured, Scenes
 from service.queue.job import Job
+
+SCENES = Scenes("service")
 
 MEMORY_MB = 384
 """Half-way, in proportion, between what the small job needs and what the large one does."""
 
 
+AFTER = (
+    "nothing of it is left, and the jobs behind it end as they should, in their turn, with results that are "
+    "those of an undisturbed service to the last bit."
+)
+
+
+@SCENES.add(
+    "job_out_of_memory",
+    "A three-dimensional analysis that needs three times the memory a worker may have: an allocation fails "
+    "somewhere in numerical libraries.",
+    f"The job fails at its first attempt, with the limit and what to try; {AFTER}",
+)
 def _out_of_memory() -> Sequence[Measured]:
     """Run the large job with little memory."""
     outcome = aftermath(LARGE, settle=lambda _seconds: {"memory_limit_mb": MEMORY_MB})
@@ -46,6 +59,11 @@ def _out_of_memory() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "job_past_deadline",
+    "A job that is inside compiled code when its deadline passes, and hears of nothing.",
+    f"The job fails at its first attempt, with the deadline and what to try; {AFTER}",
+)
 def _past_the_deadline() -> Sequence[Measured]:
     """Run the large job with a deadline of a few times what the small one takes."""
     allowed = []
@@ -63,28 +81,6 @@ def _past_the_deadline() -> Sequence[Measured]:
         Measured("deadline, s", allowed[0]),
         *outcome.figures,
     )
-
-
-AFTER = (
-    "nothing of it is left, and the jobs behind it end as they should, in their turn, with results that are "
-    "those of an undisturbed service to the last bit."
-)
-
-OUT_OF_MEMORY = HardScene(
-    "job_out_of_memory",
-    "service",
-    "A three-dimensional analysis that needs three times the memory a worker may have: an allocation fails "
-    "somewhere in numerical libraries.",
-    f"The job fails at its first attempt, with the limit and what to try; {AFTER}",
-    _out_of_memory,
-)
-DEADLINE = HardScene(
-    "job_past_deadline",
-    "service",
-    "A job that is inside compiled code when its deadline passes, and hears of nothing.",
-    f"The job fails at its first attempt, with the deadline and what to try; {AFTER}",
-    _past_the_deadline,
-)
 
 
 # Processes that die under a job: its mesher, its worker, and its worker every time.
@@ -126,21 +122,19 @@ def _killing(command: str, times: int) -> tuple[Aftermath, int]:
             if met and len(killed) < times:
                 if len(killed) + len(met) == times:
                     hangs.unlink()
-                killed.extend(_reached(end, met))
+                for pid in met:
+                    with suppress(ProcessLookupError):
+                        end(pid)
+                        killed.append(pid)
 
         return aftermath(MEDIUM, kill), len(killed)
 
 
-def _reached(act: Callable[[int], None], processes: Sequence[int]) -> list[int]:
-    """Act on processes; return those that were there."""
-    reached = []
-    for pid in processes:
-        with suppress(ProcessLookupError):
-            act(pid)
-            reached.append(pid)
-    return reached
-
-
+@SCENES.add(
+    "job_whose_mesh_fails",
+    "The mesher is killed in mid-mesh: a process started by the worker, of which the service knows nothing.",
+    f"The job fails at its first attempt and says that the mesher was killed; {AFTER}",
+)
 def _mesher_killed() -> Sequence[Measured]:
     outcome, killed = _killing(MESHER_COMMAND, 1)
     stated = "gmsh worker: killed by SIGKILL" in outcome.job.message
@@ -152,6 +146,11 @@ def _mesher_killed() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "worker_killed_once",
+    "The worker is killed (SIGKILL) while its mesher hangs: nobody tells the service, and the mesher stays.",
+    f"The second attempt gives what Python gives undisturbed, to the last bit; {AFTER}",
+)
 def _worker_killed_once() -> Sequence[Measured]:
     """Kill the first worker in mid-mesh."""
     outcome, killed = _killing(WORKER_COMMAND, 1)
@@ -164,6 +163,11 @@ def _worker_killed_once() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "worker_killed_at_every_attempt",
+    "Every worker of the job is killed while its mesher hangs: tried for ever, it would block all others.",
+    f"The job fails at its second attempt, with the signal and the number of attempts; {AFTER}",
+)
 def _worker_killed_always() -> Sequence[Measured]:
     """Kill every worker in mid-mesh."""
     outcome, killed = _killing(WORKER_COMMAND, 2)
@@ -182,29 +186,6 @@ def _of_python() -> FloatArray:
     return ste_database(gear_pair(case), table_axes(case), analysis_options(case)).static_transmission_error
 
 
-MESHER = HardScene(
-    "job_whose_mesh_fails",
-    "service",
-    "The mesher is killed in mid-mesh: a process started by the worker, of which the service knows nothing.",
-    f"The job fails at its first attempt and says that the mesher was killed; {AFTER}",
-    _mesher_killed,
-)
-WORKER_ONCE = HardScene(
-    "worker_killed_once",
-    "service",
-    "The worker is killed (SIGKILL) while its mesher hangs: nobody tells the service, and the mesher stays.",
-    f"The second attempt gives what Python gives undisturbed, to the last bit; {AFTER}",
-    _worker_killed_once,
-)
-WORKER_ALWAYS = HardScene(
-    "worker_killed_at_every_attempt",
-    "service",
-    "Every worker of the job is killed while its mesher hangs: tried for ever, it would block all others.",
-    f"The job fails at its second attempt, with the signal and the number of attempts; {AFTER}",
-    _worker_killed_always,
-)
-
-
 # Jobs whose disk takes nothing more, and whose mesher takes memory without end.
 
 
@@ -216,8 +197,15 @@ while True:
 """
 
 
-def _no_room(held: list[int]) -> Disturb:
-    """Return what keeps the first worker from writing to any file, by the system's limit on their size."""
+@SCENES.add(
+    "job_without_disk_space",
+    "No write of the worker succeeds any more, as on a full disk: libraries that write may crash.",
+    "The job fails at its first attempt, with the cause and what to try, and serves nothing; submitted again "
+    f"with room it gives what Python gives, to the last bit; {AFTER}",
+)
+def _disk_full() -> Sequence[Measured]:
+    """Let no write of the worker succeed, then submit the job again."""
+    held: list[int] = []
 
     def fill(service: JobService, _job: Job) -> None:
         for pid in service.processes(WORKER_COMMAND) if not held else ():
@@ -225,13 +213,7 @@ def _no_room(held: list[int]) -> Disturb:
                 limit_file_size(pid, 0)
                 held.append(pid)
 
-    return fill
-
-
-def _disk_full() -> Sequence[Measured]:
-    """Let no write of the worker succeed, then submit the job again."""
-    held: list[int] = []
-    outcome = aftermath(MEDIUM, _no_room(held), resubmit=True)
+    outcome = aftermath(MEDIUM, fill, resubmit=True)
     stated = "no space left" in outcome.job.message and "Make room" in outcome.job.message
     off = np.inf if outcome.errors is None else largest_difference(outcome.errors, _of_python())
     return (
@@ -243,6 +225,12 @@ def _disk_full() -> Sequence[Measured]:
     )
 
 
+@SCENES.add(
+    "mesher_without_end",
+    "The mesher, a process started by the worker that the service knows nothing of, takes memory without "
+    "end.",
+    f"It never has more than a worker may; the job fails at its first attempt, with the cause; {AFTER}",
+)
 def _greedy_mesher() -> Sequence[Measured]:
     """Let the first mesher take memory until the system gives it no more."""
     most = [0.0]
@@ -268,21 +256,3 @@ def _greedy_mesher() -> Sequence[Measured]:
         Measured("names the mesher's memory and what to try", float(stated), least=1.0),
         *outcome.figures,
     )
-
-
-DISK_FULL = HardScene(
-    "job_without_disk_space",
-    "service",
-    "No write of the worker succeeds any more, as on a full disk: libraries that write may crash.",
-    "The job fails at its first attempt, with the cause and what to try, and serves nothing; submitted again "
-    f"with room it gives what Python gives, to the last bit; {AFTER}",
-    _disk_full,
-)
-GREEDY_MESHER = HardScene(
-    "mesher_without_end",
-    "service",
-    "The mesher, a process started by the worker that the service knows nothing of, takes memory without "
-    "end.",
-    f"It never has more than a worker may; the job fails at its first attempt, with the cause; {AFTER}",
-    _greedy_mesher,
-)
