@@ -12,7 +12,6 @@ from __future__ import annotations
 import csv
 import hashlib
 import importlib.util
-import os
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
@@ -50,10 +49,8 @@ def add_options(parser: pytest.Parser) -> None:
 
 
 def heed_named_files(config: pytest.Config) -> None:
-    """Let what the command line names run whole; the workers have this option from the process that leads."""
-    if "PYTEST_XDIST_WORKER" in os.environ or config.getoption("day"):
-        return
-    if config.args_source is pytest.Config.ArgsSource.ARGS:
+    """Let what the command line names run whole; workers read the same command line."""
+    if config.args_source is pytest.Config.ArgsSource.ARGS and not config.getoption("day"):
         config.option.all = True
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 import suite_selection
-from suite_selection import ROOT, TESTS, digest, houses_from, rests_on, select
+from suite_selection import ROOT, TESTS, digest, heed_named_files, houses_from, rests_on, select
 
 HERE = Path(__file__)
 SLOW_TEST = "tests/unit/scripts/test_suite_selection.py::slow"
@@ -59,6 +59,17 @@ def test_a_slow_law_runs() -> None:
 @pytest.mark.usefixtures("on_record")
 def test_everything_runs_on_request() -> None:
     assert _left([_item("slow")], all=True) == []
+
+
+@pytest.mark.parametrize("day", [False, True])
+def test_a_file_that_is_named_runs_whole_in_workers_too(monkeypatch: pytest.MonkeyPatch, day: bool) -> None:
+    monkeypatch.setenv("PYTEST_XDIST_WORKER", "gw0")
+    option = SimpleNamespace(all=False, day=day)
+    named = SimpleNamespace(
+        args_source=pytest.Config.ArgsSource.ARGS, option=option, getoption=vars(option).get
+    )
+    heed_named_files(named)  # type: ignore[arg-type]
+    assert option.all != day
 
 
 def test_a_slow_test_runs_when_what_it_rests_on_changed(on_record: dict[str, str]) -> None:
