@@ -192,7 +192,14 @@ def _page_of(read: Inputs) -> Page:
     if run is not None:
         sections += (*dynamic_results(run, read.view), *dynamic_making(run))
         alarms += dynamic_alarms(run)
-    return Page(_title(read), _lead(read), headlines_of(read), tuple(sections), tuple(alarms))
+    parts = []
+    if read.database is not None:
+        parts.append(pair_lead(read.database.facts))
+    elif len(read.pages) == 1:
+        parts += [page.lead for page in read.pages.values() if page.lead]
+    if read.run is not None:
+        parts.append(f"{read.run.time[-1]:.6g} s of motion at {read.run.sample_rate:.6g} samples per second")
+    return Page(_title(read), "; ".join(parts), headlines_of(read), tuple(sections), tuple(alarms))
 
 
 def headlines_of(read: Inputs) -> tuple[Headline, ...]:
@@ -219,17 +226,6 @@ def _title(read: Inputs) -> str:
         return pair_title(read.database.facts)
     titles = [page.title for page in read.pages.values()] or ["Dynamics of geared shafts"]
     return titles[0] if len(titles) == 1 else "Studies of gear pairs"
-
-
-def _lead(read: Inputs) -> str:
-    parts = []
-    if read.database is not None:
-        parts.append(pair_lead(read.database.facts))
-    elif len(read.pages) == 1:
-        parts += [page.lead for page in read.pages.values() if page.lead]
-    if read.run is not None:
-        parts.append(f"{read.run.time[-1]:.6g} s of motion at {read.run.sample_rate:.6g} samples per second")
-    return "; ".join(parts)
 
 
 Json = dict[str, Any]

@@ -140,10 +140,16 @@ def pair_drawing(pair: ParallelAxes) -> Figure:
     ]
     leads = {name: gear for name, gear in gears.items() if gear.modification.varies_along_face}
     panels = (_section(pair), *profiles, *([_lead(leads)] if leads else ()))
+    caption = (
+        f"Section at the pinion's mid-face; the pinion drives clockwise. The wheel's center is "
+        f"{'below' if pair.internal else 'above'}. A to E: the path of contact of the usable flanks."
+    )
+    if len(panels) > 1:
+        caption += " Material removed along the line of action; 0 is the involute."
     return Figure(
         key="pair_drawing",
         title="The pair in mesh" if len(panels) == 1 else "The pair in mesh and its flank modifications",
-        caption=_caption(pair, modified=len(panels) > 1),
+        caption=caption,
         alternative=" ".join(_finding(name, gear) for name, gear in gears.items()),
         content=panels,
     )
@@ -219,14 +225,6 @@ def _lead(gears: dict[str, Toothing]) -> Panel:
 
 def _removed(gear: Toothing, roll: FloatArray, face: FloatArray | float) -> FloatArray:
     return gear.modification.material_removed(gear, roll, face) / UM
-
-
-def _caption(pair: ParallelAxes, *, modified: bool) -> str:
-    section = (
-        f"Section at the pinion's mid-face; the pinion drives clockwise. The wheel's center is "
-        f"{'below' if pair.internal else 'above'}. A to E: the path of contact of the usable flanks."
-    )
-    return f"{section} Material removed along the line of action; 0 is the involute." if modified else section
 
 
 def _finding(name: str, gear: Toothing) -> str:

@@ -94,7 +94,12 @@ def u_on_shaft(part: Part) -> float | None:
 
 def _in_reference(part: Part, origin: FloatArray, inner: tuple[int, ...]) -> Placement:
     u = _unit(part, "u_axis_vector", np.array([1.0, 0.0, 0.0]))
-    w = _across(part, u)
+    axis = _unit(part, "w_axis_vector", np.eye(3)[2 if abs(u[2]) < 0.9 else 1])
+    across = axis - (axis @ u) * u
+    length = float(np.linalg.norm(across))
+    if length < PARALLEL:
+        raise part.refusal("w_axis_vector", list(map(float, axis)), "not along u_axis_vector")
+    w = np.asarray(across / length)
     own, outer = Placement(origin, np.array([u, np.cross(w, u), w])), _reference(part)
     return own if outer is None else own.within(frame_of(outer, (*inner, part.id)))
 
@@ -106,16 +111,6 @@ def _reference(part: Part) -> Part | None:
         return None
     part.say(_REFERENCE, "taken", f"its place refers to component {attribute.value}")
     return None if attribute.value == part.id else part.unit.part(attribute.value)
-
-
-def _across(part: Part, u: FloatArray) -> FloatArray:
-    """Return w, across u: the part of the stated axis that is; any if none is stated."""
-    axis = _unit(part, "w_axis_vector", np.eye(3)[2 if abs(u[2]) < 0.9 else 1])
-    across = axis - (axis @ u) * u
-    length = float(np.linalg.norm(across))
-    if length < PARALLEL:
-        raise part.refusal("w_axis_vector", list(map(float, axis)), "not along u_axis_vector")
-    return np.asarray(across / length)
 
 
 def _unit(part: Part, item: str, usual: FloatArray) -> FloatArray:

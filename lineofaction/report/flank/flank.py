@@ -349,17 +349,13 @@ def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page
     """Return the page of flank results; beside their database, which has its own effects and case."""
     pair = flanks.scene.facts
     sections = (*_results(flanks), *_making(flanks, alone=database is None))
-    return Page(pair_title(pair), pair_lead(pair), _headlines(flanks), sections, _alarms(flanks, database))
-
-
-def _headlines(flanks: LoadDistribution) -> tuple[Headline, ...]:
     at = _operating_point(flanks)
     largest = f"{number(1e-6 * float(flanks.clear_pressure.max()))} MPa"
     headlines = [Headline("largest flank pressure", largest, f"{at}{edge_words(flanks.edge_pressure)}")]
     if flanks.face_position.size > 1:
         factor = flanks.mean_face_load_factor
         headlines.append(Headline("K_Hbeta over the cycle", number(factor, 3), at))
-    return tuple(headlines)
+    return Page(pair_title(pair), pair_lead(pair), tuple(headlines), sections, _alarms(flanks, database))
 
 
 def _results(flanks: LoadDistribution) -> tuple[Section, ...]:

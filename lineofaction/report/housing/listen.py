@@ -35,6 +35,7 @@ def _level_figure(heard: HeardRun) -> Figure:
     top = float(level[loudest])
     lowest = min(top - LEAST_SPAN, max(float(level.min()), top - DEPTH))
     y = Axis(f"level, {unit}", limits=(lowest - MARGIN, top + MARGIN))
+    rows = tuple((f"{t:.3f}", number(x, 5), f"{dB:.1f}") for t, x, dB in zip(time, along, level, strict=True))
     return Figure(
         key="heard_level",
         title=f"Level of the {name}",
@@ -43,7 +44,7 @@ def _level_figure(heard: HeardRun) -> Figure:
         alternative=f"Loudest at {number(along[loudest], 4)} {x.label.rpartition(', ')[2]}: "
         f"{level[loudest]:.1f} {unit.partition(' re ')[0]}.",
         content=(Panel(x, y, (Line(name, along, level, palette.INK, width=1.4),)),),
-        table=_table(time, along, level, x.label, unit),
+        table=Table("Level over the run", ("middle, s", x.label, unit), rows),
         sound=_sound(heard, track),
     )
 
@@ -62,11 +63,6 @@ def _block_levels(heard: HeardRun) -> tuple[FloatArray, FloatArray]:
 
 def _noun(heard: HeardRun) -> str:
     return "velocity" if heard.figures is None else "sound pressure"
-
-
-def _table(time: FloatArray, along: FloatArray, level: FloatArray, label: str, unit: str) -> Table:
-    rows = tuple((f"{t:.3f}", number(x, 5), f"{dB:.1f}") for t, x, dB in zip(time, along, level, strict=True))
-    return Table("Level over the run", ("middle, s", label, unit), rows)
 
 
 def _sound(heard: HeardRun, along: FloatArray) -> Sound | None:

@@ -219,10 +219,6 @@ def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
 def _forces(run: RunResult) -> tuple[Section, ...]:
     factor = _dynamic_factor_figure(run) if run.nominal_force[0] > 0.0 and has_orders(run) else None
     shown = tuple(figure for figure in (factor, _planet_sharing(run)) if figure is not None)
-    return (Section("Mesh forces", figures=shown, tables=(_contact(run),)),)
-
-
-def _contact(run: RunResult) -> Table:
     shares = contact_shares(run)
     states = tuple(shares[0])
     rows = tuple(
@@ -231,7 +227,8 @@ def _contact(run: RunResult) -> Table:
     )
     flanks = {"off": "apart, %", "both": "both flanks, %"}
     head = ("mesh", *(flanks.get(state, f"{state} flank, %") for state in states))
-    return Table("Contact state, share of the samples", head, rows)
+    contact = Table("Contact state, share of the samples", head, rows)
+    return (Section("Mesh forces", figures=shown, tables=(contact,)),)
 
 
 def _accuracy(run: RunResult) -> Table:

@@ -53,11 +53,14 @@ def signal_over_time(run: RunResult, signal: Signal) -> Figure:
     detail = f"three {of} at {number(speed, 3)} rpm"
     vector = signal.quantity.part == "bearing"
     quantity, _, unit = signal.label.rpartition(", ")
+    size = signal.magnitude(getattr(run, signal.quantity.series)[..., window])
+    mean, swing = number(size.mean(), 4), number(np.ptp(size), 3)
+    written = signal.quantity.unit
     return Figure(
         key="signal",
         title=f"Time history of the {signal.name}",
         caption=f"{AXES} {DETAIL}" if vector else DETAIL,
-        alternative=_words(run, signal, window),
+        alternative=f"Magnitude {mean} {written} on average, {swing} {written} peak to peak.",
         content=(
             _panel(run, signal, slice(None), "whole run", signal.label),
             _panel(run, signal, window, detail, f"{quantity} less its mean, {unit}", about_mean=True),
@@ -76,13 +79,6 @@ def _panel(
         name = component or signal.quantity.noun
         lines.append(Line(name, time, decimated, palette.category(index), width=1.2))
     return Panel(Axis.over("time, s", run.time[window]), Axis(label), tuple(lines), title=title)
-
-
-def _words(run: RunResult, signal: Signal, window: slice) -> str:
-    size = signal.magnitude(getattr(run, signal.quantity.series)[..., window])
-    mean, swing = number(size.mean(), 4), number(np.ptp(size), 3)
-    unit = signal.quantity.unit
-    return f"Magnitude {mean} {unit} on average, {swing} {unit} peak to peak."
 
 
 def _table(run: RunResult, signal: Signal) -> Table:

@@ -87,8 +87,11 @@ def sound_of(heard: tuple[Heard, ...], axis: Axis) -> Sound | None:
         return None
     scale = full_scale_of(recordings)
     fits = SAMPLE_BYTES * sum(one.samples.size for one in recordings) <= PAGE_BYTES
+    what = ". ".join(dict.fromkeys(one.quantity for one in recordings))
+    together = " of all, which play at their true relative level" if len(heard) > 1 else ""
     return Sound(
-        _caption(heard, recordings, scale),
+        f"Sound: {what}. From 20 Hz to {number(min(map(_passed, heard)), 3)} Hz, which the run holds. Full "
+        f"scale{together}: {number(scale, 2)} {recordings[0].unit}.",
         tuple(_track(one, axis) for one in heard),
         tuple(wav_file(one, scale) for one in recordings) if fits else (),
     )
@@ -108,15 +111,6 @@ def _track(heard: Heard, axis: Axis) -> Track:
         speed = run.speed[run.shaft.index(driving_shaft(run, heard.signal.mesh))]
         along = np.interp(time, run.time, np.abs(speed)) * 30.0 / np.pi
     return Track(heard.name, time - time[0], along, heard.query)
-
-
-def _caption(heard: tuple[Heard, ...], recordings: list[Recording], scale: float) -> str:
-    what = ". ".join(dict.fromkeys(one.quantity for one in recordings))
-    together = " of all, which play at their true relative level" if len(heard) > 1 else ""
-    return (
-        f"Sound: {what}. From 20 Hz to {number(min(map(_passed, heard)), 3)} Hz, which the run holds. Full "
-        f"scale{together}: {number(scale, 2)} {recordings[0].unit}."
-    )
 
 
 # The sound of a stored run or recording as a WAV file; work of the live worker.

@@ -264,22 +264,18 @@ def _ripple(database: SteDatabase, curves: list[Curve]) -> Panel:
         replace(line, label=_label(line, curves[load]), band=0.5e6 * curves[load].peak_to_peak.error)
         for line, load in zip(load_lines(database, position, ripple), few_loads(database), strict=True)
     )
+    values = np.concatenate([line.y for line in lines])
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    height = high - low or _FLAT
+    room = np.clip(
+        max(float(np.nan_to_num(line.band)) for line in lines), _LEAST_ROOM * height, _MOST_ROOM * height
+    )
     return Panel(
         position_axis(database),
-        Axis("STE less its mean, µm", limits=_ripple_limits(lines)),
+        Axis("STE less its mean, µm", limits=(low - float(room), high + float(room))),
         lines,
         title="Ripple",
     )
-
-
-def _ripple_limits(lines: tuple[Line, ...]) -> tuple[float, float]:
-    values = np.concatenate([line.y for line in lines])
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    ripple = high - low or _FLAT
-    room = np.clip(
-        max(float(np.nan_to_num(line.band)) for line in lines), _LEAST_ROOM * ripple, _MOST_ROOM * ripple
-    )
-    return low - float(room), high + float(room)
 
 
 def _label(line: Line, curve: Curve) -> str:

@@ -130,9 +130,15 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
     text = "With all defaults filled in. Numbers without a unit are in SI."
     case = Section("Case", text, folded=case_tables(metadata.case), part=Part.INPUT)
     made = {**metadata.software_versions, "content_hash": metadata.content_hash}
+    stages = metadata.receipt.get("stages")
+    entries = stages.items() if isinstance(stages, dict) else ()
+    rows = tuple(
+        (name, *(number(float(times.get(clock, math.nan)), 3) for clock in ("cpu_seconds", "wall_seconds")))
+        for name, times in entries
+    )
     receipt = Section(
         "Receipt of the table",
-        tables=(_stages(metadata.receipt),),
+        tables=(Table("Time by stage", ("stage", "CPU s", "wall s"), rows),),
         folded=(facts("Receipt", _without(metadata.receipt, "stages")), facts("Made with", made)),
         part=Part.RECEIPT,
     )
@@ -165,16 +171,6 @@ def case_tables(case: dict[str, Any]) -> tuple[Table, ...]:
     gears = side_by_side("Gears", {"pinion (drives)": pair["pinion"], "wheel": pair["wheel"]})
     rest = {**_without(pair, "pinion", "wheel"), **_without(case, "pair")}
     return gears, facts("Pair, loads and accuracy", rest)
-
-
-def _stages(receipt: dict[str, Any]) -> Table:
-    stages = receipt.get("stages")
-    entries = stages.items() if isinstance(stages, dict) else ()
-    rows = tuple(
-        (name, *(number(float(times.get(clock, math.nan)), 3) for clock in ("cpu_seconds", "wall_seconds")))
-        for name, times in entries
-    )
-    return Table("Time by stage", ("stage", "CPU s", "wall s"), rows)
 
 
 def _without(content: dict[str, Any], *names: str) -> dict[str, Any]:

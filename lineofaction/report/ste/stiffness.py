@@ -113,13 +113,17 @@ def load_sharing(database: SteDatabase) -> Figure:
     """Draw the force on each pair against position at the lowest, middle and highest load."""
     shown = shown_loads(database)
     loads = sorted({shown[0], middle_load(database), shown[-1]})
+    heaviest = loads[-1]
+    most = max(float(np.nanmax(one)) for one in _pair_shares(database, heaviest)[1].values())
+    force = f"{number(most * float(database.force[heaviest]), 3)} N, {number(100.0 * most, 3)} % of the load"
     return Figure(
         key="load_sharing",
         title="Load sharing between tooth pairs",
         caption="One line is one pair of teeth from entering the mesh to leaving it; at every position the "
         "normal forces sum to that of the torque. Pair 0 touches at the pitch point at position 0; pair +1 "
         "is one pitch ahead.",
-        alternative=_sharing_words(database, loads),
+        alternative=f"A pair carries at most {force}, at {load_labels(database)[heaviest]}. "
+        f"{_alone(database, loads)}",
         content=tuple(_sharing_panel(database, load) for load in loads),
         table=_sharing_table(database),
     )
@@ -187,13 +191,6 @@ def _in_mesh(share: FloatArray) -> FloatArray:
     carries = np.concatenate([[False], share > 0.0, [False]])
     near = carries[:-2] | carries[1:-1] | carries[2:]
     return np.where(near, share, np.nan)
-
-
-def _sharing_words(database: SteDatabase, loads: list[int]) -> str:
-    load = loads[-1]
-    share = max(float(np.nanmax(one)) for one in _pair_shares(database, load)[1].values())
-    largest = f"{number(share * float(database.force[load]), 3)} N, {number(100.0 * share, 3)} % of the load"
-    return f"A pair carries at most {largest}, at {load_labels(database)[load]}. {_alone(database, loads)}"
 
 
 def _alone(database: SteDatabase, loads: list[int]) -> str:
