@@ -1,0 +1,279 @@
+"""What studies refuse, each by the name of the field: in Python, by the verb, and over HTTP before a job is.
+
+Beside tests/api/test_contract_of_studies.py. The tables hold what a study refuses by its own rules; bounds of
+single numbers are in tests/contract/test_every_bound.py. A study without a row here fails.
+"""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from condensed_once import find_condensed
+from small_inputs import small_inputs
+from study_runs import refused_call, verb_call
+from study_service import Served, empty_service
+
+from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
+from lineofaction.gearbox import workbench
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.registry import STUDIES
+
+Json = dict[str, Any]
+
+CLOSED = ["iso6336", "thin_slices"]
+ABSENT = "ef" * 32
+TIP = {"tip_relief_um": [0.0, 40.0], "tip_relief_length_mm": [0.1, 0.5]}
+GRID = {
+    "factors": [
+        {"path": "loads.brake.torque_n_m", "levels": [0.5, 1.0]},
+        {"path": "bushings.*.radial_stiffness_n_per_m", "uniform": {"low": 0.9e8, "high": 1e8}},
+    ],
+    "responses": [{"quantity": "bearing_force", "part": "input at 0", "order": 1}],
+    "samples": 3,
+}
+
+
+def factor(index: int, **changes: Any) -> Json:
+    """Return the study with another factor; what is None is left out."""
+    factors = [dict(each) for each in GRID["factors"]]  # type: ignore[attr-defined]
+    own = factors[index] | changes
+    factors[index] = {name: value for name, value in own.items() if value is not None}
+    return GRID | {"factors": factors}
+
+
+REFUSED: dict[str, list[tuple[Json, str]]] = {
+    "flank": [
+        ({"torque_n_m": 5.0, "normal_force_n": 5.0}, "normal_force_n"),
+        ({"torque_n_m": -1.0}, "torque_n_m"),
+        ({"torque": 5.0}, "torque"),
+        ({"misalignment_um": 10.0}, "errors.misalignment_um"),  # in the plane
+        ({"center_distance_change_mm": -1.0}, "errors.center_distance_change_mm"),
+    ],
+    "ablate": [
+        ({"only": []}, "only"),
+        ({"only": ["windage"]}, "only"),
+        ({"only": ["gyroscopic"]}, "only"),  # an effect of scenes
+        ({"effect": ["misalignment"]}, "effect"),
+    ],
+    "frontier": [
+        ({"rungs": []}, "rungs"),
+        ({"rungs": ["iso6336"]}, "rungs"),  # nothing to compare it to
+        ({"rungs": ["iso6336", "4d"]}, "rungs"),
+        ({"rungs": [SCENE_FIDELITIES[0].name, *CLOSED]}, "rungs"),
+        ({"rung": CLOSED}, "rung"),
+        ({"full_contact": 0}, "full_contact"),
+        ({"full_contact": 65}, "full_contact"),
+    ],
+    "sensitivity": [
+        ({"misalignment_um": [30.0, 15.0]}, "misalignment_um"),
+        ({"misalignment_um": []}, "misalignment_um"),
+        ({"misalignment_um": [0.0, 20000.0]}, "misalignment_um[1]"),
+        ({"center_distance_change_percent": [0.0, 11.0]}, "center_distance_change_percent[1]"),
+        ({"center_distance_change_percent": [-5.0]}, "errors.center_distance_change_mm"),  # the teeth jam
+        ({"center_distance_change_percent": ["x"]}, "center_distance_change_percent"),
+    ],
+    "root-stress": [
+        ({"torque_n_m": -1.0}, "torque_n_m"),
+        ({"torque_n_m": 1.0, "normal_force_n": 1.0}, "normal_force_n"),
+    ],
+    "optimize": [
+        ({"variables": {"most_tip_relief_um": 0.0}}, "variables.most_tip_relief_um"),
+        ({"variables": {"pinion": {"tip_relief_um": [40.0, 0.0]}}}, "variables.pinion.tip_relief_um"),
+        ({"variables": {"pinion": {"tip_relief_um": [-1.0, 5.0]}}}, "variables.pinion.tip_relief_um"),
+        ({"variables": {"pinion": {"tip_relief_um": [0.0, 40.0]}}}, "variables.pinion.tip_relief"),
+        ({"variables": {"pinion": {"helix_crowning_um": [0.0, 9.0]}}}, "helix_crowning_um"),
+        ({"variables": {"pinion": TIP}, "scatter": {"misalignment_um": 8.0}}, "misalignment_um"),
+        ({"variables": {"pinion": TIP}, "objective": {"weights": [1.0]}}, "objective.weights"),
+        ({"search": {"evaluations": 0}}, "search.evaluations"),
+        ({"torque_n_m": [80.0, 40.0]}, "torque_n_m"),
+        ({"torque_n_m": [40.0, 40.0], "misalignment_um": [5.0, 5.0]}, "torque_n_m"),
+        ({"torque_n_m": [40.0, 80.0], "misalignment_um": [0.0, 1.0, 2.0]}, "misalignment_um"),
+        ({"misalignment_um": [0.0, 1.0, 2.0]}, "misalignment_um"),  # of the torques of the case
+        ({"misalignment_um": [0.0, 2e4]}, "misalignment_um[1]"),
+        ({"misalignment_um": [0.0, 5.0]}, "misalignment_um"),  # in the plane
+    ],
+    "scatter": [
+        ({"tolerance_class": 12}, "tolerance_class"),
+        ({"samples": 1}, "samples"),
+        ({"distribution": "triangular"}, "distribution"),
+        ({"misalignment_um": 20.0}, "misalignment_um"),  # in the plane
+    ],
+    "sweep": [
+        ({"over": ["tip_releif"]}, "over"),
+        ({"over": ["face_width"]}, "over"),
+        ({"over": ["torque=300:100:50"]}, "over"),
+        ({"over": ["torque", "tip_relief", "misalignment"]}, "over"),
+        ({"show": ["loudness"]}, "show"),
+    ],
+    "modes": [
+        ({"speed_rpm": [3.0, 2.0]}, "speed_rpm"),
+        ({"speed_rpm": [-1.0]}, "speed_rpm"),
+        ({"orders": 0}, "orders"),
+        ({"speed": [1.0]}, "speed"),
+    ],
+    "response": [
+        ({}, "speed_rpm"),
+        ({"speed_rpm": [0.0, 1.0]}, "speed_rpm[0]"),
+        ({"speed_rpm": [100.0], "orders": 500}, "orders"),
+    ],
+    "noise": [
+        ({"run": None, "sensitivities": True, "speed_rpm": []}, "speed_rpm"),
+        ({"speed_rpm": [300.0], "orders": 0}, "orders"),
+    ],
+    "vibration": [({}, "speed_rpm"), ({"speed_rpm": [300.0], "mode": 0}, "mode")],
+    "listen": [
+        ({"run": ABSENT}, "microphone_mm"),
+        ({"run": ABSENT, "point": "cover", "microphone_mm": [0, 0, 1]}, "microphone_mm"),
+        ({"run": ABSENT, "microphone_mm": [0, 0]}, "microphone_mm"),
+        ({"run": ABSENT, "microphone_mm": [0, 0, 1], "direction": "x"}, "direction"),
+        ({"microphone_mm": [0, 0, 1]}, "run"),
+    ],
+    "steady": [
+        ({"speed_rpm": [5.0, 5.0]}, "speed_rpm"),
+        ({"speed_rpm": [5.0], "repeat": 99}, "repeat"),
+        ({"speed_rpm": [5.0], "repeat": 0}, "repeat"),
+        ({"speed_rpm": [5.0], "settling_periods": -1}, "settling_periods"),
+        ({"speed_rpm": [0.0, 50.0]}, "speed_rpm[0]"),
+    ],
+    "deflect": [
+        ({"load_cases": [{"name": "a"}, {"name": "a"}]}, "load_cases"),
+        ({"odd": 1}, "odd"),
+    ],
+    "study": [
+        (GRID | {"samples": 1}, "samples"),
+        (factor(0, path="loads.x.y"), "factors[0].path"),
+        (factor(0, levels=None), "factors[0].levels"),
+        (factor(0, iso1328_class=6), "factors[0].levels"),
+        (factor(0, levels=None, iso1328_class=6), "factors[0].iso1328_class"),
+        (factor(0, levels=[-1e300, 1.0]), "factors[0].levels[0]"),
+        (factor(1, path="bushings.*.radiant_stiffness_n_per_m"), "factors[1].path"),
+    ],
+}
+"""Inputs beside the small subject, and the field that is named."""
+
+EVERY = pytest.mark.parametrize("study", STUDIES)
+QUESTIONS = [(name, inputs, field) for name, refused in REFUSED.items() for inputs, field in refused]
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Iterator[Served]:
+    """A running service with its real processes."""
+    data = tmp_path_factory.mktemp("service") / "data"
+    find_condensed(condensed_bodies, data)
+    with empty_service(data) as (client, http):
+        yield Served(client, http, data)
+
+
+def subject_of(study: str) -> tuple[str, Json]:
+    """Return the name of a study's small subject, and it."""
+    name = "scene" if STUDIES[study].subject == "scene" else "case"
+    return name, small_inputs(study)[name]
+
+
+def test_every_study_refuses_something() -> None:
+    assert set(REFUSED) == set(STUDIES) and all(REFUSED.values())
+
+
+@pytest.mark.parametrize(("study", "inputs", "field"), QUESTIONS)
+def test_a_question_is_refused_by_its_field_each_way(
+    served: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, study: str, inputs: Json, field: str
+) -> None:
+    """Over HTTP in a document of its own type and before there is a job; the others compute nothing."""
+    name, subject = subject_of(study)
+    monkeypatch.setattr(STUDIES[study].run, "compute", None)
+    served.refuses(study, {name: subject, **inputs}, field)
+    answer = served.http.post(f"/v1/processes/{study}/execution", json={"inputs": {name: subject, **inputs}})
+    assert (answer.status_code, answer.headers["content-type"]) == (422, "application/problem+json")
+    problem = answer.json()
+    assert (problem["type"], problem["status"]) == ("urn:lineofaction:problem:bad-input", 422)
+    (fault, *_) = [fault for fault in problem["errors"] if field in fault["field"]]
+    assert fault["bound"]
+    with pytest.raises(BadInput) as caught, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        getattr(workbench, STUDIES[study].package)(subject, inputs)
+    (here, *_) = [each for each in caught.value.faults if field in each.field]
+    assert here.bound == fault["bound"]
+    known = STUDIES[study].from_file or set(inputs) <= set(STUDIES[study].inputs.model_fields)
+    if known and study != "listen":  # its verb takes other options
+        done = refused_call(study, subject, inputs, tmp_path)
+        assert (done.exit_code, done.stdout) == (2, "")
+        lines = done.stderr.splitlines()
+        assert lines[0].startswith("Usage: ") or len(lines) <= max(1, len(problem["errors"]))
+        said = done.stderr.lower().replace("--", "").replace("-", "_")
+        assert field.rpartition(".")[2].partition("[")[0] in said
+
+
+@EVERY
+def test_a_request_without_its_subject_or_with_an_odd_one_is_refused(served: Served, study: str) -> None:
+    name, subject = subject_of(study)
+    inputs = {key: value for key, value in small_inputs(study).items() if key != name}
+    inputs |= {"run": ABSENT} if study == "listen" else {}
+    served.refuses(study, inputs, name)
+    served.refuses(study, {name: subject, **inputs, "odd": 1}, "odd")
+    if name == "case":
+        served.refuses(
+            study, inputs | {"case": subject | {"load": {"torque_n_m": [-1.0]}}}, "load.torque_n_m"
+        )
+    else:
+        served.refuses(study, inputs | {"scene": subject | {"shafts": []}}, "shafts")
+
+
+@pytest.mark.parametrize("study", [name for name, row in STUDIES.items() if row.subject == "case or scene"])
+def test_a_case_beside_a_scene_is_refused(served: Served, study: str) -> None:
+    both = {"case": small_inputs("analyze")["case"], "scene": small_inputs("modes")["scene"]}
+    with pytest.raises(BadInput, match=r"case.*left out beside one"):
+        served.client.submit(study, both)
+
+
+def test_gears_too_narrow_for_tolerances_are_refused(served: Served) -> None:
+    case = subject_of("scatter")[1]
+    narrow = case["pair"]["wheel"] | {"face_width_mm": 3.0}
+    served.refuses("scatter", {"case": case | {"pair": case["pair"] | {"wheel": narrow}}}, "face_width")
+
+
+def test_a_sample_too_large_for_a_job_is_refused_by_the_service_alone(served: Served) -> None:
+    served.refuses("scatter", {"case": subject_of("scatter")[1], "samples": 1_000_000}, "samples")
+
+
+# What the text of an option, or of a file, must be.
+
+
+SAID: dict[str, list[tuple[list[str], str]]] = {
+    "flank": [
+        (["--torque", "100", "--force", "5"], "normal_force_n = 5.0: must be left out when torque_n_m"),
+        (["--torque", "-1"], "torque_n_m = -1"),
+        (["--torque", "nan"], "torque_n_m"),
+    ],
+    "sensitivity": [
+        (["--misalignment-um", "0,x"], "--misalignment-um = '0,x': must be FIRST:LAST:STEP, or increasing"),
+        (["--misalignment-um", "0,nan"], "misalignment_um[1] = nan"),
+        (["--misalignment-um", "30,15"], "misalignment_um = [30.0, 15.0]: must be strictly increasing"),
+        (["--misalignment-um", "0,20000"], "misalignment_um[1] = 20000"),
+    ],
+    "modes": [(["--speed-rpm", text], "--speed-rpm") for text in ("x", "0:1", "10:1:1", "0:1:-1", "0:1e6:1")],
+    "response": [(["--speed-rpm", "0:100:50"], "speed_rpm[0]"), (["--speed-rpm", "1:x"], "--speed-rpm")],
+    "steady": [(["--speed-rpm", "0:100:50"], "speed_rpm[0]"), (["--speed-rpm", "a"], "--speed-rpm")],
+    "noise": [(["--speed-rpm", "300", "--mesh-damping", "1.1,2"], "mesh_damping"), ([], "speed_rpm")],
+    "vibration": [(["--speed-rpm", "300", "--at-order", "0"], "at_order")],
+    "scatter": [(["--workers", "2", "--dask", "tcp://127.0.0.1:9"], "left out with --dask")],
+}
+"""Options, and words of the line that refuses them."""
+
+
+@pytest.mark.parametrize(
+    ("study", "options", "said"), [(name, *one) for name, refused in SAID.items() for one in refused]
+)
+def test_an_option_is_refused_in_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, study: str, options: list[str], said: str
+) -> None:
+    monkeypatch.setattr(STUDIES[study].run, "compute", None)  # called: a defect, exit code 5
+    done = verb_call(study, subject_of(study)[1], tmp_path, *options, "-o", tmp_path / "x.nc")
+    assert (done.exit_code, done.stdout) == (2, "")
+    (line,) = done.stderr.strip().splitlines()
+    assert re.match(r"error: .*must be", line) and said in line, line
+    assert not (tmp_path / "x.nc").exists()

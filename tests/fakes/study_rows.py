@@ -1,0 +1,321 @@
+"""A row for every study of the registry: a small question, what its figures must be, and its CSV.
+
+The contract of studies (tests/api/test_contract_of_studies.py) asks each question in Python, by the verb and
+over HTTP. A study without a row here fails it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain
+from typing import Any
+
+import numpy as np
+from pytest import approx
+from small_inputs import small_inputs
+
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.report.drawing.figure import number
+
+Json = dict[str, Any]
+Pairs = Iterator[tuple[Any, Any]]
+Witness = Callable[[Json, Any, SteDatabase], Pairs]
+
+FORCE_N = 1.0 / (0.010 * math.cos(math.radians(20.0)))
+"""1 N m on the base circle of 20 teeth of module 1 mm."""
+TORQUE = 1
+"""Index of 1 N m in the small case, whose loads are 0.5 and 1 N m."""
+
+
+@dataclass(frozen=True)
+class StudyRow:
+    """One study of one kind of subject.
+
+    Attributes
+    ----------
+    study : str
+        Its name in the registry.
+    subject : "case" or "scene"
+    witness : callable
+        Of figures, result and the table of the small case: yields pairs of a figure in the units of the
+        boundary and what it must be, from the result in SI, from another study or in closed form.
+    question : dict, optional
+        Inputs in place of those of `small_inputs`.
+    columns : callable, optional
+        Of the figures: what stands in the columns of the CSV, by their heads.
+    own : tuple of str
+        Names of figures that differ by who asks: the verb has the name of a file.
+    undeclared : tuple of str
+        Stages that it reports beside those of its row in the registry and of tables and housings.
+    """
+
+    study: str
+    subject: str
+    witness: Witness
+    question: Json | None = None
+    columns: Callable[[Json], dict[str, Sequence[Any]]] | None = None
+    own: tuple[str, ...] = ()
+    undeclared: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return f"{self.study}-{self.subject}"
+
+    @property
+    def registered(self) -> Study:
+        """Its row of the registry."""
+        return STUDIES[self.study]
+
+    @property
+    def inputs(self) -> Json:
+        """The subject, and beside it what is varied; that of `listen` lacks the hash of its run."""
+        inputs = small_inputs(self.study)
+        if self.question is None:
+            return inputs
+        return {
+            "scene": small_inputs(self.study).get("scene", small_inputs("modes")["scene"])
+        } | self.question
+
+
+def mean_um(table: SteDatabase) -> Any:
+    """Return the mean transmission error of the table over a pitch, by torque."""
+    return 1e6 * table.static_transmission_error[:, :, 0, 0].mean(axis=0)
+
+
+def ripple_um(table: SteDatabase) -> Any:
+    """Return the peak-to-peak transmission error at the points of the table, by torque."""
+    return 1e6 * np.ptp(table.static_transmission_error[:, :, 0, 0], axis=0)
+
+
+def _flank(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    yield figures["normal_force_n"], FORCE_N
+    yield figures["torque_n_m"], 1.0
+    yield figures["largest_pressure_mpa"], 1e-6 * result.clear_pressure.max()
+    yield figures["edge_pressure_mpa"], 1e-6 * result.edge_pressure
+    yield figures["largest_line_load_n_per_mm"], 1e-3 * result.line_load.max()
+    yield figures["largest_line_load_n_per_mm"], FORCE_N / 4.0  # a pair carries all on 4 mm
+
+
+def _ablated_case(figures: Json, result: Any, table: SteDatabase) -> Pairs:
+    yield figures["nominal"]["mean_um"][TORQUE], mean_um(table)[TORQUE]
+    coupling = figures["effects"][0]
+    for with_, without, change in zip(
+        coupling["with"]["mean_um"], coupling["without"]["mean_um"], coupling["mean_change_um"], strict=True
+    ):
+        yield change, without - with_
+    yield figures["torque_n_m"], [0.5, 1.0]
+
+
+def _ablated_scene(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    (lateral,) = figures["effects"]
+    yield lateral["name"], "lateral"
+    yield lateral["influence_um"], 1e6 * result.effects[0].influence
+    yield np.shape(lateral["order_change_um"]), (1, 5)
+    yield np.shape(lateral["bearing_order_change_n"])[1], 5
+
+
+def _case_ladder(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    (thin, corrected), half = figures["rungs"], figures["rungs"][0]["mean_um"][0]
+    yield thin["mean_um"][TORQUE], 2.0 * half  # thin slices are linear
+    yield corrected["mean_um"], (1e6 * result.results[1].mean).tolist()
+    yield corrected["peak_to_peak_um"], (1e6 * result.results[1].peak_to_peak).tolist()
+    off = [abs(a / b - 1.0) for a, b in zip(thin["mean_um"], corrected["mean_um"], strict=True)]
+    yield thin["mean_error"], max(off)
+    yield (figures["reference"], figures["solves"]), ("corrected", 16 * 2)
+
+
+def _scene_ladder(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    yield [rung["name"] for rung in figures["rungs"]], ["quasi_static", "100_nm", "10_nm"]
+    yield figures["reference"], "10_nm"
+
+
+def _sensitivity(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    (pair,), (study,) = figures["pairs"], result
+    yield pair["normal_force_n"], FORCE_N
+    yield pair["center_distance_mm"], 20.0
+    for told, curves in zip(pair["curves"], study.curves, strict=True):
+        skew = told["misalignment"]
+        first, last = skew["peak_to_peak_um"]
+        yield skew["misalignment_um"], [0.0, 5.0]
+        yield skew["peak_to_peak_um"], (1e6 * curves.misalignment.peak_to_peak).tolist()
+        yield skew["peak_to_peak_error_um"], (1e6 * curves.misalignment.error).tolist()
+        yield skew["change_percent"], [0.0, 100.0 * (last / first - 1.0)]
+
+
+def _root_stress(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    for gear in ("pinion", "wheel"):
+        tension, passage = figures[gear]["tension"], figures[gear]["passage"]
+        yield tension["stress_mpa"], approx(73.0, rel=0.03)  # 25 MPa of F_t / (b m) by 1.71 by 1.78
+        yield max(passage["tension_mpa"]), tension["stress_mpa"]
+        yield min(passage["compression_mpa"]), figures[gear]["compression"]["stress_mpa"]
+    yield figures["normal_force_n"], FORCE_N
+
+
+def _optimum(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    for told, design in ((figures["start"], result.start), (figures["optimum"], result.optimum)):
+        yield told["peak_to_peak_um"], (1e6 * design.figures.peak_to_peak).tolist()
+        yield told["objective_um"], float(np.mean(told["peak_to_peak_um"]))  # without scatter and weights
+        for gear, values in told["values"].items():
+            length = design.values[f"{gear}.tip_relief_length"]
+            yield values["tip_relief_length_mm"], 1e3 * length
+    yield figures["torque_n_m"], [0.5, 1.0]
+    yield figures["gain_um"], figures["start"]["objective_um"] - figures["optimum"]["objective_um"]
+
+
+def _scatter(figures: Json, result: Any, table: SteDatabase) -> Pairs:
+    yield figures["nominal_um"], ripple_um(table).tolist()
+    yield figures["mean_um"], np.mean(figures["peak_to_peak_um"], axis=0).tolist()
+    yield figures["deviation_um"], (1e6 * result.deviation).tolist()
+    # class 6: (0.4 m_n + 0.001 d + 4) sqrt(2) = 6.25 um, in steps of half a micrometer
+    yield figures["asked"]["tolerances"]["pinion.profile_slope_um"], 6.5
+    yield np.shape(figures["peak_to_peak_um"]), (4, 2)
+
+
+def _sweep(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    (ripple,) = (each for each in result.sweep.quantities if each.name == "peak_to_peak")
+    (pressure,) = (each for each in result.sweep.quantities if each.name == "max_pressure")
+    points = figures["points"]
+    yield [point["load.torque_n_m"] for point in points], [0.5, 1.0]
+    yield [point["peak_to_peak_um"] for point in points], (1e6 * ripple.value).tolist()
+    yield [point["peak_to_peak_error_um"] for point in points], (1e6 * ripple.error).tolist()
+    half, full = (point["max_pressure_mpa"] for point in points)
+    yield [half, full], (1e-6 * pressure.value).tolist()
+    yield half, approx(full / math.sqrt(2.0), rel=0.01)  # Hertz
+
+
+def _modes(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    yield [mode["frequency_hz"] for mode in figures["at_rest"]], result.natural_frequency.tolist()
+    yield figures["equilibrium"]["mesh_force_n"]["mesh"], FORCE_N
+    yield figures["mesh_frequency_hz"]["mesh"], [0.0]
+
+
+def _response(figures: Json, result: Any, table: SteDatabase) -> Pairs:
+    mesh = figures["meshes"]["mesh"]
+    yield mesh["static_transmission_error_um"], (1e6 * np.abs(result.static_transmission_error[0])).tolist()
+    yield mesh["mesh_force_n"], np.abs(result.mesh_force[0]).T.tolist()
+    bearing = figures["bearings"]["input at 0"]["force_n"]
+    yield np.shape(bearing), np.shape(mesh["mesh_force_n"])
+
+
+def _noise(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    yield np.transpose(figures["level_db"]).tolist(), (10.0 * np.log10(result.power / 1e-12)).tolist()
+    yield figures["frequency_hz"][0], [300.0 / 60.0 * 20]
+    yield figures["speed_rpm"], [300.0]
+    total = 10.0 * math.log10(sum(10.0 ** (level / 10.0) for (level,) in figures["level_db_a"]))
+    yield figures["total_level_db_a"], [total]
+
+
+def _vibration(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    velocity = result.analysis.vibration.velocity[0]  # of the cover, amplitudes in m/s
+    along = np.moveaxis(1e3 * np.abs(velocity) / math.sqrt(2.0), -1, 1)
+    cover = figures["points"]["cover"]
+    yield cover["velocity_xyz_mm_per_s"], along.tolist()
+    yield cover["velocity_mm_per_s"], np.linalg.norm(cover["velocity_xyz_mm_per_s"], axis=0).tolist()
+    yield cover["overall_mm_per_s"], np.linalg.norm(cover["velocity_mm_per_s"], axis=0).tolist()
+    yield figures["contributions"]["frequency_hz"], figures["contributions"]["order"] * 300.0 / 60.0 * 20
+
+
+def _recording(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    rms = math.sqrt(float(np.mean(result.recording.samples**2)))
+    yield figures["rms"], rms
+    yield figures["sound"]["level_db"], 20.0 * math.log10(rms / 20e-6)
+    yield figures["full_scale"], float(np.abs(result.recording.samples).max())
+    yield (figures["unit"], figures["sample_rate_hz"]), ("Pa", 48000)
+
+
+def _steady(figures: Json, result: Any, table: SteDatabase) -> Pairs:
+    (up,) = figures["up"]
+    mesh = up["meshes"]["mesh"]
+    yield mesh["mean_error_um"], float(1e6 * result.mean_error[0, 0])
+    yield mesh["mean_error_um"], approx(mean_um(table)[TORQUE], rel=0.02)  # near that of the table
+    yield 0.5 * (mesh["least_force_n"] + mesh["largest_force_n"]), approx(FORCE_N, rel=0.1)
+    yield up["speed_rpm"], 3000.0
+    yield up["bearings"]["input at 0"]["rms_force_n"], float(result.rms_bearing_force[0, 0])
+
+
+def _deflection(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    (case,) = figures["load_cases"]
+    (mesh,), left = case["meshes"], case["bearings"][0]
+    yield mesh["force_n"], FORCE_N
+    yield left["elastic_um"][:2], [1e6 * force / 1e8 for force in left["force_n"][:2]]
+    yield left["force_n"][1], -0.5 / 0.010  # the pinion's half of the tangential force
+    yield mesh["flanks"]["peak_to_peak_um"], 1e6 * result.flanks[0].peak_to_peak
+    yield (case["torque_n_m"], case["status"]), (1.0, "converged")
+
+
+def _many_scenes(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    (response,) = figures["responses"]
+    yield response["mean"], (1e6 * result.figure[:, 0]).tolist()
+    low, high = response["mean"]
+    yield response["spread_of_level_means"]["loads.brake.torque_n_m"], high - low
+    yield (figures["points"], figures["usable"], response["unit"]), (2, 2, "um")
+
+
+# What stands in the columns of CSV.
+
+
+def _sensitivity_columns(figures: Json) -> dict[str, Sequence[Any]]:
+    curves = [
+        curve
+        for pair in figures["pairs"]
+        for told in pair["curves"]
+        for curve in (told["misalignment"], told["center_distance"])
+    ]
+    return {
+        name: [write(value) for curve in curves for value in curve[field]]
+        for name, field, write in (
+            ("peak to peak, µm", "peak_to_peak_um", number),
+            ("error, µm", "peak_to_peak_error_um", lambda value: number(value, 2)),
+            ("change, %", "change_percent", "{:+.1f}".format),
+        )
+    }
+
+
+def _root_columns(figures: Json) -> dict[str, Sequence[Any]]:
+    passages = [figures[gear]["passage"] for gear in ("pinion", "wheel")]
+    names = ("position", "tension_mpa", "compression_mpa", "at_tension_peak_mpa", "at_compression_peak_mpa")
+    return {name: list(chain(*(passage[name] for passage in passages))) for name in names}
+
+
+def _sweep_columns(figures: Json) -> dict[str, Sequence[Any]]:
+    return {name: [point[name] for point in figures["points"]] for name in figures["points"][0]}
+
+
+def _vibration_columns(figures: Json) -> dict[str, Sequence[Any]]:
+    """Of one speed: a row for each order."""
+    cover = figures["points"]["cover"]["velocity_xyz_mm_per_s"]
+    along = {f"cover_{axis}_mm_per_s": list(chain(*cover[k])) for k, axis in enumerate("xyz")}
+    orders = figures["order"]
+    return along | {
+        "speed_rpm": figures["speed_rpm"] * len(orders),
+        "order": orders,
+        "valid": [float(order not in figures["orders_beyond"]) for order in orders],
+        "frequency_hz": [300.0 / 60.0 * 20 * order for order in orders],
+        "surface_mm_per_s": list(chain(*figures["surface_mm_per_s"])),
+    }
+
+
+FEW_ORDERS: Json = {"speed_rpm": [300.0], "orders": 3}
+
+ROWS = (
+    StudyRow("flank", "case", _flank),
+    StudyRow("ablate", "case", _ablated_case),
+    StudyRow("ablate", "scene", _ablated_scene, {"only": ["lateral"]}),
+    StudyRow("frontier", "case", _case_ladder),
+    StudyRow("frontier", "scene", _scene_ladder, {"rungs": ["quasi_static", "100_nm", "10_nm"]}),
+    StudyRow("sensitivity", "case", _sensitivity, columns=_sensitivity_columns, own=("name",)),
+    StudyRow("root-stress", "case", _root_stress, columns=_root_columns),
+    StudyRow("optimize", "case", _optimum),
+    StudyRow("scatter", "case", _scatter),
+    StudyRow("sweep", "case", _sweep, columns=_sweep_columns),
+    StudyRow("modes", "scene", _modes),
+    StudyRow("response", "scene", _response),
+    StudyRow("noise", "scene", _noise, FEW_ORDERS, undeclared=("models",)),
+    StudyRow("vibration", "scene", _vibration, FEW_ORDERS, columns=_vibration_columns),
+    StudyRow("listen", "scene", _recording, own=("run",)),
+    StudyRow("steady", "scene", _steady, {"speed_rpm": [3000.0], "branch": False, "settling_periods": 1}),
+    StudyRow("deflect", "scene", _deflection),
+    StudyRow("study", "scene", _many_scenes),
+)
