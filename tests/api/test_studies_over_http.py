@@ -1,163 +1,184 @@
-"""Flank results and sensitivity studies as jobs: the real processes over HTTP, and through the client."""
+"""Studies as jobs beyond their contract: older files, rungs that fail, kept runs, rotors, textbooks."""
 
 from __future__ import annotations
 
-import copy
-import json
+import hashlib
+import importlib
+import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from fastapi.testclient import TestClient
-from study_service import empty_service, figures_alone, without
+from study_service import CASE, Served, prepared, scene_by_hash, study_service
 
-from fe_contact import LoadDistribution
-from lineofaction.client import JobState, LineOfActionClient
-from lineofaction.gearbox.convert.case import CheckedCase, case_at
-from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas import Case, validated
-from lineofaction.gearbox.schemas.gear import FlankPoint
-from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.flank.run import RUN, flanks_of
-from lineofaction.gearbox.studies.root_stress import Inputs
-from lineofaction.gearbox.studies.root_stress.run import RUN as ROOT_STRESS
+from dynamics.loads import TimeLaw
+from dynamics.results import RunResult
+from dynamics.simulation import simulate
+from dynamics.study import Response, responses_of
+from fe_contact.analysis.studies.frontier import FIDELITIES
+from fe_contact.errors import SolveError
+from fe_contact.ste import SteDatabase
+from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.convert.result_files import figures_of
+from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.stages import PacedFraction
+from service.store import stored_results
+from service.store.results import IndexLine
+from service.worker import study_work
+from service.worker.order import WorkOrder
 from service.worker.process import default_registry
 
-FLANK = default_registry()["flank"]
-
-GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 90.0}
-CASE: dict[str, Any] = {
-    "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": GEAR, "wheel": GEAR},
-    "load": {"torque_n_m": [20.0, 40.0]},
-    "accuracy": {"level": "draft", "positions": 8},
+EXAMPLES = Path(__file__).parents[2] / "examples"
+FRONTIER = default_registry()["frontier"]
+CLOSED = ["iso6336", "thin_slices"]
+OLD = "0d" * 32
+STUDY = {
+    "factors": [
+        {"path": "loads.brake.torque_n_m", "levels": [50.0, 100.0]},
+        {"path": "meshes.mesh.damping_ratio", "uniform": {"low": 0.05, "high": 0.1}},
+    ],
+    "responses": [{"quantity": "dte_rms"}, {"quantity": "bearing_force", "order": 1}],
+    "samples": 3,
+    "keep_worst": 1,
 }
-PLANE = CASE | {"accuracy": CASE["accuracy"] | {"model": "plane_strain"}}
 
 
 @pytest.fixture(scope="module")
-def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The service's directory of data."""
-    return tmp_path_factory.mktemp("service") / "data"
-
-
-@pytest.fixture(scope="module")
-def served(data: Path) -> Iterator[tuple[LineOfActionClient, TestClient]]:
-    """A client of a running service with its real processes, and the bare HTTP one."""
-    with empty_service(data) as found:
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    with study_service(tmp_path_factory.mktemp("service")) as found:
         yield found
 
 
-def test_flank_results_are_those_of_python(served: tuple[LineOfActionClient, TestClient], data: Path) -> None:
-    client, http = served
-    seen: list[JobState] = []
-    file = client.flank.submit(PLANE, torque_n_m=30.0).file(seen.append)
-    found = LoadDistribution.from_netcdf(file)
-    # on the gears as the job condensed them: linear algebra in more threads sums in another order
-    case = CheckedCase(case_at(validated(Case, PLANE), FlankPoint(torque_n_m=30.0)))
-    here = flanks_of(case, data / "compliance")
-    assert np.array_equal(found.force, here.force)
-    assert found.metadata.content_hash == here.metadata.content_hash
-    assert [state.progress for state in seen] == sorted(state.progress for state in seen)
-    result = client.result(seen[-1].id)
-    facts = http.get(f"/v1/results/{result.key}").json()
-    assert {name: facts[name] for name in RUN.figures(found)} == RUN.figures(found)
-    assert facts["size"] == file.stat().st_size
+@pytest.fixture(scope="module")
+def client(served: Served) -> LineOfActionClient:
+    return served.client
 
 
-def test_equal_questions_in_other_words_are_one_result() -> None:
-    """The case of a point is what is hashed: another list of loads and other positions do not matter."""
-    other = copy.deepcopy(PLANE) | {"load": {"torque_n_m": [40.0]}}
-    other["accuracy"]["positions"] = 16
-    asked: list[dict[str, Any]] = [
-        {"case": PLANE}, {"case": other, "torque_n_m": 40.0}, {"case": other, "torque_n_m": 41.0}
-    ]  # fmt: skip
-    keys = []
-    for inputs in asked:
-        model = FLANK.inputs.model_validate_json(json.dumps(inputs))
-        keys.append(FLANK.key(FLANK.prepare(model, None)))  # type: ignore[arg-type]  # needs no store
-    assert keys[0] == keys[1] != keys[2]
+def test_one_that_version_0_1_stored_as_json_is_to_be_computed_again(served: Served, tmp_path: Path) -> None:
+    old, store = tmp_path / "ablation.json", stored_results(served.data)
+    old.write_text("{}", encoding="utf-8")
+    digest = hashlib.sha256(b"{}").hexdigest()
+    name = f"ablation/{OLD[:2]}/{OLD}.{digest[:16]}.01234567.json"
+    store.files.put(name, old, digest)
+    store.enter(IndexLine(OLD, "ablation", digest, 2, name, "2026-01-01T00:00:00Z"))
+    for path in (f"/v1/results/{OLD}", f"/v1/results/{OLD}/figures"):
+        answer = served.http.get(path)
+        assert answer.status_code == 404
+        assert "Version 0.1 stored it as JSON" in answer.json()["detail"]
 
 
-def test_a_study_comes_with_all_its_curves(served: tuple[LineOfActionClient, TestClient]) -> None:
-    client, http = served
-    seen: list[JobState] = []
-    job = client.sensitivity.submit(CASE, misalignment_um=[20.0], center_distance_change_percent=[0.1])
-    (study,) = job.result(seen.append)
-    assert study.name == "20/20"
-    for curves in study.curves:
-        assert curves.misalignment.deviation == pytest.approx([0.0, 20e-6])
-        assert curves.center_distance_change.deviation == pytest.approx([0.0, 0.08e-3])
-        assert np.all(curves.misalignment.peak_to_peak > 1e-7)
-    progress = [state.progress for state in seen]
-    assert progress == sorted(progress) and progress[-1] == 100
-    (pair,) = http.get(f"/v1/results/{client.result(seen[-1].id).key}").json()["pairs"]
-    assert pair["curves"][1]["corner_contact"] is True
-    assert pair["curves"][0]["misalignment"]["misalignment_um"] == pytest.approx([0.0, 20.0])
+# The ladder of an accuracy study, worked in this process.
 
 
-def test_a_sensitivity_across_the_face_takes_a_case_of_the_plane_there() -> None:
-    process = default_registry()["sensitivity"]
-
-    def asked(case: dict[str, Any]) -> dict[str, Any]:
-        model = process.inputs.model_validate_json(json.dumps({"case": case}))
-        return process.prepare(model, None)  # type: ignore[arg-type]  # needs no store
-
-    assert asked(PLANE)["case"]["accuracy"]["model"] == "3d"
-    assert asked(CASE)["case"]["accuracy"]["model"] == "auto"
-
-
-def test_the_root_stress_is_that_of_python(served: tuple[LineOfActionClient, TestClient], data: Path) -> None:
-    client, http = served
-    found = client.root_stress.submit(PLANE, torque_n_m=30.0).figures()
-    point = FlankPoint(torque_n_m=30.0)
-    means = Means(data, lambda *_: None)
-    case = CheckedCase(case_at(validated(Case, PLANE), point))
-    here = ROOT_STRESS.figures(ROOT_STRESS.compute(case, Inputs(), means))
-    costs = ("receipt", "warnings")
-    assert without(costs, figures_alone(found)) == without(costs, here)
-    assert found["receipt"]["cpu_seconds"] > 0.0
-    (job,) = (j for j in http.get("/v1/jobs").json()["jobs"] if j["processID"] == "root-stress")
-    key = client.result(job["jobID"]).key
-    figures = http.get(f"/v1/results/{key}/figures").json()
-    assert [figure["key"] for s in figures["sections"] for figure in s["figures"]] == ["root_stress"]
+def worked(inputs: dict[str, Any], workspace: Path) -> tuple[dict[str, Any], list[float]]:
+    """Do the work; return its JSON and the progress of the whole job."""
+    seen: list[float | None] = []
+    paced = PacedFraction(FRONTIER.stages)
+    order = WorkOrder(FRONTIER.entry, inputs, FRONTIER.key(inputs), workspace, workspace)
+    (product,) = study_work.frontier(order, lambda *step: seen.append(paced.at(*step, float(len(seen)))))
+    assert (product.key, product.kind) == (order.key, "frontier")
+    return figures_of("frontier", product.file), [part for part in seen if part is not None]
 
 
 @pytest.mark.parametrize(
-    ("process", "further", "field"),
-    [
-        ("flank", {"torque_n_m": 5.0, "normal_force_n": 5.0}, "normal_force_n"),
-        ("flank", {"torque_n_m": -1.0}, "torque_n_m"),
-        ("flank", {"torque": 5.0}, "torque"),
-        ("root-stress", {"torque_n_m": -1.0}, "torque_n_m"),
-        ("flank", {"center_distance_change_mm": -1.0}, "errors.center_distance_change_mm"),
-        ("sensitivity", {"misalignment_um": [30.0, 15.0]}, "misalignment_um"),
-        ("sensitivity", {"misalignment_um": []}, "misalignment_um"),
-        ("sensitivity", {"center_distance_change_percent": [-1.0]}, "errors.center_distance_change_mm"),
-        ("sensitivity", {"center_distance_change_percent": ["x"]}, "center_distance_change_percent"),
-    ],
+    ("failure", "said"), [(SolveError("no equilibrium"), "no equilibrium"), (MemoryError(), "out of memory")]
 )
-def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
-    served: tuple[LineOfActionClient, TestClient], process: str, further: dict[str, Any], field: str
+def test_a_rung_that_fails_is_named_and_the_others_survive(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failure: Exception, said: str
 ) -> None:
-    client, http = served
-    jobs = len(http.get("/v1/jobs").json()["jobs"])
-    with pytest.raises(BadInput) as caught:
-        client.submit(process, {"case": CASE, **further})
-    assert any(field in fault.field for fault in caught.value.faults), caught.value.faults
-    assert len(http.get("/v1/jobs").json()["jobs"]) == jobs
+    class Failing:
+        """The rung in the middle of the ladder, which fails as it runs."""
+
+        name, title, family, element_size = "corrected", "fails", "auto", 1.0
+
+        def refusal(self, _checked: object) -> None:
+            return None
+
+        def run(self, *_: object) -> SteDatabase:
+            raise failure
+
+    rungs = [rung for rung in FIDELITIES if rung.name in CLOSED]
+    module = importlib.import_module("fe_contact.analysis.studies.frontier")
+    monkeypatch.setattr(module, "FIDELITIES", (rungs[0], Failing(), rungs[1]))
+    made, progress = worked(prepared(FRONTIER, case=CASE, rungs=[*CLOSED, "corrected"]), tmp_path)
+    assert made["left_out"] == {"corrected": said}
+    assert [rung["name"] for rung in made["rungs"]] == CLOSED
+    assert progress == sorted(progress) and progress[-1] == pytest.approx(1.0)
 
 
-def test_both_processes_are_described(served: tuple[LineOfActionClient, TestClient]) -> None:
-    _, http = served
-    listed = {process["id"] for process in http.get("/v1/processes").json()["processes"]}
-    assert listed == {
-        "analyze", "flank", "sensitivity", "root-stress", "ablate", "frontier", "optimize", "scatter",
-        "sweep", "simulate", "modes", "response", "vibration", "noise", "listen", "steady", "deflect",
-        "study",
-    }  # fmt: skip
-    inputs = http.get("/v1/processes/flank").json()["inputs"]
-    assert set(inputs) == {
-        "case", "torque_n_m", "normal_force_n", "misalignment_um", "center_distance_change_mm",
-    }  # fmt: skip
+def test_full_contact_runs_beside_the_ladder_of_a_case(tmp_path: Path) -> None:
+    made, _ = worked(prepared(FRONTIER, case=CASE, rungs=CLOSED, full_contact=1), tmp_path)
+    beside = made["full_contact"]
+    assert (beside["positions_run"], beside["positions_solved"]) == (1, 1)
+    assert beside["torques_n_m"] == pytest.approx([20.0, 40.0])
+    assert beside["own_error_estimate"] < 5e-3
+    assert made["rungs"][0]["mean_error"] > 1e-3 and made["reference"] == "thin_slices"
+    assert all(rung["cpu_seconds"] > 0.0 for rung in made["rungs"])
+
+
+# Scenes.
+
+
+def test_a_study_has_the_bits_of_single_runs_and_keeps_its_worst_run(
+    client: LineOfActionClient, tmp_path: Path
+) -> None:
+    given = scene_by_hash(tmp_path, 0.01)
+    made = client.study(given, STUDY)
+    tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
+    alone = dynamic_scene(given, tables)
+    values = dict(zip(made.factor, made.value[made.worst[0]].tolist(), strict=True))
+    mesh = replace(alone.meshes[0], damping_ratio=values["meshes.mesh.damping_ratio"])
+    load = replace(alone.loads[0], torque=TimeLaw.constant(values["loads.brake.torque_n_m"]))
+    run = simulate(replace(alone, meshes=(mesh,), loads=(load,)))
+    responses = (Response("dte_rms"), Response("bearing_force", order=1))
+    assert made.figure[made.worst[0]].tolist() == responses_of(run, responses)[0]
+    (key,) = made.facts["runs"].values()
+    kept = RunResult.from_netcdf(client.fetch_file(key, "run"))
+    np.testing.assert_array_equal(kept.mesh_force, run.mesh_force)
+
+
+MASS, STIFFNESS, RATIO, UNBALANCE = 10.0, 2e6, 0.02, 1e-3  # of the scene of the rotor
+ROTOR = EXAMPLES / "jeffcott_scene.toml"
+RPM = math.tau / 60.0
+SPEED = 3843.5 * RPM
+CRITICAL = math.sqrt(STIFFNESS / MASS)
+DAMPING = 2.0 * RATIO * math.sqrt(STIFFNESS * MASS)
+RADIUS = UNBALANCE * SPEED**2 / abs(STIFFNESS - MASS * SPEED**2 + 1j * SPEED * DAMPING)
+
+
+def test_a_rotor_without_gears_runs_on_the_circle(client: LineOfActionClient) -> None:
+    run = client.simulate(ROTOR)
+    late = (run.time > 2.2) & (run.time < 2.4)
+    radius = np.hypot(*run.displacement[:2, late])
+    assert radius == pytest.approx(np.full(radius.size, RADIUS), rel=1e-4)
+    assert run.receipt["sampling"]["chosen"] == "highest order of a load, 64.06 Hz"
+
+
+def test_its_modes_response_and_steady_states(client: LineOfActionClient) -> None:
+    modes = client.modes(ROTOR, speed_rpm=[0.0, 3000.0])
+    assert modes.natural_frequency == pytest.approx([CRITICAL / math.tau] * 2)
+    response = client.response(ROTOR, speed_rpm=[SPEED / RPM, CRITICAL / RPM])
+    assert response.order.tolist() == [1.0]
+    assert np.abs(response.displacement[:2, 0, 0]) == pytest.approx([RADIUS] * 2, rel=1e-9)
+    assert np.abs(response.displacement[:2, 1, 0]) == pytest.approx(
+        [UNBALANCE / (2.0 * RATIO * MASS)] * 2, rel=1e-6
+    )
+    steady = client.steady(ROTOR, speed_rpm=[SPEED / RPM], branch=False)
+    force = 0.5 * abs(STIFFNESS + 1j * SPEED * DAMPING) * RADIUS
+    assert steady.rms_bearing_force == pytest.approx(np.full((1, 2), force), rel=1e-5)
+
+
+def test_a_geared_rotor_hears_both_shafts(client: LineOfActionClient) -> None:
+    response = client.response(EXAMPLES / "geared_rotor_scene.toml", speed_rpm=[1499.2395732], orders=1)
+    assert response.order * 328 == pytest.approx([1.0, 328 / 23])
+
+
+def test_textbook_scenes_have_the_figures_of_their_sources(client: LineOfActionClient) -> None:
+    modes = client.modes(EXAMPLES / "lin_parker_planetary_scene.toml")
+    assert np.max(modes.natural_frequency) == pytest.approx(11775.27, abs=0.005)
+    run = client.simulate(EXAMPLES / "backlash_oscillator_scene.toml")
+    deflection = (run.dynamic_transmission_error[0] - 2.487593e-6 * np.cos(1e4 * run.time)) / 50e-6
+    assert np.std(deflection[-20 * 64 - 1 : -1]) == pytest.approx(0.133083, rel=1e-3)

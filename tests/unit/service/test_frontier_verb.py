@@ -1,4 +1,4 @@
-"""``loa frontier``: JSON, page and picture of a ladder; refusals by name."""
+"""``loa frontier``: page and picture of the ladders of cases and scenes, beyond the contract."""
 
 import dataclasses
 import json
@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from dynamics.accuracy import FidelityResult as SceneResult
+from dynamics.accuracy import Frontier as SceneFrontier
 from fe_contact.analysis.studies.frontier import FidelityResult, Frontier
 from fe_contact.analysis.studies.measured_full_contact import (
     FULL_CONTACT,
@@ -131,21 +133,48 @@ def test_an_error_that_is_not_known_is_left_out(found: Frontier) -> None:
     _frontier_figure(Frontier((*found.results[:2], lonely), {}, None, None, 64))
 
 
-def test_the_verb_writes_what_it_prints(tmp_path: Path) -> None:
-    output = tmp_path / "frontier.json"
-    done = CliRunner().invoke(
-        app, ["frontier", str(EXAMPLE), "-o", str(output), "--rungs", "iso6336,thin_slices", "--json"]
+# Of a scene.
+
+
+@pytest.fixture
+def of_scene() -> SceneFrontier:
+    nothing = float("nan")
+    rungs = (
+        SceneResult("quasi_static", "quasi-static", 0.01, "model", 0.1, 0.2, 1.0),
+        SceneResult("torsion", "torsion only", 0.2, "model", 0.05, 0.05, nothing),
+        SceneResult("1_nm", "tolerance 1 nm", 0.5, "steps", 1e-3, 1e-3, 2e-3),
+        SceneResult("0.1_nm", "tolerance 0.1 nm", 1.0, "steps", 1e-4, 1e-4, 2e-4),
     )
+    return SceneFrontier(rungs, {"in_plane": "nothing more"}, "1_nm", "1_nm", 5, 6, np.ones((1, 1)))
+
+
+def test_the_picture_of_a_scene_marks_knee_chosen_and_reference(of_scene: SceneFrontier) -> None:
+    figure = _frontier_figure(of_scene)
+    texts = [note.text for note in figure.content[0].notes]
+    assert texts == ["quasi static", "torsion", "1 nm (knee, chosen)", "0.1 nm (reference)"]
+    assert [note.text for note in figure.content[2].notes] == [t for t in texts if t != "torsion"]
+    assert png(figure).startswith(b"\x89PNG")
+
+
+def test_the_page_of_a_scene_leaves_unknown_errors_out(of_scene: SceneFrontier) -> None:
+    assert "nothing more" in html(_frontier_page(of_scene), {"run_frontier": b""})
+    assert _frontier_table(of_scene).rows[1][4] == ""
+
+
+def test_the_verb_chooses_the_rung_of_a_run_up(tmp_path: Path) -> None:
+    scene, case = (EXAMPLE.with_name(f"palermo_{name}.toml").read_text() for name in ("scene", "spur_20_20"))
+    short = scene.replace("duration_s = 5.0", "duration_s = 0.3").replace("[0.0, 955.0]", "[600.0, 955.0]")
+    (tmp_path / "scene.toml").write_text(short)
+    (tmp_path / "palermo_spur_20_20.toml").write_text(case.replace("tolerance = 0.01", 'level = "draft"'))
+    rungs = "quasi_static,10_nm,1_nm,0.1_nm"
+    done = CliRunner().invoke(app, ["frontier", str(tmp_path / "scene.toml"), "--rungs", rungs, "--json"])
     assert done.exit_code == 0, done.output
     printed = json.loads(done.stdout)
-    assert printed.pop("written") == [str(output)]
-    assert printed == json.loads(output.read_text(encoding="utf-8"))
-    assert printed["reference"] == "thin_slices"
-    assert printed["solves"] == 64 * 12
+    assert (printed["chosen"], printed["reference"]) == ("1_nm", "0.1_nm")
 
 
-def test_unknown_rungs_and_files_are_said_by_name(tmp_path: Path) -> None:
-    for arguments, said in ((["--rungs", "4d"], "rungs"), (["-o", str(tmp_path / "x.pdf")], "output")):
-        done = CliRunner().invoke(app, ["frontier", str(EXAMPLE), *arguments])
-        assert done.exit_code == 2
-        assert said in done.stderr
+def test_unknown_rungs_of_a_scene_are_said_by_name() -> None:
+    scene = EXAMPLE.with_name("palermo_scene.toml")
+    done = CliRunner().invoke(app, ["frontier", str(scene), "--rungs", "2_nm"])
+    assert done.exit_code == 2
+    assert "rungs" in done.stderr

@@ -17,7 +17,6 @@ from declared_figures import check_declared
 from hulls import box
 from reduced_housings import bare_housing
 from scene_files import scene_file
-from shown_effects import check_effects_shown
 from sounding_housings import smooth_motion, with_surface
 from typer.testing import CliRunner, Result
 
@@ -81,8 +80,8 @@ def test_json_holds_levels_by_order_and_speed_and_the_loudest_points(scene: Path
     assert answer["housings"]["case"]["model_error_db"]["monopoles"] == 0.0
 
 
-def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Path) -> None:
-    files = {ending: tmp_path / f"noise.{ending}" for ending in ("nc", "json", "png", "html", "vtu")}
+def test_the_table_and_the_page_say_the_same(scene: Path, tmp_path: Path) -> None:
+    files = {ending: tmp_path / f"noise.{ending}" for ending in ("nc", "html")}
     for file in files.values():
         result = loa(scene, *SPEEDS, "-o", file)
         assert result.exit_code == 0, result.stderr
@@ -90,11 +89,6 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     point = loudest(found)[0]
     assert f"{point.weighted_level:.1f} dB(A) through mode {point.mode} of case" in result.stdout
     assert f"Radiation models of case at order {point.order:g}, " in result.stdout
-    written = json.loads(files["json"].read_text())
-    assert written.pop("warnings") == []
-    for figures in (written, expected := run.RUN.figures(found)):
-        figures.pop("cpu_seconds")
-    assert written == expected
     report = files["html"].read_text("utf-8")
     assert "Sound power in third octaves" in report and '<figure id="sound_panels">' in report
     rows = list(_limits(found))
@@ -106,7 +100,6 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     for row in (row for table in _model_tables(found) for row in table.rows):
         assert re.search(r"\s+".join(map(re.escape, row)), result.stdout)
         assert all(f">{escape(cell)}</td>" in report for cell in row[1:])
-    check_effects_shown(found.facts["effect_ledger"], result.stdout, report)
 
 
 def test_every_model_states_its_error_and_cost_before_it_is_asked_for(scene: Path) -> None:

@@ -56,8 +56,12 @@ def test_all_files_say_the_same(files: tuple[Path, Path], tmp_path: Path) -> Non
     told = json.loads((folder / "optimum.json").read_text(encoding="utf-8"))
     assert told["outcome"] == "improved"
     assert "improved: expected peak-to-peak falls by" in ran.output
+    assert told["gain_um"] > told["gain_error_um"]
+    assert told["nodes"]["deviation"] == [[-2.0], [2.0]]
     before, best = (read_model(Case, file) for file in (files[0], folder / "optimum.toml"))
+    assert set(told["optimum"]["values"]) == {"pinion", "wheel"}
     for gear, values in told["optimum"]["values"].items():
+        assert 0.0 <= values["tip_relief_um"] <= 40.0 and 0.5 <= values["tip_relief_length_mm"] <= 3.0
         chosen = getattr(best.pair, gear).model_dump()
         assert {name: chosen[name] for name in values} == pytest.approx(values, rel=1e-5)
         plain = getattr(before.pair, gear).model_dump()
@@ -65,7 +69,6 @@ def test_all_files_say_the_same(files: tuple[Path, Path], tmp_path: Path) -> Non
     assert best.model_copy(update={"pair": before.pair}) == before
     page = (folder / "optimum.html").read_text(encoding="utf-8")
     assert "Harris map after" in page and "every node of the scatter" in page
-    assert (folder / "optimum.png").read_bytes()[:4] == b"\x89PNG"
 
 
 def test_the_design_in_the_case_file_has_the_ripple_that_was_told(
@@ -109,9 +112,3 @@ def test_an_interrupted_search_writes_its_best_and_says_so(
     assert told["evaluations"] == 12 and told["runs"][0]["ended"] == "interrupted"
     assert "interrupted after 12 of at most 24 designs" in " ".join(ran.output.split())
     assert "not tried: " in ran.output
-
-
-def test_what_cannot_be_written_is_refused_before_anything_is_computed(files: tuple[Path, Path]) -> None:
-    ran = CliRunner().invoke(app, ["optimize", *map(str, files), "-o", "optimum.csv"])
-    assert ran.exit_code != 0
-    assert ".toml" in ran.output and "Harris" not in ran.output

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import struct
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,13 +15,11 @@ from computed_once import computed_once
 from declared_figures import check_declared
 from housing_solid import housed_scene, write_housed_scene
 from scene_files import scene_file
-from shown_effects import check_effects_shown
 from typer.testing import CliRunner, Result
 
 from dynamics.vibration import vibration_level
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.studies.vibration import run
-from lineofaction.report.document import write_report
 from lineofaction.report.drawing import surface_view
 
 SPEEDS = ("--speed-rpm", "1500:3000:250", "--orders", 4)
@@ -57,45 +54,25 @@ def scene(folder: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder / "scene.json"
 
 
-def test_every_kind_of_output_says_the_same(scene: Path, tmp_path: Path) -> None:
-    files = {
-        ending: tmp_path / f"vibration.{ending}" for ending in ("nc", "json", "png", "html", "csv", "vtu")
-    }
+def test_the_surface_and_the_cost_of_the_housing_are_written(scene: Path, tmp_path: Path) -> None:
+    files = {ending: tmp_path / f"vibration.{ending}" for ending in ("nc", "vtu", "html")}
     for file in files.values():
         result = loa(scene, *SPEEDS, "-o", file)
         assert (result.exit_code, result.stderr) == (0, "")
     found = run.RUN.file.read(files["nc"])
-    written = json.loads(files["json"].read_text())
-    check_declared("vibration", written)
-    for name in ("warnings", "cpu_seconds"):
-        written.pop(name)
-    assert written == {name: value for name, value in run.RUN.figures(found).items() if name in written}
-    width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
-    assert width > 1000 and height > 1000
-    head, *rows = (line.split(",") for line in files["csv"].read_text().splitlines())
-    assert head[:4] == ["speed_rpm", "order", "frequency_hz", "valid"]
-    speeds, orders = written["speed_rpm"], written["order"]
-    assert len(rows) == len(speeds) * len(orders)
-    first = dict(zip(head, map(float, rows[1]), strict=True))
-    along = [first[f"cover_{axis}_mm_per_s"] for axis in "xyz"]
-    assert np.linalg.norm(along) == pytest.approx(written["points"]["cover"]["velocity_mm_per_s"][1][0])
     surface = meshlane.read(files["vtu"])
     assert [cells.type for cells in surface.cells] == ["triangle6"]
     size = surface.point_data["velocity_magnitude"]
     parts = surface.point_data["velocity_real"], surface.point_data["velocity_imaginary"]
     np.testing.assert_allclose(size, np.hypot(*parts))
     np.testing.assert_allclose(size, np.abs(found.shape.motion))
-    check_effects_shown(
-        found.analysis.facts["effect_ledger"], result.stdout, files["html"].read_text("utf-8")
-    )
-    cost = written["reduction_cost"]["case"]
+    cost = run.RUN.figures(found)["reduction_cost"]["case"]
     assert cost["predicted_cpu_seconds"] > 0.0 and cost["cpu_seconds"] > 0.0 and cost["predicted_bytes"] > 0.0
     assert re.search(r"case: reduction +\S+ ", result.stdout)
-    assert "case: reduction" in files["html"].read_text("utf-8")
-    page = tmp_path / "page.html"
-    write_report(files["nc"], page)
-    for text in ("housing_velocity", "housing_shape", "housing_contributions", "housing_transfer"):
-        assert text in page.read_text()
+    page = files["html"].read_text("utf-8")
+    for text in ("case: reduction", "housing_velocity", "housing_shape", "housing_contributions"):
+        assert text in page
+    assert "housing_transfer" in page
 
 
 def test_figures_are_root_mean_squares_and_contributions_add_up(scene: Path) -> None:
