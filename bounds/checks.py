@@ -15,8 +15,6 @@ from bounds.declared import declarations
 from bounds.text import Reader, SiNote, Text, Words
 from bounds.types import FloatArray
 
-# The error of a value that cannot be used.
-
 
 class RefusedValue(Exception):
     """A value the caller gave cannot be used.

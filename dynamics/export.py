@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import IntEnum
@@ -17,6 +15,7 @@ from dynamics.orders import highest_valid_order, order_waterfall, window_spectru
 from dynamics.results import RunResult
 from dynamics.results.run_result import SAMPLED
 from dynamics.types import FloatArray, Json
+from host.directories import whole_file
 
 # Datasets of universal files: 58 (function at a nodal degree of freedom), 164 (units), 2411 (nodes). Pyuff,
 # which reads them, writes neither spectra (function 12) nor orders (24), and a digit less of every ordinate.
@@ -200,28 +199,15 @@ def write_universal_file(
     one_of("function", function, FUNCTIONS)
     path = Path(path)
     first = result.time[0] if start is None else start
-    part = _stretch(result, float(first), float(result.time[-1] if end is None else end))
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
-    draft, count = Path(name), 0
-    try:
-        with os.fdopen(handle, "w", encoding="ascii", errors="replace") as file:
-            file.write(_units_dataset())
-            file.write(_nodes_dataset(_nodes(result)))
-            for nodal in chain(_functions(part, function), _tachos(part, function)):
-                file.write(_function_dataset(nodal))
-                count += 1
-        mask = os.umask(0)
-        os.umask(mask)
-        draft.chmod(0o666 & ~mask)
-        draft.replace(path)
-    finally:
-        draft.unlink(missing_ok=True)
+    window, count = result.window(float(first), float(result.time[-1] if end is None else end)), 0
+    part = replace(result, **{name: getattr(result, name)[..., window] for name in SAMPLED})
+    with whole_file(path) as draft, draft.open("w", encoding="ascii", errors="replace") as file:
+        file.write(_units_dataset())
+        file.write(_nodes_dataset(_nodes(result)))
+        for nodal in chain(_functions(part, function), _tachos(part, function)):
+            file.write(_function_dataset(nodal))
+            count += 1
     return count
-
-
-def _stretch(result: RunResult, start: float, end: float) -> RunResult:
-    window = result.window(start, end)
-    return replace(result, **{name: getattr(result, name)[..., window] for name in SAMPLED})
 
 
 def _functions(result: RunResult, function: str) -> Iterator[_NodalFunction]:

@@ -6,8 +6,6 @@ import sys
 from importlib.util import find_spec
 from typing import Any
 
-# The error of what a system does not offer.
-
 _ADVICE = "Use Linux, or macOS, or on Windows WSL or a container."
 
 

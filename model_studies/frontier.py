@@ -152,9 +152,6 @@ def against_finest(
     return [*measured, remaining(family, finest.fidelity)]
 
 
-# The front of error against time, and its knee.
-
-
 def front_of(points: Mapping[str, tuple[float, float]]) -> tuple[str, ...]:
     """Return the names of the Pareto-optimal points (time, error), the fastest first."""
     best = float("inf")

@@ -10,15 +10,17 @@ from __future__ import annotations
 import json
 import os
 import platform
-import tempfile
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
+
+from host.directories import whole_file
 
 VERSION = 1  # raise it with every change of the benchmark or its reference
 FILE = "host-speed.json"
@@ -101,14 +103,7 @@ def _read(file: Path) -> dict[str, object]:
 
 def _write(file: Path, content: dict[str, object]) -> None:
     """Keep measurements; a directory that cannot be written is left as it is."""
-    try:
+    with suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
-        handle, draft = tempfile.mkstemp(dir=file.parent, suffix=".partial")
-    except OSError:
-        return
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            json.dump(content, stream)
-        Path(draft).replace(file)
-    except OSError:
-        Path(draft).unlink(missing_ok=True)
+        with whole_file(file) as draft:
+            draft.write_text(json.dumps(content), encoding="utf-8")

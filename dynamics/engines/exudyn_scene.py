@@ -24,9 +24,6 @@ from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray
 from host import cpu_seconds
 
-# The mesh force as an element of Exudyn, for gears on parallel axes that move in their plane.
-
-
 Drive = Callable[[float], tuple[float, float]]
 """Angle (rad) and speed (rad/s) of the driver about +z at a time."""
 
@@ -254,7 +251,7 @@ def run_in_exudyn(scene: Scene, *, solver: str = "GeneralizedAlpha", step: float
     nodes = _bodies(
         mbs, system, dict(zip(system.freedoms.name, start.displacement, strict=True)), drive_speed
     )
-    add_gear_mesh(mbs, mesh, nodes, _constant(drive_speed))
+    add_gear_mesh(mbs, mesh, nodes, lambda t: (drive_speed * t, drive_speed))
     coordinates = package.OutputVariableType.Coordinates
     sensors = [
         mbs.AddSensor(
@@ -320,10 +317,6 @@ def _planar_mesh(system: System, sense: int) -> PlanarMesh:
         scene_mesh.misalignment,
         scene_mesh.center_distance_change,
     )
-
-
-def _constant(speed: float) -> Drive:
-    return lambda t: (speed * t, speed)
 
 
 def _bodies(mbs: Any, system: System, start: dict[str, float], speed: float) -> tuple[Any, Any]:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
-import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -15,6 +13,7 @@ from dynamics.errors import DynamicsError
 from dynamics.results import RunResult
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
+from host.directories import whole_file
 from lineofaction.gearbox.convert.result_files import stamped
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.gearbox.registry import STUDIES, Study
@@ -314,28 +313,16 @@ def write_whole(
     """Write a page from its caller, under what is implausible; parameters as for `write_report`."""
     page = replace(page, alarms=(*(f"Warning: {text}" for text in warnings), *page.alarms))
     drawn = {figure.key: png(figure) for section in page.sections for figure in section.figures}
-    _write(output, html(page, drawn).encode("utf-8"))
+    with whole_file(output) as draft:
+        draft.write_bytes(html(page, drawn).encode("utf-8"))
     written = [output]
     if images is not None:
         images.mkdir(parents=True, exist_ok=True)
         for key, image in drawn.items():
-            _write(images / f"{key}.png", image)
+            with whole_file(images / f"{key}.png") as draft:
+                draft.write_bytes(image)
             written.append(images / f"{key}.png")
     return written
-
-
-def _write(path: Path, data: bytes) -> None:
-    handle, draft = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-        mask = os.umask(0)
-        os.umask(mask)
-        Path(draft).chmod(0o666 & ~mask)
-        Path(draft).replace(path)
-    except BaseException:
-        Path(draft).unlink(missing_ok=True)
-        raise
 
 
 def facts(result: Any) -> dict[str, Any]:

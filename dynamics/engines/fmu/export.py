@@ -1,4 +1,4 @@
-"""Entry point: from a mesh element to an FMU file."""
+"""From a mesh element to an FMU file: its variables, model description, C header and binary."""
 
 from __future__ import annotations
 
@@ -13,18 +13,146 @@ import subprocess
 import tempfile
 import zipfile
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 
 import numpy as np
 
-from dynamics.engines.fmu.variables import BOOLEAN, INTEGER, REAL, Variable, of_kind, variables
 from dynamics.engines.mesh_element import MeshElement
 from dynamics.errors import DynamicsError, InputError
 from dynamics.meshes.mesh_table import FIELDS, MeshTable
+from host.directories import whole_file
 
-# modelDescription.xml of FMI 2.0.
+REAL, INTEGER, BOOLEAN = "Real", "Integer", "Boolean"
+
+
+@dataclass(frozen=True)
+class _Variable:
+    """A variable by its name in the model description; its value reference is its index among its kind.
+
+    Attributes
+    ----------
+    name, kind, causality, variability, unit, text : str
+    start : float, int, bool or None
+        None: an output, which follows from the others.
+    """
+
+    name: str
+    kind: str
+    causality: str
+    variability: str
+    text: str
+    unit: str = ""
+    start: float | None = None
+
+
+def _variables(element: MeshElement) -> tuple[_Variable, ...]:
+    """Return all variables, of each kind those that can be set first."""
+    return (*_inputs(element), *_parameters(element), *_REAL_OUTPUTS, *_INTEGER_OUTPUTS)
+
+
+def _of_kind(chosen: Sequence[_Variable], kind: str) -> list[_Variable]:
+    """Return those of `kind` in the order of their value references."""
+    return [variable for variable in chosen if variable.kind == kind]
+
+
+def _input(name: str, unit: str, text: str, start: float = 0.0) -> _Variable:
+    return _Variable(name, REAL, "input", "continuous", text, unit, start)
+
+
+def _turns(name: str, text: str) -> _Variable:
+    return _Variable(name, INTEGER, "input", "discrete", text, "", 0)
+
+
+def _tunable(name: str, unit: str, text: str, start: float) -> _Variable:
+    return _Variable(name, REAL, "parameter", "tunable", text, unit, float(start))
+
+
+def _switch(name: str, text: str, start: bool) -> _Variable:
+    return _Variable(name, BOOLEAN, "parameter", "fixed", text, "", start)
+
+
+def _output(name: str, unit: str, text: str) -> _Variable:
+    return _Variable(name, REAL, "output", "continuous", text, unit)
+
+
+def _inputs(element: MeshElement) -> list[_Variable]:
+    """Return the inputs; axes start at their knot nearest to zero."""
+    return [
+        _input("driver_angle", "rad", "Angle of the driver in the sense in which it drives"),
+        _input("driven_angle", "rad", "Angle of the driven gear in the sense in which it is driven"),
+        _input("driver_speed", "rad/s", "Rate of driver_angle"),
+        _input("driven_speed", "rad/s", "Rate of driven_angle"),
+        _input("displacement", "m", "Approach of the gears along the line of action by shafts that move"),
+        _input("displacement_rate", "m/s", "Rate of displacement"),
+        _input("coast_displacement", "m", "The same approach along the coast flank's line of action"),
+        _input("coast_displacement_rate", "m/s", "Rate of coast_displacement"),
+        _input(
+            "misalignment", "m", "Position on the table's axis", _nearest_zero(element.table.misalignment)
+        ),
+        _input(
+            "center_distance_change",
+            "m",
+            "Position on the table's axis",
+            _nearest_zero(element.table.center_distance_change),
+        ),
+        _turns("driver_turns", "Whole revolutions in addition to driver_angle, exact for any number"),
+        _turns("driven_turns", "Whole revolutions in addition to driven_angle"),
+    ]
+
+
+def _nearest_zero(knots: Sequence[float] | np.ndarray) -> float:
+    array = np.atleast_1d(np.asarray(knots, dtype=float))
+    return float(array[np.argmin(np.abs(array))])
+
+
+def _parameters(element: MeshElement) -> list[_Variable]:
+    """Return what is set before a run, numbers also during it."""
+    coast = element.coast
+    backlash, thickness = (0.0, 0.5) if coast is None else (coast.backlash, coast.thickness)
+    along = "Backlash along the transverse line of action at zero displacements"
+    share = "Tooth thickness of the driver over the pitch, on the operating pitch circle"
+    touching = "True: the coast flanks touch where the backlash is used up"
+    from_angles = "True: r_b1 driver_angle - r_b2 driven_angle + displacement; false: displacement is the dte"
+    return [
+        _tunable("damping", "N.s/m", "In full contact", element.damping),
+        _tunable("damping_reach", "N", "Elastic force from which the damping acts in full", element.reach),
+        _tunable("position_offset", "", "Position at zero angle in base pitches", element.position_offset),
+        _tunable("backlash", "m", along, backlash),
+        _tunable("tooth_thickness", "", share, thickness),
+        _switch("coast_flank", touching, coast is not None),
+        _switch("dte_from_angles", from_angles, True),
+    ]
+
+
+_REAL_OUTPUTS = (
+    _output("mesh_force", "N", "Transverse force of the flanks along the line of action, damping included"),
+    _output("elastic_force", "N", "Part of mesh_force from the table, without damping"),
+    _output("driver_torque", "N.m", "Torque on the driver in its own sense: against its motion"),
+    _output("driven_torque", "N.m", "Torque on the driven gear in its own sense: along its motion"),
+    _output("driver_axial_force", "N", "Force on the driver along the axis about which it turns positively"),
+    _output("dte", "m", "Dynamic transmission error; positive: the driven gear lags"),
+    _output("dte_rate", "m/s", "Its rate"),
+    _output("position", "", "Base pitches by the driver's angle, from 0 to the period of the table"),
+    _output("stiffness", "N/m", "Derivative of mesh_force in the dte"),
+    _output("viscosity", "N.s/m", "Derivative of mesh_force in dte_rate"),
+    _output("coast_force", "N", "Transverse force of the coast flanks along theirs, damping included"),
+    _output("coast_approach", "m", "Approach of the coast flanks; positive: the backlash is used up"),
+    _output("coast_stiffness", "N/m", "Derivative of coast_force in coast_approach"),
+    _output("coast_viscosity", "N.s/m", "Derivative of coast_force in its rate"),
+)
+_INTEGER_OUTPUTS = (
+    _Variable("contact_state", INTEGER, "output", "discrete", "0 apart, 1 driving, 2 coast flanks, 3 both"),
+    _Variable(
+        "validity",
+        INTEGER,
+        "output",
+        "discrete",
+        "0 inside the table; plus 1 beyond its forces, 2 its misalignments, 4 its center distances",
+    ),
+)
 
 
 # exponents of the SI base units
@@ -46,17 +174,10 @@ _CAPABILITIES = (
 )
 
 
-def _model_description(name: str, chosen: Sequence[Variable], guid: str, sources: Sequence[str]) -> bytes:
+def _model_description(name: str, chosen: Sequence[_Variable], guid: str, sources: Sequence[str]) -> bytes:
     """Return the XML; it holds no date, so that the same table gives the same file.
 
-    Parameters
-    ----------
-    name : str
-        Model name and identifier: a C identifier.
-    chosen : sequence of Variable
-    guid : str
-    sources : sequence of str
-        The C files to compile, in ``sources/``.
+    `name` is a C identifier; `sources` are the C files to compile, in ``sources/``.
     """
     root = Xml.Element(
         "fmiModelDescription",
@@ -68,13 +189,14 @@ def _model_description(name: str, chosen: Sequence[Variable], guid: str, sources
         variableNamingConvention="flat",
         numberOfEventIndicators="0",
     )
-    unit = Xml.SubElement(
-        root, "CoSimulation", {"modelIdentifier": name, **dict.fromkeys(_CAPABILITIES, "true")}
-    )
-    files = Xml.SubElement(unit, "SourceFiles")
+    simulated = {"modelIdentifier": name, **dict.fromkeys(_CAPABILITIES, "true")}
+    files = Xml.SubElement(Xml.SubElement(root, "CoSimulation", simulated), "SourceFiles")
     for source in sources:
         Xml.SubElement(files, "File", name=source)
-    _add_units(root)
+    definitions = Xml.SubElement(root, "UnitDefinitions")
+    for unit_name, exponents in _UNITS.items():
+        unit = Xml.SubElement(definitions, "Unit", name=unit_name)
+        Xml.SubElement(unit, "BaseUnit", {base: str(power) for base, power in exponents.items()})
     _add_variables(root, chosen)
     _add_structure(root, chosen)
     Xml.indent(root)
@@ -82,14 +204,7 @@ def _model_description(name: str, chosen: Sequence[Variable], guid: str, sources
     return content + b"\n"
 
 
-def _add_units(root: Xml.Element) -> None:
-    definitions = Xml.SubElement(root, "UnitDefinitions")
-    for name, exponents in _UNITS.items():
-        unit = Xml.SubElement(definitions, "Unit", name=name)
-        Xml.SubElement(unit, "BaseUnit", {base: str(power) for base, power in exponents.items()})
-
-
-def _add_variables(root: Xml.Element, chosen: Sequence[Variable]) -> None:
+def _add_variables(root: Xml.Element, chosen: Sequence[_Variable]) -> None:
     section, count = Xml.SubElement(root, "ModelVariables"), dict.fromkeys((REAL, INTEGER, BOOLEAN), 0)
     for variable in chosen:
         entry = Xml.SubElement(
@@ -104,17 +219,12 @@ def _add_variables(root: Xml.Element, chosen: Sequence[Variable]) -> None:
         count[variable.kind] += 1
         facts = {"unit": variable.unit} if variable.unit else {}
         if variable.start is not None:
-            facts["start"] = _text(variable)
+            truth = "true" if variable.start else "false"
+            facts["start"] = truth if variable.kind == BOOLEAN else repr(variable.start)
         Xml.SubElement(entry, variable.kind, facts)
 
 
-def _text(variable: Variable) -> str:
-    if variable.kind == BOOLEAN:
-        return "true" if variable.start else "false"
-    return repr(variable.start)
-
-
-def _add_structure(root: Xml.Element, chosen: Sequence[Variable]) -> None:
+def _add_structure(root: Xml.Element, chosen: Sequence[_Variable]) -> None:
     """Every output depends on every input, at once."""
     structure = Xml.SubElement(root, "ModelStructure")
     for section in ("Outputs", "InitialUnknowns"):
@@ -163,15 +273,7 @@ def find_compiler() -> list[str]:
 
 
 def _compile_library(folder: Path, sources: Sequence[str], library: str) -> None:
-    """Compile `sources` in `folder` into the shared library of that name there.
-
-    Raises
-    ------
-    InputError
-        If there is no compiler.
-    CompilerError
-        If it refuses.
-    """
+    """Compile `sources` in `folder` into the shared library of that name there."""
     strip = [] if platform.system() == "Darwin" else ["-s"]
     command = [*find_compiler(), *FLAGS, *strip, "-o", library, *sources, "-lm"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=_SECONDS, check=False)
@@ -185,10 +287,10 @@ def _compile_library(folder: Path, sources: Sequence[str], library: str) -> None
 TABLE_FILE = "mesh_force_table.bin"
 
 
-def _header(element: MeshElement, chosen: Sequence[Variable], guid: str, identity: str) -> str:
+def _header(element: MeshElement, chosen: Sequence[_Variable], guid: str, identity: str) -> str:
     """Return variables.h; numbers are written as hexadecimal floats, which C99 reads without rounding."""
-    parts = [_kind(of_kind(chosen, kind), kind.upper()) for kind in (REAL, INTEGER, BOOLEAN)]
-    names = ", ".join(f'"{variable.name}"' for variable in of_kind(chosen, REAL))
+    parts = [_kind(_of_kind(chosen, kind), kind.upper()) for kind in (REAL, INTEGER, BOOLEAN)]
+    names = ", ".join(f'"{variable.name}"' for variable in _of_kind(chosen, REAL))
     facts = {
         "GUID": f'"{guid}"',
         "TABLE_FILE": f'"{TABLE_FILE}"',
@@ -215,7 +317,7 @@ def _header(element: MeshElement, chosen: Sequence[Variable], guid: str, identit
     )
 
 
-def _kind(chosen: Sequence[Variable], kind: str) -> str:
+def _kind(chosen: Sequence[_Variable], kind: str) -> str:
     """Value references and start values of one kind; what can be set comes first."""
     settable = [variable for variable in chosen if variable.start is not None]
     if list(chosen[: len(settable)]) != settable:
@@ -253,11 +355,6 @@ def _table_content(table: MeshTable) -> bytes:
 def _identity_of(content: bytes) -> str:
     """Return 32 hexadecimal digits by which the unit knows its table."""
     return hashlib.sha256(content).hexdigest()[:32]
-
-
-def _table_file(content: bytes) -> bytes:
-    """Return the file: magic, identity, content."""
-    return MAGIC + _identity_of(content).encode("ascii") + content
 
 
 _EARLIEST = (1980, 1, 1, 0, 0, 0)
@@ -299,8 +396,11 @@ def export_fmu(
         raise InputError("path", str(path), "a file ending in .fmu in a folder that exists")
     if not _IDENTIFIER.fullmatch(name):
         raise InputError("name", name, "a C identifier: letters, digits and underscores")
-    if binary:
-        _check_machine()
+    if binary:  # refused before the work is done
+        find_compiler()
+        if binary_folder() is None:
+            advice = "FMI 2.0 names no folder for its binaries."
+            raise InputError("binary", True, "False on this machine", advice)
     content = _content(element, name)
     if binary:
         content = {**content, **_binary(content, name)}
@@ -308,16 +408,9 @@ def export_fmu(
     return target
 
 
-def _check_machine() -> None:
-    """Refuse before the work is done."""
-    find_compiler()
-    if binary_folder() is None:
-        raise InputError("binary", True, "False on this machine", "FMI 2.0 names no folder for its binaries.")
-
-
 def _content(element: MeshElement, name: str) -> dict[str, bytes]:
     """Return everything but the binary, by its path in the file."""
-    chosen, table = variables(element), _table_content(element.table)
+    chosen, table = _variables(element), _table_content(element.table)
     own = {item.name: item.read_bytes() for item in files(__package__).joinpath("sources").iterdir()}
     compiled = sorted(file for file in own if file.endswith(".c"))
 
@@ -329,18 +422,14 @@ def _content(element: MeshElement, name: str) -> dict[str, bytes]:
 
     content = {
         **{f"sources/{file}": text for file, text in own.items() if file.endswith((".c", ".h"))},
-        f"resources/{TABLE_FILE}": _table_file(table),
+        f"resources/{TABLE_FILE}": MAGIC + _identity_of(table).encode("ascii") + table,
     }
-    return {**content, **described(_guid({**content, **described("")}))}
-
-
-def _guid(content: Mapping[str, bytes]) -> str:
-    """Return an identifier of everything in the file but itself."""
-    digest = hashlib.sha256()
-    for member in sorted(content):
-        digest.update(member.encode() + b"\0" + hashlib.sha256(content[member]).digest())
+    digest, whole = hashlib.sha256(), {**content, **described("")}
+    for member in sorted(whole):
+        digest.update(member.encode() + b"\0" + hashlib.sha256(whole[member]).digest())
     text = digest.hexdigest()
-    return "{" + "-".join((text[:8], text[8:12], text[12:16], text[16:20], text[20:32])) + "}"
+    guid = "{" + "-".join((text[:8], text[8:12], text[12:16], text[16:20], text[20:32])) + "}"
+    return {**content, **described(guid)}
 
 
 def _binary(content: Mapping[str, bytes], name: str) -> dict[str, bytes]:
@@ -359,22 +448,9 @@ def _binary(content: Mapping[str, bytes], name: str) -> dict[str, bytes]:
 
 
 def _write(target: Path, content: Mapping[str, bytes]) -> None:
-    """Write the archive beside its path and move it there; no clock goes into it."""
-    with tempfile.NamedTemporaryFile(dir=target.parent, suffix=".fmu", delete=False) as scratch:
-        temporary = Path(scratch.name)
-    try:
-        with zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
-            for member in sorted(content):
-                entry = zipfile.ZipInfo(member, _EARLIEST)
-                entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
-                archive.writestr(entry, content[member])
-        temporary.chmod(0o666 & ~_umask())
-        temporary.replace(target)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def _umask() -> int:
-    mask = os.umask(0o077)
-    os.umask(mask)
-    return mask
+    """Write the archive; no clock goes into it."""
+    with whole_file(target) as draft, zipfile.ZipFile(draft, "w", zipfile.ZIP_DEFLATED) as archive:
+        for member in sorted(content):
+            entry = zipfile.ZipInfo(member, _EARLIEST)
+            entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
+            archive.writestr(entry, content[member])
