@@ -24,7 +24,6 @@ from model_studies import Figures, LeftOut, Progress, in_unit, run_variants, sil
 
 __all__ = ["Ablation", "EffectAblation", "RunFigures", "ablate"]
 
-# The figures that runs are compared by: mean, peak-to-peak, mesh orders of errors and bearing forces.
 
 HIGHEST = COMPARED
 """Mesh orders that are compared."""
@@ -54,13 +53,7 @@ class RunFigures(Figures):
 
 
 def _run_figures(result: RunResult, seconds: float) -> RunFigures:
-    """Return the figures of a run of so many CPU seconds.
-
-    Raises
-    ------
-    InputError
-        It is shorter than a few base pitches.
-    """
+    """Return the figures of a run of so many CPU seconds; one shorter than a few base pitches is refused."""
     settled = slice(int(SETTLED * result.time.size), None)
     error = result.dynamic_transmission_error[:, settled]
     travel = float(np.abs(np.sum(np.diff(np.unwrap(result.position[0], period=1.0)))))  # of the first mesh
@@ -69,13 +62,7 @@ def _run_figures(result: RunResult, seconds: float) -> RunFigures:
     bearings = np.empty((0, HIGHEST))
     if result.bearing_force.size:
         bearings = np.sqrt(np.sum(_largest(result, "bearing_force", pitches) ** 2, axis=1))
-    return RunFigures(
-        np.mean(error, axis=1),
-        np.ptp(error, axis=1),
-        seconds,
-        transmission,
-        bearings,
-    )
+    return RunFigures(np.mean(error, axis=1), np.ptp(error, axis=1), seconds, transmission, bearings)
 
 
 def _largest(result: RunResult, series: str, pitches: int) -> FloatArray:

@@ -24,7 +24,7 @@ from dynamics.motion.observation import observe, observe_laws, static_deflection
 from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
 from dynamics.scene import Outputs, Scene
 from dynamics.types import FloatArray, IntArray
-from model_studies import Outcome, Progress, against_finest, in_unit, knee_above, run_fidelities, silent
+from model_studies import Progress, against_finest, in_unit, knee_above, run_fidelities, silent
 from model_studies.frontier import Errors
 
 MOST_BLOCKS, ORDERS = 6, 5
@@ -72,39 +72,40 @@ class Blocks:
     bounds: IntArray
     orders: int
 
+    @classmethod
+    def of(cls, system: System) -> Blocks:
+        """Cut the run of `system` into blocks of equal time.
+
+        Raises
+        ------
+        InputError
+            The run turns its first mesh by less than `LEAST_PITCHES`, or has too few samples a period.
+        """
+        rate, scene = system.sampling.rate, system.scene
+        samples = math.floor(scene.duration * rate * (1.0 + 1e-12)) + 1
+        time = np.arange(samples) / rate
+        rest = np.zeros((samples, system.arrays.mass.shape[0]))
+        position = unwrapped(observe(system.arrays, time, rest, rest).position[: len(scene.meshes)])
+        ends = np.linspace(0, samples, MOST_BLOCKS + 1).astype(np.int64)
+        bounds = np.stack([ends[:-1], ends[1:]], axis=1)
+        turned = [abs(position[0, stop - 1] - position[0, first]) for first, stop in bounds]
+        long = np.diff(bounds, axis=1)[:, 0] >= LEAST_SAMPLES
+        bounds = bounds[(np.array(turned) >= LEAST_PITCHES) & long]
+        if bounds.size == 0:
+            bounds = np.array([[0, samples]])
+            if samples < LEAST_SAMPLES or abs(position[0, -1] - position[0, 0]) < LEAST_PITCHES:
+                bound = f"long enough for {LEAST_PITCHES:g} base pitches and {LEAST_SAMPLES} samples"
+                raise InputError("duration", scene.duration, bound, "Lengthen the run or raise its speed.")
+        orders = min(orders_seen(line[bounds[0, 0] :], ORDERS) for line in position)
+        if orders < 1:
+            bound = "at least four samples a base pitch"
+            raise InputError("outputs.sample_rate", rate, bound, "Raise it.")
+        return cls(time, position, bounds, orders)
+
     @property
     def middle(self) -> FloatArray:
         """Time in the middle of each block, s."""
         return np.asarray(self.time[self.bounds.mean(axis=1).astype(int)])
-
-
-def blocks_of(system: System) -> Blocks:
-    """Cut the run of `system` into blocks of equal time.
-
-    Raises
-    ------
-    InputError
-        The run turns its first mesh by less than `LEAST_PITCHES`, or has too few samples a period.
-    """
-    rate, scene = system.sampling.rate, system.scene
-    samples = math.floor(scene.duration * rate * (1.0 + 1e-12)) + 1
-    time = np.arange(samples) / rate
-    rest = np.zeros((samples, system.arrays.mass.shape[0]))
-    position = unwrapped(observe(system.arrays, time, rest, rest).position[: len(scene.meshes)])
-    ends = np.linspace(0, samples, MOST_BLOCKS + 1).astype(np.int64)
-    bounds = np.stack([ends[:-1], ends[1:]], axis=1)
-    turned = [abs(position[0, stop - 1] - position[0, first]) for first, stop in bounds]
-    bounds = bounds[(np.array(turned) >= LEAST_PITCHES) & (np.diff(bounds, axis=1)[:, 0] >= LEAST_SAMPLES)]
-    if bounds.size == 0:
-        bounds = np.array([[0, samples]])
-        if samples < LEAST_SAMPLES or abs(position[0, -1] - position[0, 0]) < LEAST_PITCHES:
-            bound = f"long enough for {LEAST_PITCHES:g} base pitches and {LEAST_SAMPLES} samples"
-            raise InputError("duration", scene.duration, bound, "Lengthen the run or raise its speed.")
-    orders = min(orders_seen(line[bounds[0, 0] :], ORDERS) for line in position)
-    if orders < 1:
-        bound = "at least four samples a base pitch"
-        raise InputError("outputs.sample_rate", rate, bound, "Raise it.")
-    return Blocks(time, position, bounds, orders)
 
 
 def _vibration_of(blocks: Blocks, error: FloatArray, force: FloatArray) -> Vibration:
@@ -136,9 +137,6 @@ class Fidelity(model_studies.Fidelity[Scene], Protocol):
         InputError
             The scene has what this model cannot hold.
         """
-
-
-# Fidelities of time integration: fewer effects, coarser tables, longer steps.
 
 
 BY_TORSION = (COAST_FLANKS,)
@@ -207,15 +205,13 @@ def _decided(scene: Scene) -> set[tuple[str, str]]:
 
 def _series(system: System, trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
     """Transmission errors (m, T) and bearing forces in their own frames (b, 3, T)."""
-    observed = observe(system.arrays, trajectory.time, trajectory.q, trajectory.v, trajectory.moved)
-    force = system.bearing_force(observed.force, trajectory.q, trajectory.v)[:, :3]
+    states = trajectory.states
+    observed = observe(system.arrays, trajectory.time, states.q, states.v, states.moved)
+    force = system.bearing_force(observed.force, states.q, states.v)[:, :3]
     elastic = np.any(system.bearing_stiffness) or system.housed or system.bearings
     if system.freedoms.column.size and not elastic:
         force = np.full_like(force, np.nan)  # bearings hold nothing here: no freedom moves them
     return observed.coordinate[system.driving_rows], force
-
-
-# Fidelities that integrate nothing: the quasi-static one, and the linear response about the equilibrium.
 
 
 ORDER_MATCH = 1e-6
@@ -275,10 +271,8 @@ class _LinearResponse:
             )
             for speed, time in zip(speeds[law], blocks.middle, strict=True)
         ]
-        return Vibration(*(np.array([getattr(part, name) for part in parts]) for name in _FIELDS))
-
-
-_FIELDS = ("rms", "error_orders", "force_orders")
+        names = Vibration.__dataclass_fields__
+        return Vibration(*(np.array([getattr(part, name) for part in parts]) for name in names))
 
 
 def _of_one_speed(response: HarmonicResponse, system: System, blocks: Blocks) -> Vibration:
@@ -397,7 +391,7 @@ def frontier(
         Fewer than two fidelities came to their end.
     """
     system = assemble(scene)
-    blocks, scene = blocks_of(system), system.resolved_scene
+    blocks, scene = Blocks.of(system), system.resolved_scene
     names = chosen("fidelities", fidelities, [fidelity.name for fidelity in FIDELITIES])
     outcomes, left_out = run_fidelities(
         [fidelity for fidelity in FIDELITIES if fidelity.name in names],
@@ -407,7 +401,16 @@ def frontier(
         (InputError, SolveError),
         progress,
     )
-    results = _compared(outcomes)
+    results = tuple(  # every fidelity against the last, and that one by how the errors fell towards it
+        FidelityResult(
+            outcome.fidelity.name,
+            outcome.fidelity.title,
+            outcome.cpu_seconds,
+            outcome.fidelity.family,
+            **error,
+        )
+        for outcome, error in zip(outcomes, against_finest(outcomes, _errors, _remaining), strict=True)
+    )
     return Frontier(
         results,
         left_out,
@@ -441,26 +444,8 @@ def _warm_up(scene: Scene, fidelities: Sequence[Fidelity], blocks: Blocks) -> No
                 fidelity.run(scene, replace(blocks, bounds=blocks.bounds[:1]))
 
 
-def _compared(outcomes: Sequence[Outcome[Fidelity, Vibration]]) -> tuple[FidelityResult, ...]:
-    """Measure every fidelity against the last, and that one by how the errors fell towards it."""
-    return tuple(
-        FidelityResult(
-            outcome.fidelity.name,
-            outcome.fidelity.title,
-            outcome.cpu_seconds,
-            outcome.fidelity.family,
-            **error,
-        )
-        for outcome, error in zip(outcomes, against_finest(outcomes, _errors, _remaining), strict=True)
-    )
-
-
 def _errors(vibration: Vibration, reference: Vibration) -> Errors:
-    pairs = (
-        (vibration.rms, reference.rms),
-        (vibration.error_orders, reference.error_orders),
-        (vibration.force_orders, reference.force_orders),
-    )
+    pairs = zip(vars(vibration).values(), vars(reference).values(), strict=True)
     return {name: _apart(*pair) for name, pair in zip(FIGURES, pairs, strict=True)}
 
 
@@ -477,13 +462,10 @@ def _remaining(coarser: Sequence[tuple[Fidelity, Errors]], _finest: Fidelity) ->
     if len(coarser) < 2:
         return dict.fromkeys(FIGURES, NAN)
     (_, far), (_, near) = coarser[-2:]
-    return {name: _left_behind(far[name], near[name]) for name in FIGURES}
-
-
-def _left_behind(far: float, near: float) -> float:
-    """Return what a sequence of errors leaves behind its last step."""
-    rate = far / near if near > 0.0 else NAN
-    return near / (rate - 1.0) if rate > LEAST_RATE else near
+    rate = {name: far[name] / near[name] if near[name] > 0.0 else NAN for name in FIGURES}
+    return {
+        name: near[name] / (rate[name] - 1.0) if rate[name] > LEAST_RATE else near[name] for name in FIGURES
+    }
 
 
 def knee_of_results(results: Sequence[FidelityResult]) -> str | None:

@@ -39,8 +39,6 @@ from dynamics.motion.motion import (
 )
 from dynamics.types import FloatArray
 
-# Compiled step of the explicit Dormand-Prince method of order 5: the check of the implicit one.
-
 
 @routine
 def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float) -> None:

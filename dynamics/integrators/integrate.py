@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from time import perf_counter
 
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.integrators.march import Cancel, Ending, Progress, ending, march_on, now, start_march
+from dynamics.integrators.march import Cancel, Ending, Progress, ending, march_on, start_march
 from dynamics.integrators.start_value import StartValue, Trail
 from dynamics.integrators.state_sink import MemorySink
 from dynamics.integrators.static import StaticSolution
 from dynamics.motion.sampled_states import States
 from dynamics.scene import Integration
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import FloatArray
 
 
 @dataclass(frozen=True)
@@ -41,11 +42,6 @@ class Trajectory(Ending):
         """Their rates, (T, n)."""
         return self.states.v
 
-    @property
-    def moved(self) -> IntArray:
-        """See `States`."""
-        return self.states.moved
-
 
 def integrate(
     system: System,
@@ -63,12 +59,12 @@ def integrate(
     polled about fifty times or more. `trail` saves the states of the run; `taken`
     is where it goes on for another run.
     """
-    began = now()
+    began = perf_counter()
     march = start_march(system, start, integration, velocity)
     sink = MemorySink(march.samples, march.widths)
     if taken is not None:
         taken.into(march, sink)
     status = march_on(march, sink, progress, cancel, None if trail is None else trail.watch(march))
-    end = ending(march, sink, status, now() - began)
+    end = ending(march, sink, status, perf_counter() - began)
     time = np.arange(end.samples) / system.sampling.rate
     return Trajectory(**vars(end), time=time, states=sink.states(0, end.samples))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Callable
 from copy import deepcopy
 from dataclasses import dataclass
@@ -19,14 +18,12 @@ from dynamics.integrators.sampler import (
     Sampler,
     SampleRing,
     continue_past_the_end,
-    make_ring,
-    make_sampler,
     sample_start,
 )
 from dynamics.integrators.state_sink import BLOCK, StateSink
 from dynamics.integrators.static import StaticSolution
 from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED_ORDER, IMPLICIT_EMBEDDED_ORDER
-from dynamics.integrators.workspace import Count, Workspace, geometric_steps, make_workspace
+from dynamics.integrators.workspace import Count, Workspace, geometric_steps
 from dynamics.kernels.by_address import by_address, by_value
 from dynamics.kernels.compiled import compiled
 from dynamics.kernels.local_state import LocalState
@@ -34,8 +31,6 @@ from dynamics.motion.observation import local_state, observe_laws
 from dynamics.motion.sampled_states import Widths
 from dynamics.scene import Integration
 from dynamics.types import FloatArray, IntArray, Json, RunStatus
-
-# Peaks and rms of forces over a run, and what its anti-alias filter took away.
 
 
 @dataclass(frozen=True)
@@ -120,9 +115,6 @@ def _by_part(names: list[str] | tuple[str, ...], peak: FloatArray, rms: FloatArr
         name: {"peak": np.asarray(p).tolist(), "rms": np.asarray(r).tolist()}
         for name, p, r in zip(names, peak, rms, strict=False)
     }
-
-
-# Energy stored in a system at one instant.
 
 
 def stored_energy(
@@ -268,16 +260,19 @@ def start_march(
     """Start at t = 0 from `start`, at rest or with the `velocity` (n,)."""
     if integration.method == "auto":
         integration = choose_method(system, start.displacement, integration).settings(integration)
-    step_sizes = _step_sizes(integration)
-    work = make_workspace(system.arrays, step_sizes, start.displacement, integration.fixed_step or FIRST_STEP)
+    if integration.fixed_step is None:
+        step_sizes = geometric_steps(integration.largest_step, integration.smallest_step)
+    else:
+        step_sizes = np.array([integration.fixed_step, 0.0])
+    work = Workspace.of(system.arrays, step_sizes, start.displacement, integration.fixed_step or FIRST_STEP)
     if velocity is not None:
         work.v[:] = velocity
     scene = system.scene
     samples = int(np.floor(scene.duration * system.sampling.rate * (1.0 + 1e-12))) + 1
     initial = stored_energy(system.arrays, 0.0, start.displacement, work.v, work.moved)
     control = _control(system, integration)
-    sampler = make_sampler(system)
-    ring = make_ring(system.arrays, sampler)
+    sampler = Sampler.of(system)
+    ring = SampleRing.of(system.arrays, sampler)
     run = by_address(system.arrays), by_address(work)
     passed = _Passed(*run, by_address(control), by_address(sampler), by_address(ring))
     march = March(system, work, ring, control, sampler, passed, initial, samples)
@@ -301,8 +296,10 @@ def march_on(
     after_block: Callable[[], None] | None = None,
 ) -> RunStatus:
     """Go on to the end of the run, block by block; after each block `cancel` says whether to stop."""
-    duration = march.system.scene.duration
-    block = _block(march, BLOCK_WORK if progress is None and cancel is None else 0)
+    duration, rate = march.system.scene.duration, march.system.sampling.rate
+    work = BLOCK_WORK if progress is None and cancel is None else 0  # at least, samples times freedoms
+    least, longest = work / (max(march.work.q.size, 1) * rate), BLOCK / rate
+    block = min(max(duration / CHUNKS, least), longest)
     while True:
         stop = min(float(march.work.time[0]) + block, duration)
         status = _advance_to(march, stop, sink)
@@ -314,13 +311,6 @@ def march_on(
             return RunStatus.CANCELLED
         if after_block is not None:
             after_block()
-
-
-def _block(march: March, work: int) -> float:
-    """Return the duration of a block of at least that `work`, samples times freedoms; s."""
-    rate, freedoms = march.system.sampling.rate, max(march.work.q.size, 1)
-    least, longest = work / (freedoms * rate), BLOCK / rate
-    return min(max(march.system.scene.duration / CHUNKS, least), longest)
 
 
 def _advance_to(march: March, stop: float, sink: StateSink) -> RunStatus:
@@ -364,18 +354,6 @@ def ending(march: March, sink: StateSink, status: RunStatus, seconds: float) -> 
         seconds,
         _sample_figures(march.system, ring, int(work.counts[Count.POINT]), samples),
     )
-
-
-def now() -> float:
-    """Return the clock that `Ending.seconds` are taken from."""
-    return clock.perf_counter()
-
-
-def _step_sizes(integration: Integration) -> FloatArray:
-    """Step sizes: geometric, or the one fixed step."""
-    if integration.fixed_step is not None:
-        return np.array([integration.fixed_step, 0.0])
-    return geometric_steps(integration.largest_step, integration.smallest_step)
 
 
 def _control(system: System, integration: Integration) -> Control:

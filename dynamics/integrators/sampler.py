@@ -67,6 +67,22 @@ class Sampler(NamedTuple):
     bodies: int
     filtered: int
 
+    @classmethod
+    def of(cls, system: System) -> Sampler:
+        """Gather what the compiled loop needs."""
+        sampling = system.sampling
+        static, nominal = system.flanks.static, system.flanks.nominal_force
+        rows, n = system.arrays.direction.shape
+        bodies, outputs = system.arrays.sparse.modal.first, system.scene.outputs
+        own = np.arange(bodies)
+        q, v = np.split(np.arange(rows + 2 * bodies + nominal.size, rows + 2 * n + nominal.size), 2)
+        channels = np.concatenate([np.arange(rows), rows + own, q, rows + bodies + own, v])
+        bearings = system.bearing_map._replace(column=channels[system.bearing_map.column])
+        amplitudes = n - bodies if outputs.displacements or outputs.accelerations else 0
+        filtered = rows + 2 * (bodies + amplitudes) + nominal.size
+        rest = (bearings, bodies, filtered)
+        return cls(sampling.filter_taps(), sampling.factor, sampling.inner_rate, static, nominal, *rest)
+
 
 class _Peaks(NamedTuple):
     """Figures of P signals over the inner grid: R local forces, then the forces at the supports.
@@ -123,52 +139,25 @@ class SampleRing(NamedTuple):
     folded: FloatArray
     high: FloatArray
 
-
-def make_sampler(system: System) -> Sampler:
-    """Gather what the compiled loop needs."""
-    sampling = system.sampling
-    static, nominal = system.flanks.static, system.flanks.nominal_force
-    rows, n = system.arrays.direction.shape
-    bodies, outputs = system.arrays.sparse.modal.first, system.scene.outputs
-    column = _channels_of(rows, n, bodies, nominal.size)[system.bearing_map.column]
-    bearings = system.bearing_map._replace(column=column)
-    amplitudes = n - bodies if outputs.displacements or outputs.accelerations else 0
-    filtered = rows + 2 * (bodies + amplitudes) + nominal.size
-    rest = (bearings, bodies, filtered)
-    return Sampler(sampling.filter_taps(), sampling.factor, sampling.inner_rate, static, nominal, *rest)
-
-
-def _channels_of(rows: int, freedoms: int, bodies: int, meshes: int) -> IntArray:
-    """Return the channels of R local forces, q (n,) and v (n,); `bodies` of the freedoms are not modal."""
-    forces, own = np.arange(rows), np.arange(bodies)
-    modal = np.arange(rows + 2 * bodies + meshes, rows + 2 * freedoms + meshes)
-    q, v = np.split(modal, 2)
-    return np.concatenate([forces, rows + own, q, rows + bodies + own, v])
-
-
-def make_ring(arrays: SystemArrays, sampler: Sampler) -> SampleRing:
-    """Allocate."""
-    n, rows, laws = arrays.mass.shape[0], arrays.direction.shape[0], arrays.inertial.shape[0]
-    channels = _channel_count(arrays, sampler)
-    signals = rows + sampler.bearings.constant.size
-    return SampleRing(
-        np.zeros((sampler.taps.size, channels)),
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n),
-        make_local(arrays.elements, arrays.turn.shape[0]),
-        np.zeros((laws, MOTION_COLUMNS)),
-        np.zeros(laws, dtype=np.int64),
-        _Peaks(np.zeros((2, signals)), *(np.zeros(signals) for _ in range(3))),
-        np.zeros(rows),
-        np.zeros(rows),
-        np.zeros(rows),
-    )
-
-
-def _channel_count(arrays: SystemArrays, sampler: Sampler) -> int:
-    rows, n = arrays.direction.shape
-    return int(rows + 2 * n + sampler.nominal_force.size)
+    @classmethod
+    def of(cls, arrays: SystemArrays, sampler: Sampler) -> SampleRing:
+        """Allocate."""
+        n, rows, laws = arrays.mass.shape[0], arrays.direction.shape[0], arrays.inertial.shape[0]
+        channels = int(rows + 2 * n + sampler.nominal_force.size)
+        signals = rows + sampler.bearings.constant.size
+        return cls(
+            np.zeros((sampler.taps.size, channels)),
+            np.zeros(n),
+            np.zeros(n),
+            np.zeros(n),
+            make_local(arrays.elements, arrays.turn.shape[0]),
+            np.zeros((laws, MOTION_COLUMNS)),
+            np.zeros(laws, dtype=np.int64),
+            _Peaks(np.zeros((2, signals)), *(np.zeros(signals) for _ in range(3))),
+            np.zeros(rows),
+            np.zeros(rows),
+            np.zeros(rows),
+        )
 
 
 HIGH_PASS = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0]) / 64.0

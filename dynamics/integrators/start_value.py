@@ -118,34 +118,56 @@ class StartValue:
 
     def into(self, march: March, sink: StateSink) -> None:
         """Start `march` there; `sink` gets the samples before it."""
-        start_from(march, self.at, self.rows_of)
+        self.start(march)
         for first, stop in blocks(self.at.samples):
             room = sink.room(first, stop - first)
-            for target, values in zip(
-                room, widened(self.states(first, stop), self.rows_of, march), strict=True
-            ):
+            for target, values in zip(room, self.widened(self.states(first, stop), march), strict=True):
                 target[...] = values
             sink.keep(first, stop - first)
 
+    def widened(self, states: States, march: March) -> States:
+        """Return samples of the other march as those of `march`; elements beside its own carried no force."""
+        rows = march.ring.local.force.size
+        to, kept = self._channels(march), states.filtered.shape[1]
+        filtered = np.zeros((states.q.shape[0], march.sampler.filtered))
+        filtered[:, to[:kept]] = states.filtered
+        least, largest = (np.zeros((states.q.shape[0], rows)) for _ in range(2))
+        least[:, self.rows_of], largest[:, self.rows_of] = states.least, states.largest
+        return States(states.q, states.v, states.moved, filtered, least, largest)
 
-def widened(states: States, rows_of: IntArray, march: March) -> States:
-    """Return the samples of a march of fewer force elements as those of `march`.
+    def start(self, march: March) -> None:
+        """Start `march` from there; elements that it has beside those of the other one carry no force."""
+        work, arrays, at = march.work, march.system.arrays, self.at
+        for name, values in at.state.items():
+            getattr(work, name)[...] = values
+        here = local_state(arrays, at.time, work.q, work.v, work.moved)
+        before = work.before
+        for name, values in at.motion.items():
+            getattr(before, name)[...] = values
+        for target, values, known in (
+            (work.force, np.zeros(work.force.size), at.force),
+            (before.coordinate, here.coordinate, at.coordinate),
+            (before.rate, here.rate, at.rate),
+        ):
+            target[...] = values
+            target[self.rows_of] = known
+        self._fill_ring(march)
 
-    Their rows have the indices `rows_of` (R,); elements beside them carried no force.
-    """
-    rows = march.ring.local.force.size
-    to, kept = _channels(march, rows_of), states.filtered.shape[1]
-    filtered = np.zeros((states.q.shape[0], march.sampler.filtered))
-    filtered[:, to[:kept]] = states.filtered
-    least, largest = (np.zeros((states.q.shape[0], rows)) for _ in range(2))
-    least[:, rows_of], largest[:, rows_of] = states.least, states.largest
-    return States(states.q, states.v, states.moved, filtered, least, largest)
+    def _fill_ring(self, march: March) -> None:
+        ring, rows, own = march.ring, march.ring.local.force.size, self.rows_of
+        ring.point[...] = 0.0
+        ring.point[:, self._channels(march)] = self.at.point
+        supports = np.arange(rows, ring.peaks.largest.size)
+        signals = np.concatenate([own, supports])
+        columns = (signals, signals, signals, own, own)
+        for target, known, to in zip(_figures(ring), self.at.figures, columns, strict=True):
+            target[...] = 0.0
+            target[..., to] = known
 
-
-def _channels(march: March, rows_of: IntArray) -> IntArray:
-    """Return the channels of `march` that those of a march with rows `rows_of` (R,) are."""
-    rows, channels = march.ring.local.force.size, march.ring.point.shape[1]
-    return np.concatenate([rows_of, np.arange(rows, channels)])
+    def _channels(self, march: March) -> IntArray:
+        """Return the channels of `march` that those of the other one are."""
+        rows, channels = march.ring.local.force.size, march.ring.point.shape[1]
+        return np.concatenate([self.rows_of, np.arange(rows, channels)])
 
 
 def added_rows(before: System, after: System) -> IntArray | None:
@@ -170,39 +192,3 @@ def _rows(system: System) -> list[tuple[int, bytes]]:
     elements = system.arrays.elements
     law = np.repeat(elements.law, np.diff(elements.first))
     return [(int(kind), row.tobytes()) for kind, row in zip(law, system.arrays.direction, strict=True)]
-
-
-def start_from(march: March, at: _SavedState, rows_of: IntArray) -> None:
-    """Start `march` from the state of another one of the same freedoms: `rows_of` (R,) are its rows.
-
-    Elements that it has beside those of the other one carry no force there.
-    """
-    work, arrays = march.work, march.system.arrays
-    for name, values in at.state.items():
-        getattr(work, name)[...] = values
-    here = local_state(arrays, at.time, work.q, work.v, work.moved)
-    before = work.before
-    for name, values in at.motion.items():
-        getattr(before, name)[...] = values
-    for target, values, known in (
-        (work.force, np.zeros(work.force.size), at.force),
-        (before.coordinate, here.coordinate, at.coordinate),
-        (before.rate, here.rate, at.rate),
-    ):
-        target[...] = values
-        target[rows_of] = known
-    _fill_ring(march, at, rows_of)
-
-
-def _fill_ring(march: March, at: _SavedState, rows_of: IntArray) -> None:
-    """Fill the ring; rows beside those of the other march carry no force."""
-    ring, rows, to = march.ring, march.ring.local.force.size, _channels(march, rows_of)
-    ring.point[...] = 0.0
-    ring.point[:, to] = at.point
-    supports = np.arange(rows, ring.peaks.largest.size)
-    signals = np.concatenate([rows_of, supports])
-    for target, known, columns in zip(
-        _figures(ring), at.figures, (signals, signals, signals, rows_of, rows_of), strict=True
-    ):
-        target[...] = 0.0
-        target[..., columns] = known

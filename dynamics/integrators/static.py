@@ -59,7 +59,10 @@ def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
     is. Loads that change with an angle act by their means over a turn.
     """
     system = replace(system, arrays=at_mean_loads(system.arrays))
-    external = _external(system, time)
+    arrays, moment = system.arrays, np.array([time])
+    torque = np.array([float(load.torque(time)) for load in system.scene.loads])
+    inertial = observe_laws(arrays, moment)[3, :, 0] @ arrays.inertial
+    external = np.asarray(torque @ arrays.load.direction + inertial + arrays.constant)
     guess = _first_guess(system, time, external)
     solution = _newton(system, time, guess, external, parting=False)
     if solution.status.usable:
@@ -88,15 +91,6 @@ def _newton(
     lost = bool(np.any(_per_mesh(arrays, balance.local.force) <= LOST_CONTACT * scale))
     status = StaticStatus.UNBALANCED if lost else StaticStatus.ITERATION_LIMIT
     return StaticSolution(status, q, balance.local.force[system.driving_rows], size, ITERATION_LIMIT)
-
-
-def _external(system: System, time: float) -> FloatArray:
-    """Return loads and inertial forces of the laws, (n,)."""
-    arrays = system.arrays
-    acceleration = observe_laws(arrays, np.array([time]))[3, :, 0]
-    torque = np.array([float(load.torque(time)) for load in system.scene.loads])
-    force = torque @ arrays.load.direction + acceleration @ arrays.inertial + arrays.constant
-    return np.asarray(force)
 
 
 def _accelerating(arrays: SystemArrays, values: FloatArray) -> FloatArray:

@@ -40,7 +40,6 @@ IMPLICIT_STAGES = np.array(
         [82889 / 524892, 0.0, 15625 / 83664, 69875 / 102672, -2260 / 8211, 1 / 4],
     ]
 )
-IMPLICIT_ORDER = 4
 IMPLICIT_EMBEDDED_ORDER = 3
 
 EXPLICIT_NODES = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
@@ -59,5 +58,4 @@ EXPLICIT_STAGES = np.array(
         [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84, 0.0],
     ]
 )
-EXPLICIT_ORDER = 5
 EXPLICIT_EMBEDDED_ORDER = 4

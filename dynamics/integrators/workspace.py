@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -181,6 +181,43 @@ class Workspace(NamedTuple):
     approach: FloatArray
     held: FloatArray
 
+    @classmethod
+    def of(cls, system: SystemArrays, step_sizes: FloatArray, q: FloatArray, first_step: float) -> Workspace:
+        """Allocate for a run that starts at t = 0 at rest in the displacements `q` (n,)."""
+        rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
+        linear, bodies = _linear_rows(system.elements), system.sparse.modal.first
+        return cls(
+            time=np.zeros(1),
+            time_rest=np.zeros(1),
+            error=np.ones(1),
+            q=np.array(q, dtype=float),
+            **{name: np.zeros(q.size) for name in _PER_FREEDOM},
+            **{name: np.zeros((STAGES, q.size)) for name in ("stage_v", "stage_a")},
+            **{name: np.zeros(rows) for name in _PER_ROW},
+            solved=np.full(rows + 1, -1, dtype=np.int64),
+            jacobian=np.zeros((rows, 2 * rows)),
+            local=make_local(system.elements, meshes),
+            before=_step_end(meshes, rows, laws),
+            after=_step_end(meshes, rows, laws),
+            free_position=np.zeros(meshes),
+            linear=linear,
+            resting=np.zeros(2 * len(linear)),
+            response=np.zeros(rows + meshes),
+            motion=np.zeros((laws, MOTION_COLUMNS)),
+            moved=np.zeros(laws, dtype=np.int64),
+            power=np.zeros((STAGES, len(Power))),
+            work=np.zeros(len(Power)),
+            highest=np.zeros(len(LOSSES)),
+            fallen=np.zeros(len(LOSSES)),
+            counts=_counts(step_sizes, first_step),
+            step_sizes=step_sizes,
+            matrix=np.zeros((bodies, bodies)),
+            ready=np.zeros(step_sizes.size, dtype=np.bool_),
+            inverse=np.zeros((step_sizes.size, system.sparse.coupling.column.size)),
+            approach=np.zeros((step_sizes.size, rows, rows + meshes)),
+            held=np.zeros((step_sizes.size, rows + meshes, 2 * len(linear))),
+        )
+
 
 def geometric_steps(largest: float, smallest: float) -> FloatArray:
     """Return step sizes falling from `largest` to at most `smallest` by equal factors, and one more entry.
@@ -191,59 +228,8 @@ def geometric_steps(largest: float, smallest: float) -> FloatArray:
     return np.append(largest * 2.0 ** (-np.arange(levels) / LEVELS_PER_OCTAVE), 0.0)
 
 
-def make_workspace(
-    system: SystemArrays, step_sizes: FloatArray, q: FloatArray, first_step: float
-) -> Workspace:
-    """Allocate for a run that starts at t = 0 at rest in the displacements `q` (n,)."""
-    rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
-    linear, bodies = _linear_rows(system.elements), system.sparse.modal.first
-    return Workspace(
-        time=np.zeros(1),
-        time_rest=np.zeros(1),
-        error=np.ones(1),
-        q=np.array(q, dtype=float),
-        **_per_freedom(q.size),
-        **_per_row(rows),
-        local=make_local(system.elements, meshes),
-        before=_step_end(meshes, rows, laws),
-        after=_step_end(meshes, rows, laws),
-        free_position=np.zeros(meshes),
-        linear=linear,
-        resting=np.zeros(2 * len(linear)),
-        response=np.zeros(rows + meshes),
-        motion=np.zeros((laws, MOTION_COLUMNS)),
-        moved=np.zeros(laws, dtype=np.int64),
-        **_works(),
-        counts=_counts(step_sizes, first_step),
-        step_sizes=step_sizes,
-        matrix=np.zeros((bodies, bodies)),
-        **_per_level(step_sizes.size, rows, meshes, len(linear), system.sparse.coupling.column.size),
-    )
-
-
-def _per_freedom(n: int) -> dict[str, Any]:
-    names = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "unloaded")
-    stages = {name: np.zeros((STAGES, n)) for name in ("stage_v", "stage_a")}
-    return {name: np.zeros(n) for name in names} | stages
-
-
-def _per_row(rows: int) -> dict[str, Any]:
-    """Allocate local forces and coordinates, and the equations of Newton's method for them."""
-    names = ("force", "free", "free_rate", "free_acceleration", "update", "correction")
-    own: dict[str, Any] = {name: np.zeros(rows) for name in names}
-    return own | {
-        "solved": np.full(rows + 1, -1, dtype=np.int64),
-        "jacobian": np.zeros((rows, 2 * rows)),
-    }
-
-
-def _works() -> dict[str, Any]:
-    return {
-        "power": np.zeros((STAGES, len(Power))),
-        "work": np.zeros(len(Power)),
-        "highest": np.zeros(len(LOSSES)),
-        "fallen": np.zeros(len(LOSSES)),
-    }
+_PER_FREEDOM = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "unloaded")
+_PER_ROW = ("force", "free", "free_rate", "free_acceleration", "update", "correction")
 
 
 def _counts(step_sizes: FloatArray, first_step: float) -> IntArray:
@@ -252,15 +238,6 @@ def _counts(step_sizes: FloatArray, first_step: float) -> IntArray:
     counts[Count.LEVEL] = min(int(np.searchsorted(-step_sizes, -first_step)), levels - 2)
     counts[Count.SMALLEST_LEVEL] = levels - 1
     return counts
-
-
-def _per_level(levels: int, rows: int, meshes: int, linear: int, entries: int) -> dict[str, Any]:
-    return {
-        "ready": np.zeros(levels, dtype=np.bool_),
-        "inverse": np.zeros((levels, entries)),
-        "approach": np.zeros((levels, rows, rows + meshes)),
-        "held": np.zeros((levels, rows + meshes, 2 * linear)),
-    }
 
 
 def _linear_rows(elements: Elements) -> IntArray:

@@ -29,7 +29,7 @@ from dynamics.mechanism.connections import frame_couplings
 from dynamics.motion.force_balance import swept_by_frames
 from dynamics.motion.observation import local_state
 from dynamics.results.array_file import ArrayFile, stored
-from dynamics.results.force_check import checked_ledger
+from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, Json
 from host import cpu_seconds
 
@@ -306,7 +306,7 @@ def forced_response(
     InputError
         If a value is out of range, the meshes have no common period, or nothing excites the scene.
     SolveError
-        If there is no static equilibrium, or one beyond the table (`ForceChecks`) that is not accepted.
+        If there is no static equilibrium, or one beyond the table (`STRAIGHT_ON`) that is not accepted.
     """
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
     if not speeds.size:

@@ -24,7 +24,7 @@ from dynamics.linearize.linear_system import (
 )
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law, mesh_frequencies
 from dynamics.results.array_file import ArrayFile, stored
-from dynamics.results.force_check import checked_ledger
+from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
 
@@ -173,7 +173,7 @@ def modal_analysis(
     InputError
         If a value is out of range, nothing can vibrate, or nothing turns where speeds are given.
     SolveError
-        If there is no static equilibrium, or one beyond the table (`ForceChecks`) that is not accepted.
+        If there is no static equilibrium, or one beyond the table (`STRAIGHT_ON`) that is not accepted.
     """
     integer("orders", orders, 1, MOST_ORDERS)
     require_freedoms(system)

@@ -1,10 +1,9 @@
 """Periodic steady states at constant speed: shooting, Floquet stability, branches over speed."""
 
 from dynamics.periodic.continuation import BranchStatus, follow_branch
-from dynamics.periodic.motion import motion, spectrum
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
 from dynamics.periodic.shooting import Instability, Orbit, OrbitStatus, find_orbit
-from dynamics.periodic.steady_states import SteadyStates, settled, steady_states, sweep
+from dynamics.periodic.steady_states import SteadyStates, motion, settled, spectrum, steady_states, sweep
 
 __all__ = [
     "BranchStatus",

@@ -18,7 +18,6 @@ from dynamics.periodic.shooting import (
     Orbit,
     OrbitStatus,
     find_orbit,
-    make_orbit,
 )
 from dynamics.types import FloatArray
 
@@ -218,7 +217,7 @@ def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) ->
             return None
         monodromy = over_period.monodromy(y)
         if np.max(np.abs(left)) <= RESIDUAL_LIMIT * problem.size:
-            orbit = make_orbit(over_period, OrbitStatus.CONVERGED, y, left, monodromy, iteration)
+            orbit = Orbit.of(over_period, OrbitStatus.CONVERGED, y, left, monodromy, iteration)
             return _point_on_branch(problem, scale, orbit, point.tangent)
         jacobian = _jacobian(problem, scale, over_period, y, monodromy)
         matrix = np.concatenate([jacobian, point.tangent[None, :]])

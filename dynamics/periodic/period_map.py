@@ -19,7 +19,7 @@ from dynamics.integrators import static_equilibrium
 from dynamics.integrators.advance import prepare_steps
 from dynamics.integrators.explicit_step import accelerate, explicit_step
 from dynamics.integrators.implicit_step import implicit_step
-from dynamics.integrators.workspace import Workspace, make_workspace
+from dynamics.integrators.workspace import Workspace
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.cubics import Cubics
@@ -118,9 +118,6 @@ def _keep(work: Workspace, step: int, path: FloatArray) -> None:
         path[0, step, i], path[1, step, i], path[2, step, i] = work.q[i], work.v[i], work.a[i]
 
 
-# Steps over one common period, which end wherever a table has a knot.
-
-
 SAME = 1e-11  # of the period: nearer knots count as one, nearer step sizes as equal
 MOST_STEPS = 1_000_000
 
@@ -143,39 +140,39 @@ class PeriodGrid:
     size: FloatArray
     level: IntArray
 
+    @classmethod
+    def of(cls, system: System, period: CommonPeriod, largest: float) -> PeriodGrid:
+        """Return steps of at most `largest` common periods, an equal number of them between any two knots.
 
-def period_grid(system: System, period: CommonPeriod, largest: float) -> PeriodGrid:
-    """Return steps of at most `largest` common periods, an equal number of them between any two knots.
+        Tables have a kink in their second derivative at each knot (a jump of stiffness is a narrow interval
+        between two of them): steps that end there keep the method's order.
 
-    Tables have a kink in their second derivative at each knot (a jump of stiffness is a narrow interval
-    between two of them): steps that end there keep the method's order.
+        Raises
+        ------
+        InputError
+            If that takes more than a million steps.
+        """
+        knots = _knots(system, period)
+        counts = np.maximum(np.ceil(np.diff(knots) / largest * (1.0 - 1e-9)), 1.0)
+        if np.sum(counts) > MOST_STEPS:
+            bound = f"such that a period takes at most {MOST_STEPS} steps"
+            suggestion = "Look at one stage or fewer different teeth, or at higher speeds."
+            raise InputError("period", f"{period.revolutions} revolutions", bound, suggestion)
+        inner = [
+            np.linspace(start, end, int(count), endpoint=False)
+            for start, end, count in zip(knots[:-1], knots[1:], counts, strict=True)
+        ]
+        phase = np.append(np.concatenate(inner), 1.0)
+        key, level = np.unique(np.rint(np.diff(phase) / SAME), return_inverse=True)
+        size = np.array([np.mean(np.diff(phase)[level == k]) for k in range(key.size)])
+        return cls(phase, np.append(size, 0.0), np.asarray(level, dtype=np.int64))
 
-    Raises
-    ------
-    InputError
-        If that takes more than a million steps.
-    """
-    knots = _knots(system, period)
-    counts = np.maximum(np.ceil(np.diff(knots) / largest * (1.0 - 1e-9)), 1.0)
-    if np.sum(counts) > MOST_STEPS:
-        bound = f"such that a period takes at most {MOST_STEPS} steps"
-        suggestion = "Look at one stage or fewer different teeth, or at higher speeds."
-        raise InputError("period", f"{period.revolutions} revolutions", bound, suggestion)
-    inner = [
-        np.linspace(start, end, int(count), endpoint=False)
-        for start, end, count in zip(knots[:-1], knots[1:], counts, strict=True)
-    ]
-    phase = np.append(np.concatenate(inner), 1.0)
-    key, level = np.unique(np.rint(np.diff(phase) / SAME), return_inverse=True)
-    size = np.array([np.mean(np.diff(phase)[level == k]) for k in range(key.size)])
-    return PeriodGrid(phase, np.append(size, 0.0), np.asarray(level, dtype=np.int64))
-
-
-def refined(grid: PeriodGrid) -> PeriodGrid:
-    """Return the grid with every step halved."""
-    middle = 0.5 * (grid.phase[1:] + grid.phase[:-1])
-    phase = np.sort(np.concatenate([grid.phase, middle]))
-    return PeriodGrid(phase, 0.5 * grid.size, np.repeat(grid.level, 2))
+    @property
+    def halved(self) -> PeriodGrid:
+        """The grid with every step halved."""
+        middle = 0.5 * (self.phase[1:] + self.phase[:-1])
+        phase = np.sort(np.concatenate([self.phase, middle]))
+        return PeriodGrid(phase, 0.5 * self.size, np.repeat(self.level, 2))
 
 
 def _knots(system: System, period: CommonPeriod) -> FloatArray:
@@ -200,18 +197,11 @@ def _knots(system: System, period: CommonPeriod) -> FloatArray:
     return phase
 
 
-# A system at one constant speed under constant loads: what has a period.
-
-
 def _at_constant_speed(system: System, period: CommonPeriod, speed: float, time: float) -> SystemArrays:
     """Return the arrays with the drives at `speed` (rad/s, of the leading law) for ever.
 
-    Loads by time keep the values that they have at `time`.
-
-    Raises
-    ------
-    InputError
-        If the speed is 0 or of the other sense, in which other flanks carry.
+    Loads by time keep the values that they have at `time`. A speed of 0 or of the other sense, in which other
+    flanks carry, is refused.
     """
     extreme = system.scene.drives[period.law].speed.extreme
     if not np.isfinite(speed) or speed * extreme <= 0.0:
@@ -236,9 +226,6 @@ def _constant(values: FloatArray) -> Cubics:
     coefficient = np.zeros((values.size, 4))
     coefficient[:, 0] = values
     return Cubics(np.arange(values.size + 1), np.zeros(values.size), coefficient)
-
-
-# The typical sizes of forces and motions, by which a search for periodic motions measures its steps.
 
 
 MOST_GAIN = 100.0
@@ -352,7 +339,7 @@ def periodic_problem(
     return PeriodicProblem(
         system,
         period,
-        period_grid(system, period, 1.0 / max(steps_per_cycle * cycles, STEPS_PER_PITCH * waves)),
+        PeriodGrid.of(system, period, 1.0 / max(steps_per_cycle * cycles, STEPS_PER_PITCH * waves)),
         repeat,
         time,
         np.concatenate([rest, np.zeros(rest.size)]),
@@ -409,7 +396,7 @@ class PeriodMap:
         sizes = self.problem.grid.size[:-1] * self.problem.period.duration(self.speed)
         step_sizes = np.outer(sizes, 0.5 ** np.arange(HALVINGS + 1)).ravel()
         n = self.arrays.mass.shape[0]
-        work = by_address(make_workspace(self.arrays, step_sizes, np.zeros(n), float(step_sizes[0])))
+        work = by_address(Workspace.of(self.arrays, step_sizes, np.zeros(n), float(step_sizes[0])))
         implicit = self.problem.system.scene.integration.method != "explicit"
         prepare_steps(self.arrays, work, implicit, False)
         return work
@@ -443,7 +430,7 @@ class PeriodMap:
 
     def step_error(self, y: FloatArray) -> FloatArray:
         """Return how far half the step size moves the end of the march, (2n,) m."""
-        finer = replace(self.problem, grid=refined(self.problem.grid))
+        finer = replace(self.problem, grid=self.problem.grid.halved)
         return PeriodMap(finer, self.speed)(y) - self(y)
 
     def _one_period(self, y: FloatArray, path: FloatArray) -> FloatArray:

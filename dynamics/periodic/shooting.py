@@ -22,22 +22,6 @@ class Instability(Enum):
     NEIMARK_SACKER = "complex pair"
 
 
-def _floquet_multipliers(monodromy: FloatArray) -> ComplexArray:
-    """Return the eigenvalues of the derivative of the map over one period, by falling size, (2n,)."""
-    values = np.linalg.eigvals(monodromy).astype(complex)
-    return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
-
-
-def instability(multipliers: ComplexArray) -> Instability:
-    """Return what the largest of `multipliers` (2n,) says."""
-    largest = complex(multipliers[0])
-    if abs(largest) <= 1.0 + ON_THE_CIRCLE:
-        return Instability.NONE
-    if abs(largest.imag) > ON_THE_CIRCLE * abs(largest):
-        return Instability.NEIMARK_SACKER
-    return Instability.FOLD if largest.real > 0.0 else Instability.PERIOD_DOUBLING
-
-
 ITERATION_LIMIT = 30
 HALVINGS = 12
 RESIDUAL_LIMIT = 1e-9  # of the size of a state
@@ -92,10 +76,36 @@ class Orbit:
     multipliers: ComplexArray
     step_error: float
 
+    @classmethod
+    def of(
+        cls,
+        over_period: PeriodMap,
+        status: OrbitStatus,
+        y: FloatArray,
+        left: FloatArray,
+        jacobian: FloatArray,
+        iterations: int,
+    ) -> Orbit:
+        """Put an orbit together from where a search ended."""
+        multipliers = np.full(y.size, np.nan + 0j)
+        error = np.inf
+        if np.all(np.isfinite(jacobian)):
+            values = np.linalg.eigvals(jacobian).astype(complex)
+            multipliers = values[np.argsort(-np.abs(values), kind="stable")]
+            error = float(np.max(np.abs(_solve(np.eye(y.size) - jacobian, over_period.step_error(y)))))
+        residual = float(np.max(np.abs(left)))
+        duration, speed = over_period.duration, over_period.speed
+        return cls(status, residual, iterations, speed, duration, y, jacobian, multipliers, error)
+
     @property
     def instability(self) -> Instability:
-        """The kind of instability, if the motion is unstable."""
-        return instability(self.multipliers)
+        """The kind of instability, if the motion is unstable: what its largest multiplier says."""
+        largest = complex(self.multipliers[0])
+        if abs(largest) <= 1.0 + ON_THE_CIRCLE:
+            return Instability.NONE
+        if abs(largest.imag) > ON_THE_CIRCLE * abs(largest):
+            return Instability.NEIMARK_SACKER
+        return Instability.FOLD if largest.real > 0.0 else Instability.PERIOD_DOUBLING
 
     @property
     def stable(self) -> bool:
@@ -144,26 +154,7 @@ def find_orbit(problem: PeriodicProblem, speed: float, guess: FloatArray | None 
             break
         y, left = moved
         taken += 1
-    return make_orbit(over_period, status, y, left, jacobian, taken)
-
-
-def make_orbit(
-    over_period: PeriodMap,
-    status: OrbitStatus,
-    y: FloatArray,
-    left: FloatArray,
-    jacobian: FloatArray,
-    iterations: int,
-) -> Orbit:
-    """Put an orbit together from where a search ended."""
-    multipliers = np.full(y.size, np.nan + 0j)
-    error = np.inf
-    if np.all(np.isfinite(jacobian)):
-        multipliers = _floquet_multipliers(jacobian)
-        error = float(np.max(np.abs(_solve(np.eye(y.size) - jacobian, over_period.step_error(y)))))
-    residual = float(np.max(np.abs(left)))
-    duration, speed = over_period.duration, over_period.speed
-    return Orbit(status, residual, iterations, speed, duration, y, jacobian, multipliers, error)
+    return Orbit.of(over_period, status, y, left, jacobian, taken)
 
 
 def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:

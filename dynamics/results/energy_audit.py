@@ -10,8 +10,6 @@ from bounds import engineering
 from dynamics.results.checks import Check
 from dynamics.types import FloatArray, Json
 
-# The energy audit: what went in, what is stored, what was lost, and what is missing.
-
 
 @dataclass(frozen=True)
 class EnergyAudit:
@@ -84,13 +82,8 @@ class EnergyAudit:
 
     def to_json(self) -> Json:
         """Return all figures, the balance included."""
-        return {
-            **asdict(self),
-            "residual": self.residual,
-            "turnover": self.turnover,
-            "relative": self.relative,
-            "relative_to_throughput": self.relative_to_throughput,
-        }
+        derived = ("residual", "turnover", "relative", "relative_to_throughput")
+        return {**asdict(self), **{name: getattr(self, name) for name in derived}}
 
     @classmethod
     def from_json(cls, data: Json) -> EnergyAudit:
@@ -103,22 +96,21 @@ class EnergyAudit:
         gained, held = stored[1] - stored[0], np.sum(np.abs(stored[0, 1:]))
         return cls(*(float(value) for value in (*work, *gained, held, fallen)))
 
+    def check(self) -> Check:
+        """Return by how much the balance does not close, over the turnover, and how far a loss fell, J."""
+        lost = self.fallen > FALLEN * self.turnover
+        missing = self.relative > UNACCOUNTED
+        reason = f"{engineering(100.0 * self.relative, 2)} % of {self.turnover:.3g} J is not accounted for"
+        if missing:
+            reason = f"{reason}: shorten the fixed step, or lower the tolerance of the step control"
+        if lost:
+            reason = f"{reason}; a loss fell by {self.fallen:.3g} J, so it supplied energy"
+        figures, holds = {"unaccounted": self.relative, "fallen": self.fallen}, not (lost or missing)
+        assumption = "work is balanced and losses only grow"
+        return Check("", assumption, "energy audit", holds, reason, figures, valid=holds)
+
 
 UNACCOUNTED = 0.01
 """Of the turnover: more that is not accounted for means that steps miss the motion."""
 FALLEN = 1e-3
 """Of the turnover: a loss that falls by more has driven; less is the error of a step's weights."""
-
-
-def energy_check(audit: EnergyAudit) -> Check:
-    """Return the check of `audit`: what is unaccounted for over the turnover, how far a loss fell in J."""
-    lost = audit.fallen > FALLEN * audit.turnover
-    missing = audit.relative > UNACCOUNTED
-    reason = f"{engineering(100.0 * audit.relative, 2)} % of {audit.turnover:.3g} J is not accounted for"
-    if missing:
-        reason = f"{reason}: shorten the fixed step, or lower the tolerance of the step control"
-    if lost:
-        reason = f"{reason}; a loss fell by {audit.fallen:.3g} J, so it supplied energy"
-    figures, holds = {"unaccounted": audit.relative, "fallen": audit.fallen}, not (lost or missing)
-    assumption = "work is balanced and losses only grow"
-    return Check("", assumption, "energy audit", holds, reason, figures, valid=holds)

@@ -18,9 +18,6 @@ from dynamics.motion.observation import Observed, observe_laws, static_deflectio
 from dynamics.motion.sampled_states import States
 from dynamics.types import FloatArray, IntArray
 
-# Misalignment, center distance and point of application of the load of the driving flanks over time.
-
-
 FIELDS = (MISALIGNMENT, CENTER_DISTANCE_CHANGE)
 """Axes of tables, as meshes and effects name them."""
 
@@ -84,7 +81,10 @@ class _Signals(NamedTuple):
 def unfiltered(system: System, seen: Observed, states: States) -> _Signals:
     """Return the signals of points of the motion."""
     position = seen.position[: len(system.scene.meshes)]
-    return _Signals(states.q, states.v, seen.coordinate, seen.force, _static(system, position))
+    static = np.empty_like(position)
+    for f, force in enumerate(system.flanks.nominal_force):
+        static_deflections(system.flanks.static, f, position[f], float(force), static[f])
+    return _Signals(states.q, states.v, seen.coordinate, seen.force, static)
 
 
 def filtered(system: System, states: States, seen: Observed) -> _Signals:
@@ -272,14 +272,6 @@ def _coast_force(system: System, force: FloatArray) -> FloatArray:
     for element, mesh in enumerate(coast, start=meshes):
         coasting[mesh] = force[system.arrays.elements.first[element]]
     return coasting
-
-
-def _static(system: System, position: FloatArray) -> FloatArray:
-    """Transmission error at the nominal force, (m, T)."""
-    static = np.empty_like(position)
-    for f, force in enumerate(system.flanks.nominal_force):
-        static_deflections(system.flanks.static, f, position[f], float(force), static[f])
-    return static
 
 
 def _speed(system: System, laws: FloatArray, v: FloatArray) -> FloatArray:

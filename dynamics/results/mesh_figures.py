@@ -14,8 +14,6 @@ from dynamics.errors import InputError
 from dynamics.results.run_result import RunResult
 from dynamics.types import FloatArray
 
-# Contact state of a mesh: which flanks touch.
-
 
 class ContactState(IntEnum):
     """The flanks of a mesh that carry."""
@@ -31,9 +29,6 @@ def contact_shares(result: RunResult) -> list[dict[str, float]]:
     return [
         {state.name.lower(): float(np.mean(row == state)) for state in ContactState} for row in result.contact
     ]
-
-
-# Dynamic factor: what vibration makes of the static mesh force.
 
 
 @dataclass(frozen=True)
@@ -146,9 +141,9 @@ def _sharing(result: RunResult, central: str, rows: list[int]) -> PlanetLoadShar
 def _planet_shafts(result: RunResult) -> set[str]:
     """Names of the shafts that lie off the axis of the carrier they turn with."""
     shafts = {shaft["name"]: shaft for shaft in result.case["shafts"]}
-    names = set()
-    for name, shaft in shafts.items():
-        frame = shaft.get("frame")
-        if frame is not None and math.dist(shaft["origin"][:2], shafts[frame]["origin"][:2]) > AXIS_AGREEMENT:
-            names.add(name)
-    return names
+    return {
+        name
+        for name, shaft in shafts.items()
+        if (frame := shaft.get("frame")) is not None
+        and math.dist(shaft["origin"][:2], shafts[frame]["origin"][:2]) > AXIS_AGREEMENT
+    }

@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
 
 from bounds import engineering
 from dynamics.assembly.assemble import System
+from dynamics.errors import SolveError
 from dynamics.mechanism.additions import BEARING_LAWS, COAST_FLANKS, MISALIGNMENT
 from dynamics.mechanism.line_of_action import distance_gradient, misalignment_gradient
 from dynamics.meshes import GearMesh
 from dynamics.meshes.technique import table_at_operating_point
 from dynamics.motion.observation import static_deflections
 from dynamics.motion.sampled_states import States
-from dynamics.results.checks import Check, SeriesBlock
-from dynamics.results.force_check import ForceChecks
+from dynamics.results.checks import Check, SeriesBlock, ending
 from dynamics.results.histories import FIELDS, axis_rows
-from dynamics.types import FloatArray
-
-# Whether a run stayed on the axes of its mesh-force tables.
-
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray, Json
 
 WHAT = ("tilt", "center distance")
 
@@ -84,22 +81,13 @@ USUAL_TOLERANCE = 0.01
 """Relative change of the mean transmission error that may pass where no tolerance was requested."""
 
 
-@dataclass(frozen=True)
-class _Watched:
-    """A mesh whose table has an axis that is not followed: its derivative in the freedoms (n,)."""
-
-    axis: int
-    mesh: int
-    gradient: FloatArray
-
-
 class _HeldOperatingPointChecks:
     """Gathers, block by block, how far bodies moved along axes of tables that did not follow them."""
 
     def __init__(self, system: System) -> None:
         self._system = system
-        self._watched = [
-            _Watched(axis, index, _gradient(system, axis, index))
+        self._watched = [  # axes that are not followed, and the derivative of each in the freedoms (n,)
+            (axis, index, _gradient(system, axis, index))
             for axis, field in enumerate(FIELDS)
             for index, mesh in enumerate(system.scene.meshes)
             if any(
@@ -109,8 +97,8 @@ class _HeldOperatingPointChecks:
         self._range = [(0.0, 0.0)] * len(self._watched)
 
     def see(self, _series: SeriesBlock, states: States) -> None:
-        for k, watched in enumerate(self._watched):
-            moved = states.q @ watched.gradient
+        for k, (_, _, gradient) in enumerate(self._watched):
+            moved = states.q @ gradient
             low, high = self._range[k]
             self._range[k] = (float(np.min(moved, initial=low)), float(np.max(moved, initial=high)))
 
@@ -121,18 +109,18 @@ class _HeldOperatingPointChecks:
         error of the nominal force, of its value.
         """
         pairs = zip(self._watched, self._range, strict=True)
-        return [self._check(watched, max(span, key=abs)) for watched, span in pairs]
+        return [self._check(axis, mesh, max(span, key=abs)) for (axis, mesh, _), span in pairs]
 
-    def _check(self, watched: _Watched, farthest: float) -> Check:
-        system, quantity = self._system, WHAT[watched.axis]
-        mesh, force = system.scene.meshes[watched.mesh], float(system.flanks.nominal_force[watched.mesh])
-        change = _change(mesh, force, watched.axis, farthest)
+    def _check(self, axis: int, index: int, farthest: float) -> Check:
+        system, quantity = self._system, WHAT[axis]
+        mesh, force = system.scene.meshes[index], float(system.flanks.nominal_force[index])
+        change = _change(mesh, force, axis, farthest)
         reported = (
             f"bodies moved by up to {farthest:.3g} m, which "
             f"changes the mean by {engineering(100.0 * change, 2)} %"
         )
         return Check(
-            system.ledger.effect_adding(FIELDS[watched.axis]),
+            system.ledger.effect_adding(FIELDS[axis]),
             f"{quantity} stays at the operating point",
             mesh.name,
             abs(change) <= (system.scene.tolerance or USUAL_TOLERANCE),
@@ -258,8 +246,11 @@ class _BearingLoadChecks:
         if force.shape[0] != len(self._name) or force.shape[2] == 0:
             return
         radial = force[self._watched, :2]
-        if self._direction is None:
-            self._direction = _directions(radial[:, :, 0])
+        if self._direction is None:  # unit vectors of the forces at the start, zero where a bearing is light
+            size = np.linalg.norm(radial[:, :, 0], axis=1)
+            carries = size > LIGHT * np.max(size, initial=0.0)
+            unit = radial[:, :, 0] / np.where(carries, size, 1.0)[:, None]
+            self._direction = np.where(carries[:, None], unit, 0.0)
         along = np.einsum("bct,bc->bt", radial, self._direction)
         loaded = np.any(self._direction != 0.0, axis=1)
         self._unloaded += np.where(loaded, np.count_nonzero(along <= 0.0, axis=1), 0)
@@ -285,11 +276,93 @@ class _BearingLoadChecks:
         return Check(self._effect, assumption, name, share == 0.0, reason, {"unloaded": share})
 
 
-def _directions(force: FloatArray) -> FloatArray:
-    """Return unit vectors (b, 2) of the forces at the start, zero where a bearing hardly carries."""
-    size = np.linalg.norm(force, axis=1)
-    carries = size > LIGHT * np.max(size, initial=0.0)
-    return np.asarray(np.where(carries[:, None], force / np.where(carries, size, 1.0)[:, None], 0.0))
+STRAIGHT_ON = 1.2
+"""Times the highest load of a table: up to here it may go on straight, with its last stiffness.
+
+The result is then reported as extrapolated. Beyond it is wrong: tooth pairs that would share the load, and
+corner contact that would set in, are not in the table. A table of two levels is a closed form and holds
+everywhere."""
+
+
+class _ForceChecks:
+    """Gathers, block by block, how far flanks were pressed beyond the loads of their tables."""
+
+    def __init__(self, system: System) -> None:
+        self._scene = system.scene
+        self._samples = 0
+        self._highest = np.array([_highest(system.scene, i) for i in range(len(system.scene.meshes))])
+        self._beyond = np.zeros(self._highest.size, dtype=np.int64)
+        self._largest = np.zeros(self._highest.size)
+
+    def see(self, series: SeriesBlock, _states: States) -> None:
+        """Take a block of series of a run."""
+        driving, coast = series["largest_mesh_force"], series["coast_force"]
+        force = np.maximum(driving, coast) if coast.shape == driving.shape else driving
+        self._samples += force.shape[1]
+        self._beyond += np.count_nonzero(force > self._highest[:, None], axis=1)
+        self._largest = np.maximum(self._largest, np.max(force, axis=1, initial=0.0))
+
+    def checks(self) -> list[Check]:
+        """Return those of all meshes; ``beyond`` is the share of samples above the highest load."""
+        shares = self._beyond / max(self._samples, 1)
+        return _force_checks(self._scene, self._largest, shares)
+
+
+def _force_checks(scene: Scene, largest: FloatArray, beyond: FloatArray | None = None) -> list[Check]:
+    """Return one check per mesh whose table is read between its loads.
+
+    `largest` (m,) are the largest transverse mesh forces, N, also among the figures.
+    """
+    return [
+        _force_check(
+            scene, index, float(largest[index]), {} if beyond is None else {"beyond": float(beyond[index])}
+        )
+        for index, mesh in enumerate(scene.meshes)
+        if mesh.table.level.size > 2
+    ]
+
+
+def checked_ledger(system: System, largest: FloatArray) -> Json:
+    """Return the effect ledger of a study whose largest mesh forces are `largest` (m,), N, with its checks.
+
+    Raises
+    ------
+    SolveError
+        If a force is beyond its table and the scene's ``on_violation`` does not let that pass.
+    """
+    checks = _force_checks(system.scene, largest)
+    entries = [check.to_json() for check in checks]
+    if wrong := ending(entries, system.scene.on_violation):
+        raise SolveError(f"violated assumptions of the study: {wrong}")
+    return {**system.ledger.to_json(), "checks": entries}
+
+
+def _force_check(scene: Scene, index: int, largest: float, share: Mapping[str, float]) -> Check:
+    highest = _highest(scene, index)
+    times = largest / highest
+    reason = f"forces up to {largest:.4g} N of {highest:.4g} N in the table"
+    if times > 1.0:
+        mesh = scene.meshes[index]
+        driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
+        radius = driven.base_radius if driver.internal else driver.base_radius  # whose torques it counts
+        most = largest * radius
+        digit = 10.0 ** (np.floor(np.log10(most)) - 1.0)
+        rounded = float(np.ceil(most / digit) * digit)
+        reason = (
+            f"forces up to {largest:.4g} N, {times:.3g} times the table's highest load of {highest:.4g} N; "
+            f"above it the table is extrapolated linearly, up to {STRAIGHT_ON:g} times. Compute it with "
+            f"torques up to {rounded:g} N m, it ends at {highest * radius:.4g} N m"
+        )
+    figures = {**share, "largest": largest}
+    name, valid = scene.meshes[index].name, times <= STRAIGHT_ON
+    return Check("", "force inside the table", name, times <= 1.0, reason, figures, valid)
+
+
+def _highest(scene: Scene, index: int) -> float:
+    """Highest load of a mesh's table, N; of the lower one where the coast flank has its own."""
+    coast = scene.meshes[index].coast
+    tables = [scene.meshes[index].table, *([coast.table] if coast is not None and coast.table else [])]
+    return min(float(table.level[-1]) for table in tables)
 
 
 class _RunCheck(Protocol):
@@ -302,7 +375,7 @@ class RunChecks:
     """All checks of a run on its own model; `further` ones look at it too."""
 
     def __init__(self, system: System, further: Sequence[_RunCheck] = ()) -> None:
-        own = (_ContactChecks, _AxisChecks, ForceChecks, _BearingLoadChecks, _HeldOperatingPointChecks)
+        own = (_ContactChecks, _AxisChecks, _ForceChecks, _BearingLoadChecks, _HeldOperatingPointChecks)
         self._all: tuple[_RunCheck, ...] = (*(kind(system) for kind in own), *further)
 
     def see(self, series: SeriesBlock, states: States) -> None:

@@ -1,24 +1,28 @@
-"""The result of a run: time series and everything needed to trust them."""
+"""The result of a run: time series, everything needed to trust them, and its files."""
 
 from __future__ import annotations
 
+import json
+import os
+import tempfile
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bounds import Quantity, Text
-from dynamics.errors import InputError
+from dynamics.errors import InputError, ResultError
 from dynamics.results.array_file import stored
 from dynamics.results.energy_audit import EnergyAudit
 from dynamics.types import FloatArray, Json, RunStatus
 from model_studies.array_file import Stored
+from model_studies.netcdf import DAMAGE, UnreadableFile, read_dataset
 
 if TYPE_CHECKING:
     import xarray
-
-# The work of the integrator.
 
 
 @dataclass(frozen=True)
@@ -46,10 +50,6 @@ class StepStatistics:
     newton_most: int
     smallest_step: float
     largest_step: float
-
-    def to_json(self) -> Json:
-        """Return plain numbers."""
-        return asdict(self)
 
 
 MESH, FREEDOM = ("mesh", "time"), ("freedom", "time")
@@ -208,15 +208,28 @@ class RunResult:
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the series as a dataset with units, the rest as JSON attributes."""
-        from dynamics.results.run_files import to_dataset  # noqa: PLC0415 - xarray takes a second to import
+        import xarray  # noqa: PLC0415 - a second, and not needed to run a scene
 
-        return to_dataset(self)
+        coordinates: dict[str, Any] = {
+            name: (name, np.array(getattr(self, name), dtype=object)) for name in NAMED if getattr(self, name)
+        }
+        coordinates["time"] = ("time", self.time, {"units": "s", "long_name": "time"})
+        coordinates["direction"] = ("direction", np.array(DIRECTIONS, dtype=object))
+        data = {
+            name: (series.dimensions, values, {"units": series.units, "long_name": series.long_name})
+            for name, series in SERIES.items()
+            if (values := getattr(self, name)).size
+        }
+        return xarray.Dataset(data, coordinates, attributes(vars(self)))
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write a netCDF-4 file atomically, with lossless compression."""
-        from dynamics.results.run_files import write_netcdf  # noqa: PLC0415
-
-        write_netcdf(self, Path(path))
+        fields = dict(vars(self))
+        with RunFile(Path(path)) as file:
+            for first in range(0, self.time.size, CHUNK):
+                part = {name: fields[name][..., first : first + CHUNK] for name in SAMPLED}
+                file.append(fields | part)
+            file.publish(attributes(fields))
 
     @classmethod
     def from_netcdf(cls, path: str | Path) -> RunResult:
@@ -227,15 +240,31 @@ class RunResult:
         ResultError
             If the file is no run result of this schema.
         """
-        from dynamics.results.run_files import read_netcdf  # noqa: PLC0415
-
-        return read_netcdf(Path(path))
+        path = Path(path)
+        try:
+            dataset = read_dataset(path, decode_times=False)
+        except UnreadableFile as error:
+            raise ResultError(str(error)) from error
+        if dataset.attrs.get("schema") != SCHEMA or dataset.attrs.get("schema_version") != SCHEMA_VERSION:
+            stated = f"{dataset.attrs.get('schema')} {dataset.attrs.get('schema_version')}"
+            raise ResultError(f"{path.name}: schema is {stated}, expected {SCHEMA} {SCHEMA_VERSION}")
+        try:
+            return _from_dataset(dataset)
+        except DAMAGE as error:
+            raise ResultError(f"{path.name}: damaged, its fields are not those of a run") from error
 
     def to_csv(self, path: str | Path) -> None:
-        """Write one row per sample, one column per series, units in the header."""
-        from dynamics.results.run_files import write_csv  # noqa: PLC0415
-
-        write_csv(self, Path(path))
+        """Write one row per sample, one column per series, units in the header, 9 significant digits."""
+        names, columns = ["time (s)"], [self.time]
+        for name, series in OVER_TIME.items():
+            values = getattr(self, name)
+            if values.size:
+                rows = values.reshape(-1, self.time.size)
+                labels = _labels(self, series.dimensions[:-1])
+                names += [f"{name}{label} ({series.units})" for label, _ in zip(labels, rows, strict=True)]
+                columns += list(rows)
+        table: FloatArray = np.stack(columns, axis=1)
+        np.savetxt(path, table, fmt="%.9g", delimiter=",", header=",".join(names), comments="")
 
 
 NAMED = ("mesh", "shaft", "bearing", "freedom", "drive", "coupling")
@@ -249,3 +278,130 @@ SAMPLED = ("time", *OVER_TIME)
 """All that has one value per sample."""
 SERIES = OVER_TIME | _STORED
 """All series of a result, in the order of its files."""
+
+
+# The netCDF-4 file of a run, written block by block: memory does not grow with the run.
+
+
+CHUNK = 8192  # samples that are packed together
+PACKING: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+DIRECTIONS = ("x", "y", "z")
+TIME = Stored(("time",), "s", "time")
+
+
+class RunFile:
+    """Writes beside the final name; `publish` moves the file there whole, leaving without it removes it."""
+
+    def __init__(self, path: Path) -> None:
+        import h5netcdf  # noqa: PLC0415 - needed for files only
+
+        self._path = path
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+        os.close(handle)
+        self._part = Path(name)
+
+        self._file: Any = h5netcdf.File(self._part, "w")
+        self._samples = 0
+
+    def __enter__(self) -> RunFile:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._file.close()
+        self._part.unlink(missing_ok=True)
+
+    def append(self, fields: Mapping[str, Any]) -> None:
+        """Write the next samples of all series; `fields` are those of `RunResult`."""
+        if not self._samples:
+            self._lay_out(fields)
+        first, self._samples = self._samples, self._samples + fields["time"].size
+        self._file.resize_dimension("time", self._samples)
+        self._file["time"][first : self._samples] = fields["time"]
+        for name in OVER_TIME:
+            if fields[name].size:
+                self._file[name][..., first : self._samples] = fields[name]
+
+    def publish(self, attributes: Mapping[str, Any]) -> None:
+        """Add the attributes, flush to disk and rename."""
+        for name, value in attributes.items():
+            self._file.attrs[name] = value
+        self._file.close()
+        mask = os.umask(0)
+        os.umask(mask)
+        self._part.chmod(0o666 & ~mask)
+        with self._part.open("rb") as written:
+            os.fsync(written.fileno())
+        self._part.replace(self._path)
+
+    def _lay_out(self, fields: Mapping[str, Any]) -> None:
+        import h5py  # noqa: PLC0415
+
+        labels = {name: fields[name] for name in NAMED if fields[name]}
+        labels["direction"] = DIRECTIONS
+        self._file.dimensions = {name: len(names) for name, names in labels.items()} | {"time": None}
+        for name, names in labels.items():
+            variable = self._file.create_variable(name, (name,), h5py.string_dtype())
+            variable[...] = np.array(names, dtype=object)
+        for name, series in ({"time": TIME} | SERIES).items():
+            if fields[name].size:
+                self._variable(name, series, fields[name])
+
+    def _variable(self, name: str, series: Stored, values: FloatArray) -> None:
+        """Make one variable; what has no time is written at once."""
+        growing = series.dimensions[-1] == "time"
+        packing = PACKING | {"chunks": (*values.shape[:-1], CHUNK)} if growing else PACKING
+        variable = self._file.create_variable(name, series.dimensions, float, **packing)
+        variable.attrs.update({"units": series.units, "long_name": series.long_name})
+        if not growing:
+            variable[...] = values
+
+
+SCHEMA = "lineofaction dynamics run"
+SCHEMA_VERSION = 3
+DOCUMENTS = {"effect_ledger": "{}", "receipt": "{}", "case": "{}", "modes": "{}", "warnings": "[]"}
+"""JSON attributes, and the default of those that older files lack."""
+
+
+def attributes(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Return all that is not a series, of the fields of a `RunResult`."""
+    status, energy = fields["status"], fields["energy"]
+    return {
+        "schema": SCHEMA,
+        "schema_version": SCHEMA_VERSION,
+        "status": status.name,
+        "statistics": json.dumps(asdict(fields["statistics"])),
+        "energy": json.dumps(energy.to_json() if energy else None),
+        **{name: json.dumps(fields[name]) for name in DOCUMENTS},
+    }
+
+
+def _from_dataset(dataset: xarray.Dataset) -> RunResult:
+    fields: dict[str, Any] = {
+        name: tuple(str(each) for each in dataset[name].values) if name in dataset.coords else ()
+        for name in NAMED
+    }
+    sizes = {"direction": len(DIRECTIONS), **{str(key): size for key, size in dataset.sizes.items()}}
+    fields |= {
+        name: np.asarray(dataset[name].values, dtype=float)
+        if name in dataset
+        else np.empty([0, *(sizes.get(dimension, 0) for dimension in series.dimensions[1:])])
+        for name, series in SERIES.items()
+    }
+    energy = json.loads(dataset.attrs["energy"])
+    return RunResult(
+        time=np.asarray(dataset["time"].values, dtype=float),
+        **fields,
+        status=RunStatus[dataset.attrs["status"]],
+        statistics=StepStatistics(**json.loads(dataset.attrs["statistics"])),
+        energy=EnergyAudit.from_json(energy) if energy else None,
+        **{name: json.loads(dataset.attrs.get(name, absent)) for name, absent in DOCUMENTS.items()},
+    )
+
+
+def _labels(result: RunResult, dimensions: tuple[str, ...]) -> list[str]:
+    names = getattr(result, dimensions[0])
+    if len(dimensions) == 1:
+        return [f"[{name}]" for name in names]
+    return [f"[{name} {direction}]" for name in names for direction in "xyz"]

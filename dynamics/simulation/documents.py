@@ -28,13 +28,11 @@ from dynamics.linearize.linear_system import LinearSystem, freedom_parts, linear
 from dynamics.linearize.operating_speeds import leading_law, mesh_frequencies
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.bearing_elements import BearingElement
-from dynamics.meshes import GearMesh
 from dynamics.motion.observation import local_state, observe, static_deflections
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
 from dynamics.results import EnergyAudit, StepStatistics
 from dynamics.results.checks import Check
-from dynamics.results.energy_audit import energy_check
 from dynamics.results.histories import checked_series, filtered, histories, unfiltered
 from dynamics.results.run_checks import RunChecks
 from dynamics.scene import Integration
@@ -42,9 +40,6 @@ from dynamics.shafts import ElasticShaft
 from dynamics.simulation.violations import FIRST, EarlierRun
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds
-
-# The effect ledger of a run in plain JSON: decisions, influence, price, and the checks of the run.
-
 
 NOT_CHECKED = "no; toggling it measures it (ablation)"
 POSITIONS = 32
@@ -56,18 +51,11 @@ def _effect_ledger(
     automatic: Mapping[str, str],
     influences: Mapping[str, Influence],
 ) -> Json:
-    """Return entries, estimates, what the model leaves out, and the checks.
+    """Return entries, estimates, what the model leaves out, and the `checks` of the run.
 
-    Parameters
-    ----------
-    system : System
-    checks : sequence of Check
-        Those of the run.
-    automatic : mapping of str to str
-        Effects that were left to "auto" and are not as the scene calls for them, and why: for the tolerance,
-        or because a run without them showed that they are needed.
-    influences : mapping of str to Influence
-        What leaving effects out in all their parts is estimated to change.
+    `automatic` are effects that were left to "auto" and are not as the scene calls for them, and why: for the
+    tolerance, or because a run without them showed that they are needed. `influences` are what leaving
+    effects out in all their parts is estimated to change.
     """
     deflection = _mean_deflection(system)
     whole = system.ledger.to_json()
@@ -112,9 +100,6 @@ def _ledger_entry(
     return {**entry, **assessed}
 
 
-# The model of flexible shafts: elements, modes, errors, in plain JSON.
-
-
 def _flexible_shaft(name: str, elastic: ElasticShaft) -> Json:
     """One shaft: how its beam was divided, what was kept of it, and the errors of either."""
     families = {"bending": elastic.bending, "extension": elastic.extension, "torsion": elastic.torsion}
@@ -135,28 +120,23 @@ def _flexible_shaft(name: str, elastic: ElasticShaft) -> Json:
 def _resolved_case(system: System) -> Json:
     """Return what was computed: parts, dampings in use, lines of action, freedoms; of tables the size."""
     scene, flanks = system.scene, system.flanks
+
+    def parts(*names: str) -> dict[str, Any]:
+        return {name: [asdict(part) for part in getattr(scene, name)] for name in names}
+
     case = {
-        "shafts": [asdict(shaft) for shaft in scene.shafts],
-        "gears": [asdict(gear) for gear in scene.gears],
-        "discs": [asdict(disc) for disc in scene.discs],
+        **parts("shafts", "gears", "discs"),
         "bushings": [asdict(part) for rotor in system.rotors for part in rotor.bushings],
         "planet_bearings": [asdict(part) for rotor in system.rotors for part in rotor.planet_bearings],
         "meshes": [_mesh(system, index) for index in range(len(scene.meshes))],
-        "drives": [asdict(drive) for drive in scene.drives],
-        "speed_torques": [asdict(torque) for torque in scene.speed_torques],
-        "forces": [asdict(force) for force in scene.forces],
-        "unbalances": [asdict(part) for part in scene.unbalances],
+        **parts("drives", "speed_torques", "forces", "unbalances"),
         "housings": [vars(housing) for housing in scene.housings],  # as it is: matrices of 10^4 numbers
-        "rolling_contacts": [asdict(part) for part in scene.rolling_contacts],
-        "spring_curves": [asdict(part) for part in scene.spring_curves],
-        "rolling_bearings": [asdict(part) for part in scene.rolling_bearings],
-        "couplings": [asdict(coupling) for coupling in scene.couplings],
-        "free_rotations": [asdict(rotation) for rotation in scene.free_rotations],
+        **parts("rolling_contacts", "spring_curves", "rolling_bearings", "couplings", "free_rotations"),
         "speed_ratios": {
             shaft.name: [str(value) for value in row]
             for shaft, row in zip(scene.shafts, system.kinematics.ratio, strict=True)
         },
-        "loads": [asdict(load) for load in scene.loads],
+        **parts("loads"),
         "flexible_shafts": [
             _flexible_shaft(rotor.shaft.name, rotor.elastic)
             for rotor in system.rotors
@@ -177,6 +157,7 @@ def _resolved_case(system: System) -> Json:
 
 def _mesh(system: System, index: int) -> Json:
     mesh, line, flanks = system.scene.meshes[index], system.lines[index], system.flanks
+    coast = mesh.coast
     return {
         "name": mesh.name,
         "driver": mesh.driver,
@@ -193,26 +174,18 @@ def _mesh(system: System, index: int) -> Json:
         "working_pressure_angle": line.working_pressure_angle,
         "line_of_action": [float(value) for value in line.force],
         "point_of_action": [float(value) for value in line.point],
-        "coast": _coast(mesh),
+        "coast": coast
+        and {
+            "backlash": coast.backlash,
+            "thickness": coast.thickness,
+            "own_table": coast.table is not None,
+        },
         "table": {
             "positions": np.size(mesh.table.position),
             "levels": np.size(mesh.table.level),
             "period": int(mesh.table.period),
         },
     }
-
-
-def _coast(mesh: GearMesh) -> Json | None:
-    if mesh.coast is None:
-        return None
-    return {
-        "backlash": mesh.coast.backlash,
-        "thickness": mesh.coast.thickness,
-        "own_table": mesh.coast.table is not None,
-    }
-
-
-# The modes that a run keeps: natural modes at rest, and whirl modes over its speeds.
 
 
 WHIRL_SPEEDS = 33
@@ -266,9 +239,6 @@ def _moves(freedom: Sequence[str], shares: FloatArray) -> Json:
         summed[name] = summed.get(name, 0.0) + float(share)
     most = sorted(summed.items(), key=lambda part: -part[1])
     return {name: share for name, share in most if share >= LEAST_SHARE}
-
-
-# What rolling bearings carry where a run starts: force, and the heaviest of their elements.
 
 
 ROWS = (Law.BALLS, Law.ROLLERS)
@@ -342,7 +312,9 @@ def documents(
     audit = None
     if system.scene.outputs.energy_audit:
         audit = EnergyAudit.from_arrays(end.work, end.stored, end.fallen)
-    held = [*checks.checks(), *([] if audit is None else [energy_check(audit)])]
+    held = [*checks.checks(), *([] if audit is None else [audit.check()])]
+    steps = int(end.count[Count.ACCEPTED] + end.count[Count.REJECTED])
+    method = {"method": choice.to_json(end.end / steps, end.seconds)} if choice and steps else {}
     return {
         "status": end.status,
         "statistics": _statistics(system, end),
@@ -354,7 +326,7 @@ def documents(
             "sampling": system.sampling.to_json(),
             "peaks": end.figures.to_json(system),
         }
-        | _method(choice, end)
+        | method
         | before.to_json()
         | _bearings_at_rest(system)
         | system.corrections,
@@ -381,13 +353,6 @@ def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[st
         return points, points
     series = histories(system, time, states, seen, filtered(system, states, seen))
     return series, checked_series(system, time, states, seen)
-
-
-def _method(choice: MethodChoice | None, end: Ending) -> Json:
-    steps = int(end.count[Count.ACCEPTED] + end.count[Count.REJECTED])
-    if choice is None or steps == 0:
-        return {}
-    return {"method": choice.to_json(end.end / steps, end.seconds)}
 
 
 def finer(integration: Integration) -> Integration:

@@ -19,9 +19,6 @@ from dynamics.simulation.documents import ERROR_CHECK_FACTOR, finer, requested_e
 from dynamics.types import FloatArray, Json, StaticStatus
 from host import cpu_seconds
 
-# Stretches of a run that are integrated again: with finer steps, and on decimated tables.
-
-
 WINDOWS = 3
 SHARE = 0.045
 """Of the samples of a run, in all windows: integrating them three times takes some 15 % of the run."""
@@ -61,6 +58,26 @@ class Window:
     position: FloatArray
     error: FloatArray
     force: FloatArray
+
+    def repeated(self, system: System, integration: Integration) -> _Difference | None:
+        """Integrate it as `system`, from the run's state at its start; None if that ends early."""
+        first = self.states.rows(0, 1)
+        start = StaticSolution(StaticStatus.CONVERGED, first.q[0], np.empty(0), 0.0, 0)
+        run = integrate(system, start, integration, velocity=first.v[0])
+        if not run.status.usable or run.samples != self.time.size:
+            return None
+        _, error, force = _seen(self.system, self.time, run.states)
+        apart, pushed = error - self.error, force - self.force
+        orders = min((orders_seen(position, ORDERS) for position in self.position), default=0)
+        if np.ptp(self.position[0]) < 1.0:
+            orders = 0
+        by_error = [
+            order_amplitudes(position, series, orders)
+            for position, series in zip(self.position, apart, strict=True)
+        ]
+        by_force = np.linalg.norm(order_amplitudes(self.position[0], pushed, orders), axis=1)
+        rms = float(np.sqrt(np.mean(apart**2)))
+        return _Difference(rms, np.max(by_error, axis=0), np.max(by_force, axis=0, initial=0.0))
 
     def on_laws_of(self, other: System) -> System:
         """Return its system with the force laws of `other`, the run's system but for these."""
@@ -116,30 +133,6 @@ def _seen(system: System, time: FloatArray, states: States) -> tuple[FloatArray,
     return unwrapped(seen.position[:meshes]), seen.coordinate[system.driving_rows], force[:, :3]
 
 
-def run_again(window: Window, system: System, integration: Integration) -> _Difference | None:
-    """Integrate `window` again as `system`, from the run's state at its start; None if it ends early."""
-    first = window.states.rows(0, 1)
-    start = StaticSolution(StaticStatus.CONVERGED, first.q[0], np.empty(0), 0.0, 0)
-    repeated = integrate(system, start, integration, velocity=first.v[0])
-    if not repeated.status.usable or repeated.samples != window.time.size:
-        return None
-    _, error, force = _seen(window.system, window.time, repeated.states)
-    apart, pushed = error - window.error, force - window.force
-    orders = min((orders_seen(position, ORDERS) for position in window.position), default=0)
-    if np.ptp(window.position[0]) < 1.0:
-        orders = 0
-    by_error = [
-        order_amplitudes(position, series, orders)
-        for position, series in zip(window.position, apart, strict=True)
-    ]
-    by_force = np.linalg.norm(order_amplitudes(window.position[0], pushed, orders), axis=1)
-    return _Difference(
-        float(np.sqrt(np.mean(apart**2))),
-        np.max(by_error, axis=0),
-        np.max(by_force, axis=0, initial=0.0),
-    )
-
-
 TIME_STEP_REST = 1.0 / (1.0 - ERROR_CHECK_FACTOR**0.75)
 """Error over the difference to a run at a tenth of the tolerance: it falls as the tolerance^(3/4)."""
 TABLE_REST = 1.0 / 3.0
@@ -158,9 +151,9 @@ def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
     looked = windows(system, states_of, samples) if full else []
     if not looked:
         return {**requested, "left_out_effects": left_out}
-    steps = [run_again(window, window.system, finer(integration)) for window in looked]
+    steps = [window.repeated(window.system, finer(integration)) for window in looked]
     coarse = with_decimated_tables(system)
-    tables = [run_again(window, window.on_laws_of(coarse), integration) for window in looked]
+    tables = [window.repeated(window.on_laws_of(coarse), integration) for window in looked]
     seconds = cpu_seconds() - began
     return {
         "time_step": _estimate(steps, TIME_STEP_REST, "runs of windows at a tenth of the tolerance")

@@ -22,16 +22,15 @@ from dynamics.integrators import Cancel, Progress, StaticSolution, Trajectory, i
 from dynamics.integrators import march as marching
 from dynamics.integrators.march import Ending, March, march_on, start_march
 from dynamics.integrators.method_choice import MethodChoice, choose_method
-from dynamics.integrators.start_value import StartValue, Trail, start_from, widened
+from dynamics.integrators.start_value import StartValue, Trail
 from dynamics.integrators.state_sink import MemorySink, StateSpool, blocks, fingerprint, restore
 from dynamics.integrators.workspace import Count
-from dynamics.motion.sampled_states import States, Widths
+from dynamics.motion.sampled_states import Widths
 from dynamics.plausibility import scene_findings
 from dynamics.results import RunResult
 from dynamics.results.checks import ending
 from dynamics.results.run_checks import RunChecks
-from dynamics.results.run_files import RunFile, attributes
-from dynamics.results.run_result import SAMPLED
+from dynamics.results.run_result import SAMPLED, RunFile, attributes
 from dynamics.scene import Integration, Scene
 from dynamics.simulation.documents import (
     documents,
@@ -99,9 +98,9 @@ class _Leg:
 
     def _go_on_for(self, widths: Widths, taken: StartValue) -> None:
         """Start from an earlier run, whose samples the spool holds; save at once, as its own are gone."""
-        start_from(self.march, taken.at, taken.rows_of)
+        taken.start(self.march)
         samples = taken.at.samples
-        self.spool.rewrite(widths, samples, lambda states: widened(states, taken.rows_of, self.march))
+        self.spool.rewrite(widths, samples, lambda states: taken.widened(states, self.march))
         self.spool.resume(samples)
         self.since = taken.at.time
         self._save(RunStatus.CANCELLED)
@@ -134,9 +133,6 @@ class _Leg:
         samples = int(self.march.work.counts[Count.OUTPUT])
         facts = {"mark": self._mark, "samples": samples, "seconds": self._seconds, "since": self.since}
         self.spool.save(self.march.state, **facts, status=int(status))
-
-
-# From a scene to its result in memory.
 
 
 def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | None = None) -> RunResult:
@@ -209,10 +205,6 @@ class _Run:
     trail: Trail
     trajectory: Trajectory
 
-    def states(self, first: int, stop: int) -> States:
-        """Return its samples `first` to `stop` - 1."""
-        return self.trajectory.states.rows(first, stop)
-
 
 @dataclass(frozen=True)
 class _Start:
@@ -258,7 +250,8 @@ def _run(
     start, taken = _Start.of(decided), None
     system = start.system
     if earlier is not None:
-        taken = taken_over(earlier.result.effect_ledger, earlier.trail, earlier.states, system)
+        states_of = earlier.trajectory.states.rows
+        taken = taken_over(earlier.result.effect_ledger, earlier.trail, states_of, system)
         before = before if taken is None else replace(before, since=taken.at.time)
     trajectory = integrate(
         system, start.rest, system.scene.integration, progress, cancel=cancel, trail=start.trail, taken=taken
@@ -391,17 +384,17 @@ def simulate_to_file(
     """
     path = Path(path)
     folder = interrupted_run(path)
-    how = _How(resume, progress, cancel, checkpoint_every)
+    going = (progress, cancel, checkpoint_every)
     before = _read_earlier(folder) if resume else FIRST
     warn_of(scene_findings(scene))
     decided = decide_effects(scene)
-    run = _run_to_file(before.of(decided), path, before, how, None)
+    run = _run_to_file(before.of(decided), path, before, going, resume=resume)
     while run.status.usable and (needed := _needed_effects(scene, run.ledger, file=path)):
         before = before.then(needed, run.seconds)
         for checkpoint in folder.glob("*.checkpoint"):
             checkpoint.unlink()  # of a system without these effects
         (folder / REPEATED).write_text(json.dumps(before.to_json()), encoding="utf-8")
-        run = _run_to_file(before.of(decided), path, before, replace(how, resume=False), run)
+        run = _run_to_file(before.of(decided), path, before, going, run)
     if run.status is not RunStatus.CANCELLED:
         _remove(folder)
     if progress is not None:
@@ -409,35 +402,30 @@ def simulate_to_file(
     return run.status
 
 
-@dataclass(frozen=True)
-class _How:
-    """Options of a run to a file; parameters of `simulate_to_file`."""
-
-    resume: bool
-    progress: Progress | None
-    cancel: Cancel | None
-    checkpoint_every: float
-
-
 def _run_to_file(
-    decided: Decided, path: Path, before: EarlierRun, how: _How, earlier: _MadeRun | None
+    decided: Decided,
+    path: Path,
+    before: EarlierRun,
+    going: tuple[Progress | None, Cancel | None, float],
+    earlier: _MadeRun | None = None,
+    *,
+    resume: bool = False,
 ) -> _MadeRun:
-    """Run once; `before` says what of the run `earlier` it repeats."""
+    """Run once, `going` as `_Leg.go` does; `before` says what of the run `earlier` it repeats."""
     start = _Start.of(decided)
     system, rest, seconds = start.system, start.rest, start.seconds
     integration = system.scene.integration
     folder = interrupted_run(path)
     folder.mkdir(exist_ok=True)
-    going = (how.progress, how.cancel, how.checkpoint_every)
     with ExitStack() as stack:
-        leg = _Leg(stack, folder / "run", system, rest, integration, how.resume, earlier)
+        leg = _Leg(stack, folder / "run", system, rest, integration, resume, earlier)
         before = replace(before, since=leg.since)
         end = leg.go(*going, start.trail)
         error = requested_error(integration)
         if end.status.usable:
             error = error_by_source(system, leg.spool.states, end.samples)
         if integration.estimate_error and end.status.usable:
-            check = _Leg(stack, folder / "check", system, rest, finer(integration), how.resume)
+            check = _Leg(stack, folder / "check", system, rest, finer(integration), resume)
             other = check.go(*going)
             end = replace(end, status=other.status)
             error = error | (_difference(system, leg, check, other) if other.status.usable else {})

@@ -187,7 +187,7 @@ def dynamic_making(run: RunResult) -> tuple[Section, ...]:
     )
     text = "The scene with all defaults, in SI."
     scene = Section("Scene", text, folded=(facts("Scene", run.case),), part=Part.INPUT)
-    steps = facts("Step statistics", run.statistics.to_json())
+    steps = facts("Step statistics", vars(run.statistics))
     stages = run.receipt.get("seconds", {})
     rows = tuple((name.replace("_", " "), number(value, 3)) for name, value in stages.items())
     receipt = Section(

@@ -16,9 +16,9 @@ from dynamics.integrators import static_equilibrium
 from dynamics.joints import Coupling, ImposedRotation
 from dynamics.linearize import forced_response
 from dynamics.loads import AppliedForce, BySpeed, Orders, SpeedCurve, TimeLaw, Unbalance
-from dynamics.periodic.motion import motion
 from dynamics.periodic.period_map import periodic_problem
 from dynamics.periodic.shooting import find_orbit
+from dynamics.periodic.steady_states import motion
 from dynamics.scene import Integration, Outputs, Scene
 from dynamics.shafts import Inertia, Shaft
 

@@ -15,7 +15,7 @@ from dynamics.loads import TimeLaw
 from dynamics.results.order_fit import order_amplitudes, unwrapped
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
-from dynamics.simulation.error_by_source import run_again, windows
+from dynamics.simulation.error_by_source import windows
 
 
 def run_up(positions, **changes):
@@ -75,10 +75,10 @@ def test_a_window_run_again_as_it_was_is_the_run(make):
     found = integrate(system, static_equilibrium(system), system.scene.integration)
     looked = windows(system, found.states.rows, found.samples)
     for window in looked:
-        again = run_again(window, window.system, system.scene.integration)
+        again = window.repeated(window.system, system.scene.integration)
         assert again is not None
         assert again.rms < 1e-9 < 1e-3 * np.ptp(window.error)
-    assert found.moved[-1].any() == (system.scene.drives[0].name == "ring held")
+    assert found.states.moved[-1].any() == (system.scene.drives[0].name == "ring held")
 
 
 def test_a_minimal_receipt_states_the_tolerance_and_changes_no_series():

@@ -16,9 +16,9 @@ from dynamics.joints import FreeRotation, ImposedRotation
 from dynamics.linearize import forced_response, natural_modes
 from dynamics.loads import LoadTorque, TimeLaw, Unbalance
 from dynamics.motion.observation import observe
-from dynamics.periodic.motion import motion
 from dynamics.periodic.period_map import periodic_problem
 from dynamics.periodic.shooting import find_orbit
+from dynamics.periodic.steady_states import motion
 from dynamics.scene import Integration, Outputs, Scene
 from dynamics.shafts import Inertia, Shaft
 

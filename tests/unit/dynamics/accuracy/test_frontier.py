@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
 
-from dynamics.accuracy import FIDELITIES, FIGURES, TimeIntegration, blocks_of, frontier, knee_of_results
+from dynamics.accuracy import FIDELITIES, FIGURES, Blocks, TimeIntegration, frontier, knee_of_results
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.loads import TimeLaw
@@ -102,7 +102,7 @@ def test_a_fixed_step_knows_no_tolerance():
 
 def test_blocks_hold_whole_parts_of_the_run():
     system = assemble(gear_pair_scene(square_wave_table(), duration=0.4))
-    blocks = blocks_of(system)
+    blocks = Blocks.of(system)
     assert blocks.orders == 5
     assert blocks.bounds[0, 0] == 0
     assert blocks.bounds[-1, 1] == round(0.4 * system.sampling.rate) + 1

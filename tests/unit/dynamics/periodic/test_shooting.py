@@ -25,7 +25,7 @@ from dynamics.periodic import (
     periodic_problem,
     spectrum,
 )
-from dynamics.periodic.period_map import period_grid, refined
+from dynamics.periodic.period_map import PeriodGrid
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 
@@ -99,15 +99,14 @@ def test_steps_end_on_knots_and_halve():
     table = square_wave_table(8)
     table = replace(table, position=table.position + 0.03 * np.sin(np.arange(8)) ** 2)
     system = assemble(gear_pair_scene(repeated(table, 2)))
-    grid = period_grid(system, common_period(system), 1.0 / 40.0)
+    grid = PeriodGrid.of(system, common_period(system), 1.0 / 40.0)
     knots = np.concatenate([table.position, table.position + 1.0]) / 2.0
     np.testing.assert_allclose(np.min(np.abs(grid.phase[:, None] - knots), axis=0), 0.0, atol=1e-12)
     np.testing.assert_allclose(np.diff(grid.phase), grid.size[grid.level], atol=1e-11)
     assert np.max(grid.size) <= 1.0 / 40.0
-    assert refined(grid).phase.size == 2 * grid.phase.size - 1
-    np.testing.assert_allclose(
-        np.diff(refined(grid).phase), refined(grid).size[refined(grid).level], atol=1e-11
-    )
+    assert grid.halved.phase.size == 2 * grid.phase.size - 1
+    fine = grid.halved
+    np.testing.assert_allclose(np.diff(fine.phase), fine.size[fine.level], atol=1e-11)
 
 
 def test_a_planetary_set_has_a_common_period():

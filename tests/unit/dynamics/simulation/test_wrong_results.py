@@ -18,7 +18,6 @@ from dynamics.loads import TimeLaw
 from dynamics.meshes import CoastFlank
 from dynamics.periodic import steady_states
 from dynamics.results import EnergyAudit, RunResult
-from dynamics.results.energy_audit import energy_check
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate, simulate_to_file
 
@@ -57,7 +56,7 @@ def test_friction_that_drives_is_found():
     run = integrate(system, static_equilibrium(system), scene.integration)
     audit = EnergyAudit.from_arrays(run.work, run.stored, run.fallen)
     assert abs(audit.friction) < 0.2 * audit.fallen
-    found = energy_check(audit)
+    found = audit.check()
     assert found.valid is False
     assert "it supplied energy" in found.reason
     assert EnergyAudit.from_json(audit.to_json()) == audit
