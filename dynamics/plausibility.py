@@ -16,9 +16,6 @@ from dynamics.scene import Scene
 from dynamics.shafts import Inertia, Shaft
 from dynamics.types import FloatArray
 
-# The plausibility checks of scenes: quantity, limits, source.
-
-
 _STEEL = "from foamed plastics to tungsten"
 _CHECKS = (
     Check("duration", "duration of the run", 1e-4, 300.0, "s", "run-ups take 1 to 120 s"),

@@ -31,9 +31,6 @@ MESH_FORMATS = {
 MESH_SUFFIXES = tuple(MESH_FORMATS)
 
 
-# Linear elastic, isotropic material of a housing.
-
-
 _YOUNG = Declared(Kind.STIFFNESS, "Pa", between(1e6, 2e12), "Young's modulus", 110e9)
 _POISSON = Declared(Kind.RATIO, "", between(0.0, 0.49), "Poisson's ratio", 0.26)
 _DENSITY = Declared(Kind.INERTIA, "kg/m^3", up_to(1e5), "Density", 7200.0)
@@ -148,9 +145,6 @@ _FAULTS: dict[str, Callable[[bytes], Fault]] = {
     ".fem": _of_nastran,
     ".vtu": _of_vtk_xml,
 }
-
-
-# How the solid of a housing is meshed and reduced.
 
 
 MODES = Declared(

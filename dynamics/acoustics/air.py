@@ -11,9 +11,6 @@ from bounds import Declared, Kind, between, declared, described
 from dynamics.checks import declared_fields
 from dynamics.types import ComplexArray, FloatArray
 
-# The medium that carries the sound.
-
-
 DENSITY = Declared(Kind.INERTIA, "kg/m^3", between(0.1, 10.0), "Density of the air", 1.204)
 SOUND_SPEED = Declared(Kind.SPEED, "m/s", between(100.0, 1000.0), "Speed of sound", 343.2)
 

@@ -30,9 +30,6 @@ from dynamics.work_cost import Cost
 from host import MissingExtra
 from model_studies.progress import Progress, by_cost, silent
 
-# The sound power that passes a sphere far away.
-
-
 MARGIN = 8
 """Spherical harmonics above the wavenumber times the radius, whose part of the far field is below 1e-6."""
 MIDDLES = 0.5 * (np.ones((3, 3)) - np.eye(3))  # barycentric coordinates of the edges' middles
@@ -43,12 +40,7 @@ def _far_field_resistance(
 ) -> ComplexArray:
     """Return the integral over all directions of conj(p_i) p_j, (M, M), Pa^2 m^2, p r in the far field.
 
-    Parameters
-    ----------
-    pressure : (N, M) array
-        At the nodes, linear in between, of the kernel e^{+ikr}.
-    slope : (T, M) array
-        dp/dn of the panels.
+    Of the kernel e^{+ikr}: `pressure` (N, M) at the nodes, linear in between, `slope` (T, M) dp/dn of panels.
     """
     center = hull.areas @ hull.centers / hull.area
     radius = float(np.linalg.norm(hull.nodes - center, axis=1).max())
@@ -75,11 +67,6 @@ def _layer_operators(
     Kernel e^{+ikr}/(4 pi r); the single layer acts on constants of the panels, the double layer on hats of
     the nodes. Singular pairs are integrated by the library's own transformations. `done` is called with
     "single layer" and "double layer".
-
-    Raises
-    ------
-    MissingExtra
-        If NGSolve is not installed.
     """
     try:
         import ngsolve  # noqa: PLC0415 (an extra)
@@ -231,7 +218,10 @@ def _solve(
     """Return the pressure (N, M) for its normal derivative `slope` (T, M), and the residual."""
     parts = by_cost(lambda fraction: progress(STAGE, fraction), SHARES)
     single, double = _layer_operators(hull, wavenumber, lambda part: parts(part, 1.0))
-    coupling = _coupling(hull, wavenumber)
+    # of the derived equation: i/k above the first irregular frequency, near ka = pi; it vanishes with k,
+    # where the plain equation is well conditioned and the derived one is not
+    radius = hull.equivalent_radius
+    coupling = 1j * wavenumber * radius**2 / (1.0 + (wavenumber * radius) ** 2)
     matrix = 0.5 * panels.mass.toarray() - np.asarray(panels.mean.T @ double)
     matrix = matrix + coupling * panels.hypersingular(single, wavenumber)
     right = np.asarray(panels.mean.T @ (single @ slope + 0.5 * coupling * hull.areas[:, None] * slope))
@@ -240,15 +230,6 @@ def _solve(
     parts("pressure", 1.0)
     scale = float(np.linalg.norm(right)) or 1.0
     return pressure, float(np.linalg.norm(matrix @ pressure - right)) / scale
-
-
-def _coupling(hull: Hull, wavenumber: float) -> complex:
-    """Return the factor of the derived equation: i/k above the first irregular frequency, near ka = pi.
-
-    It vanishes with k, where the plain equation is well conditioned and the derived one is not.
-    """
-    radius = hull.equivalent_radius
-    return 1j * wavenumber * radius**2 / (1.0 + (wavenumber * radius) ** 2)
 
 
 def exterior_pressure(

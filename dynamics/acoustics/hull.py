@@ -13,9 +13,6 @@ from dynamics.checks import positive
 from dynamics.errors import InputError
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
-# The radiating surface: triangles with outward normals.
-
-
 PANELS_PER_WAVELENGTH = 6.0
 """Least number of the longest edges in a wavelength, where a model resolves the waves on the hull."""
 ROUNDED_DOWN = 1.0 - 1e-12

@@ -177,7 +177,11 @@ def level_bands(
     nominal = {name: span.nominal for name, span in ranges.items()}
     middle = levels(nominal)
     deviation = {
-        name: [levels({**nominal, name: float(value)}) - middle for value in _tried(span, steps)]
+        name: [
+            levels({**nominal, name: float(value)}) - middle
+            for value in np.linspace(span.low, span.high, steps)
+            if value != span.nominal
+        ]
         for name, span in ranges.items()
     }
     below = {name: -np.min([0.0 * middle, *rows], axis=0) for name, rows in deviation.items()}
@@ -189,12 +193,6 @@ def level_bands(
     return tuple(
         LevelBand(float(middle[k]), _entries(below, k), _entries(above, k)) for k in range(middle.size)
     )
-
-
-def _tried(span: Range, steps: int) -> FloatArray:
-    """Return values of a range but for its nominal one, which is the middle of the band."""
-    values = np.linspace(span.low, span.high, steps)
-    return np.asarray(values[values != span.nominal])
 
 
 def _cases(ranges: Mapping[str, Range], count: int) -> Iterator[dict[str, float]]:

@@ -27,8 +27,6 @@ from host import MissingExtra
 from model_studies.frontier import run_variants
 from model_studies.progress import Progress, silent
 
-# Panels as small pistons that work against each other's sound.
-
 BLOCK = 512  # panels whose mutual resistances are held at a time
 PAIR, PAIR_SHAPE = 48e-9, 0.1e-9
 """CPU seconds of a pair of panels: its resistance, and for each shape."""
@@ -129,14 +127,9 @@ def _by_pairs(hull: Hull, volume_velocity: ComplexArray, wavenumber: float) -> C
     total = np.zeros(volume_velocity.shape, dtype=volume_velocity.dtype)
     for first in range(0, len(volume_velocity), BLOCK):
         block = slice(first, first + BLOCK)
-        total[block] = _mutual(hull.centers[block], hull.centers, wavenumber) @ volume_velocity
+        squares = np.sum((hull.centers[block][:, None] - hull.centers) ** 2, axis=2)
+        total[block] = np.sinc(wavenumber / np.pi * np.sqrt(squares)) @ volume_velocity
     return total
-
-
-def _mutual(rows: FloatArray, columns: FloatArray, wavenumber: float) -> FloatArray:
-    """Return sin(kr)/(kr) of the distances between two sets of points, (A, B)."""
-    squares = np.sum((rows[:, None] - columns) ** 2, axis=2)
-    return np.asarray(np.sinc(wavenumber / np.pi * np.sqrt(squares)))
 
 
 MODELS: tuple[RadiationModel, ...] = (

@@ -18,8 +18,6 @@ from dynamics.orders.third_octaves import band_number, nominal_center
 from dynamics.results.array_file import stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray
 
-# Radiation resistance of vibration modes, computed at a few frequencies and interpolated between them.
-
 
 @dataclass(frozen=True)
 class ModalResistance:

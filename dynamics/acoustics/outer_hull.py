@@ -19,9 +19,6 @@ from dynamics.identity_cache import identity_cached
 from dynamics.kernels.compiled import compiled
 from dynamics.types import BoolArray, FloatArray, IntArray
 
-# The part of the sky that faces of a surface see: outer faces see much of it, inner ones little or none.
-
-
 ORDER = 8
 """Views from 2 ORDER^2 = 128 directions."""
 PIXELS = 512
@@ -36,12 +33,8 @@ def _free_sky(corners: FloatArray) -> FloatArray:
     """Return the part of the hemisphere over each triangle from which its middle is seen, (t,), 0 to 1.
 
     Directions weigh by the cosine to the normal, as in the view factor to surroundings at infinity: 1 on a
-    convex body, 0 in a closed cavity.
-
-    Parameters
-    ----------
-    corners : (t, 3, 3) array
-        Of the triangles, m, counter-clockwise from outside. All triangles can hide others.
+    convex body, 0 in a closed cavity. `corners` (t, 3, 3) of the triangles in m are counter-clockwise from
+    outside; all triangles can hide others.
     """
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
@@ -91,17 +84,8 @@ def _draw(corners: FloatArray, nearest: FloatArray) -> None:
                     nearest[i, j] = max(nearest[i, j], az + b * bz + c * cz)
 
 
-# Rims of the openings of a surface, and caps that close them.
-
-
 def _rims(triangles: IntArray) -> list[IntArray]:
-    """Return the nodes along every open edge path of a surface, each path closed, in its panels' sense.
-
-    Parameters
-    ----------
-    triangles : (T, 3) int array
-        Consistently oriented.
-    """
+    """Return the nodes along every open edge path of consistently oriented triangles, each closed."""
     starts, ends = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     count = int(triangles.max()) + 1
     open_edge = ~np.isin(starts * count + ends, ends * count + starts)
@@ -222,14 +206,9 @@ def outer_hull(housing: ReducedHousing) -> OuterHull:
         points = np.concatenate([points, weights @ points[rim]])
         motion = np.concatenate([motion, np.tensordot(weights, motion[rim], 1)])
     hull = Hull(points, np.concatenate(covers))
-    left_out = _area(housing.surface.points, triangles[~outer])
+    a, b, c = (housing.surface.points[triangles[~outer][:, k]] for k in range(3))
+    left_out = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
     return OuterHull(hull, motion, left_out, float(hull.areas[len(panels) :].sum()))
-
-
-def _area(points: FloatArray, triangles: IntArray) -> float:
-    """Return the area of the triangles between corners, m^2."""
-    a, b, c = (points[triangles[:, k]] for k in range(3))
-    return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
 
 
 def _outside(points: FloatArray, triangles: IntArray) -> BoolArray:
@@ -246,10 +225,7 @@ def _outside(points: FloatArray, triangles: IntArray) -> BoolArray:
 
 def _parts(triangles: IntArray, chosen: BoolArray) -> list[IntArray]:
     members = np.flatnonzero(chosen)
-    count, part = connected_components(_edge_neighbors(triangles[members, :3]))
+    first, second, _ = shared_edges(triangles[members, :3])
+    joined = coo_array((np.ones(first.size), (first, second)), shape=(members.size,) * 2)
+    count, part = connected_components(joined)
     return [members[part == number] for number in range(count)]
-
-
-def _edge_neighbors(triangles: IntArray) -> coo_array:
-    one, other, _ = shared_edges(triangles)
-    return coo_array((np.ones(one.size), (one, other)), shape=(len(triangles),) * 2)

@@ -163,9 +163,6 @@ def radiation_efficiency(
     return power / (air.impedance * hull.area * moving)
 
 
-# Radiation efficiencies of a sphere that moves in spherical harmonics, and the models' errors by them.
-
-
 def sphere_efficiency(order: int, ka: float) -> float:
     """Return the radiation efficiency of a sphere in spherical harmonics of an order, 1/abs(ka h_n'(ka))^2.
 

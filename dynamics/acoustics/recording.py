@@ -20,9 +20,6 @@ from dynamics.orders.resampling import resampled
 from dynamics.results import RunResult
 from dynamics.types import ComplexArray, FloatArray
 
-# Signals to listen to: a quantity at uniform steps of time, from orders or from a run.
-
-
 SAMPLE_RATE = 48_000
 HALF_LENGTH = 64  # of the resampling filter, in samples of the lower rate
 LARGEST_STEP = 20_000  # of the lower of two rates in their ratio
@@ -136,9 +133,6 @@ def _turned(time: FloatArray, frequency: FloatArray, at: FloatArray) -> FloatArr
     since = at - time[piece]
     slope = (np.diff(frequency) / step)[piece]
     return np.asarray(2.0 * np.pi * (whole[piece] + since * (frequency[piece] + 0.5 * slope * since)))
-
-
-# Series of a run as recordings: what vibrates, made audible. A force or a motion is no sound pressure.
 
 
 LOWEST = 20.0

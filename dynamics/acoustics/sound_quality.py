@@ -21,8 +21,6 @@ from dynamics.errors import InputError
 from dynamics.types import FloatArray
 from host import MissingExtra
 
-# Level of a recorded sound pressure.
-
 
 def sound_pressure_level(recording: Recording, *, weighted: bool = False) -> float:
     """Return the level of the root mean square over a recording re 20 uPa, dB or dB(A); at least `FLOOR`.

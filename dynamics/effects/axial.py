@@ -28,7 +28,8 @@ class Axial(RotorEffect):
         if stiffness == 0.0:
             return Verdict(False, False, "no bushing with axial stiffness: held rigidly", 0.0)
         influence = sum(mesh.force * mesh.axial**2 for mesh in rotor.meshes) / stiffness
-        if influence == 0.0 and _pulled(rotor):
+        own = [force for force in rotor.mechanism.scene.forces if force.shaft == rotor.rotor.shaft.name]
+        if influence == 0.0 and any(force.force[2] != 0.0 for force in own):
             return Verdict(True, True, "a force pushes along the axis", 0.0)
         if influence == 0.0:
             return Verdict(False, True, "spur: no force along the axis", 0.0)
@@ -58,12 +59,6 @@ class Axial(RotorEffect):
                 switch = f'set the effect "{self.name}" to "off".'
                 advice = f"Give one of its bearings axial stiffness, or {switch}"
                 raise InputError(f"gears[{index}]", gear.name, bound, advice)
-
-
-def _pulled(rotor: LoadedRotor) -> bool:
-    """Return whether a force of the scene acts along the axis of a rotor."""
-    forces, own = rotor.mechanism.scene.forces, rotor.rotor.shaft.name
-    return any(force.force[2] != 0.0 for force in forces if force.shaft == own)
 
 
 def _thrusts(mechanism: Mechanism, rotor: Rotor) -> list[float]:

@@ -23,8 +23,6 @@ from dynamics.shafts import Disc, ElasticShaft, PointOfApplication, elastic_shaf
 from dynamics.shafts.shaft import OnShaft, on_length
 from dynamics.types import FloatArray
 
-# Shafts that can bend and twist, and the points of application of forces on them.
-
 
 def _why_rigid(mechanism: Mechanism, index: int) -> str:
     """Return why the shaft `index` cannot be flexible; empty where it can."""
@@ -34,14 +32,15 @@ def _why_rigid(mechanism: Mechanism, index: int) -> str:
         return "the shaft has no sections: its elasticity is not known"
     if rotor.frame is not None:
         return "left out: members of a planetary set are rigid"
-    bent = [
-        mesh.name for mesh in scene.meshes if mesh.bent_shafts and shaft.name in _shafts(scene, mesh.name)
-    ]
+    bent = [mesh for mesh in _meshes(mechanism, index) if scene.meshes[mesh].bent_shafts]
     if bent:
-        return f'the table of "{bent[0]}" has the bending of its shafts in it'
-    for name, position in _positions(scene, rotor):
-        if not on_length(position, shaft.length):
-            return f'"{name}" at {position:g} m is off the shaft, which is {shaft.length:g} m long'
+        return f'the table of "{scene.meshes[bent[0]].name}" has the bending of its shafts in it'
+    # torsional couplings act at its nearer end
+    parts: list[OnShaft] = [*scene.gears, *scene.discs, *scene.ground_bearings, *scene.drives, *scene.loads]
+    parts += [*scene.speed_torques, *scene.forces, *scene.unbalances]
+    for part in parts:
+        if part.shaft == shaft.name and not on_length(part.position, shaft.length):
+            return f'"{part.name}" at {part.position:g} m is off the shaft, which is {shaft.length:g} m long'
     return ""
 
 
@@ -53,28 +52,19 @@ def _elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
     """
     scene, rotor = mechanism.scene, mechanism.rotors[index]
     shaft = rotor.shaft
+    rate = scene.outputs.sample_rate or order_rate(scene, mechanism.kinematics)
+    held = rotor.radial_stiffness > 0.0 and rotor.tilt_stiffness > 0.0
+    bends = held and {"x", "tilt_x"} <= mechanism.additions.possible
     drive = next((d for d in scene.drives if d.shaft == shaft.name and d.rigid), None)
     discs = tuple(Disc(rotor.on_shaft(body.position), body.inertia) for body in scene.mounted(shaft.name))
     return elastic_shaft(
         shaft.sections,
         discs,
-        _points_of_application(mechanism, rotor, _bends(mechanism, rotor), _stretches(mechanism, rotor)),
-        _highest(mechanism),
+        _points_of_application(mechanism, rotor, bends, _stretches(mechanism, rotor)),
+        scene.highest_frequency or 0.5 * rate,
         shaft.damping_ratio,
         None if drive is None else rotor.on_shaft(drive.position),
     )
-
-
-def _highest(mechanism: Mechanism) -> float:
-    scene = mechanism.scene
-    rate = scene.outputs.sample_rate or order_rate(scene, mechanism.kinematics)
-    return scene.highest_frequency or 0.5 * rate
-
-
-def _bends(mechanism: Mechanism, rotor: Rotor) -> bool:
-    """Whether the shaft is held across and in tilt, and free to move."""
-    held = rotor.radial_stiffness > 0.0 and rotor.tilt_stiffness > 0.0
-    return held and {"x", "tilt_x"} <= mechanism.additions.possible
 
 
 def _stretches(mechanism: Mechanism, rotor: Rotor) -> bool:
@@ -127,23 +117,6 @@ def _couplings(scene: Scene, rotor: Rotor) -> list[tuple[float, bool]]:
         for coupling in scene.couplings
         if rotor.shaft.name in (coupling.first, coupling.second)
     ]
-
-
-def _positions(scene: Scene, rotor: Rotor) -> list[tuple[str, float]]:
-    """Names and positions of what must lie on the shaft; torsional couplings act at its nearer end."""
-    name = rotor.shaft.name
-    torques: list[OnShaft] = [*scene.drives, *scene.loads, *scene.speed_torques]
-    points: list[OnShaft] = [*scene.forces, *scene.unbalances]
-    parts: list[OnShaft] = [*scene.gears, *scene.discs, *scene.ground_bearings, *torques, *points]
-    return [(part.name, part.position) for part in parts if part.shaft == name]
-
-
-def _shafts(scene: Scene, mesh: str) -> Sequence[str]:
-    meshing = next(part for part in scene.meshes if part.name == mesh)
-    return [scene.gear(name).shaft for name in (meshing.driver, meshing.driven)]
-
-
-# The effect.
 
 
 SHARE = 0.05
@@ -202,7 +175,9 @@ def _influence(
 ) -> _Bending:
     """Assess the bending of the shaft `index` by the nominal forces, its neighbors at rest."""
     scene, rotors = mechanism.scene, mechanism.rotors
-    rigid = _held_kinds(mechanism, index)
+    across = [0, 1, 3, 4] if rotors[index].rigid_kinds else []
+    along = [2] if elastic.extension.mass.size else []
+    rigid = [6 * index + kind for kind in (*across, *along)]  # freedoms that bearings hold; it does not turn
     coordinates = elastic_columns(rotors, index)
     own = np.array([*rigid, *range(coordinates.start, coordinates.stop)])
     rows = {
@@ -213,7 +188,8 @@ def _influence(
     )
     moved = np.linalg.lstsq(held[np.ix_(own, own)], force, rcond=1e-13)[0]
     moved[: len(rigid)] -= np.linalg.lstsq(held[np.ix_(rigid, rigid)], force[: len(rigid)], rcond=1e-13)[0]
-    if not rows and _is_loaded(mechanism, index):
+    loads: list[OnShaft] = [*scene.forces, *scene.unbalances]
+    if not rows and scene.shafts[index].name in [part.shaft for part in loads]:
         return _Bending(True, True, "loads act on the shaft, which no mesh measures", 0.0, elastic)
     away, share, tilted = 0.0, 0.0, 0.0
     for mesh, row in rows.items():
@@ -238,14 +214,6 @@ def _meshes(mechanism: Mechanism, index: int) -> list[int]:
     return [mesh for mesh, pair in enumerate(pairs) if name in pair]
 
 
-def _held_kinds(mechanism: Mechanism, index: int) -> list[int]:
-    """Return the rigid freedoms of the shaft `index` that bearings hold; it does not turn."""
-    rotor = mechanism.rotors[index]
-    across = [0, 1, 3, 4] if rotor.rigid_kinds else []
-    along = [2] if rotor.elastic is not None and rotor.elastic.extension.mass.size else []
-    return [6 * index + kind for kind in (*across, *along)]
-
-
 def _torques(mechanism: Mechanism, index: int) -> FloatArray:
     """Return the loads at t = 0 on all freedoms, (N,)."""
     scene, rotors = mechanism.scene, mechanism.rotors
@@ -261,11 +229,6 @@ def _torques(mechanism: Mechanism, index: int) -> FloatArray:
                 np.array([*part.force, *part.moment]) @ rows
             )
     return force
-
-
-def _is_loaded(mechanism: Mechanism, index: int) -> bool:
-    scene, name = mechanism.scene, mechanism.scene.shafts[index].name
-    return name in [part.shaft for part in scene.forces] + [part.shaft for part in scene.unbalances]
 
 
 def _held(mechanism: Mechanism) -> FloatArray:

@@ -13,7 +13,6 @@ from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.forces.frames import FrameTerm
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.bearing_elements import tilt_lever
-from dynamics.mechanism.bodies import Rotor
 from dynamics.mechanism.columns import column_count
 from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.mechanism import Mechanism
@@ -86,14 +85,11 @@ def _frame_share(rotor: LoadedRotor) -> float:
     if frame is None:
         return 0.0
     members = [other for other in rotor.mechanism.rotors if other.frame == frame]
-    return max(_over_lateral(member, float(speed[frame])) for member in members)
-
-
-def _over_lateral(rotor: Rotor, speed: float) -> float:
-    """Return the `speed` of a rotor's frame over its lateral natural frequency; 0 where it is not held."""
-    if rotor.radial_stiffness <= 0.0:
-        return 0.0
-    return speed * math.sqrt(rotor.inertia.mass / rotor.radial_stiffness)
+    held = [member for member in members if member.radial_stiffness > 0.0]
+    shares = (
+        float(speed[frame]) * math.sqrt(member.inertia.mass / member.radial_stiffness) for member in held
+    )
+    return max(shares, default=0.0)
 
 
 def _along_the_shaft(mechanism: Mechanism, index: int, lever: float) -> list[FrameTerm]:

@@ -11,7 +11,7 @@ from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.joints import Housing
 from dynamics.mechanism.additions import HOUSING_AMPLITUDES
-from dynamics.mechanism.bodies import ModalHousing, modal_housing
+from dynamics.mechanism.bodies import modal_housing
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.sampling import top_load_frequency, top_mesh_frequency, top_passing_frequency
 
@@ -76,16 +76,11 @@ def _verdict(rotor: LoadedRotor, housing: Housing) -> Verdict:
     }
     source, first = max(content, key=lambda name: content[name]), float(modal.frequency[0])
     share = (content[source] / first) ** 2
-    influence = min(share, 1.0) * _static_motion(rotor, modal)
+    supports = [part.name for part in rotor.rotor.supports]
+    own = np.array([modal.seat(name)[:2] for name in supports if name in modal.bearings])
+    softest = float(np.max(np.sum(own**2 / modal.stiffness, axis=2)))
+    influence = min(share, 1.0) * (rotor.pushed / len(supports) * softest)  # an equal share of mesh forces
     reason = f"{source} reach {content[source]:.4g} Hz, the first mode of {housing.name} {first:.4g} Hz"
     if any(at.name in housing.bushings for at in rotor.mechanism.bearings):
         return Verdict(True, False, f"{reason}; it carries bearings that are not linear", influence)
     return Verdict(share > SHARE, True, reason, influence)
-
-
-def _static_motion(rotor: LoadedRotor, modal: ModalHousing) -> float:
-    """Return how far an equal share of its mesh forces moves the softest seat of a rotor across, m."""
-    supports = [part.name for part in rotor.rotor.supports]
-    own = np.array([modal.seat(name)[:2] for name in supports if name in modal.bearings])
-    compliance = np.sum(own**2 / modal.stiffness, axis=2)
-    return rotor.pushed / len(supports) * float(np.max(compliance))

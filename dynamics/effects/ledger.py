@@ -14,9 +14,6 @@ from dynamics.mechanism.mechanism import Mechanism, gather_mechanism
 from dynamics.scene.scene import Scene
 from dynamics.types import Json
 
-# The effect ledger: what is on, what is off, and why.
-
-
 CHOICES = ("auto", "on", "off")
 
 
@@ -49,20 +46,15 @@ class LedgerEntry:
     def on(self) -> bool:
         """The decision: an explicit choice is obeyed as far as the scene allows, else the verdict."""
         obeyed = self.choice != "auto" and self.possible
-        return self.choice == "on" if obeyed else self.called_for
+        return self.choice == "on" if obeyed else self.verdict.on
 
     @property
     def reason(self) -> str:
         """The reason of the decision."""
-        if self.on == self.called_for:
+        if self.on == self.verdict.on:
             return self.verdict.reason
         reason = self.verdict.reason
         return f"requested; else: {reason}" if self.on else f"off by request, although: {reason}"
-
-    @property
-    def called_for(self) -> bool:
-        """Whether the scene calls for it."""
-        return self.verdict.on
 
     @property
     def possible(self) -> bool:
@@ -75,16 +67,12 @@ class LedgerEntry:
         return self.verdict.influence
 
     @property
-    def cost(self) -> str:
-        """In words."""
-        return self.decided.cost
-
-    @property
     def price(self) -> str:
         """The price of a choice against the scene, in words; empty where there is none."""
-        if self.on == self.called_for:
+        if self.on == self.verdict.on:
             return ""
-        return self.cost if self.on else f"{1e6 * self.influence:.3g} um of static displacement neglected"
+        neglected = f"{1e6 * self.influence:.3g} um of static displacement neglected"
+        return self.decided.cost if self.on else neglected
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -95,9 +83,9 @@ class LedgerEntry:
             "on": self.on,
             "reason": self.reason,
             "influence_m": self.influence,
-            "called_for": self.called_for,
+            "called_for": self.verdict.on,
             "possible": self.possible,
-            "cost": self.cost,
+            "cost": self.decided.cost,
             "price": self.price,
         }
 
@@ -169,19 +157,6 @@ class EffectLedger:
         return {"entries": entries, "left_out": dict(LEFT_OUT)}
 
 
-def _check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:
-    """Refuse unknown effects and choices.
-
-    Raises
-    ------
-    InputError
-    """
-    names = [effect.name for effect in registry]
-    for name, choice in choices.items():
-        one_of("effects", name, names)
-        one_of(f"effects.{name}", choice, CHOICES)
-
-
 @identity_cached
 def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechanism:
     """Gather the mechanism of `scene`; every effect that is not switched off checks it.
@@ -191,7 +166,10 @@ def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechan
     InputError
         If a choice is unknown, parts do not fit each other, or an effect cannot do without a part.
     """
-    _check_choices(scene.effects, registry)
+    names = [effect.name for effect in registry]
+    for name, choice in scene.effects.items():
+        one_of("effects", name, names)
+        one_of(f"effects.{name}", choice, CHOICES)
     allowed = [effect for effect in registry if scene.effects.get(effect.name) != "off"]
     requested = [effect for effect in registry if scene.effects.get(effect.name) == "on"]
     mechanism = gather_mechanism(scene, Additions(_added(allowed), _added(requested)))

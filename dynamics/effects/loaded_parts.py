@@ -18,8 +18,6 @@ from dynamics.meshes.gear_mesh import GearMesh
 from dynamics.shafts.shaft import OnShaft
 from dynamics.types import FloatArray
 
-# Rotors as their effects assess them: each on its supports, with the meshes it carries.
-
 
 @dataclass(frozen=True)
 class _MeshOnRotor:

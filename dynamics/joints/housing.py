@@ -17,9 +17,6 @@ from dynamics.checks import declared_fields, distinct, finite
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
 
-# Matrices from files: rows of numbers in CSV, arrays in a NumPy archive, which holds no objects.
-
-
 _HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 LARGEST = 2**27
 """Bytes of a CSV file, or of an archive unpacked: three matrices of 2300 rows."""
@@ -224,7 +221,10 @@ def read_housing(path: str | Path, name: str, bushings: tuple[str, ...]) -> Hous
     InputError
         Naming ``stiffness_file``, or the matrix's fault.
     """
-    matrices = {part: _rows(matrix) for part, matrix in read_housing_matrices(path).items()}
+    matrices = {
+        part: tuple(tuple(float(value) for value in np.ravel(row)) for row in np.atleast_2d(matrix))
+        for part, matrix in read_housing_matrices(path).items()
+    }
     return Housing(name, bushings, matrices["stiffness"], matrices.get("damping"), matrices.get("mass"))
 
 
@@ -241,7 +241,3 @@ def read_housing_matrices(path: str | Path) -> dict[str, FloatArray]:
         advice = f"It has {', '.join(sorted(arrays)[:5]) or 'none'}."
         raise InputError(field, file.name, 'an archive with the array "stiffness"', advice)
     return {part: arrays[part] for part in MATRICES if part in arrays}
-
-
-def _rows(matrix: FloatArray) -> Matrix:
-    return tuple(tuple(float(value) for value in np.ravel(row)) for row in np.atleast_2d(matrix))

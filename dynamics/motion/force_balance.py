@@ -93,9 +93,6 @@ def block_diagonal(elements: Elements, derivative: FloatArray) -> FloatArray:
     return matrix
 
 
-# Loads at their means over a turn: what statics sees of them, and small motions about it.
-
-
 LOADS = (Law.SPEED_TORQUE, Law.APPLIED_FORCE)
 
 

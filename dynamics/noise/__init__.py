@@ -10,8 +10,8 @@ from dynamics.noise.housing_recordings import (
     sound_limit,
     velocity_recording,
 )
-from dynamics.noise.panel_sound import PanelSound, Region, models_at, panel_sound, regions, side_by_side
-from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest, radiated_sound, together
+from dynamics.noise.panel_sound import PanelSound, Region, models_at, panel_sound, regions
+from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest, radiated_sound
 from dynamics.noise.sensitivities import DesignFigure, Sensitivity, sound_sensitivities
 from dynamics.noise.sound_band import GUESSES, SoundBand, SoundModel, forced_power, sound_band
 from dynamics.noise.sound_over_time import SoundOverTime, sound_over_time
@@ -41,11 +41,9 @@ __all__ = [
     "radiating_hull",
     "regions",
     "scattered_pressure_transfer",
-    "side_by_side",
     "sound_band",
     "sound_limit",
     "sound_over_time",
     "sound_sensitivities",
-    "together",
     "velocity_recording",
 ]

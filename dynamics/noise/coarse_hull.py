@@ -13,9 +13,6 @@ from dynamics.acoustics.hull import PANELS_PER_WAVELENGTH, ROUNDED_DOWN, flat_tr
 from dynamics.identity_cache import identity_cached
 from dynamics.types import BoolArray, FloatArray, IntArray
 
-# Cells of a surface: nodes next to seeds, by the distance along the surface.
-
-
 STEPS = 6
 """Times that seeds move to the middle of their cells; further steps change the longest edge by below 5 %."""
 FLAT = 0.02
@@ -70,19 +67,15 @@ def _first_nodes(cell: IntArray, value: FloatArray) -> IntArray:
 
 def _settled(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
     """Return the cells of seeds that have moved to the middle of their cells so many times."""
-    edges, share = _edges(hull), _node_areas(hull)
+    starts, ends = hull.triangles.ravel(), np.roll(hull.triangles, -1, axis=1).ravel()
+    pairs = np.unique(np.sort(np.stack([starts, ends], axis=1), axis=1), axis=0)
+    length = np.linalg.norm(hull.nodes[pairs[:, 0]] - hull.nodes[pairs[:, 1]], axis=1)
+    edges = coo_array((length, (pairs[:, 0], pairs[:, 1])), shape=(len(hull.nodes),) * 2).tocsr()
+    share = _node_areas(hull)
     for _ in range(steps):
         cell = _next_seed(edges, seeds)
         seeds = _nearest_nodes(hull, cell, _means(cell, share, hull.nodes))
     return np.unique(_next_seed(edges, seeds), return_inverse=True)[1]
-
-
-def _edges(hull: Hull) -> csr_array:
-    """Return the lengths of the edges between nodes, (N, N)."""
-    starts, ends = hull.triangles.ravel(), np.roll(hull.triangles, -1, axis=1).ravel()
-    pairs = np.unique(np.sort(np.stack([starts, ends], axis=1), axis=1), axis=0)
-    length = np.linalg.norm(hull.nodes[pairs[:, 0]] - hull.nodes[pairs[:, 1]], axis=1)
-    return coo_array((length, (pairs[:, 0], pairs[:, 1])), shape=(len(hull.nodes),) * 2).tocsr()
 
 
 def _next_seed(edges: csr_array, seeds: IntArray) -> IntArray:
@@ -103,9 +96,6 @@ def _means(cell: IntArray, weight: FloatArray, values: FloatArray) -> FloatArray
     """Return the weighted means of values (N, 3) over each cell, (C, 3)."""
     whole = np.maximum(np.bincount(cell, weight), 1e-300)
     return np.stack([np.bincount(cell, weight * values[:, axis]) / whole for axis in range(3)], axis=1)
-
-
-# Thin panels of a hull turned into wide ones by exchanging diagonals.
 
 
 THIN = 0.05

@@ -6,7 +6,6 @@ import hashlib
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple, cast
@@ -22,13 +21,10 @@ from dynamics.errors import InputError, ResultError
 from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
 from dynamics.results.array_file import ArrayFile, stored
-from dynamics.types import ComplexArray, FloatArray, Json
+from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
 from model_studies.kept_file import kept_in
 from model_studies.progress import Progress, silent
-
-# Frequencies at which a resistance is computed: as close as its interpolation needs.
-
 
 TOLERANCE = 0.5
 """dB, of the power of each mode in the middle of two frequencies; what is kept is off by a quarter of it."""
@@ -60,14 +56,8 @@ def _knots_between(
     """Return frequencies from `low` to `high`, in Hz, between which R/f^2 is linear within `TOLERANCE`.
 
     The middle of each interval is computed and kept. Where it is missed by more, both halves are looked at in
-    turn. The error of what is kept is about a quarter of that stated.
-
-    Parameters
-    ----------
-    resistance : callable
-        From a frequency to a matrix (r, r).
-    modes : (r, m) array
-        Vectors whose power is compared.
+    turn. The error of what is kept is about a quarter of that stated. `resistance` gives a matrix (r, r);
+    `modes` (r, m) are vectors whose power is compared.
     """
     count = max(int(np.ceil(np.log(high / low) / np.log(WIDEST))), 1)
     start = np.geomspace(low, high, count + 1)
@@ -124,9 +114,6 @@ def _missed(
     return float(np.max(np.abs(10.0 * np.log10((expected + floor) / (own + floor))), initial=0.0))
 
 
-# Time and memory of a radiation resistance over a range of frequencies, predicted before it is computed.
-
-
 USUAL = 0.85
 """Frequency of an octave whose cost is the mean, over its highest: they lie closer towards its end."""
 
@@ -143,15 +130,11 @@ def radiation_cost(octaves: Iterable[Octave], model: RadiationModel, air: Air) -
     """Predict the cost of `housing_radiation` once its hulls are there, on the reference host."""
     whole = Cost(0.0, 0.0)
     for octave in octaves:
-        whole = whole.then(_cost(octave, model, air))
+        panels, coordinates = octave.hull.shapes.shape
+        per_hertz = 2.0 * math.pi / air.sound_speed * octave.hull.hull.outer_radius
+        cost = model.cost(panels, per_hertz * (USUAL * octave.last), coordinates)
+        whole = whole.then(cost.times(expected_knots(per_hertz * octave.last)))
     return whole
-
-
-def _cost(octave: Octave, model: RadiationModel, air: Air) -> Cost:
-    panels, coordinates = octave.hull.shapes.shape
-    per_hertz = 2.0 * math.pi / air.sound_speed * octave.hull.hull.outer_radius
-    usual = USUAL * octave.last
-    return model.cost(panels, per_hertz * usual, coordinates).times(expected_knots(per_hertz * octave.last))
 
 
 BAND = 10.0**0.05
@@ -185,11 +168,6 @@ class RadiationFacts:
     inner_area: float
     cap_area: float
 
-    @classmethod
-    def from_json(cls, data: Json) -> RadiationFacts:
-        """Read what a file has of them."""
-        return cls(**{**data, "cost": WorkCost(**data["cost"])})
-
 
 @dataclass(frozen=True)
 class HousingRadiation(ModalResistance, ArrayFile):
@@ -210,7 +188,9 @@ class HousingRadiation(ModalResistance, ArrayFile):
     """
 
     SCHEMA = "lineofaction housing radiation"
-    RECORDS = MappingProxyType({"facts": RadiationFacts.from_json})
+    RECORDS = MappingProxyType(
+        {"facts": lambda data: RadiationFacts(**{**data, "cost": WorkCost(**data["cost"])})}
+    )
 
     surface: FloatArray = field(
         metadata=stored("m2", "integral of products of normal motions", "coordinate", "coordinate")
@@ -314,7 +294,10 @@ def _resolved_parts(
     def computed() -> list[_Knots]:
         parts = []
         for octave in parted:
-            resistance_at = partial(_resistance, model, octave.hull, air)
+
+            def resistance_at(frequency: float, panels: RadiatingHull = octave.hull) -> ComplexArray:
+                return resistance(model, panels.hull, frequency, cast(ComplexArray, panels.shapes), air)
+
             parts.append(_knots_between(octave.first, octave.last, resistance_at, modes))
             reached(octave.last)
         return parts
@@ -322,10 +305,6 @@ def _resolved_parts(
     parts, cost = measured(kind, reference, cache, computed)
     panels = max((len(octave.hull.shapes) for octave in parted), default=len(outer.hull.triangles))
     return parts, panels, cost
-
-
-def _resistance(model: RadiationModel, hull: RadiatingHull, air: Air, frequency: float) -> ComplexArray:
-    return resistance(model, hull.hull, frequency, cast(ComplexArray, hull.shapes), air)
 
 
 def resolved_frequency(outer: OuterHull, air: Air) -> float:

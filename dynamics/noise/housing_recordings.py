@@ -34,9 +34,6 @@ from dynamics.vibration import MotionQuantity, finer_seat_forces, point_signal
 from dynamics.vibration.housing_motion import modal_amplitudes
 from dynamics.vibration.time_signal import PIECE, motion_pieces
 
-# Paths of sound from the panels of a hull to a microphone in the air: a delay and a gain each.
-
-
 NEAREST = 2.0
 """Least distance of a microphone over the longest edge of a panel: nearer it is no point source."""
 HALF_LENGTH, KAISER = 12, 8.0
@@ -109,19 +106,14 @@ def sound_paths(
     if at.shape != (3,) or not np.all(np.isfinite(at)):
         raise InputError("microphone", np.shape(microphone), "three finite coordinates")
     distance = np.linalg.norm(hull.centers - at, axis=1)
-    _require_in_air(hull, at, float(distance.min()))
+    if hull.closed and _solid_angle(hull, at) > 2.0 * np.pi:
+        raise InputError("microphone", at.tolist(), "a point outside of the housing")
+    least, nearest = NEAREST * hull.longest_edge, float(distance.min())
+    if nearest < least:
+        bound = at_least(least, "m", note=" from the surface, two of its longest edges")
+        raise InputError("microphone", nearest, bound, "Move it away, or use smaller elements.")
     volume = air.density / model.solid_angle * hull.areas / distance
     return _SoundPaths(distance / air.sound_speed, volume[:, None] * shapes)
-
-
-def _require_in_air(hull: Hull, microphone: FloatArray, distance: float) -> None:
-    """Refuse a microphone inside of the hull or near to a panel."""
-    if hull.closed and _solid_angle(hull, microphone) > 2.0 * np.pi:
-        raise InputError("microphone", microphone.tolist(), "a point outside of the housing")
-    least = NEAREST * hull.longest_edge
-    if distance < least:
-        bound = at_least(least, "m", note=" from the surface, two of its longest edges")
-        raise InputError("microphone", distance, bound, "Move it away, or use smaller elements.")
 
 
 def _solid_angle(hull: Hull, point: FloatArray) -> float:

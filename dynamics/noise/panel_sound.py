@@ -29,8 +29,6 @@ from dynamics.types import ComplexArray, FloatArray, IntArray
 from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
 from model_studies.progress import Progress, silent
 
-# Radiation models side by side at one order and speed.
-
 
 def models_at(
     response: BearingHarmonics,
@@ -92,6 +90,14 @@ class PanelSound:
     hull: Hull
     power: FloatArray
 
+    @classmethod
+    def of_all(cls, sounds: Sequence[PanelSound]) -> PanelSound:
+        """Return the panels of several housings as those of one hull, in their order."""
+        first = np.cumsum([0, *(len(sound.hull.nodes) for sound in sounds[:-1])])
+        corners = [sound.hull.triangles + start for sound, start in zip(sounds, first, strict=True)]
+        hull = Hull(np.concatenate([sound.hull.nodes for sound in sounds]), np.concatenate(corners))
+        return cls(hull, np.concatenate([sound.power for sound in sounds]))
+
     @property
     def intensity(self) -> FloatArray:
         """Return the active intensity normal to the hull, (T,), W/m^2, > 0 outwards."""
@@ -135,14 +141,6 @@ def panel_sound(
     moving: ComplexArray = np.asarray(panels.shapes @ velocity)
     parts = [weight * panel_power(model, panels.hull, knot, moving, air) for knot, weight in weights]
     return PanelSound(panels.hull, np.asarray(np.sum(parts, axis=0)))
-
-
-def side_by_side(sounds: Sequence[PanelSound]) -> PanelSound:
-    """Return the panels of several housings as those of one hull, in their order."""
-    first = np.cumsum([0, *(len(sound.hull.nodes) for sound in sounds[:-1])])
-    corners = [sound.hull.triangles + start for sound, start in zip(sounds, first, strict=True)]
-    hull = Hull(np.concatenate([sound.hull.nodes for sound in sounds]), np.concatenate(corners))
-    return PanelSound(hull, np.concatenate([sound.power for sound in sounds]))
 
 
 SMALL = 0.02

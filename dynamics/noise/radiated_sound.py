@@ -20,8 +20,6 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 from dynamics.vibration import BearingHarmonics, seat_forces
 from dynamics.vibration.housing_motion import modal_amplitudes
 
-# Sound power of a motion, and the shares of its parts: forces of bearings, modes of the housing.
-
 
 def _powers(
     frequency: FloatArray, amplitudes: ComplexArray, housing: ReducedHousing, radiation: HousingRadiation
@@ -29,13 +27,7 @@ def _powers(
     """Return what `RadiatedSound` has of the motion in the modes under all bearings, and of their shares.
 
     The share of a part u of the velocity v is Re(u^H R v) / 2: shares add up to the power v^H R v / 2.
-
-    Parameters
-    ----------
-    frequency : (S, H) array
-        Hz.
-    amplitudes : (S H, b, m) array
-        Complex peak amplitudes of `ReducedHousing.modes` by bearing.
+    Frequencies (S, H) in Hz; `amplitudes` (S H, b, m) are complex peaks of `ReducedHousing.modes` by bearing.
     """
     grid, hertz = frequency.shape, frequency.ravel()
     natural, shape = housing.modes
@@ -136,6 +128,45 @@ class RadiatedSound(ArrayFile):
         metadata=stored("W", "radiated sound power of each panel", "panel"),
     )
 
+    @classmethod
+    def of_all(cls, sounds: Sequence[RadiatedSound]) -> RadiatedSound:
+        """Return the sound of housings under one response: powers add up, without interference between them.
+
+        The efficiency is that of all surfaces together.
+
+        Raises
+        ------
+        InputError
+            There is none, or their speeds and orders differ.
+        """
+        if not sounds:
+            raise InputError("sounds", len(sounds), at_least(1))
+        first = sounds[0]
+        if len(sounds) == 1:
+            return first
+        for index, sound in enumerate(sounds):
+            if not np.array_equal(sound.frequency, first.frequency):
+                raise InputError(f"sounds[{index}].frequency", "others", "those of the first")
+        plane = sum(sound.power / np.maximum(sound.efficiency, 1e-300) for sound in sounds)
+        power = np.asarray(np.sum([sound.power for sound in sounds], axis=0))
+        names = ("housing", "bearing", "mode_housing")
+        by_part = ("bearing_share", "bearing_alone", "mode_share", "mode_alone", "natural_frequency")
+        joined: dict[str, Any] = {
+            **{name: tuple(each for sound in sounds for each in getattr(sound, name)) for name in names},
+            **{name: np.concatenate([getattr(sound, name) for sound in sounds]) for name in by_part},
+        }
+        radiation = {name: about for sound in sounds for name, about in sound.facts["radiation"].items()}
+        return cls(
+            speed=first.speed,
+            order=first.order,
+            frequency=first.frequency,
+            power=power,
+            efficiency=np.asarray(power / np.maximum(plane, 1e-300)),
+            in_contact=first.in_contact,
+            facts={"radiation": radiation},
+            **joined,
+        )
+
     @property
     def panels(self) -> PanelSound | None:
         """Return the panels at the loudest order and speed; None where they were not looked at."""
@@ -188,7 +219,11 @@ def radiated_sound(
             radiation.matrix.shape[1],
             f"one of {len(housing.stiffness)} coordinates, the housing's",
         )
-    powers = _powers(response.frequency, _amplitudes(response, housing, names), housing, radiation)
+    force = seat_forces(response, housing, names).reshape(response.frequency.size, 1, -1)
+    owner = np.repeat(np.arange(len(names)), [len(seat.motions) for seat in housing.seats])
+    alone = np.where(owner == np.arange(len(names))[:, None], force, 0.0)  # of each bearing
+    amplitudes = modal_amplitudes(housing, response.frequency.ravel(), alone)
+    powers = _powers(response.frequency, amplitudes, housing, radiation)
     about = {
         "model_name": radiation.model_name,
         "area": radiation.area,
@@ -205,56 +240,6 @@ def radiated_sound(
         in_contact=response.in_contact,
         facts={"radiation": {name: about}},
         **powers,
-    )
-
-
-def _amplitudes(response: BearingHarmonics, housing: ReducedHousing, names: tuple[str, ...]) -> ComplexArray:
-    """Return the amplitudes of the housing's modes under the force of each bearing alone, (S H, b, m)."""
-    force = seat_forces(response, housing, names).reshape(response.frequency.size, 1, -1)
-    owner = np.repeat(np.arange(len(names)), [len(seat.motions) for seat in housing.seats])
-    alone = np.where(owner == np.arange(len(names))[:, None], force, 0.0)
-    return modal_amplitudes(housing, response.frequency.ravel(), alone)
-
-
-# The sound of several housings together.
-
-
-def together(sounds: Sequence[RadiatedSound]) -> RadiatedSound:
-    """Return the sound of housings under one response: powers add up, interference between them is left out.
-
-    The efficiency is that of all surfaces together.
-
-    Raises
-    ------
-    InputError
-        There is none, or their speeds and orders differ.
-    """
-    if not sounds:
-        raise InputError("sounds", len(sounds), at_least(1))
-    first = sounds[0]
-    if len(sounds) == 1:
-        return first
-    for index, sound in enumerate(sounds):
-        if not np.array_equal(sound.frequency, first.frequency):
-            raise InputError(f"sounds[{index}].frequency", "others", "those of the first")
-    plane = sum(sound.power / np.maximum(sound.efficiency, 1e-300) for sound in sounds)
-    power = np.asarray(np.sum([sound.power for sound in sounds], axis=0))
-    names = ("housing", "bearing", "mode_housing")
-    by_part = ("bearing_share", "bearing_alone", "mode_share", "mode_alone", "natural_frequency")
-    joined: dict[str, Any] = {
-        **{name: tuple(each for sound in sounds for each in getattr(sound, name)) for name in names},
-        **{name: np.concatenate([getattr(sound, name) for sound in sounds]) for name in by_part},
-    }
-    radiation = {name: about for sound in sounds for name, about in sound.facts["radiation"].items()}
-    return RadiatedSound(
-        speed=first.speed,
-        order=first.order,
-        frequency=first.frequency,
-        power=power,
-        efficiency=np.asarray(power / np.maximum(plane, 1e-300)),
-        in_contact=first.in_contact,
-        facts={"radiation": radiation},
-        **joined,
     )
 
 

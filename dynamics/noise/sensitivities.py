@@ -58,6 +58,20 @@ class Sensitivity:
     change: float
     change_of_two: float
 
+    @classmethod
+    def of(cls, figure: DesignFigure, level: Callable[[float], float]) -> Sensitivity:
+        """Return the sensitivity of a level to a figure.
+
+        Parameters
+        ----------
+        figure : DesignFigure
+        level : callable
+            From a value of the figure to the level, dB, all else as it is. It is called three times: smooth
+            in the value, as `largest_level` is and a level at a fixed speed near a resonance is not.
+        """
+        nominal, single, double = (level(figure.value + count * figure.step) for count in range(3))
+        return cls(figure, single - nominal, double - nominal)
+
     @property
     def slope(self) -> float:
         """Return the derivative of the level, dB per unit: that of the parabola through all three levels."""
@@ -83,20 +97,6 @@ class Sensitivity:
     def linear(self) -> bool:
         """Whether that change is within the linear range."""
         return abs(self.for_one_db_less) <= self.linear_range
-
-
-def sensitivity(figure: DesignFigure, level: Callable[[float], float]) -> Sensitivity:
-    """Return the sensitivity of a level to a figure.
-
-    Parameters
-    ----------
-    figure : DesignFigure
-    level : callable
-        From a value of the figure to the level, dB, all else as it is. It is called three times: smooth in
-        the value, as `largest_level` is and a level at a fixed speed near a resonance is not.
-    """
-    nominal, one, two = (level(figure.value + count * figure.step) for count in range(3))
-    return Sensitivity(figure, one - nominal, two - nominal)
 
 
 def ranked(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
@@ -140,7 +140,7 @@ def sound_sensitivities(
 
     def compute(figure: DesignFigure) -> Sensitivity:
         at = varied(figure)
-        return sensitivity(
+        return Sensitivity.of(
             figure, lambda value: largest_level(speed, forced_power(at(value), speed, orders)[1])
         )
 

@@ -21,17 +21,14 @@ from dynamics.acoustics import (
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.checks import one_of
-from dynamics.forces import RollingContact, SpringCurve
 from dynamics.housings.modification import with_damping, with_frequencies, with_modes, with_mounts
 from dynamics.housings.reduced_housing import ReducedHousing, scene_housing
 from dynamics.linearize import harmonic_response
 from dynamics.meshes import GearMesh
 from dynamics.scene import Scene
-from dynamics.types import ComplexArray, FloatArray
+from dynamics.types import FloatArray
 from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
 from model_studies.progress import Progress, silent
-
-# What the sound of a scene follows from, and its sound power in a linear response.
 
 
 @dataclass(frozen=True)
@@ -65,18 +62,15 @@ class SoundModel:
 
 
 def _radiated_power(model: SoundModel, response: BearingHarmonics) -> OrderPower:
-    """Return the sound power of a response by order and speed, the sum over all housings.
-
-    Raises
-    ------
-    InputError
-        A bearing of a housing is not in the response, or a frequency is beyond the radiation resistance.
-    """
+    """Return the sound power of a response by order and speed, the sum over all housings."""
     frequency = response.frequency.T
     power = np.zeros(frequency.shape)
     for part in model.scene.housings:
         if part.name in model.housings:
-            velocity = _velocity(model.housings[part.name], response, part.bushings)
+            housing = model.housings[part.name]
+            force = seat_forces(response, housing, part.bushings)
+            motion = housing_motion(housing, response.frequency, force)
+            velocity = np.swapaxes(2j * np.pi * response.frequency[..., None] * motion, 0, 1)
             power += order_power(model.resistance[part.name], frequency, velocity).power
     return OrderPower(frequency, power)
 
@@ -87,20 +81,11 @@ def forced_power(model: SoundModel, speed: FloatArray, orders: int) -> tuple[Flo
     Raises
     ------
     InputError, SolveError
-        As `harmonic_response` and `_radiated_power` do.
+        As `harmonic_response` does; or a bearing of a housing is not in the response, or a frequency is
+        beyond the radiation resistance.
     """
     response = harmonic_response(assemble(model.scene), speed, orders)
     return response.order, _radiated_power(model, response)
-
-
-def _velocity(housing: ReducedHousing, response: BearingHarmonics, bearings: tuple[str, ...]) -> ComplexArray:
-    """Return the velocities of the reduced coordinates, (H, S, r)."""
-    motion = housing_motion(housing, response.frequency, seat_forces(response, housing, bearings))
-    velocity = 2j * np.pi * response.frequency[..., None] * motion
-    return np.asarray(np.swapaxes(velocity, 0, 1))
-
-
-# What of a scene is only guessed, as factors on what it states: damping, joints, mounts, mesh.
 
 
 Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
@@ -128,19 +113,11 @@ class Guess:
 
 
 def _each_housing(
-    model: SoundModel, change: Callable[[ReducedHousing, float], ReducedHousing], factor: float
+    change: Callable[[ReducedHousing, float], ReducedHousing], model: SoundModel, factor: float
 ) -> SoundModel:
     for name, housing in model.housings.items():
         model = model.with_housing(name, change(housing, factor))
     return model
-
-
-def _housing_damping(model: SoundModel, factor: float) -> SoundModel:
-    return _each_housing(model, with_damping, factor)
-
-
-def _housing_frequency(model: SoundModel, factor: float) -> SoundModel:
-    return _each_housing(model, with_frequencies, factor)
 
 
 def _mount_stiffness(model: SoundModel, factor: float) -> SoundModel:
@@ -170,8 +147,13 @@ def _bearing_stiffness(model: SoundModel, factor: float) -> SoundModel:
         scene,
         bushings=tuple(_stiffened(part, factor) for part in scene.bushings),
         planet_bearings=tuple(_stiffened(part, factor) for part in scene.planet_bearings),
-        rolling_contacts=tuple(_pressed(part, factor) for part in scene.rolling_contacts),
-        spring_curves=tuple(_steeper(part, factor) for part in scene.spring_curves),
+        rolling_contacts=tuple(
+            replace(contact, stiffness=factor * contact.stiffness) for contact in scene.rolling_contacts
+        ),
+        spring_curves=tuple(
+            replace(curve, force=tuple(factor * value for value in curve.force))
+            for curve in scene.spring_curves
+        ),
     )
     return replace(model, scene=stiffer)
 
@@ -186,23 +168,20 @@ def _stiffened(bearing: Bearing, factor: float) -> Bearing:
     )
 
 
-def _pressed(contact: RollingContact, factor: float) -> RollingContact:
-    return replace(contact, stiffness=factor * contact.stiffness)
-
-
-def _steeper(curve: SpringCurve, factor: float) -> SpringCurve:
-    return replace(curve, force=tuple(factor * value for value in curve.force))
-
-
 GUESSES = {
     guess.name: guess
     for guess in (
-        Guess("housing_damping", "damping of the housing", Range(0.4, 1.0, 2.0), _housing_damping),
+        Guess(
+            "housing_damping",
+            "damping of the housing",
+            Range(0.4, 1.0, 2.0),
+            partial(_each_housing, with_damping),
+        ),
         Guess(
             "housing_frequency",
             "natural frequencies of the housing",
             Range(0.97, 1.0, 1.01),
-            _housing_frequency,
+            partial(_each_housing, with_frequencies),
         ),
         Guess("mount_stiffness", "stiffness of the mounts", Range(0.5, 1.0, 2.0), _mount_stiffness),
         Guess("bearing_stiffness", "stiffness of the bearings", Range(0.7, 1.0, 1.4), _bearing_stiffness),
@@ -318,7 +297,10 @@ def sound_band(
     for name in ranges:
         one_of("ranges", name, GUESSES)
     ranges = {name: span for name, span in ranges.items() if GUESSES[name].varied(model, 2.0) is not model}
-    others = {"mode_number": _with_half_of_modes(model), **(alternatives or {})}
+    fewer = _each_housing(
+        lambda housing, part: with_modes(housing, max(int(part * len(housing.frequency)), 1)), model, 0.5
+    )
+    others = {"mode_number": fewer, **(alternatives or {})}
     count, done = 1 + len(others) + len(ranges) * (steps - 1) + joint, [0]
 
     def powers(varied: SoundModel) -> tuple[FloatArray, OrderPower]:
@@ -342,7 +324,9 @@ def _band(
     loudest = np.argmax(nominal.weighted_power, axis=1)
 
     def levels(values: Mapping[str, float]) -> FloatArray:
-        own = _with_values(model, values)
+        own = model
+        for name, value in values.items():
+            own = own if value == 1.0 else GUESSES[name].varied(own, value)
         return _levels(order, loudest, *((order, nominal) if own is model else powers(own)))
 
     bands = list(varied(levels))
@@ -386,13 +370,6 @@ def largest_level(speed: FloatArray, power: OrderPower) -> float:
     return float(sound_power_level(total.max())) + missed_between(speed, total)
 
 
-def _with_values(model: SoundModel, values: Mapping[str, float]) -> SoundModel:
-    """Return the model at values of guesses; the same object at what it states."""
-    for name, value in values.items():
-        model = model if value == 1.0 else GUESSES[name].varied(model, value)
-    return model
-
-
 def _levels(order: FloatArray, loudest: FloatArray, own: FloatArray, power: OrderPower) -> FloatArray:
     """Return the levels that have bands, dB(A): largest total, orders' largest, orders there, totals."""
     weighted = np.zeros((order.size, power.power.shape[1]))
@@ -401,9 +378,3 @@ def _levels(order: FloatArray, loudest: FloatArray, own: FloatArray, power: Orde
     total = weighted.sum(axis=0)
     there = weighted[np.arange(order.size), loudest]
     return sound_power_level(np.concatenate([[total.max()], weighted.max(axis=1), there, total]))
-
-
-def _with_half_of_modes(model: SoundModel) -> SoundModel:
-    for name, housing in model.housings.items():
-        model = model.with_housing(name, with_modes(housing, max(len(housing.frequency) // 2, 1)))
-    return model

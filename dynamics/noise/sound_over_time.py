@@ -128,7 +128,9 @@ def sound_over_time(
         raise InputError(
             "block", block, from_to(4 * LEAKAGE / rate, result.time.size / rate, "s", "the run's")
         )
-    velocities = _blocks(_velocity(result, housing, bearings), samples)
+    time, force = finer_seat_forces(result, housing, bearings, FINER)
+    pieces = motion_pieces(housing, time, force, np.eye(len(housing.stiffness)))
+    velocities = _blocks((piece[::FINER] for piece in pieces), samples)  # pieces have even numbers of samples
     starts = np.arange(0, result.time.size - samples + 1, samples // 2)
     width = rate / samples
     line = np.arange(1.0, samples // 2) * width
@@ -146,16 +148,6 @@ def sound_over_time(
     return SoundOverTime(
         result.time[middle], np.abs(speed[middle]), band, within, total, weighted, lowest, highest
     )
-
-
-def _velocity(
-    result: RunResult, housing: ReducedHousing, bearings: Sequence[str] | None
-) -> Iterator[FloatArray]:
-    """Yield the velocities of the reduced coordinates at the samples of the run, (T, r), in pieces."""
-    time, force = finer_seat_forces(result, housing, bearings, FINER)
-    every = np.eye(len(housing.stiffness))
-    for piece in motion_pieces(housing, time, force, every):
-        yield piece[::FINER]  # pieces have an even number of samples
 
 
 def _blocks(pieces: Iterable[FloatArray], samples: int) -> Iterator[FloatArray]:

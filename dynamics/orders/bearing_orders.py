@@ -16,8 +16,6 @@ from dynamics.results import RunResult
 from dynamics.results.order_fit import order_phasors, unwrapped
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 
-# Forces and moments on the bearings of a run.
-
 
 def bearing_signals(result: RunResult) -> FloatArray:
     """Return forces on bearings over time, (b, 3, T) in N, with moments (b, 6, T) in N m where there are any.
@@ -33,9 +31,6 @@ def bearing_signals(result: RunResult) -> FloatArray:
     if not result.bearing_moment.size:
         return result.bearing_force
     return np.concatenate([result.bearing_force, result.bearing_moment], axis=1)
-
-
-# Harmonics of all meshes of a run, counted by the frequency of one of them.
 
 
 SAME = 1e-6
@@ -76,13 +71,7 @@ class MeshHarmonics:
 
 
 def _counting_mesh(result: RunResult) -> int:
-    """Return the first mesh that turns.
-
-    Raises
-    ------
-    InputError
-        There is none.
-    """
+    """Return the first mesh that turns; a run without one is refused."""
     turning: BoolArray = np.any(result.mesh_frequency > 0.0, axis=-1)
     if not np.any(turning):
         raise InputError("mesh_frequency", 0.0, "a run with a mesh that turns")
@@ -90,13 +79,7 @@ def _counting_mesh(result: RunResult) -> int:
 
 
 def _mesh_harmonics(result: RunResult, highest: int) -> MeshHarmonics:
-    """Return the harmonics of all meshes that turn up to order `highest` of the `_counting_mesh`.
-
-    Raises
-    ------
-    InputError
-        No mesh turns.
-    """
+    """Return the harmonics of all meshes that turn up to order `highest` of the `_counting_mesh`."""
     mean = result.mesh_frequency.mean(axis=-1)
     ratio = mean / mean[_counting_mesh(result)]
     rows = [
@@ -113,9 +96,6 @@ def _mesh_harmonics(result: RunResult, highest: int) -> MeshHarmonics:
     return MeshHarmonics(order, mesh, multiple)
 
 
-# What the window of an order analysis rounds off resonances that a run sweeps through.
-
-
 SECOND_MOMENT = 1.0 / 12.0 - 0.5 / np.pi**2
 """Of Hann weights about their middle, over the square of the window's length."""
 
@@ -126,16 +106,8 @@ def _smearing(modes: Json, frequency: FloatArray, sweep: FloatArray) -> FloatArr
     An amplitude that passes a mode of frequency f_n and damping ratio z goes with 1/(1 + i x), where
     x = (f - f_n)/(z f_n). Weights of the second moment m over a window in which f changes by d average it to
     (1 - m (d/(z f_n))^2/(1 + i x)^2) of itself; stated is the largest of all modes. Where it is above 0.1
-    the amplitude is not resolved: take shorter windows, or run up more slowly.
-
-    Parameters
-    ----------
-    modes : dict
-        `frequency` in Hz and `damping_ratio`, as `RunResult.modes` has them.
-    frequency : (S, H) array
-        Hz.
-    sweep : (S,) array
-        Change of the frequency within the window, of its mean.
+    the amplitude is not resolved: take shorter windows, or run up more slowly. `modes` are as `RunResult` has
+    them, `frequency` (S, H) in Hz, `sweep` (S,) the change of the frequency in the window, of its mean.
     """
     natural = np.asarray(modes.get("frequency", ()), dtype=float)
     ratio = np.asarray(modes.get("damping_ratio", ()), dtype=float)
@@ -260,7 +232,8 @@ def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | 
         "windows_left_out": len(windows) - len(kept),
         "effect_ledger": result.effect_ledger,
     }
-    return _put_together(result, harmonics, _by_speed(kept), facts)
+    falls = all(later.speed < earlier.speed for earlier, later in pairwise(kept))
+    return _put_together(result, harmonics, kept[::-1] if falls else kept, facts)
 
 
 def _checked_pitches(harmonics: MeshHarmonics, pitches: int | None) -> int:
@@ -329,12 +302,6 @@ def _remainder(
         for series in (left, left + orders)
     )
     return np.asarray(np.divide(own, whole, out=np.zeros(own.shape), where=whole > 0.0))
-
-
-def _by_speed(rows: list[_Row]) -> list[_Row]:
-    """Return windows by rising speed if it rises or falls all along, or else as they are, by time."""
-    falls = all(later.speed < earlier.speed for earlier, later in pairwise(rows))
-    return rows[::-1] if falls else rows
 
 
 def _no_window(own: FloatArray, pitches: int, rows: list[_Row]) -> InputError:

@@ -14,8 +14,6 @@ from dynamics.results import RunResult
 from dynamics.results.run_result import OVER_TIME
 from dynamics.types import FloatArray, IntArray
 
-# The frequency by which orders of a run count: of a mesh, or without one of a shaft's rotation.
-
 
 def order_frequency(result: RunResult, mesh: int = 0) -> FloatArray:
     """Return the mesh frequency, without meshes the rotations per second of the leading shaft, (T,)."""
@@ -28,9 +26,6 @@ def order_frequency(result: RunResult, mesh: int = 0) -> FloatArray:
 def leading_shaft(result: RunResult) -> str:
     """Return the shaft of the first drive or free rotation."""
     return str([*result.case["drives"], *result.case["free_rotations"]][0]["shaft"])
-
-
-# Up to which mesh order a run's output holds: what the anti-alias filter passes at the highest speed.
 
 
 USUAL = 10
@@ -71,9 +66,6 @@ def checked_order(result: RunResult, field: str, value: int | None, mesh: int = 
         )
         raise InputError(field, value, bound, suggestion)
     return value
-
-
-# Series at another rate of samples, by a polyphase filter.
 
 
 KAISER = 12.0  # shape of the filter's window: 118 dB

@@ -13,9 +13,6 @@ from dynamics.orders.resampling import checked_order, resample_to_position, unit
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
 
-# Amplitude spectra of time series, and where the mesh orders lie in them.
-
-
 WINDOWS = ("hann", "rectangular", "flat_top")
 FLAT_TOP = (0.21557895, -0.41663158, 0.277263158, -0.083578947, 0.006947368)  # ISO 18431-2
 
@@ -80,7 +77,10 @@ def spectrum(values: FloatArray, sample_rate: float, unit: str = "", window: str
     samples = values.shape[-1]
     if samples < 4:
         raise InputError("values", samples, "at least 4 samples")
-    weight = _window(window, samples)
+    one_of("window", window, WINDOWS)
+    phase = 2.0 * np.pi * np.arange(samples) / samples
+    terms = {"hann": (0.5, -0.5), "rectangular": (1.0,), "flat_top": FLAT_TOP}[window]
+    weight = np.asarray(sum(term * np.cos(k * phase) for k, term in enumerate(terms)), dtype=float)
     mean = values.mean(axis=-1, keepdims=True)
     lines = np.abs(np.fft.rfft((values - mean) * weight, axis=-1)) * 2.0 / weight.sum()
     if samples % 2 == 0:
@@ -115,16 +115,6 @@ def mesh_orders(
     frequency = result.mesh_frequency[mesh, result.window(start, end)]
     low, high = float(frequency.min()), float(frequency.max())
     return tuple(MeshOrder(order, order * low, order * high) for order in range(1, count + 1))
-
-
-def _window(name: str, samples: int) -> FloatArray:
-    one_of("window", name, WINDOWS)
-    phase = 2.0 * np.pi * np.arange(samples) / samples
-    terms = {"hann": (0.5, -0.5), "rectangular": (1.0,), "flat_top": FLAT_TOP}[name]
-    return np.asarray(sum(term * np.cos(k * phase) for k, term in enumerate(terms)), dtype=float)
-
-
-# Peaks of a spectrum.
 
 
 @dataclass(frozen=True)
@@ -231,7 +221,11 @@ def sidebands(
     per_pitch = max(64, 8 * (orders + 1))
     grid, _, signal = resample_to_position(result, values, per_pitch, mesh)
     bands: list[Sideband] = []
-    for source, period in (periods or _gear_periods(result, mesh)).items():
+    if not periods:
+        pair = result.case["meshes"][mesh]
+        teeth = {gear["name"]: int(gear["teeth"]) for gear in result.case["gears"]}
+        periods = {name: teeth[name] for name in (pair["driver"], pair["driven"])}
+    for source, period in periods.items():
         turns = grid.size // (period * per_pitch)
         if turns < REVOLUTIONS:
             bound = f"at least {REVOLUTIONS * period} base pitches for sidebands of {source}"
@@ -244,10 +238,3 @@ def sidebands(
                 if line > 0:
                     bands.append(Sideband(source, order, number, at, float(lines[line])))
     return tuple(bands)
-
-
-def _gear_periods(result: RunResult, mesh: int = 0) -> dict[str, int]:
-    """Return the tooth numbers of both gears of a mesh by name: their revolutions in base pitches."""
-    teeth = {gear["name"]: int(gear["teeth"]) for gear in result.case["gears"]}
-    pair = result.case["meshes"][mesh]
-    return {name: teeth[name] for name in (pair["driver"], pair["driven"])}

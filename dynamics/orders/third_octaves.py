@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,9 +13,6 @@ from dynamics.orders.resampling import checked_order, resample_to_position, unit
 from dynamics.orders.spectrum import Spectrum, spectrum
 from dynamics.results import RunResult
 from dynamics.types import FloatArray, IntArray
-
-# Waterfalls: amplitude over speed and frequency, or over speed and mesh order, and cuts through them.
-
 
 ON_LINE = 1e-6  # of a line's distance
 
@@ -63,26 +60,6 @@ class Waterfall:
         return np.asarray(self.amplitude[..., nearest])
 
 
-@dataclass(frozen=True)
-class OrderTrack:
-    """Amplitudes of mesh orders along a run.
-
-    Attributes
-    ----------
-    order : (K,) array
-        Multiples of the mesh frequency, from 0.
-    time, mesh_frequency : (B,) arrays
-        Middle of each block, s and Hz.
-    amplitude : (..., B, K) array
-        Peak amplitude in the series' unit.
-    """
-
-    order: FloatArray
-    time: FloatArray
-    mesh_frequency: FloatArray
-    amplitude: FloatArray
-
-
 def order_waterfall(
     result: RunResult,
     series: str,
@@ -121,8 +98,10 @@ def order_waterfall(
 
 def order_track(
     result: RunResult, series: str, pitches: int = 16, highest: int | None = None, mesh: int = 0
-) -> OrderTrack:
+) -> Waterfall:
     """Return the amplitudes of the mesh orders 0 to `highest` in blocks of `pitches` base pitches.
+
+    The lines of `order_waterfall` at multiples of the mesh frequency.
 
     Raises
     ------
@@ -131,8 +110,7 @@ def order_track(
     """
     whole = order_waterfall(result, series, pitches, highest, mesh)
     orders = np.arange((whole.line.size - 1) // pitches + 1)
-    amplitude = whole.amplitude[..., orders * pitches]
-    return OrderTrack(orders.astype(float), whole.time, whole.mesh_frequency, amplitude)
+    return replace(whole, line=orders.astype(float), amplitude=whole.amplitude[..., orders * pitches])
 
 
 def frequency_waterfall(

@@ -16,8 +16,6 @@ from dynamics.checks import finite, integer, positive
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
 
-# Factors of a study: levels that form a grid, values in a list, and distributions that are sampled.
-
 
 @dataclass(frozen=True)
 class Levels:
@@ -171,15 +169,13 @@ class Design:
         """Values of all factors at all points (C x samples, f), the samples of a combination in a row."""
         cells = self.cells
         values = np.repeat(cells, self.samples, axis=0)
-        values[:, self._sampled] = np.tile(self._sample(), (len(cells), 1))
+        kinds = [f for f in self.factors.values() if isinstance(f, Normal | Uniform)]
+        uniform = np.random.Generator(np.random.PCG64(self.seed)).random((self.samples, len(kinds)))
+        columns = zip(kinds, uniform.T, strict=True)
+        drawn = np.array([kind.quantile(column) for kind, column in columns]).T
+        values[:, self._sampled] = np.tile(drawn, (len(cells), 1))
         return values
 
     @property
     def _sampled(self) -> list[int]:
         return [k for k, f in enumerate(self.factors.values()) if isinstance(f, Normal | Uniform)]
-
-    def _sample(self) -> FloatArray:
-        """Draw the values of the sampled factors (samples, d)."""
-        kinds = [f for f in self.factors.values() if isinstance(f, Normal | Uniform)]
-        uniform = np.random.Generator(np.random.PCG64(self.seed)).random((self.samples, len(kinds)))
-        return np.array([kind.quantile(column) for kind, column in zip(kinds, uniform.T, strict=True)]).T

@@ -16,9 +16,6 @@ from dynamics.results.mesh_figures import ContactState, planet_load_sharing
 from dynamics.results.order_fit import order_amplitudes, unwrapped
 from dynamics.types import FloatArray
 
-# The part of a run that responses are taken from, with what several of them need.
-
-
 SOURCES = ("time_step", "table_interpolation")
 """Of a run's error, as its receipt states them."""
 
@@ -74,16 +71,14 @@ class _Window:
         Of one fit to all of them, up to the highest order H.
         """
         if self.mesh not in self._fits:
-            self._fits[self.mesh] = self._fitted()
+            checked_order(self.run, "order", self.highest_order, self.mesh)
+            position = unwrapped(self.run.position[self.mesh, self.part])
+            forces = (self.run.bearing_force[bearing, :, self.part] for bearing in self.bearings)
+            signals = np.vstack([self.transmission_error(self.mesh)[None], *forces])
+            error, *force = order_amplitudes(position, signals, self.highest_order)
+            by_bearing = np.reshape(force, (-1, 3, self.highest_order))
+            self._fits[self.mesh] = error, dict(zip(self.bearings, by_bearing, strict=True))
         return self._fits[self.mesh]
-
-    def _fitted(self) -> tuple[FloatArray, dict[int, FloatArray]]:
-        checked_order(self.run, "order", self.highest_order, self.mesh)
-        position = unwrapped(self.run.position[self.mesh, self.part])
-        forces = (self.run.bearing_force[bearing, :, self.part] for bearing in self.bearings)
-        signals = np.vstack([self.transmission_error(self.mesh)[None], *forces])
-        error, *force = order_amplitudes(position, signals, self.highest_order)
-        return error, dict(zip(self.bearings, np.reshape(force, (-1, 3, self.highest_order)), strict=True))
 
     def error(self, name: str, order: int = 0) -> float:
         """Sum of the errors by source that the receipt states under a name; NaN where it states none."""
@@ -216,14 +211,6 @@ def _dte_order(window: _Window, row: int, order: int) -> _Value:
     return _Value(float(amplitude[order - 1]), window.error("transmission_error_orders", order))
 
 
-def _dte_rms(window: _Window, row: int, _order: int) -> _Value:
-    return _Value(float(np.std(window.transmission_error(row))), window.error("rms"))
-
-
-def _dte_peak_to_peak(window: _Window, row: int, _order: int) -> _Value:
-    return _Value(float(np.ptp(window.transmission_error(row))))
-
-
 def _peak_mesh_force(window: _Window, row: int, _order: int) -> _Value:
     return _Value(float(np.max(window.run.largest_mesh_force[row, window.part])))
 
@@ -250,9 +237,19 @@ def _mesh_load_factor(window: _Window, _row: int, _order: int) -> _Value:
 QUANTITIES: dict[str, Quantity] = {
     "bearing_force": Quantity("bearing force", "N", "bearing", True, _bearing_force),
     "dte_order": Quantity("dynamic transmission error", "m", "mesh", True, _dte_order),
-    "dte_rms": Quantity("dynamic transmission error, rms", "m", "mesh", False, _dte_rms),
+    "dte_rms": Quantity(
+        "dynamic transmission error, rms",
+        "m",
+        "mesh",
+        False,
+        lambda seen, row, _: _Value(float(np.std(seen.transmission_error(row))), seen.error("rms")),
+    ),
     "dte_peak_to_peak": Quantity(
-        "dynamic transmission error, peak to peak", "m", "mesh", False, _dte_peak_to_peak
+        "dynamic transmission error, peak to peak",
+        "m",
+        "mesh",
+        False,
+        lambda seen, row, _: _Value(float(np.ptp(seen.transmission_error(row)))),
     ),
     "peak_mesh_force": Quantity("peak mesh force", "N", "mesh", False, _peak_mesh_force),
     "dynamic_factor": Quantity("dynamic factor K_v", "", "mesh", False, _dynamic_factor),

@@ -23,9 +23,6 @@ from dynamics.types import FloatArray, IntArray, Json
 from model_studies import LeftOut, Progress, silent
 from model_studies.spread import quantile_bounds, rank_correlation
 
-# The result of a study of scenes: the figures of every run, and what they say together.
-
-
 FRACTIONS = (0.05, 0.5, 0.95)
 POINT = ("point",)
 
@@ -162,9 +159,6 @@ def _bounds(row: FloatArray, fraction: float, confidence: float) -> tuple[float,
     return float(value[0]), float(low[0]), float(high[0])
 
 
-# The scenes of a study, made from values of its factors.
-
-
 class Scenes(Protocol):
     """Makes scenes of one structure; can be pickled, and is frozen data that has a content hash."""
 
@@ -197,9 +191,6 @@ class _OneByOne:
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
         """Yield results as they are computed."""
         return (function(shared, item) for item in items)
-
-
-# Batches of runs: the tasks that the workers of a study do.
 
 
 RUNS = 8
@@ -281,7 +272,9 @@ def _run_point(task: StudyTask, values: tuple[float, ...]) -> PointResult:
     """Run one point; what fails is a marked point with its reason."""
     began, integration, none = clock.thread_time(), NAN, [NAN] * len(task.responses)
     try:
-        run = run_scene(_as_studied(task.scene(values), task.receipt))
+        scene = task.scene(values)
+        stored = {"energy_audit": False, "displacements": False, "accelerations": False}
+        run = run_scene(replace(scene, outputs=replace(scene.outputs, receipt=task.receipt, **stored)))
         integration = float(run.receipt["seconds"]["integration"])
         figures, errors = responses_of(run, task.responses, task.start)
         reason = ""
@@ -292,18 +285,8 @@ def _run_point(task: StudyTask, values: tuple[float, ...]) -> PointResult:
     return PointResult(figures, errors, reason, [clock.thread_time() - began, integration])
 
 
-def _as_studied(scene: Scene, receipt: str) -> Scene:
-    """Return the scene of a point with what a study stores of it: the motion is the same to the last bit."""
-    outputs = replace(
-        scene.outputs, receipt=receipt, energy_audit=False, displacements=False, accelerations=False
-    )
-    return replace(scene, outputs=outputs)
-
-
-def _stated(receipt: str) -> tuple[str, ...]:
-    """Return what the runs of a study do without, in words."""
-    windows = () if receipt == "full" else ("errors of steps and tables measured in windows of the run",)
-    return ("energy audit", *windows, *(() if receipt == "full" else ("estimated influence of effects",)))
+NEGLECTED = ("errors of steps and tables measured in windows of the run", "estimated influence of effects")
+"""What runs of a minimal receipt do without."""
 
 
 def study(
@@ -376,6 +359,8 @@ def _result(
     task: StudyTask, design: Design, points: Sequence[PointResult], confidence: float, keep_worst: int
 ) -> Study:
     figure = np.array([point.figures for point in points])
+    usable = np.flatnonzero(np.isfinite(figure[:, 0]))
+    worst = usable[np.argsort(-figure[usable, 0], kind="stable")][:keep_worst]
     return Study(
         design.names,
         tuple(factor.kind for factor in design.factors.values()),
@@ -388,17 +373,11 @@ def _result(
         np.array([point.seconds for point in points]),
         design.samples,
         confidence,
-        _worst(figure[:, 0], keep_worst),
+        worst,
         {
             "seed": design.seed,
             "start": task.start,
             "receipt": task.receipt,
-            "neglected": _stated(task.receipt),
+            "neglected": ("energy audit", *(() if task.receipt == "full" else NEGLECTED)),
         },
     )
-
-
-def _worst(first: FloatArray, count: int) -> IntArray:
-    """Return the points of the largest values, the largest first; failed ones are none."""
-    usable = np.flatnonzero(np.isfinite(first))
-    return usable[np.argsort(-first[usable], kind="stable")][:count]

@@ -18,12 +18,11 @@ from dynamics.vibration.housing_vibration import (
 )
 from dynamics.vibration.time_signal import motion_pieces, point_signal
 from dynamics.vibration.vibration_analysis import (
+    Parts,
     SurfaceShape,
     VibrationAnalysis,
     analyze_vibration,
-    bearing_parts,
     mean_square_mobility,
-    mode_parts,
     mode_shape,
     operating_deflection,
     transfer_functions,
@@ -32,17 +31,16 @@ from dynamics.vibration.vibration_analysis import (
 __all__ = [
     "BearingHarmonics",
     "MotionQuantity",
+    "Parts",
     "ReportedHarmonics",
     "SurfaceShape",
     "VibrationAnalysis",
     "analyze_vibration",
-    "bearing_parts",
     "finer_seat_forces",
     "housing_motion",
     "housing_vibration",
     "mean_square",
     "mean_square_mobility",
-    "mode_parts",
     "mode_shape",
     "motion_pieces",
     "operating_deflection",

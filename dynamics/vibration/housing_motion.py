@@ -16,8 +16,6 @@ from dynamics.orders.resampling import interpolated
 from dynamics.results import RunResult
 from dynamics.types import BoolArray, ComplexArray, FloatArray, Json
 
-# Forces of bearings by speed and order, from wherever they are known.
-
 
 class BearingHarmonics(Protocol):
     """Forces of b bearings at S speeds in H orders, each as in a steady state.
@@ -128,17 +126,11 @@ def _on_seats(
     for index, name in enumerate(names):
         if name not in known:
             raise InputError(f"bearings[{index}]", name, f"one of {', '.join(known)}")
-    turns = [_turn(seat.axes, signals.shape[1])[: len(seat.motions)] for seat in housing.seats]
+    turns = [  # forces and moments along a seat's axes per a bearing's signals
+        np.kron(np.eye(2), seat.axes.T)[: len(seat.motions), : signals.shape[1]] for seat in housing.seats
+    ]
     own = [signals[known.index(name)] for name in names]
     return np.concatenate([np.tensordot(turn, force, 1) for turn, force in zip(turns, own, strict=True)])
-
-
-def _turn(axes: FloatArray, signals: int) -> FloatArray:
-    """Return forces and moments along the seat's axes per the bearing's signals, (6, 3 or 6)."""
-    return np.asarray(np.kron(np.eye(2), axes.T)[:, :signals])
-
-
-# Amplitudes of the modes of a reduced housing under harmonic forces.
 
 
 ROUNDING = 1e-9
@@ -179,18 +171,14 @@ def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: Comp
     square = natural**2 - omega[:, None] ** 2
     try:
         if np.all(np.abs(damping - np.diag(own)) <= ROUNDING * np.sqrt(np.outer(own, own).clip(0.0))):
-            return _uncoupled(square + 1j * omega[:, None] * own, pushed)
+            dynamic = square + 1j * omega[:, None] * own  # stiffness of every mode, (N, m)
+            if not np.all(dynamic):
+                raise np.linalg.LinAlgError("a dynamic stiffness is zero")
+            return np.asarray(pushed / dynamic[:, None, :])
         return _coupled(square, omega, damping, pushed)
     except np.linalg.LinAlgError as error:
         advice = "The housing resonates there without damping, or moves freely."
         raise InputError("frequency", "singular", "off resonances without damping", advice) from error
-
-
-def _uncoupled(dynamic: ComplexArray, pushed: ComplexArray) -> ComplexArray:
-    """Divide by the dynamic stiffness of every mode, (N, m)."""
-    if not np.all(dynamic):
-        raise np.linalg.LinAlgError("a dynamic stiffness is zero")
-    return np.asarray(pushed / dynamic[:, None, :])
 
 
 def _coupled(
@@ -205,9 +193,6 @@ def _coupled(
         solved = np.linalg.solve(dynamic, np.swapaxes(loads[part], 1, 2))
         amplitude[part] = np.swapaxes(solved, 1, 2)
     return amplitude
-
-
-# Motion of a reduced housing under harmonic forces on its seats.
 
 
 def housing_motion(housing: ReducedHousing, frequency: FloatArray, force: ComplexArray) -> ComplexArray:

@@ -16,12 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dynamics.acoustics import outer_hull
+from dynamics.acoustics.levels import FLOOR
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import PointMotion, ReducedHousing
 from dynamics.types import BoolArray, ComplexArray, FloatArray
 from dynamics.vibration.housing_motion import BearingHarmonics, housing_motion, seat_forces
-
-# Quantities of a vibration: displacement and its rates.
 
 
 class MotionQuantity(StrEnum):
@@ -48,17 +47,12 @@ class MotionQuantity(StrEnum):
         return np.asarray((2j * math.pi * np.asarray(frequency)) ** self.rate * displacement)
 
 
-# Levels of vibration in decibels.
-
-
 REFERENCE = {
     MotionQuantity.DISPLACEMENT: 1e-12,
     MotionQuantity.VELOCITY: 1e-9,
     MotionQuantity.ACCELERATION: 1e-6,
 }
 """Root mean square values of 0 dB, SI, of [1]_."""
-FLOOR = -200.0
-"""Level of no motion at all, dB: -inf would spread through sums and plots."""
 
 
 def vibration_level(rms: ArrayLike, quantity: MotionQuantity = MotionQuantity.VELOCITY) -> FloatArray:
@@ -86,9 +80,6 @@ def overall(rms: ArrayLike, axis: int = -1) -> FloatArray:
     return np.asarray(np.sqrt(np.sum(np.square(np.asarray(rms, dtype=float)), axis=axis)))
 
 
-# Named points of a reduced housing.
-
-
 def named_points(housing: ReducedHousing, names: Sequence[str] | None = None) -> tuple[PointMotion, ...]:
     """Return points by their names, by default all.
 
@@ -112,9 +103,6 @@ def point_rows(housing: ReducedHousing, names: Sequence[str] | None = None) -> F
     """Return the motion of named points per reduced coordinate, (k, 3, r); by default of all, even none."""
     points = named_points(housing, names) if housing.points or names else ()
     return np.array([point.motion for point in points]).reshape(-1, 3, len(housing.mass))
-
-
-# The mean square of the motion of a surface, as a quadratic form of the reduced coordinates.
 
 
 def surface_weight(housing: ReducedHousing) -> FloatArray:

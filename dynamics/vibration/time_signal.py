@@ -125,7 +125,9 @@ def motion_pieces(
     damping = shape.T @ housing.damping @ shape
     push, seen = shape[: housing.motions].T, (np.asarray(rows) @ shape).T
     propagator = _propagator(natural, damping, push, step)
-    state = np.concatenate([_at_rest(natural, push @ forces[0]) * propagator.scale, np.zeros(natural.size)])
+    held = natural > LOOSE * natural.max()
+    rest = np.divide(push @ forces[0], natural**2, out=np.zeros(natural.size), where=held)
+    state = np.concatenate([rest * propagator.scale, np.zeros(natural.size)])
     for first in range(0, times.size, PIECE):
         states, state = _advance(propagator, _derivatives(forces, first), state)
         amplitude = states[:, : natural.size] / propagator.scale
@@ -151,12 +153,6 @@ def _checked_step(time: FloatArray, force: FloatArray, housing: ReducedHousing) 
     if not np.any(housing.mass):
         raise InputError("mass", 0.0, "a housing with mass", "Reduce its mesh, or give its mass matrix.")
     return step
-
-
-def _at_rest(natural: FloatArray, pushed: FloatArray) -> FloatArray:
-    """Return the static amplitudes of modes, (m,); 0 of motions that nothing holds."""
-    held = natural > LOOSE * natural.max()
-    return np.divide(pushed, natural**2, out=np.zeros(natural.size), where=held)
 
 
 def _propagator(natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _Propagator:

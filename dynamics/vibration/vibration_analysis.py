@@ -10,7 +10,7 @@ import numpy as np
 from dynamics.acoustics.outer_hull import QUARTERS
 from dynamics.checks import integer, not_negative
 from dynamics.errors import InputError
-from dynamics.housings.reduced_housing import ReducedHousing, SurfaceMotion
+from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from dynamics.vibration.housing_motion import ReportedHarmonics, housing_motion, modal_amplitudes
 from dynamics.vibration.housing_vibration import (
@@ -21,9 +21,6 @@ from dynamics.vibration.housing_vibration import (
     point_rows,
     surface_weight,
 )
-
-# Contributions of bearings and modes to the motion of a housing at one frequency.
-
 
 RESIDUAL = "residual"
 """Name of what the modes that are not kept contribute: static flexibility of the seats."""
@@ -46,6 +43,36 @@ class Parts:
     name: tuple[str, ...]
     frequency: FloatArray
     motion: ComplexArray
+
+    @classmethod
+    def of_bearings(cls, housing: ReducedHousing, frequency: float, force: ComplexArray) -> Parts:
+        """Return the motion under the force of each bearing.
+
+        Parameters
+        ----------
+        housing : ReducedHousing
+        frequency : float
+            Hz.
+        force : (s,) complex array
+            On the motions of the seats (`seat_forces`).
+        """
+        owner = np.repeat(np.arange(len(housing.seats)), [len(seat.motions) for seat in housing.seats])
+        apart = np.where(owner == np.arange(len(housing.seats))[:, None], force, 0.0)
+        motion = housing_motion(housing, np.full(len(apart), float(frequency)), apart)
+        return cls(tuple(seat.name for seat in housing.seats), np.full(len(apart), np.nan), motion)
+
+    @classmethod
+    def of_modes(cls, housing: ReducedHousing, frequency: float, force: ComplexArray) -> Parts:
+        """Return the motion in each mode kept, and in the rest together; parameters as `of_bearings`."""
+        loads = np.asarray(force)[None, None]
+        amplitude = modal_amplitudes(housing, np.array([float(frequency)]), loads)[0, 0]
+        every = amplitude[:, None] * housing.modes[1].T
+        kept = len(housing.frequency)
+        names = tuple(f"mode {number + 1}" for number in range(kept))
+        if kept == len(every):
+            return cls(names, housing.frequency, every)
+        motion = np.vstack([every[:kept], every[kept:].sum(axis=0, keepdims=True)])
+        return cls((*names, RESIDUAL), np.append(housing.frequency, np.nan), motion)
 
     def shares(self, weight: FloatArray) -> FloatArray:
         """Return contributions to a mean square, (p,): they add up to 1, and some may be negative.
@@ -70,38 +97,6 @@ class Parts:
                 "motion", size, "a motion", "No force acts on the seats at this order and speed."
             )
         return np.asarray(felt.real / size)
-
-
-def bearing_parts(housing: ReducedHousing, frequency: float, force: ComplexArray) -> Parts:
-    """Return the motion under the force of each bearing.
-
-    Parameters
-    ----------
-    housing : ReducedHousing
-    frequency : float
-        Hz.
-    force : (s,) complex array
-        On the motions of the seats (`seat_forces`).
-    """
-    owner = np.repeat(np.arange(len(housing.seats)), [len(seat.motions) for seat in housing.seats])
-    apart = np.where(owner == np.arange(len(housing.seats))[:, None], force, 0.0)
-    motion = housing_motion(housing, np.full(len(apart), float(frequency)), apart)
-    return Parts(tuple(seat.name for seat in housing.seats), np.full(len(apart), np.nan), motion)
-
-
-def mode_parts(housing: ReducedHousing, frequency: float, force: ComplexArray) -> Parts:
-    """Return the motion in each mode kept, and in the rest together; parameters as `bearing_parts`."""
-    amplitude = modal_amplitudes(housing, np.array([float(frequency)]), np.asarray(force)[None, None])[0, 0]
-    every = amplitude[:, None] * housing.modes[1].T
-    kept = len(housing.frequency)
-    names = tuple(f"mode {number + 1}" for number in range(kept))
-    if kept == len(every):
-        return Parts(names, housing.frequency, every)
-    motion = np.vstack([every[:kept], every[kept:].sum(axis=0, keepdims=True)])
-    return Parts((*names, RESIDUAL), np.append(housing.frequency, np.nan), motion)
-
-
-# Transfer functions of a reduced housing: from forces on its seats to points and to its surface.
 
 
 def transfer_functions(
@@ -167,9 +162,6 @@ def mean_square_mobility(housing: ReducedHousing, frequency: FloatArray, weight:
     return 2.0 * mean_square(np.swapaxes(transfer_functions(housing, frequency, coordinates), 1, 2), weight)
 
 
-# Shapes of a housing's surface: natural modes and operating deflections.
-
-
 @dataclass(frozen=True)
 class SurfaceShape:
     """Complex peak amplitudes of the motion of a surface.
@@ -204,7 +196,10 @@ class SurfaceShape:
 
 def operating_deflection(housing: ReducedHousing, motion: ComplexArray) -> SurfaceShape:
     """Return the surface's motion by that of the reduced coordinates, (r,), of any quantity."""
-    surface = _surface(housing)
+    surface = housing.surface
+    if surface is None:
+        advice = "Reduce its mesh or STEP file: matrices alone have no surface."
+        raise InputError("surface", "none", "a housing with a surface", advice)
     return SurfaceShape(surface.points, surface.triangles, np.asarray(surface.motion @ motion, dtype=complex))
 
 
@@ -220,14 +215,6 @@ def mode_shape(housing: ReducedHousing, number: int) -> SurfaceShape:
     shape = operating_deflection(housing, housing.modes[1][:, number - 1].astype(complex))
     largest = np.linalg.norm(shape.motion, axis=1).max()
     return SurfaceShape(shape.points, shape.triangles, shape.motion / largest)
-
-
-def _surface(housing: ReducedHousing) -> SurfaceMotion:
-    """Return the surface, or say that there is none."""
-    if housing.surface is None:
-        advice = "Reduce its mesh or STEP file: matrices alone have no surface."
-        raise InputError("surface", "none", "a housing with a surface", advice)
-    return housing.surface
 
 
 FREQUENCIES = 800
@@ -349,8 +336,8 @@ def analyze_vibration(
         vibration,
         _mobilities(housing, float(vibration.frequency.max()), points),
         *at,
-        _shares(housing, bearing_parts(housing, hertz, force), points),
-        _shares(housing, mode_parts(housing, hertz, force), points),
+        _shares(housing, Parts.of_bearings(housing, hertz, force), points),
+        _shares(housing, Parts.of_modes(housing, hertz, force), points),
         None if housing.surface is None else operating_deflection(housing, rate),
         response.facts,
     )

@@ -134,9 +134,9 @@ def test_orders_above_the_valid_one_are_refused_with_the_rate_to_ask_for():
         with pytest.raises(InputError, match=rf"{name}.*4.*at most 3.*outputs.mesh_orders = 4.*2.048e\+04"):
             call()
     track = order_track(run, "mesh_force")
-    assert track.order.tolist() == [0, 1, 2, 3]
+    assert track.line.tolist() == [0, 1, 2, 3]
     wider = simulate(replace(scene, outputs=Outputs(2.048e4)))
-    assert order_track(wider, "mesh_force", 16, 4).order[-1] == 4
+    assert order_track(wider, "mesh_force", 16, 4).line[-1] == 4
 
 
 def test_the_filter_stops_what_would_fold_and_passes_the_rest():

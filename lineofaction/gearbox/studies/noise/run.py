@@ -25,6 +25,7 @@ from dynamics.acoustics.recording import LOWEST
 from dynamics.housings import ReducedHousing, write_surface
 from dynamics.noise import (
     HousingRadiation,
+    PanelSound,
     RadiatedSound,
     Region,
     SoundOverTime,
@@ -34,9 +35,7 @@ from dynamics.noise import (
     panel_sound,
     radiated_sound,
     regions,
-    side_by_side,
     sound_over_time,
-    together,
 )
 from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.noise.sound_over_time import BLOCK
@@ -98,7 +97,7 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
                 housing.name: _compared(response, housing, sound, inputs, means)
                 for housing, sound in zip(housings, sounds, strict=True)
             }
-            whole = _with_regions(together(sounds), response, housings, MODELS[inputs.radiation])
+            whole = _with_regions(RadiatedSound.of_all(sounds), response, housings, MODELS[inputs.radiation])
             radiation = {housing.name: housing.radiation for housing in housings}
             heard = None if means.run is None else _over_time(subject, means.run, radiation)
         about = response.facts
@@ -169,7 +168,7 @@ def _with_regions(
         at = point.speed_index, point.order_index
         panels = [panel_sound(response, own.body, own.bearings, own.radiation, at, model) for own in housings]
         if not by_point:
-            joined = side_by_side(panels)
+            joined = PanelSound.of_all(panels)
             nodes, corners = joined.hull.nodes, joined.hull.triangles
             sound = replace(sound, panel_node=nodes, panel_corner=corners, panel_power=joined.power)
         rows = [

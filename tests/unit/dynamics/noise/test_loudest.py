@@ -13,7 +13,7 @@ from sounding_scene import SPEEDS, housing, oscillating, radiation, response, so
 
 from dynamics.acoustics import Air, ElementalRadiators, EquivalentRadiatedPower
 from dynamics.errors import InputError
-from dynamics.noise import kept_radiation, loudest, models_at, radiated_sound, together
+from dynamics.noise import RadiatedSound, kept_radiation, loudest, models_at, radiated_sound
 
 AIR = Air()
 
@@ -55,15 +55,15 @@ def test_models_at_a_point_are_those_of_the_map() -> None:
 
 
 def test_two_housings_alike_are_3_db_louder_than_one() -> None:
-    both = together([sound(), sound()])
+    both = RadiatedSound.of_all([sound(), sound()])
     np.testing.assert_allclose(both.power, 2.0 * sound().power, rtol=1e-12)
     np.testing.assert_allclose(both.efficiency, sound().efficiency, rtol=1e-12)
     np.testing.assert_allclose(both.bearing_share.sum(axis=0), both.power, rtol=1e-9)
     assert loudest(both, 1)[0].mode == loudest(sound(), 1)[0].mode
     with pytest.raises(InputError, match="frequency"):
-        together([sound(), replace(sound(), frequency=2.0 * sound().frequency)])
+        RadiatedSound.of_all([sound(), replace(sound(), frequency=2.0 * sound().frequency)])
     with pytest.raises(InputError, match="sounds"):
-        together([])
+        RadiatedSound.of_all([])
 
 
 def test_the_second_time_comes_from_the_cache_to_the_last_bit(tmp_path, monkeypatch) -> None:

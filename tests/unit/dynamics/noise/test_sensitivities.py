@@ -10,14 +10,14 @@ from varied_housing import undamped_elsewhere
 
 from dynamics.errors import InputError
 from dynamics.noise import GUESSES, DesignFigure, forced_power
-from dynamics.noise.sensitivities import ranked, sensitivity
+from dynamics.noise.sensitivities import Sensitivity, ranked
 from dynamics.noise.sound_band import largest_level
 
 FIGURE = DesignFigure("tip relief", "um", 12.0, 2.0)
 
 
 def test_slope_and_curvature_of_a_parabola_are_exact():
-    row = sensitivity(FIGURE, lambda x: 70.0 - 0.8 * (x - 12.0) + 0.05 * (x - 12.0) ** 2)
+    row = Sensitivity.of(FIGURE, lambda x: 70.0 - 0.8 * (x - 12.0) + 0.05 * (x - 12.0) ** 2)
     assert row.slope == pytest.approx(-0.8)
     assert row.curvature == pytest.approx(0.1)
     assert row.for_one_db_less == pytest.approx(1.25)
@@ -25,13 +25,13 @@ def test_slope_and_curvature_of_a_parabola_are_exact():
     bend = 0.05 * row.linear_range**2
     assert bend == pytest.approx(0.25 * abs(row.slope) * row.linear_range)
     assert row.linear
-    assert not sensitivity(FIGURE, lambda x: -0.1 * (x - 12.0) + 0.05 * (x - 12.0) ** 2).linear
+    assert not Sensitivity.of(FIGURE, lambda x: -0.1 * (x - 12.0) + 0.05 * (x - 12.0) ** 2).linear
 
 
 def test_what_changes_nothing_costs_without_end():
-    row = sensitivity(FIGURE, lambda _: 70.0)
+    row = Sensitivity.of(FIGURE, lambda _: 70.0)
     assert (row.slope, row.for_one_db_less, row.linear_range) == (0.0, math.inf, math.inf)
-    louder = sensitivity(FIGURE, lambda x: 3.0 * x)
+    louder = Sensitivity.of(FIGURE, lambda x: 3.0 * x)
     assert ranked([row, louder]) == (louder, row)
     assert louder.for_one_db_less == pytest.approx(-1.0 / 3.0)
 
@@ -51,5 +51,5 @@ def test_damping_of_a_resonance_costs_a_decibel_for_an_eighth():
         varied = GUESSES["housing_damping"].varied(model, factor)
         return largest_level(fine, forced_power(varied, fine, 1)[1])
 
-    row = sensitivity(DesignFigure("housing_damping", "", 1.0, 0.02), level)
+    row = Sensitivity.of(DesignFigure("housing_damping", "", 1.0, 0.02), level)
     assert row.slope == pytest.approx(-20.0 / math.log(10.0), rel=0.01)

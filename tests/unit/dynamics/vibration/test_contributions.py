@@ -12,10 +12,9 @@ from tubular_housings import GROUND, cantilever, two_seats
 from dynamics.errors import InputError
 from dynamics.housings import Mount
 from dynamics.vibration import (
-    bearing_parts,
+    Parts,
     housing_motion,
     mean_square,
-    mode_parts,
     mode_shape,
     operating_deflection,
     surface_weight,
@@ -44,7 +43,7 @@ def pushed(housing, mode, force):
     return abs(shape @ force) / (np.linalg.norm(shape) * np.linalg.norm(force))
 
 
-@pytest.mark.parametrize("parts", [bearing_parts, mode_parts])
+@pytest.mark.parametrize("parts", [Parts.of_bearings, Parts.of_modes])
 @pytest.mark.parametrize("hertz", [500.0, 4000.0])
 def test_parts_add_up_to_the_motion_and_shares_to_one(parts, hertz):
     housing = two_seats()
@@ -63,7 +62,7 @@ def test_the_share_of_a_bearing_is_what_its_force_adds_to_the_mean_square():
     force = forces(housing)
     rows = housing.points[0].motion
     weight = rows.T @ rows
-    found = bearing_parts(housing, hertz, force)
+    found = Parts.of_bearings(housing, hertz, force)
     step = 1e-6
     for seat, share in enumerate(found.shares(weight)):
         grown = force.copy()
@@ -86,7 +85,7 @@ def test_at_a_resonance_apart_the_surface_moves_in_that_mode_which_has_all_of_it
         motion = housing_motion(housing, np.array(hertz), force)
         deflection = operating_deflection(housing, motion)
         assert assurance(deflection, mode_shape(housing, mode + 1)) > 0.99
-        assert mode_parts(housing, hertz, force).shares(surface_weight(housing))[mode] > 0.98
+        assert Parts.of_modes(housing, hertz, force).shares(surface_weight(housing))[mode] > 0.98
 
 
 def test_modes_are_scaled_to_their_largest_motion_and_orthogonal():
@@ -116,4 +115,4 @@ def test_what_has_no_answer_is_refused():
     with pytest.raises(InputError, match="number"):
         mode_shape(two_seats(), 13)
     with pytest.raises(InputError, match="No force"):
-        bearing_parts(housing, 100.0, np.zeros(housing.motions, dtype=complex)).shares(housing.mass)
+        Parts.of_bearings(housing, 100.0, np.zeros(housing.motions, dtype=complex)).shares(housing.mass)
