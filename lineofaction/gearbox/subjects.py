@@ -48,7 +48,7 @@ def scene_of(scene: SceneLike) -> tuple[schemas.SceneInput, Path]:
 
 def scene_inputs(scene: SceneLike) -> dict[str, Any]:
     """Return ``{"scene": ...}`` as JSON, its case files written out; raises `BadInput`."""
-    return {"scene": portable_scene(*scene_of(scene)).model_dump(mode="json")}
+    return {"scene": _portable_scene(*scene_of(scene)).model_dump(mode="json")}
 
 
 def inputs_of(source: CaseLike | SceneLike) -> dict[str, Any]:
@@ -121,7 +121,7 @@ def _in_folder(part: Any, field: str, folder: Path) -> Any:
     return part if name is None else part.model_copy(update={field: str(folder / name)})
 
 
-def portable_scene(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
+def _portable_scene(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
     """Return the scene with its case files written out.
 
     Raises

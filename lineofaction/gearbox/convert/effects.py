@@ -103,11 +103,11 @@ def model_lines(attributes: Json) -> Iterator[str]:
 
     `attributes` hold `effect_ledger`, those of a run `receipt` too.
     """
-    yield from effect_lines(attributes.get("effect_ledger", {}))
+    yield from _effect_lines(attributes.get("effect_ledger", {}))
     yield from run_lines(attributes)
 
 
-def effect_lines(ledger: Json) -> Iterator[str]:
+def _effect_lines(ledger: Json) -> Iterator[str]:
     """Yield the decision about every effect, part by part where they differ, its influence and its price.
 
     `ledger` is that of a run or a study; an influence is a static displacement along the line of action. That

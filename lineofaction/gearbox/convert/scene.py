@@ -144,7 +144,7 @@ def rolling_bearing_of(table: RollingBearingInput) -> RollingBearing:
     return RollingBearing(**in_si(RollingBearing, table), row=row)
 
 
-def laws_of(kind: str, scene: SceneInput) -> Iterator[Any]:
+def _laws_of(kind: str, scene: SceneInput) -> Iterator[Any]:
     """Yield what all bearings do that is not linear, of a kind of `StatedLaws`."""
     for path, bearing in _bearings(scene):
         for name, table in bearing.laws[kind].items():
@@ -441,7 +441,7 @@ def _assembled(
         outputs = Outputs(**in_si(Outputs, scene.outputs))
     with named("integration"):
         integration = Integration(**in_si(Integration, scene.integration))
-    laws: dict[str, Any] = {kind: tuple(laws_of(kind, scene)) for kind in STATED}
+    laws: dict[str, Any] = {kind: tuple(_laws_of(kind, scene)) for kind in STATED}
     with named(""):
         return Scene(
             **in_si(Scene, scene, scene.run, scene.accuracy),

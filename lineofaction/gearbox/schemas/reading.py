@@ -108,7 +108,7 @@ def located(file: InputFile) -> Iterator[None]:
         raise BadInput(_placed(fault, file) for fault in error.faults) from None
 
 
-def line_of(text: str, field: str) -> int | None:
+def _line_of(text: str, field: str) -> int | None:
     """Return the line, from 1, at which a field of a TOML text or else the table around it begins.
 
     None if neither is there. Values of several lines count as one, inline tables too.
@@ -127,7 +127,7 @@ def _placed(fault: Fault, file: InputFile) -> Fault:
     if fault.place or file.path.suffix == ".json" or any(o.path.startswith(own) for o in file.overrides):
         return fault
     try:
-        line = line_of(file.path.read_text(encoding="utf-8"), fault.field)
+        line = _line_of(file.path.read_text(encoding="utf-8"), fault.field)
     except (OSError, UnicodeDecodeError):
         return fault
     return fault if line is None else replace(fault, place=f"{file.path}:{line}")

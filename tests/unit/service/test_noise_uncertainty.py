@@ -23,9 +23,9 @@ from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.noise import SensitivityFigures, SoundBandFigures
 from lineofaction.gearbox.studies.noise.uncertainty import (
-    band_of,
-    flank_scenes,
-    sensitivities_of,
+    _band_of,
+    _flank_scenes,
+    _sensitivities_of,
 )
 from lineofaction.gearbox.subjects import scene_of
 
@@ -74,7 +74,7 @@ def model(subject: TabledScene) -> SoundModel:
 def test_flanks_and_guesses_are_ranked_by_what_they_change(
     subject: TabledScene, model: SoundModel, tmp_path: Path
 ) -> None:
-    rows, left_out = sensitivities_of(subject, model, SPEED, 3, Means(tmp_path, quiet))
+    rows, left_out = _sensitivities_of(subject, model, SPEED, 3, Means(tmp_path, quiet))
     names = [row.figure.name for row in rows]
     assert {"housing_damping", "bearing_stiffness", "mesh_damping", "housing_frequency"} <= set(names)
     assert "mount_stiffness" not in names
@@ -95,7 +95,7 @@ def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(
     subject: TabledScene, model: SoundModel, tmp_path: Path
 ) -> None:
     """Between two tables solved from the start, and between those on the compliance of the first."""
-    scenes = flank_scenes(subject, RELIEF, tmp_path)
+    scenes = _flank_scenes(subject, RELIEF, tmp_path)
     other = made_from(tmp_path, pinion=RELIEVED | {"tip_relief_um": 40.0})
     levels = [
         largest_level(SPEED, forced_power(replace(model, scene=scene), SPEED, 3)[1])
@@ -111,7 +111,7 @@ def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(
 
 
 def test_bands_go_to_json(subject: TabledScene, model: SoundModel, tmp_path: Path) -> None:
-    band = band_of(model, SPEED, 2, NoiseRanges(), Means(tmp_path, quiet))
+    band = _band_of(model, SPEED, 2, NoiseRanges(), Means(tmp_path, quiet))
     told = json.loads(json.dumps(figures_of(SoundBandFigures, band), allow_nan=False))
     assert len(told["total_low_db_a"]) == SPEED.size
     for level in (told["largest_total"], *(row["largest"] for row in told["orders"])):

@@ -22,7 +22,7 @@ from dynamics.integrators import static_equilibrium
 from dynamics.mechanism.bodies import modal_housing
 from dynamics.scene import Scene
 from lineofaction.gearbox.convert.declared import in_si
-from lineofaction.gearbox.convert.scene import dynamic_scene, laws_of
+from lineofaction.gearbox.convert.scene import _laws_of, dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -120,7 +120,7 @@ def test_planet_bearings_have_all_that_bushings_have() -> None:
         "damping_matrix": MATRIX,
     }
     given = validated(SceneInput, table)
-    (contact_law,), (curve_law,) = (laws_of(kind, given) for kind in ("rolling_contacts", "spring_curves"))
+    (contact_law,), (curve_law,) = (_laws_of(kind, given) for kind in ("rolling_contacts", "spring_curves"))
     assert (contact_law.bushing, contact_law.clearance) == ("pin", pytest.approx(20e-6, rel=1e-12, abs=0.0))
     assert (curve_law.bushing, curve_law.direction) == ("pin", "tilt_y")
     bearing = PlanetBearing(**in_si(PlanetBearing, given.planet_bearings[0]))

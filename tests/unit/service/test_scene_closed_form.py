@@ -16,7 +16,7 @@ from lineofaction.gearbox.convert.scene import check_scene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.subjects import portable_scene
+from lineofaction.gearbox.subjects import _portable_scene
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = tomllib.loads((ROOT / "examples" / "backlash_oscillator_scene.toml").read_text())
@@ -58,7 +58,7 @@ def test_a_ring_gear_is_larger_by_the_ratio_of_the_teeth() -> None:
 
 def test_a_service_takes_the_scene_as_it_is() -> None:
     given = validated(SceneInput, EXAMPLE)
-    assert portable_scene(given, ROOT) == given
+    assert _portable_scene(given, ROOT) == given
     assert given.with_database == []
     assert check_scene(given, {}).meshes[0].table.level.size == 2
 

@@ -26,8 +26,8 @@ from lineofaction.gearbox.studies.sensitivity import Inputs
 from lineofaction.gearbox.studies.sensitivity.run import (
     RUN,
     PairStudy,
-    read_studies,
-    write_studies,
+    _read_studies,
+    _write_studies,
 )
 from lineofaction.report.design.sensitivity import _page, _sensitivity_figure, _sensitivity_table
 from lineofaction.report.document import write_report
@@ -172,7 +172,7 @@ def test_several_cases_are_one_study_under_the_names_of_their_files(
     other.write_text(SMALL)
     result = loa(small, other, "-o", tmp_path / "x.nc", "--csv", *WIDER)
     assert result.exit_code == 0
-    assert [pair.name for pair in read_studies(tmp_path / "x.nc")] == ["small", "wide face"]
+    assert [pair.name for pair in _read_studies(tmp_path / "x.nc")] == ["small", "wide face"]
     assert {row[0] for row in csv.reader(result.stdout.splitlines()[1:])} == {"small", "wide face"}
 
 
@@ -210,8 +210,8 @@ def test_studies_come_back_from_their_file(tmp_path: Path) -> None:
         for change in [one.center_distance_change]
     )
     written = [study(), replace(wide, curves=curves, center_distance=0.15)]
-    write_studies(written, tmp_path / "s.nc")
-    back = read_studies(tmp_path / "s.nc")
+    _write_studies(written, tmp_path / "s.nc")
+    back = _read_studies(tmp_path / "s.nc")
     assert _sensitivity_table(back) == _sensitivity_table(written)
     for one, other in zip(written, back, strict=True):
         assert (one.name, one.normal_force, one.center_distance) == (
@@ -228,19 +228,19 @@ def test_studies_come_back_from_their_file(tmp_path: Path) -> None:
 
 
 def test_a_damaged_or_foreign_study_is_refused(tmp_path: Path) -> None:
-    write_studies([study()], tmp_path / "s.nc")
+    _write_studies([study()], tmp_path / "s.nc")
     with h5netcdf.File(tmp_path / "s.nc", "a") as file:
         file.variables["normal_force"][0] = 7.0
     with pytest.raises(DatabaseError, match="checksum"):
-        read_studies(tmp_path / "s.nc")
+        _read_studies(tmp_path / "s.nc")
     with h5netcdf.File(tmp_path / "s.nc", "a") as file:
         file.attrs["format"] = "else"
     with pytest.raises(DatabaseError, match="no sensitivity study"):
-        read_studies(tmp_path / "s.nc")
+        _read_studies(tmp_path / "s.nc")
 
 
 def test_a_study_is_on_the_report_page(tmp_path: Path) -> None:
-    write_studies([study()], tmp_path / "s.nc")
+    _write_studies([study()], tmp_path / "s.nc")
     page = write_report(tmp_path / "s.nc", tmp_path / "s.html")[0].read_text(encoding="utf-8")
     assert '<figure id="sensitivity">' in page
     assert "<h1>Sensitivity of gear pairs</h1>" in page

@@ -15,7 +15,7 @@ from dynamics.types import RunStatus
 from lineofaction.cli.commands import app
 from lineofaction.cli.guard import until_interrupted
 from lineofaction.cli.simulate import _run, _run_headlines
-from lineofaction.gearbox.convert.effects import effect_lines
+from lineofaction.gearbox.convert.effects import _effect_lines
 from lineofaction.gearbox.units import boundary_ledger
 
 SCENE = gear_pair_scene(duration=0.02)
@@ -63,7 +63,7 @@ def test_a_run_says_which_effects_are_on_and_what_the_others_change():
     small = dict.fromkeys(names, 2e-4) | {"words": "0.02 % of all", "freedoms": 4}
     large = small | {"words": "17 % of all", "relative_mean": -0.17}
     ledger = {"entries": entries, "influences": {"tilt": small, "lateral": large}}
-    assert list(effect_lines(boundary_ledger(ledger))) == [
+    assert list(_effect_lines(boundary_ledger(ledger))) == [
         "effect flexible_shafts: off (input); switched off; 2 um along the line of action",
         "effect lateral: on (input, output); pushed aside; 13.3 um along the line of action",
         "       without it 17 % of all; +4 freedoms with it",

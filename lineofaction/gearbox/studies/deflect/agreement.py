@@ -182,7 +182,7 @@ def in_agreement(
         change = _change(last, deflection, contacts)
         if change <= TOLERANCE or not deflection.converged:
             break
-        knots = {name: with_knots(own, _misalignments(deflection, name)) for name, own in knots.items()}
+        knots = {name: _with_knots(own, _misalignments(deflection, name)) for name, own in knots.items()}
         last = deflection
     return Agreement(deflection, passes, change)
 
@@ -199,10 +199,10 @@ def _first_knots(misalignments: Sequence[float], stated: float) -> list[float]:
     """
     low, high = min(misalignments), max(misalignments)
     margin = max(MARGIN * (high - low), MARGIN * max(abs(low), abs(high)), LEAST_MARGIN)
-    return with_knots([min(low - margin, stated), max(high + margin, stated)], misalignments, 0.1 * margin)
+    return _with_knots([min(low - margin, stated), max(high + margin, stated)], misalignments, 0.1 * margin)
 
 
-def with_knots(knots: Sequence[float], further: Sequence[float], closest: float = CLOSEST) -> list[float]:
+def _with_knots(knots: Sequence[float], further: Sequence[float], closest: float = CLOSEST) -> list[float]:
     """Return knots with further ones, increasing; of closer ones than `closest` the later stays."""
     kept = list(knots)
     for knot in further:

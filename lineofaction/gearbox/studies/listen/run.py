@@ -70,7 +70,7 @@ class SoundFigures:
     tones: tuple[tuple[float, float], ...] = ()
 
 
-def sound_figures(recording: Recording, run: RunResult) -> SoundFigures:
+def _sound_figures(recording: Recording, run: RunResult) -> SoundFigures:
     """Return the figures of a sound pressure; of a very short one, or without MoSQITo, its levels alone."""
     level, weighted = (sound_pressure_level(recording, weighted=by_ear) for by_ear in (False, True))
     speed = np.abs(run.speed[run.shaft.index(driving_shaft(run, 0))])
@@ -228,7 +228,7 @@ def heard_run(name: str, run: RunResult, housings: SceneHousings, receiver: Rece
         recording, figures = housings.velocity(run, receiver.point, receiver.direction), None
     else:
         recording = housings.pressure(run, receiver.microphone_mm)
-        figures = sound_figures(recording, run)
+        figures = _sound_figures(recording, run)
     own = [scene_housing(body, part) for part, body in housings.housings.items()]
     return HeardRun(name, recording, figures, other_housings(own, run), time - time[0], speed)
 

@@ -49,7 +49,7 @@ def uncertainty(
     began = cpu_seconds()
     with boundary_errors():
         if inputs.band:
-            band = band_of(model, sound.speed, inputs.orders, inputs, means)
+            band = _band_of(model, sound.speed, inputs.orders, inputs, means)
             levels = [
                 about["level"].values() for about in sound.facts["models"].values() if about.get("level")
             ]
@@ -57,7 +57,7 @@ def uncertainty(
             band = band.with_error("radiation_model", missed, missed)
             facts["band"] = figures_of(SoundBandFigures, band)
         if inputs.sensitivities:
-            rows, left_out = sensitivities_of(subject, model, sound.speed, inputs.orders, means)
+            rows, left_out = _sensitivities_of(subject, model, sound.speed, inputs.orders, means)
             facts["sensitivities"] = [figures_of(SensitivityFigures, row) for row in rows]
             facts["sensitivities_left_out"] = left_out
     if inputs.band or inputs.sensitivities:
@@ -65,7 +65,7 @@ def uncertainty(
     return facts
 
 
-def band_of(
+def _band_of(
     model: SoundModel, speed: FloatArray, orders: int, ranges: NoiseRanges, means: Means
 ) -> SoundBand:
     """Return the bands over the ranges."""
@@ -74,13 +74,13 @@ def band_of(
     return sound_band(model, speed, orders, spans, progress=means.report)
 
 
-def sensitivities_of(
+def _sensitivities_of(
     subject: TabledScene, model: SoundModel, speed: FloatArray, orders: int, means: Means
 ) -> tuple[tuple[Sensitivity, ...], dict[str, str]]:
     """Return what steps of damping, stiffness and flanks change, and why others have no result."""
 
     def scenes(flank: DesignFigure) -> Callable[[float], Scene]:
-        varied = flank_scenes(subject, flank.name, means.home)
+        varied = _flank_scenes(subject, flank.name, means.home)
         return lambda value: varied.scene({flank.name: value})
 
     flanks = _flank_figures(subject.inputs)
@@ -99,7 +99,7 @@ def _flank_figures(scene: SceneInput) -> Iterator[DesignFigure]:
                     yield DesignFigure(path, "um", float(getattr(flank, amount)), STEP)
 
 
-def flank_scenes(subject: TabledScene, path: str, home: Path) -> VariedScene:
+def _flank_scenes(subject: TabledScene, path: str, home: Path) -> VariedScene:
     """Return the scene by a figure of its flanks: its table is solved again on the same compliance."""
     places = {path: places_of(subject.inputs, "sensitivities", path)}
     return VariedScene(subject.inputs.model_dump_json(), subject.databases, places, str(home))

@@ -67,7 +67,7 @@ class PairStudy:
     curves: tuple[Sensitivity, ...]
 
 
-def write_studies(studies: Sequence[PairStudy], path: Path) -> None:
+def _write_studies(studies: Sequence[PairStudy], path: Path) -> None:
     """Write studies of the same numbers of deviations: into a temporary file beside `path`, then renamed."""
     arrays: dict[str, Any] = {
         "normal_force": np.array([study.normal_force for study in studies]),
@@ -96,8 +96,8 @@ def write_studies(studies: Sequence[PairStudy], path: Path) -> None:
     NetcdfContent(variables, attributes).write(path)
 
 
-def read_studies(path: Path) -> tuple[PairStudy, ...]:
-    """Read back what `write_studies` wrote.
+def _read_studies(path: Path) -> tuple[PairStudy, ...]:
+    """Read back what `_write_studies` wrote.
 
     Raises
     ------
@@ -128,7 +128,7 @@ TABLES = 4
 
 class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
     inputs, answer = Inputs, SensitivityFigures
-    file = ResultFile("format", (FORMAT,), write_studies, read_studies, tuple[PairStudy, ...])
+    file = ResultFile("format", (FORMAT,), _write_studies, _read_studies, tuple[PairStudy, ...])
     resumed = True
 
     def narrowed(self, checked: CheckedCase, _inputs: Inputs) -> CheckedCase:

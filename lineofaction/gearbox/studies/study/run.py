@@ -51,12 +51,12 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
 
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
         """Refuse a path that names no number, a value that its field does not accept, too many points."""
-        factor_places(scene, inputs)
+        _factor_places(scene, inputs)
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> Study:
-        places = factor_places(tabled.inputs, inputs)
+        places = _factor_places(tabled.inputs, inputs)
         with boundary_errors():
-            design = design_of(tabled.inputs, inputs, places)
+            design = _design_of(tabled.inputs, inputs, places)
             responses = tuple(
                 Response(r.quantity, r.part or "", r.order or 0, r.mesh or "") for r in inputs.responses
             )
@@ -146,7 +146,7 @@ def _values(result: Study, point: int) -> dict[str, float]:
 # The design of a study, from its file.
 
 
-def design_of(scene: SceneInput, inputs: Inputs, places: Mapping[str, tuple[Place, ...]]) -> Design:
+def _design_of(scene: SceneInput, inputs: Inputs, places: Mapping[str, tuple[Place, ...]]) -> Design:
     """Return the design; raises `BadInput`, `DynamicsError`."""
     factors = {f.path: _factor(k, f, scene, places[f.path]) for k, f in enumerate(inputs.factors)}
     return Design(factors, inputs.samples, inputs.seed)
@@ -200,7 +200,7 @@ def _check_parts(scene: Scene, responses: tuple[Response, ...]) -> None:
 # Checks of a study at the request: paths, values, numbers of points.
 
 
-def factor_places(scene: SceneInput, inputs: Inputs) -> Mapping[str, tuple[Place, ...]]:
+def _factor_places(scene: SceneInput, inputs: Inputs) -> Mapping[str, tuple[Place, ...]]:
     """Return where every factor stands in the scene.
 
     Raises

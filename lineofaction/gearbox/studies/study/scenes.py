@@ -71,7 +71,7 @@ def places_of(scene: SceneInput, field: str, path: str) -> tuple[Place, ...]:
         return ((kind, *_below(type(parts), field, path, rest)),)
     if not isinstance(parts, tuple):
         raise BadInput.of(field, path, "the path of a number", f"{kind} has none.")
-    names = {part_name(part, index): index for index, part in enumerate(parts)}
+    names = {_part_name(part, index): index for index, part in enumerate(parts)}
     name = next((n for n in sorted(names, key=len, reverse=True) if rest.startswith(f"{n}.")), None)
     if name is None and not rest.startswith(f"{_EVERY}."):
         raise _unknown(field, path, rest.partition(".")[0], [*names, _EVERY])
@@ -80,7 +80,7 @@ def places_of(scene: SceneInput, field: str, path: str) -> tuple[Place, ...]:
     return tuple((kind, index, *_below(type(parts[index]), field, path, further)) for index in chosen)
 
 
-def part_name(part: BaseModel, index: int) -> str:
+def _part_name(part: BaseModel, index: int) -> str:
     """Return the name of a part; of one without it, its number."""
     return str(getattr(part, "name", index))
 

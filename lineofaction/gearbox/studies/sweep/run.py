@@ -110,7 +110,7 @@ SWEEPABLE = {
 """By the name of their `SweepAxis`."""
 
 
-def axis_of(case: CheckedCase, text: str) -> SweepAxis:
+def _axis_of(case: CheckedCase, text: str) -> SweepAxis:
     """Return the axis that ``NAME`` or ``NAME=FIRST:LAST:STEP`` says.
 
     Raises
@@ -293,7 +293,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
 
 
 def _request(case: CheckedCase, inputs: Inputs) -> SweepRequest:
-    axes = tuple(axis_of(case, text) for text in inputs.over)
+    axes = tuple(_axis_of(case, text) for text in inputs.over)
     point = operating_point(case_at(case.case, FlankPoint()))
     return SweepRequest(case.pair, axes, point, case.options)
 

@@ -16,8 +16,8 @@ from lineofaction.gearbox.studies.deflect.agreement import (
     CLOSEST,
     PASSES,
     TOLERANCE,
+    _with_knots,
     in_agreement,
-    with_knots,
 )
 
 CASES = (LoadCase("drive"), LoadCase("less", factor=0.4), LoadCase("coast", direction="coast"))
@@ -89,4 +89,4 @@ def test_without_contact_over_the_face_there_is_nothing_to_agree() -> None:
 
 def test_a_closer_knot_takes_the_place_of_the_one_before() -> None:
     near = 0.5 * CLOSEST
-    assert with_knots([0.0, 1e-6], [1e-6 + near, 2e-6]) == [0.0, 1e-6 + near, 2e-6]
+    assert _with_knots([0.0, 1e-6], [1e-6 + near, 2e-6]) == [0.0, 1e-6 + near, 2e-6]

@@ -10,7 +10,7 @@ import pytest
 
 from dynamics.acoustics import Recording, loudness_over_time
 from dynamics.results import RunResult
-from lineofaction.gearbox.studies.listen.run import sound_figures
+from lineofaction.gearbox.studies.listen.run import _sound_figures
 
 RATE = 48_000
 TIME = np.arange(RATE // 2) / RATE
@@ -29,7 +29,7 @@ def steady(run: RunResult) -> RunResult:
 
 def test_a_steady_tone_of_60_db_has_4_sone_and_is_prominent(steady: RunResult) -> None:
     pytest.importorskip("mosqito", reason="loudness needs the extra psychoacoustics")
-    figures = sound_figures(recording(), steady)
+    figures = _sound_figures(recording(), steady)
     assert figures.steady
     assert figures.weighted_level == pytest.approx(60.0, abs=0.01)
     assert figures.loudness == pytest.approx(4.02, rel=0.05)
@@ -41,7 +41,7 @@ def test_a_steady_tone_of_60_db_has_4_sone_and_is_prominent(steady: RunResult) -
 def test_the_loudness_of_a_run_up_is_exceeded_for_a_twentieth_of_its_time(run: RunResult) -> None:
     pytest.importorskip("mosqito", reason="loudness needs the extra psychoacoustics")
     swelling = recording(TONE * np.linspace(0.0, 1.0, TONE.size) ** 2)
-    figures = sound_figures(swelling, run)
+    figures = _sound_figures(swelling, run)
     loudness = loudness_over_time(swelling)[1]
     assert not figures.steady and figures.tones == ()
     assert np.mean(loudness > figures.loudness) == pytest.approx(0.05, abs=0.01)
@@ -49,6 +49,6 @@ def test_the_loudness_of_a_run_up_is_exceeded_for_a_twentieth_of_its_time(run: R
 
 def test_without_the_extra_the_levels_are_left(steady: RunResult, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mosqito", None)
-    figures = sound_figures(recording(), steady)
+    figures = _sound_figures(recording(), steady)
     assert figures.level == pytest.approx(60.0, abs=0.01)
     assert figures.loudness is None and figures.sharpness is None

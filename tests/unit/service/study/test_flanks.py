@@ -15,9 +15,9 @@ from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import Inputs
-from lineofaction.gearbox.studies.study.run import design_of, factor_places
+from lineofaction.gearbox.studies.study.run import _design_of, _factor_places
 from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of
-from lineofaction.gearbox.subjects import portable_scene, scene_of
+from lineofaction.gearbox.subjects import _portable_scene, scene_of
 
 CASE = (
     spur_case("tip_relief_um = 10.0\ntip_relief_length_mm = 2.0")
@@ -40,7 +40,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> SceneInput:
     text = SCENE.format(duration=0.05, speed=300.0, rate=20e3)
     text = text.replace('database_file = "ste.nc"', 'case_file = "case.toml"')
     (folder / "scene.toml").write_text(text, encoding="utf-8")
-    return portable_scene(*scene_of(folder / "scene.toml"))
+    return _portable_scene(*scene_of(folder / "scene.toml"))
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +88,7 @@ def test_a_class_of_iso_1328_is_a_band_about_the_design(written: SceneInput) -> 
     inputs = Inputs.model_validate(
         {"factors": [factor], "responses": [{"quantity": "dte_rms"}], "samples": 500}
     )
-    points = design_of(written, inputs, factor_places(written, inputs)).points[:, 0]
+    points = _design_of(written, inputs, _factor_places(written, inputs)).points[:, 0]
     # (0.4 m_n + 0.001 d + 4) um of class 5, m_n = 4, d = 80; two classes coarser: twice; above 10: whole
     assert np.abs(points).max() <= 11.0
     assert points.std() == pytest.approx(11.0 / 3.0, rel=0.1)
@@ -102,4 +102,4 @@ def test_deviations_of_a_case_with_axes_are_refused(written: SceneInput) -> None
         {"factors": [{"path": PATH, "levels": [1.0]}], "responses": [{"quantity": "dte_rms"}]}
     )
     with pytest.raises(BadInput, match="one misalignment"):
-        factor_places(several, inputs)
+        _factor_places(several, inputs)
