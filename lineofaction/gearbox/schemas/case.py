@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import MISSING, replace
-from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
@@ -23,6 +22,7 @@ from lineofaction.gearbox.schemas.model import (
     given,
     left_out,
     refuse,
+    refuse_unsorted,
     stated,
 )
 
@@ -104,11 +104,6 @@ Switch = Literal["on", "off", "auto"]
 EffectName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 
 
-def _increasing(field: str, values: tuple[float, ...] | None) -> None:
-    if values is not None and any(b <= a for a, b in pairwise(values)):
-        refuse(field, list(values), "strictly increasing", "Sort the list and drop repeats.")
-
-
 OF_PAIR = (*SHARED, *(replace(figure, default=MISSING) for figure in figures(GearPair)))
 """Figures that a case has in ``[pair]``."""
 
@@ -151,8 +146,8 @@ class LoadInput(BoundaryModel):
                 "given, or normal_force_n instead, but not both",
                 "For example torque_n_m = [10, 100, 400].",
             )
-        _increasing("torque_n_m", self.torque_n_m)
-        _increasing("normal_force_n", self.normal_force_n)
+        refuse_unsorted("torque_n_m", self.torque_n_m)
+        refuse_unsorted("normal_force_n", self.normal_force_n)
         return self
 
 
@@ -170,8 +165,8 @@ class ErrorsInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _axes_increase(self) -> Self:
-        _increasing("misalignment_um", self.misalignment_um)
-        _increasing("center_distance_change_mm", self.center_distance_change_mm)
+        refuse_unsorted("misalignment_um", self.misalignment_um)
+        refuse_unsorted("center_distance_change_mm", self.center_distance_change_mm)
         return self
 
 

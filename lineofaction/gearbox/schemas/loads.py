@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, Strict, model_validator
@@ -22,6 +21,7 @@ from lineofaction.gearbox.schemas.model import (
     at_most_one_of,
     exactly_one_of,
     refuse,
+    refuse_unsorted,
     stated,
 )
 
@@ -119,8 +119,7 @@ class SpeedTorqueInput(BoundaryModel):
 
 
 def _check_law(field: str, times: tuple[float, ...], values: tuple[float, ...]) -> None:
-    if any(later <= earlier for earlier, later in pairwise(times)):
-        refuse("time_s", list(times), "strictly increasing", "Sort the list and drop repeats.")
+    refuse_unsorted("time_s", times)
     if len(times) != len(values):
         refuse(
             field, list(values), f"a list of {len(times)}, one for each of time_s", "Give one value per time."
@@ -220,8 +219,7 @@ class ForceInput(BoundaryModel):
         by = stated_by[0] if stated_by else None
         points = getattr(self, by) if by in ("time_s", "speed_rpm") else None
         _as_many("factor", self.factor, by or "time_s", points)
-        if points is not None and any(later <= earlier for earlier, later in pairwise(points)):
-            refuse(str(by), list(points), "strictly increasing", "Sort the list and drop repeats.")
+        refuse_unsorted(str(by), points)
         _as_many("amplitude", self.amplitude, "orders", self.orders)
         _as_many("phase_deg", self.phase_deg, "orders", self.orders, optional=True)
         if self.mean and self.orders is None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, Strict, model_validator
@@ -18,6 +17,7 @@ from lineofaction.gearbox.schemas.model import (
     at_most_one_of,
     exactly_one_of,
     refuse,
+    refuse_unsorted,
     stated,
 )
 
@@ -69,8 +69,7 @@ class PeriodicInput(BoundaryModel):
         """Refuse more than one kind, and lists that do not fit each other."""
         if self.amplitude is not None and self.position is not None:
             refuse("amplitude", list(self.amplitude), "left out where position is given", "Keep one of them.")
-        if self.position is not None and any(b <= a for a, b in pairwise(self.position)):
-            refuse("position", list(self.position), "strictly increasing", "Sort the list and drop repeats.")
+        refuse_unsorted("position", self.position)
         count = 1 if self.position is None else len(self.position)
         if len(self.value) != count:
             refuse("value", list(self.value), f"a list of {count}", "One, or one for each of position.")

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import islice
+from itertools import islice, pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn, TypeVar, cast, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Strict
@@ -115,6 +115,12 @@ def refuse(field: str, value: object, bound: str, suggestion: str = "") -> NoRet
         "must be {bound}",
         {"field": field, "value": value, "bound": bound, "suggestion": suggestion},
     )
+
+
+def refuse_unsorted(field: str, values: Sequence[float] | None, shown: int | None = None) -> None:
+    """Refuse a list that is not strictly increasing; its first `shown` values are said."""
+    if values is not None and any(later <= earlier for earlier, later in pairwise(values)):
+        refuse(field, list(values)[:shown], "strictly increasing", "Sort the list and drop repeats.")
 
 
 # Types that tables of case and scene files, and inputs of studies, share.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, model_validator
@@ -18,6 +17,7 @@ from lineofaction.gearbox.schemas.model import (
     given,
     left_out,
     refuse,
+    refuse_unsorted,
     stated,
 )
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -40,9 +40,7 @@ class OverSpeeds(BoundaryModel):
 
     @model_validator(mode="after")
     def _increasing(self) -> Self:
-        if any(later <= earlier for earlier, later in pairwise(self.speed_rpm)):
-            shown = list(self.speed_rpm)[:8]
-            refuse("speed_rpm", shown, "strictly increasing", "Sort the list and drop repeats.")
+        refuse_unsorted("speed_rpm", self.speed_rpm, shown=8)
         return self
 
 

@@ -9,7 +9,7 @@ from pydantic import Field, Strict, model_validator
 
 from bounds import DEPTHS, Kind
 from fe_contact.flank.modification import FlankModification
-from lineofaction.gearbox.schemas.case import Load
+from lineofaction.gearbox.schemas.case import Load, Misalignment
 from lineofaction.gearbox.schemas.declared import Figure, figures, with_fields
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
@@ -18,7 +18,6 @@ from lineofaction.gearbox.schemas.query import MANY, ONE, ONE_OR_MANY
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
 _EACH = (Strict(False), Field(min_length=1, max_length=64))
 Torques = Annotated[tuple[Load, ...], *_EACH]
-Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
 Misalignments = Annotated[
     Annotated[Misalignment, ONE] | Annotated[tuple[Misalignment, ...], *_EACH, MANY], ONE_OR_MANY
 ]

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
+from lineofaction.gearbox.schemas.case import Misalignment
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
-from lineofaction.gearbox.schemas.model import BoundaryModel, Row, refuse
+from lineofaction.gearbox.schemas.model import BoundaryModel, Row, refuse_unsorted
 
-Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
 Percent = Annotated[float, Field(ge=-10.0, le=10.0)]
 
 
@@ -36,10 +35,8 @@ class Inputs(BoundaryModel):
 
     @model_validator(mode="after")
     def _increasing(self) -> Self:
-        for name in ("misalignment_um", "center_distance_change_percent"):
-            values = getattr(self, name)
-            if any(b <= a for a, b in pairwise(values)):
-                refuse(name, list(values), "strictly increasing", "Sort the list and drop repeats.")
+        refuse_unsorted("misalignment_um", self.misalignment_um)
+        refuse_unsorted("center_distance_change_percent", self.center_distance_change_percent)
         return self
 
 

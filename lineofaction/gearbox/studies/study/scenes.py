@@ -6,7 +6,7 @@ import copy
 import difflib
 import json
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -27,16 +27,13 @@ from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput, ServiceError
 from lineofaction.gearbox.schemas.declared import figures
 from lineofaction.gearbox.schemas.faults import faults_of, model_in
-from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
 from model_studies import LeftOut
 
 if TYPE_CHECKING:
-    from dynamics.housings import ReducedHousing
+    pass
 
 Json = dict[str, Any]
-Key = tuple[tuple[str, float], ...]
-SolidKey = tuple[tuple[BoundaryModel, ...], ...]
 Place = tuple[str | int, ...]
 """Keys and indices down to a number of the scene as JSON."""
 
@@ -169,8 +166,10 @@ class VariedScene:
         """Return the scene at values of the factors; raises `LeftOut` where there is none."""
         try:
             inputs = self.inputs(values)
+            solids = inputs.housings, inputs.shafts, inputs.bushings, inputs.rolling_bearings
             databases = self._databases_of(inputs, self.expensive(values))
-            return dynamic_scene(inputs, databases, self._reduced(inputs))
+            housings = self._kept("housings", solids, lambda: reduced_in(inputs, Path(self.home)))
+            return dynamic_scene(inputs, databases, housings)
         except (ServiceError, FeContactError) as error:
             raise LeftOut(str(error)) from error
 
@@ -187,22 +186,15 @@ class VariedScene:
         return scene_of_json(table)
 
     @cached_property
-    def _tables(self) -> dict[Key, Mapping[str, SteDatabase]]:
-        """The tables made last, by the values of the flanks."""
+    def _last(self) -> dict[str, tuple[Any, Any]]:
+        """The tables and the housings made last, with what decides them."""
         return {}
 
-    @cached_property
-    def _housings(self) -> dict[SolidKey, Mapping[str, ReducedHousing]]:
-        """The housings reduced last, by what decides them."""
-        return {}
-
-    def _reduced(self, inputs: SceneInput) -> Mapping[str, ReducedHousing]:
-        """Return the reductions of the solids; those made last are kept."""
-        key = inputs.housings, inputs.shafts, inputs.bushings, inputs.rolling_bearings
-        if key not in self._housings:
-            self._housings.clear()
-            self._housings[key] = reduced_in(inputs, Path(self.home))
-        return self._housings[key]
+    def _kept(self, name: str, key: object, make: Callable[[], Any]) -> Any:
+        known = self._last.get(name)
+        if known is None or known[0] != key:
+            known = self._last[name] = key, make()
+        return known[1]
 
     @cached_property
     def _table(self) -> Json:
@@ -227,14 +219,12 @@ class VariedScene:
         return bodies
 
     def _databases_of(self, inputs: SceneInput, values: Mapping[str, float]) -> Mapping[str, SteDatabase]:
-        """Return the tables at values of the flanks; those made last are kept."""
-        key = tuple(values.items())
-        if not key:
+        """Return the tables at values of the flanks."""
+        if not values:
             return self.databases
-        if key not in self._tables:
-            self._tables.clear()
-            self._tables[key] = {**self.databases, **self._other_flanks(inputs)}
-        return self._tables[key]
+        key, others = tuple(values.items()), lambda: {**self.databases, **self._other_flanks(inputs)}
+        tables: Mapping[str, SteDatabase] = self._kept("tables", key, others)
+        return tables
 
     def _other_flanks(self, inputs: SceneInput) -> dict[str, SteDatabase]:
         """Solve the contact of other flanks at all loads of the tables, support loads too."""
