@@ -293,7 +293,7 @@ class _Exchange:
         if self._headers.get(b"content-encoding", b"identity").strip().lower() not in (b"identity", b""):
             raise UnsupportedMediaType("The body is compressed (Content-Encoding). Send it uncompressed.")
 
-    def _too_large(self) -> TooLarge:
+    def _too_large(self) -> ServiceError:
         return TooLarge(f"The body has more than {self._body_limit} bytes, the limit of this service.")
 
     async def receive(self) -> Message:

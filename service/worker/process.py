@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import rfc8785
 
 from lineofaction.gearbox.loading import on_demand
-from lineofaction.gearbox.problems import NoSuchProcess
+from lineofaction.gearbox.problems import NoSuchProcess, NotFound
 from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.stages import Stage
@@ -103,7 +103,7 @@ class Registry(Mapping[str, Process]):
         except KeyError:
             raise self.unknown(name) from None
 
-    def unknown(self, name: str) -> NoSuchProcess:
+    def unknown(self, name: str) -> NotFound:
         """Return the error of a name that no process has."""
         return NoSuchProcess(f"There is no process {name!r}. Known: {', '.join(self._processes)}.")
 
