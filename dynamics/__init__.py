@@ -26,37 +26,27 @@ if TYPE_CHECKING:
     from dynamics.simulation import simulate, simulate_to_file
 
 _HOME = {
-    "Bushing": "bearings",
-    "CoastFlank": "meshes",
-    "Coupling": "joints",
-    "FreeRotation": "joints",
-    "GearBody": "shafts",
-    "GearMesh": "meshes",
-    "Housing": "joints",
-    "ImposedRotation": "joints",
-    "Inertia": "shafts",
-    "Integration": "scene",
-    "LoadTorque": "loads",
-    "MeshTable": "meshes",
-    "Outputs": "scene",
-    "PlanetarySet": "scene",
-    "RollingContact": "forces",
-    "RunResult": "results",
-    "Scene": "scene",
-    "Shaft": "shafts",
-    "TimeLaw": "loads",
-    "ablate": "ablation",
-    "forced_response": "linearize",
-    "frontier": "accuracy",
-    "hollow_cylinder": "shafts",
-    "mesh_orders": "orders",
-    "modal_analysis": "linearize",
-    "pair_scene": "scene",
-    "simulate": "simulation",
-    "simulate_to_file": "simulation",
-    "steady_states": "periodic",
-    "with_planets": "mechanism",
+    name: home
+    for home, names in {
+        "ablation": ("ablate",),
+        "accuracy": ("frontier",),
+        "bearings": ("Bushing",),
+        "forces": ("RollingContact",),
+        "joints": ("Coupling", "FreeRotation", "Housing", "ImposedRotation"),
+        "linearize": ("forced_response", "modal_analysis"),
+        "loads": ("LoadTorque", "TimeLaw"),
+        "mechanism": ("with_planets",),
+        "meshes": ("CoastFlank", "GearMesh", "MeshTable"),
+        "orders": ("mesh_orders",),
+        "periodic": ("steady_states",),
+        "results": ("RunResult",),
+        "scene": ("Integration", "Outputs", "PlanetarySet", "Scene", "pair_scene"),
+        "shafts": ("GearBody", "Inertia", "Shaft", "hollow_cylinder"),
+        "simulation": ("simulate", "simulate_to_file"),
+    }.items()
+    for name in names
 }
+"""The package that holds each public name."""
 
 __all__ = [
     "Bushing",

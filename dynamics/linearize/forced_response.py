@@ -408,20 +408,14 @@ def peaks(response: ForcedResponse) -> tuple[Peak, ...]:
         ("bearing_force", response.bearing, force),
     ):
         gains = gain if quantity == "mesh_force" else [np.max(gain, axis=0, initial=0.0)] * len(names)
+        inner = amplitude[:, 1:-1]
+        maxima = np.nonzero((inner > amplitude[:, :-2]) & (inner >= amplitude[:, 2:]))
         own = [
-            _peak(response, quantity, name, (s, h), float(amplitude[k, s, h]), gains[k])
-            for k, name in enumerate(names)
-            for s, h in zip(*_maxima(amplitude[k]), strict=True)
+            _peak(response, quantity, names[k], (s + 1, h), float(amplitude[k, s + 1, h]), gains[k])
+            for k, s, h in zip(*(index.tolist() for index in maxima), strict=True)
         ]
         rows += sorted(own, key=lambda peak: -peak.amplitude)
     return tuple(rows)
-
-
-def _maxima(values: FloatArray) -> tuple[list[int], list[int]]:
-    """Return speeds and harmonics of the inner maxima along the speeds of `values` (S, H)."""
-    inner = values[1:-1]
-    row, column = np.nonzero((inner > values[:-2]) & (inner >= values[2:]))
-    return (row + 1).tolist(), column.tolist()
 
 
 def _peak(
