@@ -85,7 +85,8 @@ def compiled(source: Path) -> list[Path]:
 def keys(root: Path = ROOT) -> dict[str, str]:
     """Return the key of each file of the project that names numba or a compiler of the kernels."""
     files = [path for house in HOUSES for path in (root / house.replace(".", "/")).rglob("*.py")]
-    looped = [path for path in files if "numba" in (text := _text(path)) or "import compiled" in text]
+    naming = ("numba", "host.loops", "import compiled")
+    looped = [path for path in files if any(name in _text(path) for name in naming)]
     return {path.relative_to(root).as_posix(): _key(path, root) for path in sorted(looped)}
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from numba import njit
+from host.loops import njit
 
 # error_model="numpy": a division by zero gives an infinity, which the step control sees, and no branch at
 # every division. _nrt=False: compiled functions allocate nothing and count no references; they write into

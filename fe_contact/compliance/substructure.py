@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from scipy.linalg import blas, lapack
 
 from fe_contact.compliance.elimination_tree import EliminationTree, Front
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
+from host.loops import njit
 from model_studies.progress import Report, unreported
 
 

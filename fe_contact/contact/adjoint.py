@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from fe_contact.contact.model import Break, GapTerm
 from fe_contact.contact.newton import NewtonSystem, empty_system, newton_system
@@ -30,6 +29,7 @@ from fe_contact.contact.sweep import ContactSolution
 from fe_contact.contact.touch import rolls_at
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, IntArray, Status
+from host.loops import njit
 
 # Derivatives of the transmission error from the solved contact, by its adjoint.
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from fe_contact.compliance import FlankCompliance, FlankCompliance3D
 from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
@@ -17,6 +16,7 @@ from fe_contact.contact.problem import Candidates, ContactProblem
 from fe_contact.contact.touch import Touch, rolls_at
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
+from host.loops import njit
 
 # The same positions in several base pitches: other teeth, hence other gaps, but the same compliance.
 

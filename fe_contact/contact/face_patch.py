@@ -12,10 +12,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from fe_contact.contact.patch import GAUSS_POINTS, GAUSS_WEIGHTS
 from fe_contact.types import FloatArray, IntArray
+from host.loops import njit
 
 
 class FaceGrid(NamedTuple):

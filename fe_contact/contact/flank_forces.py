@@ -6,13 +6,13 @@ import math
 from typing import Protocol, TypeAlias
 
 import numpy as np
-from numba import njit
 
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import Patches, load_vector
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.contact.strip import Gap, gap_at, half_strip
 from fe_contact.types import BoolArray, FloatArray, IntArray
+from host.loops import njit
 
 # Peak pressure of the contacts, from their loads and strips.
 

@@ -22,7 +22,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from fe_contact.contact.point_problem import (
     PointProblem,
@@ -37,6 +36,7 @@ from fe_contact.contact.point_problem import (
     stiffness,
 )
 from fe_contact.types import FloatArray, IntArray
+from host.loops import njit
 
 CONVERGED, ITERATION_LIMIT, SINGULAR, OUT_OF_MODEL = 0, 1, 2, 3
 """The values of `fe_contact.types.Status` that this solver gives."""

@@ -6,11 +6,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.strip import Gap, free_strip, gap_at, half_strip, strip_load, strip_middle
 from fe_contact.types import BoolArray, FloatArray, IntArray
+from host.loops import njit
 
 # Local approach of the contacts as the compiled solver uses it: increasing and concave in the load.
 

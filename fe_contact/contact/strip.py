@@ -28,9 +28,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from numba import njit
-
 from fe_contact.types import FloatArray, IntArray
+from host.loops import njit
 
 _TOLERANCE = 1e-9
 """Of strip and middle over the strip; the approach is stationary in both."""

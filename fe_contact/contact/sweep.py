@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from fe_contact.contact.newton import CONVERGED, solve_point
 from fe_contact.contact.point_problem import PointProblems, point_problems, problem_at
 from fe_contact.contact.problem import Candidates, ContactProblem
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
+from host.loops import njit
 
 # Solution of the loaded contact over positions and loads.
 

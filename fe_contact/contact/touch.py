@@ -6,13 +6,13 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numba import njit
 
 from fe_contact.contact.model import GapTerm
 from fe_contact.contact.strip import Gap
 from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact, edge_gap
 from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray, IntArray
+from host.loops import njit
 
 # Positions where gaps made of parabolas are least, and the gaps about them.
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from fe_contact.types import FloatArray
+from host.loops import njit
 
 
 @njit(cache=True)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from fe_contact.ste.extraction import force_table
@@ -15,6 +14,7 @@ from fe_contact.ste.force_table import LevelGrid
 from fe_contact.ste.interpolation import Axis
 from fe_contact.ste.mesh_force import MeshForce
 from fe_contact.types import FloatArray, IntArray
+from host.loops import njit
 
 # The evaluation of `MeshForce` compiled: force and stiffness at many points, equal to the last bit.
 
