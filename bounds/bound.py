@@ -147,6 +147,5 @@ def up_to(high: float) -> Interval:
     return Interval(gt=0.0, le=high)
 
 
-def integers(low: int, high: int) -> Interval:
-    """Return the range of a count from `low` to `high`."""
-    return Interval(ge=low, le=high)
+integers = between
+"""The range of a count."""

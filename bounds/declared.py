@@ -140,16 +140,14 @@ def written(thing: Any) -> Any:
 
 def described(kind: type[Thing]) -> type[Thing]:
     """Append to the docstring of a dataclass what its declared fields are; a decorator."""
-    entries = (_entry(name, fact) for name, fact in declarations(kind).items())
+    entries = []
+    for name, fact in declarations(kind).items():
+        plain = fact.unit or ("name" if isinstance(fact.bound, Choice) else "1")
+        of = fact.part.__name__ if fact.part else plain
+        entries.append(f"{name} : {of}\n    {fact.description.replace('{unit}', fact.unit)}")
     text = inspect.cleandoc(kind.__doc__ or "")
     kind.__doc__ = "\n".join((text, "", "Attributes", "----------", *entries, ""))
     return kind
-
-
-def _entry(name: str, fact: Declared) -> str:
-    plain = fact.unit or ("name" if isinstance(fact.bound, Choice) else "1")
-    kind = fact.part.__name__ if fact.part else plain
-    return f"{name} : {kind}\n    {fact.description.replace('{unit}', fact.unit)}"
 
 
 def declarations(kind: type[Any]) -> Mapping[str, Declared]:

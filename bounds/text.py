@@ -51,7 +51,6 @@ class _Worded(Protocol):
 
     def worded(self, reader: Reader) -> str:
         """Return it in the reader's units and names."""
-        ...
 
 
 Words = str | _Worded

@@ -3,7 +3,7 @@
 Costs of processes, locks on files, limits, priorities and groups of processes; children that answer one
 request; the directory of caches. What a system does not offer raises `Unavailable`, what is not installed
 `MissingExtra`. The only package that imports `resource` and `fcntl`. It depends on psutil on Windows, on
-nothing elsewhere.
+nothing elsewhere; `host.loops`, which nothing here loads, is of numba.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from host.json_child import (
     child_environment,
     keep_to_one_thread,
 )
-from host.proc import family_cpu_seconds, memory_figure, processes_in
 from host.sessions import (
     Ended,
     ending_signal,
+    family_cpu_seconds,
     handlers_kept,
     has_exited,
     kill,
@@ -33,7 +33,9 @@ from host.sessions import (
     kill_own_group,
     lead_session,
     lower_priority,
+    memory_figure,
     never_wait_at,
+    processes_in,
     reap,
     require_sessions,
 )

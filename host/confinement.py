@@ -118,10 +118,7 @@ def _limit(limits: Limits) -> None:
     if limits.memory_mb is not None:
         limit_memory(limits.memory_mb * _MB)
     most = {
-        resource.RLIMIT_CPU: (
-            limits.cpu_seconds,
-            limits.cpu_seconds + 1,
-        ),  # the first says why
+        resource.RLIMIT_CPU: (limits.cpu_seconds, limits.cpu_seconds + 1),  # the first says why
         resource.RLIMIT_FSIZE: (limits.file_bytes, limits.file_bytes),
         resource.RLIMIT_NOFILE: (limits.open_files, limits.open_files),
         resource.RLIMIT_CORE: (0, 0),
@@ -284,8 +281,7 @@ def _refuse_sockets() -> None:
     program = _Program(len(instructions) // 8, instructions)
     library = ctypes.CDLL(None, use_errno=True)
     for arguments in ((_NO_NEW_PRIVILEGES, 1, 0, 0, 0), (_SET_SECCOMP, _FILTER, ctypes.byref(program), 0, 0)):
-        if library.prctl(*arguments) != 0:
-            raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
+        _checked(library.prctl(*arguments))
 
 
 def _instructions(architecture: int, socket: int) -> bytes:

@@ -134,7 +134,9 @@ def _ask(request: str, seconds: float, command: Sequence[str], folder: Path | No
         raise ChildFailed("cannot be started", error.strerror or "") from error
     _refuse_no_memory(_last_line(child.stderr) if child.returncode else "")
     if child.returncode != 0:
-        raise ChildFailed(_cause(child.returncode), _last_line(child.stderr))
+        signal = ending_signal(child.returncode)
+        cause = f"killed by {signal}" if signal else f"ended with exit code {child.returncode}"
+        raise ChildFailed(cause, _last_line(child.stderr))
     try:
         answer = json.loads(child.stdout)
     except json.JSONDecodeError as error:
@@ -146,12 +148,6 @@ def _refuse_no_memory(complaint: str) -> None:
     """Raise what a child's complaint says, if that is a lack of memory."""
     if any(sign in complaint for sign in _NO_MEMORY):
         raise ChildOutOfMemory("ran out of memory")
-
-
-def _cause(returncode: int) -> str:
-    if returncode >= 0:
-        return f"ended with exit code {returncode}"
-    return f"killed by {ending_signal(returncode)}"
 
 
 def _last_line(text: str) -> str:

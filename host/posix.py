@@ -10,8 +10,7 @@ import signal
 import sys
 import time
 
-from host.proc import memory_figure
-from host.sessions import RESIDENT_UNIT
+from host.sessions import RESIDENT_UNIT, memory_figure
 
 assert sys.platform != "win32"
 

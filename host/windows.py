@@ -7,7 +7,7 @@ import os
 import sys
 import threading
 import time
-from typing import Any
+from importlib import import_module
 
 from host.extras import Unavailable
 
@@ -27,7 +27,7 @@ def children_cpu_seconds() -> float:
 
 def peak_memory() -> int:
     """Return the most resident memory this process has had, bytes."""
-    return int(_psutil().Process().memory_info().peak_wset)
+    return int(import_module("psutil").Process().memory_info().peak_wset)
 
 
 def children_peak_memory() -> int:
@@ -37,18 +37,12 @@ def children_peak_memory() -> int:
 
 def physical_memory() -> int:
     """Return the memory of the machine, bytes."""
-    return int(_psutil().virtual_memory().total)
+    return int(import_module("psutil").virtual_memory().total)
 
 
 def most_open_files() -> float:
     """Return infinity: the system has no limit that a process can ask for."""
     return math.inf
-
-
-def _psutil() -> Any:
-    import psutil  # type: ignore[import-untyped,unused-ignore] # noqa: PLC0415
-
-    return psutil
 
 
 def lock(file: int, *, wait: bool = False) -> None:

@@ -45,7 +45,9 @@ def write_arrays(
     rest : dict
         Plain JSON.
     """
-    documents = json.dumps({"shapes": _shapes(arrays), "fields": rest}, allow_nan=False)
+    # of all: those without entries are in no variable
+    shapes = {name: [values.dtype.str, list(values.shape)] for name, values in arrays.items()}
+    documents = json.dumps({"shapes": shapes, "fields": rest}, allow_nan=False)
     attributes = {
         "Conventions": "CF-1.11",
         "schema": schema,
@@ -86,11 +88,6 @@ def read_arrays(path: Path, schemas: tuple[str, ...]) -> tuple[str, dict[str, An
     if not intact:
         raise UnreadableFile(f"{path.name}: damaged, its contents do not match their checksum")
     return str(attributes["schema"]), arrays, fields
-
-
-def _shapes(arrays: Mapping[str, Any]) -> Json:
-    """Type and shape of every array: those without entries are in no variable."""
-    return {name: [values.dtype.str, list(values.shape)] for name, values in arrays.items()}
 
 
 def _variable(stored: Stored, values: Any, sizes: dict[str, int]) -> Variable:

@@ -82,12 +82,6 @@ _AXES = {
 }
 
 
-def _print_draft(table: SteDatabase, refining: str) -> None:
-    """Print the figures of a table that is being refined, on standard error: they are progress."""
-    sys.stderr.write(f"{draft_line(table, refining)}\n")
-    sys.stderr.flush()
-
-
 def _tolerance_lines(receipt: Json) -> Iterator[str]:
     """Yield whether the tolerance is met by the errors as measured, why not, and the passes if several."""
     kept = receipt.get("tolerance")
@@ -165,8 +159,15 @@ def analyzed(
     report: Report,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> SteDatabase:
-    """Compute the database of a case in this process; condensed gears are kept in the user's cache."""
-    return database_of(case, cache_home(), report, workers, _print_draft)
+    """Compute the database of a case in this process; condensed gears are kept in the user's cache.
+
+    Figures of a table that is being refined are printed on standard error: they are progress.
+    """
+
+    def print_draft(table: SteDatabase, refining: str) -> None:
+        print(draft_line(table, refining), file=sys.stderr, flush=True)  # noqa: T201 (this is the command line)
+
+    return database_of(case, cache_home(), report, workers, print_draft)
 
 
 def _show(summary: dict[str, Any]) -> None:
@@ -178,10 +179,10 @@ def _show(summary: dict[str, Any]) -> None:
     )
     out.print()
     for line in (*ledger_lines(summary["effect_ledger"]), *assumption_lines(summary["receipt"])):
-        out.print(line, highlight=False)
-    out.print(_cost(summary["receipt"]), highlight=False)
-    out.print(f"points {summary['points']}, failed {summary['failed_points']}", highlight=False)
-    out.print(f"content hash {summary['content_hash']}", highlight=False)
+        out.print(line)
+    out.print(_cost(summary["receipt"]))
+    out.print(f"points {summary['points']}, failed {summary['failed_points']}")
+    out.print(f"content hash {summary['content_hash']}")
 
 
 def _cost(receipt: dict[str, Any]) -> str:
@@ -254,7 +255,7 @@ def run_plan(file: InputFile, time_budget_s: float | None, *, as_json: bool) -> 
 def _show_plan(plan: RunPlan) -> None:
     out = console()
     for line in ledger_lines(plan_json(plan)["effect_ledger"]):
-        out.print(line, highlight=False)
+        out.print(line)
     head = ["mesh", "CPU s", *STAGES, "memory MiB", "error %", "of which model %", "mean um", "p-p um", ""]
     rows = [
         [
@@ -262,22 +263,21 @@ def _show_plan(plan: RunPlan) -> None:
             engineering(entry.cost.cpu_seconds, 2),
             *(engineering(entry.cost.stages[stage], 2) for stage in STAGES),
             f"{entry.cost.memory_bytes / 2**20:.0f}",
-            engineering(100.0 * entry.error.total, 2),
-            engineering(100.0 * entry.error.model, 2),
-            *(_micrometers(error) for error in (entry.error.mean, entry.error.peak_to_peak)),
+            engineering(100.0 * error.total, 2),
+            engineering(100.0 * error.model, 2),
+            # per cent of a small ripple mean little; no size is known without a reference
+            *("" if size is None else engineering(size / UM, 2) for size in (error.mean, error.peak_to_peak)),
             "chosen" if entry is plan.chosen else "",
         ]
         for entry in plan.levels
+        for error in (entry.error,)
     ]
     out.print(table(head, rows, "Predicted, nothing computed"))
     model = plan.plan.discretization.to_json()["model"].replace("_", " ")
     positions = plan.plan.positions or f"about {plan.chosen.cost.positions}, placed where the curve bends"
-    out.print(
-        f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}",
-        highlight=False,
-    )
+    out.print(f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}")
     if plan.conflict or not plan.choice.met:
-        out.print(plan.conflict or f"cannot be had: {plan.choice.reason}", highlight=False)
+        out.print(plan.conflict or f"cannot be had: {plan.choice.reason}")
 
 
 def _mesh(entry: PlannedLevel, chosen: PlannedLevel) -> str:
@@ -285,8 +285,3 @@ def _mesh(entry: PlannedLevel, chosen: PlannedLevel) -> str:
     model = [] if entry.model == chosen.model else [entry.model]
     slices = [] if entry.slices == 1 else [f"{entry.slices} slices"]
     return ", ".join([*model, entry.level, *slices])
-
-
-def _micrometers(error: float | None) -> str:
-    """Return an expected error in um: per cent of a small ripple mean little; none where no size is known."""
-    return "" if error is None else engineering(error / UM, 2)

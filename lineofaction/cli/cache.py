@@ -29,14 +29,23 @@ def run_list(*, as_json: bool) -> None:
     """Print what the cache holds."""
     held = {kind: files_in(cache_home() / kind) for kind in KINDS}
     if as_json:
-        print_json(_facts(held))
+        kinds = {
+            kind: {"files": len(files), "bytes": sum(f.size for f in files)} for kind, files in held.items()
+        }
+        print_json({"folder": str(cache_home()), "limit_bytes": _limit_bytes(), "kinds": kinds})
         return
-    rows = [[kind, KINDS[kind], str(len(files)), _size(files), _age(files)] for kind, files in held.items()]
+    rows = [
+        [
+            *(kind, KINDS[kind], str(len(files)), _size(files)),
+            f"{(time.time() - files[0].used) / _DAY:.1f}" if files else "",
+        ]
+        for kind, files in held.items()
+    ]
     out = console()
     out.print(table(["kind", "what", "files", "MB", "oldest use, days"], rows, words=["kind", "what"]))
     every = [file for files in held.values() for file in files]
     line = f"{_size(every)} MB of {engineering(1e3 * _limit_bytes() / _GB, 4)} MB in {cache_home()}"
-    out.print(line, highlight=False, soft_wrap=True)
+    out.print(line, soft_wrap=True)
 
 
 def run_limit(gigabytes: float | None, *, as_json: bool) -> None:
@@ -81,18 +90,8 @@ def _tell(removed: list[UsedFile], *, as_json: bool) -> None:
     if as_json:
         print_json({"removed_files": len(removed), "removed_bytes": sum(file.size for file in removed)})
         return
-    console().print(f"removed {len(removed)} files, {_size(removed)} MB", highlight=False)
-
-
-def _facts(held: dict[str, list[UsedFile]]) -> dict[str, object]:
-    kinds = {kind: {"files": len(files), "bytes": sum(f.size for f in files)} for kind, files in held.items()}
-    return {"folder": str(cache_home()), "limit_bytes": _limit_bytes(), "kinds": kinds}
+    console().print(f"removed {len(removed)} files, {_size(removed)} MB")
 
 
 def _size(files: list[UsedFile]) -> str:
     return engineering(sum(file.size for file in files) / 1e6, 4)
-
-
-def _age(files: list[UsedFile]) -> str:
-    """Return the days since the file was used that was not for longest."""
-    return f"{(time.time() - files[0].used) / _DAY:.1f}" if files else ""

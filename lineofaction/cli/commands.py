@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from typing import Annotated, TextIO
+from typing import Annotated, Any
 
 import typer
 
@@ -45,18 +45,11 @@ def main() -> None:
     warnings.filterwarnings("ignore", message="implausible")  # each verb says it in its own fields and units
     foreign = warnings.showwarning
 
-    def show(
-        message: Warning | str,
-        category: type[Warning],
-        filename: str,
-        lineno: int,
-        file: TextIO | None = None,
-        line: str | None = None,
-    ) -> None:
+    def show(message: Warning | str, category: type[Warning], *place: Any, **stream: Any) -> None:
         if category.__module__.startswith(("lineofaction.", "service.")):
             typer.echo(f"note: {message}", err=True)
         else:
-            foreign(message, category, filename, lineno, file, line)
+            foreign(message, category, *place, **stream)
 
     warnings.showwarning = show  # what our own say is for people, without a line of code
     app()

@@ -28,7 +28,6 @@ from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.registry import Study
 from lineofaction.gearbox.rexs.files import read_rexs, serialized
 from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas import validated
@@ -70,7 +69,10 @@ def _export_deformed(
     where = positions(at)
     if len(where) > _MOST_POSITIONS:
         raise BadInput.of("--at", f"{len(where)} positions", f"at most {_MOST_POSITIONS} positions")
-    _refuse_output(output)
+    if output.is_file() or output.suffix == ".vtu":
+        raise BadInput.of("output", str(output), "a folder", "It gets pinion.vtu and wheel.vtu.")
+    if not output.is_dir() and not output.parent.is_dir():
+        raise BadInput.of("output", str(output), "in a folder that exists", "Make the folder first.")
     checked = case.at_point
     with progress_bar() as report, boundary_errors():
         run = Run(cache=cache_home() / "compliance", progress=report)
@@ -80,13 +82,6 @@ def _export_deformed(
         print_json({"written": [str(path) for path in written], "positions": _figures(pairs)})
     else:
         _show_deformed(pairs, written)
-
-
-def _refuse_output(output: Path) -> None:
-    if output.is_file() or output.suffix == ".vtu":
-        raise BadInput.of("output", str(output), "a folder", "It gets pinion.vtu and wheel.vtu.")
-    if not output.is_dir() and not output.parent.is_dir():
-        raise BadInput.of("output", str(output), "in a folder that exists", "Make the folder first.")
 
 
 def _written(pairs: tuple[DeformedPair, ...], output: Path) -> list[Path]:
@@ -127,7 +122,7 @@ def _show_deformed(pairs: tuple[DeformedPair, ...], written: list[Path]) -> None
     out = console()
     out.print(table(columns, rows))
     for path in written:
-        out.print(f"written to {path}", highlight=False)
+        out.print(f"written to {path}")
 
 
 # ``loa export RUN.nc``: a run for other programs.
@@ -154,8 +149,8 @@ def _export_run(
         print_json(facts)
         return
     if "functions" in facts:
-        console().print(f"{facts['functions']} functions of dataset 58", highlight=False)
-    console().print(f"written to {output}", highlight=False)
+        console().print(f"{facts['functions']} functions of dataset 58")
+    console().print(f"written to {output}")
 
 
 # ``loa export STE.nc -o MESH.fmu``.
@@ -232,14 +227,12 @@ def _show_fmu(facts: dict[str, Any]) -> None:
     out = console()
     out.print(
         f"{facts['positions']} positions x {facts['levels']} levels to {facts['largest_force_n']:.4g} N, "
-        f"{facts['misalignments']} misalignments x {facts['center_distances']} center distances",
-        highlight=False,
+        f"{facts['misalignments']} misalignments x {facts['center_distances']} center distances"
     )
     out.print(
-        f"damping {facts['damping_n_s_per_m']:.4g} N s/m, in full from {facts['damping_reach_n']:.4g} N on",
-        highlight=False,
+        f"damping {facts['damping_n_s_per_m']:.4g} N s/m, in full from {facts['damping_reach_n']:.4g} N on"
     )
-    out.print(f"written to {facts['file']}", highlight=False)
+    out.print(f"written to {facts['file']}")
 
 
 # ``loa export STE.nc | DEFLECTION.nc --rexs UNIT.rexs -o OUT.rexs``.
@@ -255,7 +248,8 @@ def _export_rexs(file: Path, rexs: Path, output: Path, point: Point, *, as_json:
     unit = opened(document)
     warn(left_out_warnings(unit.left_out))
     facts: dict[str, Any] = {"file": str(output)}
-    study = _study(file)
+    readable = file.is_file() and file.suffix not in (".toml", ".json")
+    study = stored_study(file_attributes(file)) if readable else None
     if study is not None and study.name == "deflect":
         _refuse_point(point, tuple(point))
         result = read_stored(study, file)
@@ -270,12 +264,10 @@ def _export_rexs(file: Path, rexs: Path, output: Path, point: Point, *, as_json:
         print_json(facts)
         return
     for line in _lines(facts["calculated"]):
-        console().print(line, highlight=False, soft_wrap=True)
+        console().print(line, soft_wrap=True)
     if facts.get("left_out"):
-        console().print(
-            f"left out, no component of their own: {', '.join(facts['left_out'])}", highlight=False
-        )
-    console().print(f"written to {output}", highlight=False)
+        console().print(f"left out, no component of their own: {', '.join(facts['left_out'])}")
+    console().print(f"written to {output}")
 
 
 def _lines(calculated: dict[str, list[str]]) -> list[str]:
@@ -287,12 +279,6 @@ def _lines(calculated: dict[str, list[str]]) -> list[str]:
         f"component{'s' * (len(numbers) > 1)} {', '.join(numbers)}: {', '.join(names)}"
         for names, numbers in alike.items()
     ]
-
-
-def _study(file: Path) -> Study | None:
-    """Return the study whose result a file holds, None of another file."""
-    readable = file.is_file() and file.suffix not in (".toml", ".json")
-    return stored_study(file_attributes(file)) if readable else None
 
 
 def _refuse_point(point: Point, names: Iterable[str]) -> None:

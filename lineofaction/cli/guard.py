@@ -21,6 +21,7 @@ from typing import Annotated, Any, NoReturn, ParamSpec, TypeVar, get_type_hints
 
 import typer
 
+from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import EXIT_INTERRUPTED, EXIT_WARNINGS, ServiceError, Unexpected
 
 R = TypeVar("R")
@@ -38,13 +39,19 @@ def parameters_of(verb: Callable[..., Any]) -> list[inspect.Parameter]:
     return list(inspect.signature(verb, eval_str=True).parameters.values())
 
 
+def keyword(name: str, annotation: Any, default: Any = inspect.Parameter.empty) -> inspect.Parameter:
+    """Return a parameter that the command line passes by its name."""
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+
+
 def grouped(verb: Callable[..., R]) -> Callable[..., R]:
     """Spread parameters that are dataclasses: each of their fields is an option, annotated as one.
 
     The verb is called with the dataclasses.
     """
     own = parameters_of(verb)
-    groups = {part.name: part.annotation for part in own if _is_group(part.annotation)}
+    kinds = {part.name: part.annotation for part in own}
+    groups = {name: kind for name, kind in kinds.items() if isinstance(kind, type) and is_dataclass(kind)}
 
     @wraps(verb)
     def run(**options: Any) -> R:
@@ -60,21 +67,13 @@ def grouped(verb: Callable[..., R]) -> Callable[..., R]:
     return with_parameters(run, parameters)
 
 
-def _is_group(annotation: Any) -> bool:
-    return isinstance(annotation, type) and is_dataclass(annotation)
-
-
 def _options(group: Any) -> list[inspect.Parameter]:
     hints = get_type_hints(group, include_extras=True)
-    return [
-        inspect.Parameter(
-            field.name,
-            inspect.Parameter.KEYWORD_ONLY,
-            default=inspect.Parameter.empty if field.default is MISSING else field.default,
-            annotation=hints[field.name],
-        )
+    defaults = {
+        field.name: inspect.Parameter.empty if field.default is MISSING else field.default
         for field in fields(group)
-    ]
+    }
+    return [keyword(name, hints[name], default) for name, default in defaults.items()]
 
 
 # Warnings of a verb: printed before its numbers, in its JSON, and by its exit code if it is strict.
@@ -89,11 +88,6 @@ class _Warned:
 
     form: str = "text"
     messages: dict[str, Json] = field(default_factory=dict)
-
-    @property
-    def warnings(self) -> list[Json]:
-        """All of them."""
-        return list(self.messages.values())
 
 
 _current: ContextVar[_Warned] = ContextVar("warned")
@@ -126,7 +120,7 @@ def messages() -> list[str]:
 def warnings_so_far() -> list[Json]:
     """Return what the verb has gathered."""
     warned = _current.get(None)
-    return [] if warned is None else warned.warnings
+    return [] if warned is None else list(warned.messages.values())
 
 
 # Requests to stop: long work ends at its next safe place, at a second request and in services at once.
@@ -189,8 +183,7 @@ def computing(verb: Callable[..., R]) -> Callable[..., R]:
             _leave(f"error: {count} warning{'s' if count > 1 else ''} under --strict", EXIT_WARNINGS)
         return answer
 
-    option = inspect.Parameter("strict", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=Strict)
-    return with_parameters(run, [*parameters_of(verb), option])
+    return with_parameters(run, [*parameters_of(verb), keyword("strict", Strict, False)])
 
 
 def guarded(verb: Callable[P, R]) -> Callable[P, R]:
@@ -205,35 +198,28 @@ def guarded(verb: Callable[P, R]) -> Callable[P, R]:
             raise
         except KeyboardInterrupt as stop:
             _leave("\n".join((str(stop) or "interrupted", *_notes(stop))), EXIT_INTERRUPTED)
-        except BrokenPipeError:
-            _close_pipe()
+        except BrokenPipeError:  # the reader of our output has gone (``loa ste ... | head``)
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise typer.Exit(0) from None
         except Exception as error:  # noqa: BLE001 (the last line of defense: logged by number below)
-            known = _known(error)
-            _leave(_text(known), known.exit_code)
+            known = error if isinstance(error, ServiceError) else translated(error) or _logged(error)
+            lines = [f"error: {line}" for line in (known.faults or (str(known),))]
+            _leave("\n".join((*lines, *_notes(known))), known.exit_code)
 
     return run
 
 
-def _known(error: Exception) -> ServiceError:
-    """Return the error as one of our tree; a defect is written to a log under its reference."""
-    if isinstance(error, ServiceError):
-        return error
-    translated = importlib.import_module("lineofaction.gearbox.convert.errors").translated(error)
-    return translated if isinstance(translated, ServiceError) else _logged(error)
+translated = on_demand("lineofaction.gearbox.convert.errors:translated")
 
 
 def _logged(error: Exception) -> Unexpected:
+    """Return what is said of a defect, which is written to a log under its reference."""
     directory = importlib.import_module("host.directories").cache_home() / "log"
     reference = uuid.uuid4().hex[:12]
     directory.mkdir(parents=True, exist_ok=True)
     file = directory / f"{reference}.log"
     file.write_text("".join(traceback.format_exception(error)), encoding="utf-8", errors="backslashreplace")
     return Unexpected(str(file))
-
-
-def _text(error: ServiceError) -> str:
-    lines = [f"error: {line}" for line in (error.faults or (str(error),))]
-    return "\n".join((*lines, *_notes(error)))
 
 
 def _notes(error: BaseException) -> list[str]:
@@ -244,9 +230,3 @@ def _leave(text: str, code: int) -> NoReturn:
     sys.stdout.flush()
     print(text, file=sys.stderr, flush=True)  # noqa: T201 (this is the command line)
     raise typer.Exit(code)
-
-
-def _close_pipe() -> NoReturn:
-    """End quietly when the reader of our output has gone (``loa ste ... | head``)."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    raise typer.Exit(0)

@@ -51,33 +51,21 @@ def _chosen_scenes(only: Sequence[str]) -> list[HardScene]:
 
 
 def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
-    out = console()
-    rows = [
-        (
-            o.scene.family,
-            o.scene.name,
-            "passed" if o.passed else "FAILED",
-            f"{o.seconds:.2f}",
-            f"{o.cpu_seconds:.2f}",
-            _closest(o),
-        )
-        for o in outcomes
-    ]
+    out, rows = console(), []
+    for each in outcomes:
+        bounded = [figure for figure in each.figures if figure.use is not None]
+        closest = str(max(bounded, key=lambda figure: figure.use or 0.0)) if bounded else ""
+        facts = (each.scene.family, each.scene.name, "passed" if each.passed else "FAILED")
+        rows.append((*facts, f"{each.seconds:.2f}", f"{each.cpu_seconds:.2f}", closest))
     words = ("family", "scene", "figure closest to its bound")
     out.print(table((*words[:2], "", "time, s", "CPU, s", words[2]), rows, words=words))
     for outcome in outcomes:
         if not outcome.passed:
-            out.print(f"{outcome.scene.name}: {outcome.failure}", highlight=False)
+            out.print(f"{outcome.scene.name}: {outcome.failure}")
     passed = sum(outcome.passed for outcome in outcomes)
     seconds = sum(outcome.seconds for outcome in outcomes)
     busy = sum(outcome.cpu_seconds for outcome in outcomes)
     summary = f"{passed} of {len(outcomes)} scenes passed in {seconds:.1f} s ({busy:.1f} s of CPU time)"
-    out.print(summary, highlight=False)
+    out.print(summary)
     if output is not None:
-        out.print(f"written to {output}", highlight=False)
-
-
-def _closest(outcome: Outcome) -> str:
-    """Name the figure that uses most of what its bound allows."""
-    bounded = [figure for figure in outcome.figures if figure.use is not None]
-    return str(max(bounded, key=lambda figure: figure.use or 0.0)) if bounded else ""
+        out.print(f"written to {output}")

@@ -65,14 +65,12 @@ def _bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[
     sounds = []
     for one in tuple(heard_runs(dict(runs), view)):
         recording, moment = one.recording(), loudest(one.run, one.signal)
-        facts = {"loudest": None if moment is None else _moment_facts(moment)}
+        facts: Json = {"loudest": None}
+        if moment is not None:
+            orders = {str(order): value for order, value in moment.orders.items()}
+            facts = {"loudest": {"time_s": moment.time, "rms": moment.overall, "orders_rms": orders}}
         sounds.append(_RunSound(one.name, recording, facts, _moment_cells(moment, recording.unit)))
     return sounds, NO_LOUDNESS
-
-
-def _moment_facts(moment: Loudest) -> Json:
-    orders = {str(order): value for order, value in moment.orders.items()}
-    return {"time_s": moment.time, "rms": moment.overall, "orders_rms": orders}
 
 
 def _moment_cells(moment: Loudest | None, unit: str) -> dict[str, str]:
@@ -136,7 +134,11 @@ def _housing_sounds(
         except BadInput as error:
             raise error.within(name) from None
         warn(heard.warnings)
-        sounds.append(_RunSound(name, heard.recording, *_of_pressure(heard.figures)))
+        sound = _RunSound(name, heard.recording)
+        if heard.figures is not None:  # of a sound pressure, not of a velocity
+            facts = {"sound": figures_of(SoundPressure, heard.figures)}
+            sound = replace(sound, facts=facts, cells=_cells(heard.figures))
+        sounds.append(sound)
         remarks += heard.remarks
     return sounds, "; ".join(dict.fromkeys(remarks))
 
@@ -150,12 +152,8 @@ def _require_no_view(view: RunView, receiver: Receiver) -> None:
             raise BadInput.of(f"--{name}", value, "left out with --microphone or --point")
 
 
-def _of_pressure(figures: SoundFigures | None) -> tuple[Json, dict[str, str]]:
-    """Return what the ear makes of a sound pressure, as JSON and as printed; nothing of a velocity."""
-    return ({}, {}) if figures is None else ({"sound": figures_of(SoundPressure, figures)}, _cells(figures))
-
-
 def _cells(figures: SoundFigures) -> dict[str, str]:
+    """Return what the ear makes of a sound pressure, as printed."""
     loudness = "without extra" if figures.loudness is None else engineering(figures.loudness, 3)
     sharpness = "" if figures.sharpness is None else engineering(figures.sharpness, 3)
     tones = ", ".join(number(hertz, 4) for hertz, _ in figures.tones)
@@ -203,7 +201,7 @@ def run_listen(
         return
     _show(sounds, scale, remark)
     for path in paths:
-        console().print(f"written to {path}", highlight=False)
+        console().print(f"written to {path}")
 
 
 def _outputs(files: Sequence[Path], output: Path) -> list[Path]:
@@ -244,5 +242,5 @@ def _show(sounds: Sequence[_RunSound], scale: float, remark: str) -> None:
     columns = ["run", f"rms, {unit}", "s", *more]
     out.print(table(columns, rows, words=("run", *more[-1:])))
     for quantity in dict.fromkeys(sound.recording.quantity for sound in sounds):
-        out.print(quantity, highlight=False, soft_wrap=True)
-    out.print(f"full scale: {number(scale)} {unit}; {remark}", highlight=False, soft_wrap=True)
+        out.print(quantity, soft_wrap=True)
+    out.print(f"full scale: {number(scale)} {unit}; {remark}", soft_wrap=True)

@@ -6,6 +6,7 @@ import math
 import sys
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from lineofaction.cli.guard import warn
@@ -23,7 +24,6 @@ from lineofaction.cli.pair_sketch import (
 )
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
 from lineofaction.gearbox.from_rexs.account import FATES, Assumption
-from lineofaction.gearbox.from_rexs.loads import LoadCase
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit, headline, opened, report_lines, unit_files
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import read_rexs
@@ -326,35 +326,18 @@ axial_stiffness_n_per_m = 1e8
     )
 
 
-def _spur(wanted: PairWishes) -> str:
-    return _case_text(external_pair(wanted, teeth=24, ratio=1.5, helix=0.0, module=3.0), "A spur pair")
-
-
-def _helical(wanted: PairWishes) -> str:
-    pair = external_pair(wanted, teeth=23, ratio=67 / 23, helix=22.0, module=1.8)
-    return _case_text(pair, "A helical pair")
-
-
-def _internal(wanted: PairWishes) -> str:
-    return _case_text(internal_pair(wanted, teeth=36, ratio=96 / 36, module=2.0), "A pinion in a ring gear")
-
-
-def _planetary(wanted: PairWishes) -> str:
-    head = "A planetary stage: the sun drives, the carrier is braked, the ring is held"
-    return _planetary_text(planetary_stage(wanted), head)
-
-
-def _scene(wanted: PairWishes) -> str:
-    pair = external_pair(wanted, teeth=23, ratio=67 / 23, helix=22.0, module=1.8)
-    return _pair_scene_text(pair, "A helical pair between two shafts: motor, brake, four bearings")
-
+_spur = partial(external_pair, teeth=24, ratio=1.5, helix=0.0, module=3.0)
+_helical = partial(external_pair, teeth=23, ratio=67 / 23, helix=22.0, module=1.8)
+_internal = partial(internal_pair, teeth=36, ratio=96 / 36, module=2.0)
+_STAGE = "A planetary stage: the sun drives, the carrier is braked, the ring is held"
+_SCENE = "A helical pair between two shafts: motor, brake, four bearings"
 
 KINDS: Mapping[str, Callable[[PairWishes], str]] = {
-    "spur": _spur,
-    "helical": _helical,
-    "internal": _internal,
-    "planetary": _planetary,
-    "scene": _scene,
+    "spur": lambda wanted: _case_text(_spur(wanted), "A spur pair"),
+    "helical": lambda wanted: _case_text(_helical(wanted), "A helical pair"),
+    "internal": lambda wanted: _case_text(_internal(wanted), "A pinion in a ring gear"),
+    "planetary": lambda wanted: _planetary_text(planetary_stage(wanted), _STAGE),
+    "scene": lambda wanted: _pair_scene_text(_helical(wanted), _SCENE),
 }
 """What is made, by the option that names it."""
 
@@ -366,7 +349,11 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
         given = " ".join(f"--{kind}" for kind in named)
         raise BadInput.of("kind", given, f"one of {', '.join(f'--{kind}' for kind in KINDS)}", "Choose one.")
     if output is not None:
-        _check_new(output)
+        if output.suffix != ".toml":
+            raise BadInput.of("output", str(output), "a file ending in .toml")
+        check_writable(output)
+        if output.exists():
+            raise BadInput.of("output", str(output), "a new file", "Choose another name, or remove it first.")
     text = _new_text(named[0] if named else "helical", wanted)
     if output is None:
         sys.stdout.write(text)
@@ -374,9 +361,9 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
     output.write_text(text, encoding="utf-8")
     verb = "simulate" if "[[shafts]]" in text else "geometry"
     out = console()
-    out.print(text.partition("\n")[0].removeprefix("# "), highlight=False)
-    out.print(f"next: loa {verb} {output}" + (" -o run.nc" if verb == "simulate" else ""), highlight=False)
-    out.print(f"written to {output}", highlight=False)
+    out.print(text.partition("\n")[0].removeprefix("# "))
+    out.print(f"next: loa {verb} {output}" + (" -o run.nc" if verb == "simulate" else ""))
+    out.print(f"written to {output}")
 
 
 def _new_text(kind: str, wanted: PairWishes) -> str:
@@ -400,14 +387,6 @@ def _new_text(kind: str, wanted: PairWishes) -> str:
     return text
 
 
-def _check_new(output: Path) -> None:
-    if output.suffix != ".toml":
-        raise BadInput.of("output", str(output), "a file ending in .toml")
-    check_writable(output)
-    if output.exists():
-        raise BadInput.of("output", str(output), "a new file", "Choose another name, or remove it first.")
-
-
 # ``loa open``.
 
 
@@ -422,7 +401,7 @@ def run_open(file: Path, out: Path | None, assume: Sequence[str] = (), *, as_jso
     counts = Counter[str](line.fate for line in unit.lines)
     left_out = headline(unit.lines)
     if left_out and not as_json:
-        console().print(left_out, highlight=False, soft_wrap=True)
+        console().print(left_out, soft_wrap=True)
     warn(left_out_warnings(unit.left_out))
     if as_json:
         print_json(
@@ -438,15 +417,7 @@ def run_open(file: Path, out: Path | None, assume: Sequence[str] = (), *, as_jso
         return
     _show_unit(unit, counts, written)
     if left_out:
-        console().print(left_out, highlight=False, soft_wrap=True)
-
-
-def _others(load: LoadCase) -> str:
-    """Return the forces that are not as in the scene."""
-    return "".join(
-        f", {force['name']} {force['force_n']} N and {force['moment_n_m']} N m in x, y, z"
-        for force in load.forces
-    )
+        console().print(left_out, soft_wrap=True)
 
 
 def _write_unit(unit: OpenedUnit, folder: Path) -> list[Path]:
@@ -465,14 +436,18 @@ def _write_unit(unit: OpenedUnit, folder: Path) -> list[Path]:
 def _show_unit(unit: OpenedUnit, counts: Counter[str], written: list[Path]) -> None:
     out = console()
     values = ", ".join(f"{counts[fate]} {fate}" for fate in FATES if counts[fate])
-    out.print(f"{len(unit.lines)} components and values: {values}", highlight=False, soft_wrap=True)
+    out.print(f"{len(unit.lines)} components and values: {values}", soft_wrap=True)
     for line in report_lines(unit.lines, ("assumed", "defaulted", "derived")):
-        out.print(line, highlight=False, soft_wrap=True)
+        out.print(line, soft_wrap=True)
     for case in unit.cases:
         others = f" (and {len(case.equal)} equal)" if case.equal else ""
         gears = f"gears {case.driver} and {case.driven}, {case.center_distance * 1e3:.6g} mm"
-        out.print(f"stage {case.stage}{others}: {case.name}.toml, {gears}", highlight=False)
+        out.print(f"stage {case.stage}{others}: {case.name}.toml, {gears}")
     for load in unit.load_cases:
         words = f"{load.torque_n_m:g} N m at {load.speed_rpm:g} rpm, {load.direction}, share {load.share:g}"
-        out.print(f"{load.name}: {words}{_others(load)}", highlight=False, soft_wrap=True)
-    out.print(f"written to {', '.join(map(str, written))}", highlight=False, soft_wrap=True)
+        others = "".join(
+            f", {force['name']} {force['force_n']} N and {force['moment_n_m']} N m in x, y, z"
+            for force in load.forces
+        )
+        out.print(f"{load.name}: {words}{others}", soft_wrap=True)
+    out.print(f"written to {', '.join(map(str, written))}", soft_wrap=True)

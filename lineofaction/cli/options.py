@@ -11,7 +11,7 @@ from typing import Annotated, Any, TypeVar
 import typer
 from typer.models import OptionInfo
 
-from lineofaction.cli.guard import parameters_of, with_parameters
+from lineofaction.cli.guard import keyword, parameters_of, with_parameters
 from lineofaction.gearbox.input_file import InputFile, Override, number_list
 
 DEFAULT_SERVICE = "http://127.0.0.1:8321"
@@ -32,7 +32,12 @@ DaskScheduler = Annotated[
 ]
 
 
-Force = Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")]
+Force = Annotated[float | None, typer.Option("--force", help="Normal tooth force in N, instead of a torque.")]
+
+
+def to_file(text: str) -> Any:
+    """Return the option of the file that a verb writes."""
+    return typer.Option("-o", "--output", help=text)
 
 
 # What the caller of ``loa new`` says of a pair, as its options.
@@ -82,22 +87,15 @@ SceneFile = Annotated[InputFile, file_argument("Scene file", "SCENE")]
 
 
 def _options(subject: str) -> list[inspect.Parameter]:
-    shown = [
-        _parameter(
-            "overrides", Annotated[list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help=_SET)]
-        )
-    ]
+    option = typer.Option("--set", metavar="PATH=VALUE", help=_SET)
+    shown = [keyword("overrides", Annotated[list[str] | None, option], None)]
     if subject != "scene":
         shown += [
-            _parameter("level", Annotated[str | None, typer.Option(help=_LEVEL)]),
-            _parameter("tolerance", Annotated[float | None, typer.Option(help=_TOLERANCE)]),
-            _parameter("torque", Annotated[str | None, typer.Option(help=_TORQUE)]),
+            keyword("level", Annotated[str | None, typer.Option(help=_LEVEL)], None),
+            keyword("tolerance", Annotated[float | None, typer.Option(help=_TOLERANCE)], None),
+            keyword("torque", Annotated[str | None, typer.Option(help=_TORQUE)], None),
         ]
     return shown
-
-
-def _parameter(name: str, annotation: Any) -> inspect.Parameter:
-    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=annotation)
 
 
 def overridable(argument: str, subject: str = "case") -> Callable[[Callable[..., R]], Callable[..., R]]:
@@ -114,7 +112,10 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
         @functools.wraps(verb)
         def run(**options: Any) -> R:
             typed = {option.name: options.pop(option.name, None) for option in added}
-            options[argument] = _with(options[argument], _overrides(typed))
+            files, overrides = options[argument], _overrides(typed)
+            several = isinstance(files, list)
+            read = [replace(file, overrides=overrides) for file in (files if several else [files])]
+            options[argument] = read if several else read[0]
             return verb(**options)
 
         return with_parameters(run, [*own, *added])
@@ -128,12 +129,6 @@ def _spellings(option: inspect.Parameter) -> list[str]:
     names = [name for fact in facts for name in (fact.default, *(fact.param_decls or ()))]
     spelled = [name for name in names if isinstance(name, str) and name.startswith("-")]
     return spelled or [f"--{option.name.replace('_', '-')}"]
-
-
-def _with(files: InputFile | list[InputFile], overrides: tuple[Override, ...]) -> Any:
-    if isinstance(files, InputFile):
-        return replace(files, overrides=overrides)
-    return [replace(file, overrides=overrides) for file in files]
 
 
 def _overrides(typed: Mapping[str, Any]) -> tuple[Override, ...]:

@@ -17,7 +17,7 @@ from rich.table import Table
 
 from lineofaction.cli.guard import warnings_so_far
 from lineofaction.gearbox.problems import BadInput
-from model_studies.progress import stage_name
+from model_studies.progress import silent, stage_name
 
 if TYPE_CHECKING:
     from lineofaction.report.drawing.page import Headline
@@ -34,8 +34,8 @@ def print_json(facts: dict[str, Any]) -> None:
 
 
 def console() -> Console:
-    """Return the console of standard output: no text is markup; piped, it is as wide as its tables need."""
-    plain: Any = {"markup": False, "emoji": False}
+    """Return the console of standard output: text stays as it is; piped, it is as wide as its tables need."""
+    plain: Any = {"markup": False, "emoji": False, "highlight": False}
     return Console(**plain) if sys.stdout.isatty() else Console(width=200, no_color=True, **plain)
 
 
@@ -57,9 +57,9 @@ def print_result(headlines: Sequence[Headline], files: Sequence[Path]) -> None:
     for headline in headlines[:_MOST_HEADLINES]:
         band = headline.remark if headline.remark.startswith("±") else f"({headline.remark})"
         line = f"{headline.name}: {headline.value} {band}".removesuffix(" ()")
-        out.print(line, highlight=False, soft_wrap=True)
+        out.print(line, soft_wrap=True)
     if files:
-        out.print(f"written to {', '.join(map(str, files))}", highlight=False, soft_wrap=True)
+        out.print(f"written to {', '.join(map(str, files))}", soft_wrap=True)
 
 
 def csv_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -73,7 +73,7 @@ def csv_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 def progress_bar() -> Iterator[Report]:
     """Yield ``report(stage, fraction)``; it draws on standard error if that is a terminal, else nothing."""
     if not sys.stderr.isatty():
-        yield _silent
+        yield silent
         return
     columns = (TextColumn("{task.description:<14}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
     with Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True)) as bars:
@@ -86,10 +86,6 @@ def progress_bar() -> Iterator[Report]:
             bars.update(tasks[name], description=stage, completed=min(max(fraction, 0.0), 1.0))
 
         yield report
-
-
-def _silent(_stage: str, _fraction: float) -> None:
-    """Report nothing."""
 
 
 def check_writable(output: Path) -> None:

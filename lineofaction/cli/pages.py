@@ -88,9 +88,9 @@ def _show_sheet(pair: ParallelAxes, output: Path | None) -> None:
         out.print(table(part.head, part.rows, part.caption, words=_WORDS))
         out.print()
     for line in _summary(pair):
-        out.print(line, highlight=False)
+        out.print(line)
     if output is not None:
-        out.print(f"written to {output}", highlight=False)
+        out.print(f"written to {output}")
 
 
 def _summary(pair: ParallelAxes) -> tuple[str, str]:
@@ -126,9 +126,9 @@ def run_report(
         print_json({"file": str(output), "written": [str(path) for path in written]})
         return
     if flank:
-        console().print(f"flank results {engineering(spent, 3)} CPU s", highlight=False)
+        console().print(f"flank results {engineering(spent, 3)} CPU s")
     for path in written:
-        console().print(f"written to {path}", highlight=False)
+        console().print(f"written to {path}")
 
 
 def _flanks(read: Inputs, report: Report) -> LoadDistribution:
@@ -176,5 +176,5 @@ def run_compare(
         print_json({"file": str(output), "differences": found})
         return
     for line in page.headlines:
-        console().print(f"{line.name}: {line.value}: {line.remark}", highlight=False)
-    console().print(f"written to {output}", highlight=False)
+        console().print(f"{line.name}: {line.value}: {line.remark}")
+    console().print(f"written to {output}")

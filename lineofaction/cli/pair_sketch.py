@@ -99,7 +99,7 @@ def _ring_pair(module: float, helix: float, width: float, teeth: int, ring_teeth
         helix,
         width,
         distance,
-        GearSketch(teeth, 0.0, _bore(pinion, 0.0), 0.0),
+        GearSketch(teeth, 0.0, _bore(pinion), 0.0),
         GearSketch(ring_teeth, 0.0, rim, 2.0 * allowance),
         _torques(pinion),
         _ring_addendum(pinion, ring_teeth, distance),
@@ -135,12 +135,8 @@ def _blank(teeth: int, module: float, helix: float, width: float) -> Gear:
     return Gear(teeth, *lengths, helix_angle=helix * DEGREE)
 
 
-def _bore_of(teeth: int, module: float, helix: float, width: float) -> float:
-    """Return the bore in mm of a gear without profile shift; lengths in mm, the angle in deg."""
-    return _bore(_blank(teeth, module, helix, width), 0.0)
-
-
-def _bore(gear: Gear, shift: float) -> float:
+def _bore(gear: Gear, shift: float = 0.0) -> float:
+    """Return the bore of a gear in mm."""
     shifted = replace(gear, profile_shift_coefficient=round(shift, 4))
     diameter = 2.0 * _BORE * shifted.root_radius / MM
     return float(math.floor(diameter)) if diameter > 5.0 else round(diameter, 2)
@@ -193,7 +189,7 @@ def planetary_stage(wanted: PairWishes) -> StageSketch:
     width = wanted.width or _face_width(module, helix)
     ring = _ring_pair(module, helix, width, planet, teeth + 2 * planet)
     transverse = module / math.cos(helix * DEGREE)
-    sun = GearSketch(teeth, 0.0, _bore_of(teeth, module, helix, width), ring.wheel.allowance)
+    sun = GearSketch(teeth, 0.0, _bore(_blank(teeth, module, helix, width)), ring.wheel.allowance)
     torque = tuple(float(f"{value * teeth / planet:.2g}") for value in ring.torque)
     pair = PairSketch(module, helix, width, 0.5 * transverse * (teeth + planet), sun, ring.pinion, torque)
     return StageSketch(pair, ring, 2.0 + 2.0 * planet / teeth)

@@ -6,8 +6,8 @@ import json
 import re
 import shutil
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +18,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from host.extras import MissingExtra
 from lineofaction.cli.guard import warn
-from lineofaction.cli.output import Report, check_writable, console, print_json, print_result, table
+from lineofaction.cli.output import check_writable, console, print_json, print_result, table
 from lineofaction.client import JobState, LineOfActionClient, Result, Watch
 from lineofaction.gearbox.convert.result_files import stamped
 from lineofaction.gearbox.input_file import InputFile
@@ -92,7 +92,7 @@ def run_dismiss(job: str, service: str, *, as_json: bool) -> None:
     if as_json:
         print_json({"job": state.id, "process": state.process, "status": state.status})
     else:
-        console().print(f"job {state.id}, {state.process}: {state.status}", highlight=False, soft_wrap=True)
+        console().print(f"job {state.id}, {state.process}: {state.status}", soft_wrap=True)
 
 
 # ``loa submit`` and ``loa fetch``: the client on the command line.
@@ -171,16 +171,6 @@ def _submitted(
     )
 
 
-def watching(report: Report) -> Callable[[JobState], None]:
-    """Return the client's progress callback that feeds a bar."""
-
-    def watch(state: JobState) -> None:
-        if state.stage:
-            report(state.stage, state.stage_progress / 100.0)
-
-    return watch
-
-
 def run_fetch(name: str, output: Path, service: str, *, wait: bool, as_json: bool) -> None:
     """Fetch by hash or by job."""
     check_writable(output)
@@ -209,21 +199,15 @@ def _ended(client: LineOfActionClient, job: str, *, wait: bool) -> Result:
 
 def _show_result(key: str, kind: str, file: Path | None) -> None:
     _tell(f"{kind} {key}")
-    if file is not None:
-        print_result(_headlines(file), [file])
+    if file is None:
+        return
+    headlines: Sequence[Headline] = ()
+    with suppress(MissingExtra):  # which reads all kinds
+        from lineofaction.report import document  # noqa: PLC0415 (start-up time)
 
-
-def _headlines(file: Path) -> Sequence[Headline]:
-    """Return the main figures of a result; none where the extra that reads all kinds is not installed."""
-    try:
-        from lineofaction.report.document import (  # noqa: PLC0415 (start-up time)
-            headlines_of,
-            read_inputs,
-        )
-    except MissingExtra:
-        return ()
-    return headlines_of(read_inputs([file]))
+        headlines = document.headlines_of(document.read_inputs([file]))
+    print_result(headlines, [file])
 
 
 def _tell(line: str) -> None:
-    console().print(line, highlight=False, soft_wrap=True)
+    console().print(line, soft_wrap=True)

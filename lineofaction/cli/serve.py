@@ -33,15 +33,14 @@ from prometheus_client.multiprocess import MultiProcessCollector, mark_process_d
 from host import child_environment
 from host.directories import keep_private
 from lineofaction.gearbox.problems import BadInput, Unexpected
-from service.access import open_identities
 from service.access.capacity import capacity
+from service.access.identities import open_identities
+from service.folders import DirectoryLock
 from service.management.figures import process_registry
 from service.management.server import ManagementServer, Vitals
-from service.queue.machinery import Machinery, job_machinery
-from service.queue.scheduler import Scheduler
+from service.queue.scheduler import Machinery, Scheduler, job_machinery
 from service.routes.warm_up import HEAVY
 from service.settings import Settings, load_settings
-from service.store import DirectoryLock
 from service.store.database import shown
 from service.store.deployment import Deployment, WriteCheck
 from service.tracing.tracer import tracer
@@ -73,8 +72,10 @@ def log_to_standard_error() -> None:
 
 
 @contextmanager
-def _managed(settings: Settings, vitals: Vitals, metrics: Callable[[], bytes]) -> Iterator[str | None]:
-    """Answer on the management port while the context lasts; yields its URL, None without one.
+def _managed(
+    settings: Settings, vitals: Vitals, metrics: Callable[[], bytes]
+) -> Iterator[Callable[[], None]]:
+    """Answer on the management port while the context lasts; yields what prints its URL, if there is one.
 
     Raises
     ------
@@ -82,16 +83,35 @@ def _managed(settings: Settings, vitals: Vitals, metrics: Callable[[], bytes]) -
         The port is taken.
     """
     if settings.management_port is None:
-        yield None
+        yield lambda: None
         return
     with ManagementServer(settings.management_host, settings.management_port, vitals, metrics) as server:
-        yield server.address
+        yield partial(print, f"lineofaction tells its health at {server.address}", flush=True)
 
 
-def _announce_management(address: str | None) -> None:
-    """Print where it is, below the line of the program itself."""
-    if address is not None:
-        print(f"lineofaction tells its health at {address}", flush=True)  # noqa: T201 (command line)
+def _managed_work(
+    settings: Settings, machinery: Machinery, sums: str | None = None
+) -> AbstractContextManager[Callable[[], None]]:
+    """Return the management port of a scheduler; `sums`: the folder of the figures of several processes."""
+    engine, store, scheduler = machinery.engine, machinery.store, machinery.scheduler
+    writes = WriteCheck(Deployment(engine, store))
+    registry = process_registry(engine, store, writes, scheduler, settings)
+    if sums is not None:
+        MultiProcessCollector(registry, path=sums)  # type: ignore[no-untyped-call]
+    return _managed(settings, Vitals(scheduler, writes), partial(generate_latest, registry))
+
+
+def _at_stop(heed: Callable[[int, FrameType | None], None]) -> None:
+    """Have a function called at SIGTERM and SIGINT."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, heed)
+
+
+def _until_stopped() -> threading.Event:
+    """Return what is set at SIGTERM and SIGINT."""
+    stopped = threading.Event()
+    _at_stop(lambda _number, _frame: stopped.set())
+    return stopped
 
 
 def _leave() -> NoReturn:
@@ -115,13 +135,7 @@ def run_work(**options: object) -> None:
     log_to_standard_error()
     lock = DirectoryLock(settings.data_directory)
     lock.acquire()
-    stopped = threading.Event()
-
-    def stop(_number: int, _frame: FrameType | None) -> None:
-        stopped.set()
-
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, stop)
+    stopped = _until_stopped()
     try:
         _work(settings, stopped)
     finally:
@@ -131,19 +145,16 @@ def run_work(**options: object) -> None:
 
 def _work(settings: Settings, stopped: threading.Event) -> None:
     """Run jobs until `stopped`."""
-    with closing(job_machinery(settings, default_registry())) as machinery:
-        engine, store, scheduler = machinery.engine, machinery.store, machinery.scheduler
-        writes = WriteCheck(Deployment(engine, store))
-        registry = process_registry(engine, store, writes, scheduler, settings)
-        with _managed(settings, Vitals(scheduler, writes), partial(generate_latest, registry)) as where:
-            scheduler.start()
-            try:
-                print(f"lineofaction works for {shown(engine)}", flush=True)  # noqa: T201 (command line)
-                _announce_management(where)
-                stopped.wait()
-            finally:
-                scheduler.stop()
-                tracer().flush()
+    machinery = job_machinery(settings, default_registry())
+    with closing(machinery), _managed_work(settings, machinery) as announce_management:
+        machinery.scheduler.start()
+        try:
+            print(f"lineofaction works for {shown(machinery.engine)}", flush=True)  # noqa: T201 (command line)
+            announce_management()
+            stopped.wait()
+        finally:
+            machinery.scheduler.stop()
+            tracer().flush()
 
 
 # ``loa serve``.
@@ -163,18 +174,16 @@ def run_serve(*, works: bool = True, **options: object) -> None:
             )
             _leave()
         server = _server(settings, works=works)
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, _stopped)
-        with _managed(settings, server.vitals, server.metrics) as where:
+        _at_stop(_stopped)
+        with _managed(settings, server.vitals, server.metrics) as announce_management:
             _announce(listener)
-            _announce_management(where)
+            announce_management()
             server.run(sockets=[listener])
 
 
 def _serve(settings: Settings, listener: socket.socket) -> None:
     """Serve as one of several processes, until stopped or until the one that supervises them is gone."""
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, _stopped)
+    _at_stop(_stopped)
     _end_with_parent()
     log_to_standard_error()
     _server(settings, works=False).run(sockets=[listener])
@@ -245,13 +254,7 @@ def _serve_in_processes(settings: Settings, works: bool, serve: Work, announce: 
     Unexpected
         The scheduler died: the service has to be started again.
     """
-    stopped = threading.Event()
-
-    def stop(_number: int, _frame: FrameType | None) -> None:
-        stopped.set()
-
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, stop)
+    stopped = _until_stopped()
     lock = DirectoryLock(settings.data_directory)
     if works:
         lock.acquire()
@@ -259,28 +262,17 @@ def _serve_in_processes(settings: Settings, works: bool, serve: Work, announce: 
     os.environ.update(child_environment(**{_METRICS: metrics}))
     try:
         machinery = job_machinery(settings, default_registry(), works=works)
-        with closing(machinery), _managed_in_sum(settings, machinery, metrics) as where:
+        with closing(machinery), _managed_work(settings, machinery, metrics) as announce_management:
             processes = ServingProcesses(settings.processes, serve)
             machinery.scheduler.start()
             announce()
-            _announce_management(where)
+            announce_management()
             _supervise(processes, machinery.scheduler, stopped)
     finally:
         lock.release()
         shutil.rmtree(metrics, ignore_errors=True)
     if not stopped.is_set():
         raise Unexpected("scheduler")
-
-
-def _managed_in_sum(
-    settings: Settings, machinery: Machinery, metrics: str
-) -> AbstractContextManager[str | None]:
-    """Return the management port: health of the scheduler, sums of the figures in the folder `metrics`."""
-    engine, store, scheduler = machinery.engine, machinery.store, machinery.scheduler
-    writes = WriteCheck(Deployment(engine, store))
-    registry = process_registry(engine, store, writes, scheduler, settings)
-    MultiProcessCollector(registry, path=metrics)  # type: ignore[no-untyped-call]
-    return _managed(settings, Vitals(scheduler, writes), partial(generate_latest, registry))
 
 
 def _supervise(

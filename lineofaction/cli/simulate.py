@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 from dynamics.scene import Scene
 from dynamics.simulation import interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
+from fe_contact.ste import SteDatabase
 from host.directories import cache_home
 from lineofaction.cli.analyze import analyzed, assessed_scene
 from lineofaction.cli.guard import until_interrupted, warn, warnings_so_far
@@ -20,8 +22,7 @@ from lineofaction.cli.output import (
     print_result,
     progress_bar,
 )
-from lineofaction.cli.remote import watching
-from lineofaction.client import LineOfActionClient
+from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.client.client import ServiceTables
 from lineofaction.gearbox.convert.case import CheckedCases
 from lineofaction.gearbox.convert.effects import model_lines
@@ -29,6 +30,7 @@ from lineofaction.gearbox.convert.result_files import run_json, stamp
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.stages import staged
 from lineofaction.gearbox.subjects import MeshTables, finished
@@ -48,38 +50,34 @@ def _run_headlines(peaks: Mapping[str, Any]) -> tuple[Headline, ...]:
         for name, force in peaks.get("bearing_force", {}).items()
         for axis, peak, rms in zip("xyz", force["peak"], force["rms"], strict=True)
     }
-    return tuple(
-        _largest(what, forces)
-        for what, forces in (("mesh force of", meshes), ("force on bearing", bearings))
-        if forces
-    )
-
-
-def _largest(what: str, forces: dict[str, tuple[float, float]]) -> Headline:
-    name = max(forces, key=lambda part: forces[part][0])
-    peak, rms = forces[name]
-    return Headline(f"largest {what} {name}", f"{number(peak, 4)} N", f"rms {number(rms, 4)} N")
+    headlines = []
+    for what, forces in (("mesh force of", meshes), ("force on bearing", bearings)):
+        if forces:
+            name, (peak, rms) = max(forces.items(), key=lambda entry: entry[1][0])
+            value, remark = f"{number(peak, 4)} N", f"rms {number(rms, 4)} N"
+            headlines.append(Headline(f"largest {what} {name}", value, remark))
+    return tuple(headlines)
 
 
 def tabled_scene(scene: SceneInput, folder: Path, service: str | None, report: Report) -> TabledScene:
     """Return the scene with its tables and with its cases written out; its files are relative to `folder`."""
-    cases = CheckedCases()
-    if service is None:
-        here = MeshTables(folder, ComputedTables(lambda case: analyzed(cases.of(case), report)))
-        return scene_by_tables(
-            scene,
-            folder,
-            lambda index, mesh: finished(here.of(index, mesh)),
-            cache_home(),
-            report,
-            warn,
-            cases,
-        )
-    with LineOfActionClient(service, progress=watching(report)) as client:
-        there, run = MeshTables(folder, ServiceTables(client)), client.driver.run
-        return scene_by_tables(
-            scene, folder, lambda index, mesh: run(there.of(index, mesh)), cache_home(), report, warn, cases
-        )
+    cases, source, run = CheckedCases(), None, finished
+
+    def watch(state: JobState) -> None:
+        if state.stage:
+            report(state.stage, state.stage_progress / 100.0)
+
+    with ExitStack() as stack:
+        if service is not None:
+            client = stack.enter_context(LineOfActionClient(service, progress=watch))
+            source, run = ServiceTables(client), client.driver.run
+        here = ComputedTables(lambda case: analyzed(cases.of(case), report))
+        tables = MeshTables(folder, source or here)
+
+        def table_of(index: int, mesh: MeshInput) -> SteDatabase:
+            return run(tables.of(index, mesh))
+
+        return scene_by_tables(scene, folder, table_of, cache_home(), report, warn, cases)
 
 
 # ``loa simulate``.
@@ -118,7 +116,7 @@ def _show(facts: dict[str, Any]) -> None:
     out = console()
     attributes, sizes = facts["attributes"], facts["dimensions"]
     for line in model_lines(attributes):
-        out.print(line, highlight=False, soft_wrap=True)
+        out.print(line, soft_wrap=True)
     status = str(attributes["status"]).lower().replace("_", " ")
-    out.print(f"run {status}: {sizes['time']} samples", highlight=False)
+    out.print(f"run {status}: {sizes['time']} samples")
     print_result(_run_headlines(attributes["receipt"].get("peaks", {})), [Path(str(facts["file"]))])

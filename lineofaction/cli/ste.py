@@ -85,20 +85,16 @@ def _show(curve: dict[str, Any]) -> None:
     rows = [[f"{float(row[0]):.5f}", f"{float(row[1]):.4f}", *row[2:]] for row in _rows(curve)]
     out.print(table(_columns(curve), rows))
     out.print()
-    out.print(
-        f"torque {curve['torque_n_m']:.6g} N m, normal force {curve['normal_force_n']:.6g} N", highlight=False
-    )
+    out.print(f"torque {curve['torque_n_m']:.6g} N m, normal force {curve['normal_force_n']:.6g} N")
     if curve["period"] > 1:
         lines = sorted(zip(curve["amplitude_um"], curve["order"], strict=True), reverse=True)[:_SHOWN_ORDERS]
         orders = ", ".join(f"{order:.4g}: {amplitude:.4f}" for amplitude, order in lines)
-        out.print(
-            f"period {curve['period']} base pitches; largest orders of the mesh {orders} um", highlight=False
-        )
+        out.print(f"period {curve['period']} base pitches; largest orders of the mesh {orders} um")
     harmonics = ", ".join(f"{value:.4f}" for value in curve["harmonics_um"][:_SHOWN_ORDERS])
-    out.print(f"harmonics {harmonics} um", highlight=False)
+    out.print(f"harmonics {harmonics} um")
     for name in ("mean", "peak_to_peak"):
         error = curve.get(f"{name}_error_um")
         band = "(error not estimated)" if error is None else f"± {engineering(error, 2)} µm"
         value = f"{engineering(curve[f'{name}_um'], 4)} µm"
         words = f"{name.replace('_', '-')} STE at {curve['torque_n_m']:.6g} N m"
-        out.print(f"{words}: {value} {band}", highlight=False)
+        out.print(f"{words}: {value} {band}")

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from bounds import engineering
-from dynamics.results import RunResult
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.workers import Remembering, Workers
 from fe_contact.workers.remembering import content_digest
@@ -76,24 +75,29 @@ def run_study(study: Study, options: Json) -> None:
     """Run a study as its verb was called; `options` holds argument and options by their names."""
     files = options[study.argument] if study.several else [options[study.argument]]
     read = [_read(study, file) for file in files]
-    run = _run(options)
+    run = None if options.get("run") is None else read_run(options["run"], "run")
     inputs = _inputs(study, options)
     subjects = []
     for file, (subject, folder) in zip(files, read, strict=True):
         with located(file):
-            subjects.append((_assessed(study.run.narrowed(subject, inputs)), folder))
+            narrowed = study.run.narrowed(subject, inputs)
+            if isinstance(narrowed, CheckedCase):  # what is implausible about a scene is said with its tables
+                warn(case_warnings(narrowed))
+            subjects.append((narrowed, folder))
     targets = _targets(study, options["output"])
     for subject, _ in subjects:
         study.run.check(subject, inputs)
     executor = ExecutorChoice(options.get("workers", 1), options.get("dask"))
+    written = [subject.case if isinstance(subject, CheckedCase) else subject for subject, _ in subjects]
+    runs = targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
     stopping = until_interrupted if study.run.interruptible else nullcontext
     with (
         open_executor(executor) as others,
-        _resumed_workers(study, [_as_written(subject) for subject, _ in subjects], inputs, others) as workers,
+        _resumed_workers(study, written, inputs, others) as workers,
         progress_bar() as report,
         stopping() as cancel,
     ):
-        means = Means(cache_home(), report, workers, cancel, _runs_folder(targets), run)
+        means = Means(cache_home(), report, workers, cancel, runs, run)
         results = [
             study.run.compute(_made(subject, folder, options.get("service"), report), inputs, means)
             for subject, folder in subjects
@@ -119,23 +123,19 @@ def _tell(
         _writers(study, subject)[target.suffix](result, target)
         stamp(target, warnings_so_far())
     if options["json"]:
-        print_json(_written(study, targets) | study.run.figures(result))
+        names = [str(target) for target in targets]
+        files: Json = {"written": names[0], "file": names[0]} if names else {}
+        print_json(({"written": names} if study.folder else files) | study.run.figures(result))
     elif options.get("csv"):
         sys.stdout.write(_csv(study, result))
     else:
         _show(study, result, targets, remote_seconds)
 
 
-def _run(options: Json) -> RunResult | None:
-    return None if options.get("run") is None else read_run(options["run"], "run")
-
-
 def _inputs(study: Study, options: Json) -> Any:
-    if study.from_file:
-        if options["study"] is None:
-            return validated(study.inputs, {})
+    if study.from_file and options["study"] is not None:
         return read_model(study.inputs, options["study"])
-    return validated(study.inputs, _fields(study, options))
+    return validated(study.inputs, {} if study.from_file else _fields(study, options))
 
 
 def _fields(study: Study, options: Json) -> Json:
@@ -145,7 +145,8 @@ def _fields(study: Study, options: Json) -> Json:
         if spelling and spelling.value is not None:
             value = spelling.value if value else field.default
         elif spelling and spelling.file and value is not None:
-            value = _digest(value)
+            with value.open("rb") as content:
+                value = hashlib.file_digest(content, "sha256").hexdigest()
         elif value is not None and (kind := item_type(field)):
             option = spelling.option if spelling else f"--{name.replace('_', '-')}"
             words = [part.strip() for part in value.split(",")]
@@ -155,30 +156,10 @@ def _fields(study: Study, options: Json) -> Json:
     return fields
 
 
-def _digest(file: Path) -> str:
-    with file.open("rb") as content:
-        return hashlib.file_digest(content, "sha256").hexdigest()
-
-
 def _read(study: Study, file: InputFile) -> tuple[CheckedCase | SceneInput, Path]:
     if study.subject == "scene" or (study.subject != "case" and "shafts" in read_table(file)):
         return assessed_scene(file)
     return CheckedCase(read_model(Case, file)), file.folder
-
-
-def _assessed(subject: CheckedCase | SceneInput) -> CheckedCase | SceneInput:
-    """Return what is studied; what is implausible about a case is said, about a scene with its tables."""
-    if isinstance(subject, CheckedCase):
-        warn(case_warnings(subject))
-    return subject
-
-
-def _as_written(subject: CheckedCase | SceneInput) -> BoundaryModel:
-    return subject.case if isinstance(subject, CheckedCase) else subject
-
-
-def _runs_folder(targets: list[Path]) -> Path | None:
-    return targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
 
 
 def _made(subject: CheckedCase | SceneInput, folder: Path, service: str | None, report: Report) -> Any:
@@ -247,21 +228,13 @@ def _csv(study: Study, result: Any) -> str:
     return csv_text(series.head, series.rows)
 
 
-def _written(study: Study, targets: list[Path]) -> Json:
-    """Return the files that were written, under the names that verbs have for them."""
-    names = [str(target) for target in targets]
-    if study.folder:
-        return {"written": names}
-    return {"written": names[0], "file": names[0]} if names else {}
-
-
 def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float) -> None:
     """Print tables and lines for people, and what all of it cost: tables, workers and other children too."""
     out = console()
     for part in presentation_of(study).text(result):
         if isinstance(part, str):
-            out.print(part, highlight=False, soft_wrap=True)
+            out.print(part, soft_wrap=True)
         else:
             out.print(table(part.head, part.rows, part.caption))
-    out.print(f"cost {engineering(cpu_seconds() + remote_seconds, 3)} CPU s", highlight=False)
+    out.print(f"cost {engineering(cpu_seconds() + remote_seconds, 3)} CPU s")
     print_result(presentation_of(study).page(result).headlines, targets)

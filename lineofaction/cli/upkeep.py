@@ -14,16 +14,16 @@ import typer
 from host.directories import keep_private
 from lineofaction.cli.output import console, print_json, table
 from lineofaction.gearbox.problems import EXIT_FAILED
-from service.access import AccessKey, KeyFile
-from service.queue.machinery import Machinery, job_machinery
+from service.access.keyring import AccessKey, KeyFile
 from service.queue.retention import Retention
+from service.queue.scheduler import job_machinery
 from service.settings import load_settings
-from service.store import DATABASE_FILE, ResultStore, open_database
-from service.store.database import Schema, database_engine, shown
+from service.store.database import Schema, database_engine, open_database, shown
 from service.store.deployment import Deployment
 from service.store.maintenance import Leftover, Quarantine, reindex, verify_store
 from service.store.migrations import REVISIONS
-from service.store.places import result_files
+from service.store.places import DATABASE_FILE, result_files
+from service.store.results import ResultStore
 from service.worker.process import Registry
 
 Json = dict[str, Any]
@@ -129,12 +129,9 @@ class Results:
         self._settings, self._as_json = load_settings(data_directory=data_directory), as_json
         keep_private()
 
-    def _machinery(self) -> Machinery:
-        return job_machinery(self._settings, Registry(), works=False)
-
     def verify(self) -> None:
         """Verify, and fail if a file was damaged or is gone."""
-        with closing(self._machinery()) as parts:
+        with closing(job_machinery(self._settings, Registry(), works=False)) as parts:
             audit = verify_store(parts.store)
         if self._as_json:
             print_json(asdict(audit))
@@ -152,10 +149,9 @@ class Results:
         """Collect, and tell what."""
         settings = self._settings
         days = settings.retention_days if older_than is None else older_than
-        with closing(self._machinery()) as parts:
-            retention = Retention(
-                parts.engine, parts.store, settings.data_directory, settings.quarantine_days
-            )
+        with closing(job_machinery(settings, Registry(), works=False)) as parts:
+            kept = (settings.data_directory, settings.quarantine_days)
+            retention = Retention(parts.engine, parts.store, *kept)
             items = list(retention.collect(days, dry_run=dry_run))
         if self._as_json:
             facts: dict[str, Any] = {"dry_run": dry_run, "older_than_days": days}

@@ -22,7 +22,7 @@ F = TypeVar("F", bound="Figures")
 J = TypeVar("J")
 
 
-class BatchSurface(Followed, Generic[T, J]):
+class _BatchSurface(Followed, Generic[T, J]):
     """The calls of a batch.
 
     Attributes
@@ -47,23 +47,24 @@ class BatchSurface(Followed, Generic[T, J]):
         if not self.state.ended:
             pace = pace_of_known(self.session, timeout, interval)
             yield from end_of(self, self.id, self._seen(progress), pace)
-        path = f"/v1/jobs/{self.id}/results"
-        return (yield from self._patiently(lambda: self.session.exchange.read(self._jobs, "GET", path)))
+        path, exchange = f"/v1/jobs/{self.id}/results", self.session.exchange
+
+        def jobs(facts: dict[str, Any]) -> list[J]:
+            return [self._job(*self._ended(place, entry)) for place, entry in enumerate(facts["jobs"])]
+
+        return (yield from self._patiently(lambda: exchange.read(jobs, "GET", path)))
 
     @operation
     def result(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[list[T]]:
         """Wait for all jobs and return their results in order; raises why the first that has none failed."""
         results: list[Any] = []
-        for place, job in enumerate((yield from BatchSurface.wait(self, progress, timeout=timeout))):
+        for place, job in enumerate((yield from _BatchSurface.wait(self, progress, timeout=timeout))):
             try:
                 results.append((yield from JobSurface.result(job)))
             except ServiceError as error:
                 error.add_note(f"This is job {place} of batch {self.id}; wait() returns all of them.")
                 raise
         return results
-
-    def _jobs(self, facts: dict[str, Any]) -> list[J]:
-        return [self._job(*self._ended(place, entry)) for place, entry in enumerate(facts["jobs"])]
 
     def _ended(self, place: int, entry: dict[str, Any]) -> tuple[JobState, Result | None]:
         message = entry["problem"]["detail"] if entry["problem"] else "Done."
@@ -75,14 +76,14 @@ class BatchSurface(Followed, Generic[T, J]):
         raise NotImplementedError
 
 
-class Batch(BatchSurface[T, Job[T, F]], Blocking):
+class Batch(_BatchSurface[T, Job[T, F]], Blocking):
     """A batch whose calls block."""
 
     def _job(self, state: JobState, result: Result | None) -> Job[T, F]:
         return Job(self, state, self._read, result)
 
 
-class AsyncBatch(BatchSurface[T, AsyncJob[T, F]], Awaiting):
+class AsyncBatch(_BatchSurface[T, AsyncJob[T, F]], Awaiting):
     """A batch whose calls are awaited."""
 
     def _job(self, state: JobState, result: Result | None) -> AsyncJob[T, F]:

@@ -84,8 +84,13 @@ class ResultCache:
         return result if held else None
 
     def _folder(self, kind: str, key: str) -> Path:
-        """Return the folder of a key, whose files differ where services gave different bytes for it."""
-        return self._directory / kind / _plain(key)
+        """Return the folder of a key, whose files differ where services gave different bytes for it.
+
+        A key is hashed again unless it is a plain hash.
+        """
+        plain = len(key) == 64 and set(key) <= set("0123456789abcdef")
+        name = key if plain else hashlib.sha256(key.encode("utf-8", "replace")).hexdigest()
+        return self._directory / kind / name
 
     def _note(self, service: str, process: str, inputs: dict[str, Any]) -> Path:
         text = json.dumps({"service": service, "process": process, "inputs": inputs}, sort_keys=True)
@@ -106,12 +111,6 @@ class ResultCache:
             raise BadInput.of(
                 "cache_dir", str(self._directory), bound, f"{error.strerror}. {advice}"
             ) from None
-
-
-def _plain(key: str) -> str:
-    """Return a key as the name of a folder; it is hashed again unless it is a plain hash."""
-    plain = len(key) == 64 and set(key) <= set("0123456789abcdef")
-    return key if plain else hashlib.sha256(key.encode("utf-8", "replace")).hexdigest()
 
 
 def _holds(file: Path, digest: str) -> bool:

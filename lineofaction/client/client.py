@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import ipaddress
 import os
 from collections.abc import Callable, Sequence
 from copy import copy
@@ -38,9 +37,12 @@ from lineofaction.client.surface import (
 )
 from lineofaction.gearbox import schemas
 from lineofaction.gearbox.problems import BadInput
+from service.origin import is_loopback
 from service.version import solver_version
 
 if TYPE_CHECKING:
+    from pydantic import BaseModel
+
     from dynamics.scene import Scene
     from fe_contact.ste import SteDatabase
     from lineofaction.gearbox.schemas import Case
@@ -65,7 +67,7 @@ class ServiceTables:
         return obtained(self._client, ANALYZE, subject_inputs("case", case))
 
 
-class SceneCalls(Surface):
+class _SceneCalls(Surface):
     """Scenes on the tables of a service."""
 
     @operation
@@ -109,9 +111,10 @@ class SceneCalls(Surface):
 
 
 T = TypeVar("T")
+M = TypeVar("M", bound="BaseModel")
 
 
-class LookupCalls(Surface):
+class _LookupCalls(Surface):
     """Answers that need no job."""
 
     @operation
@@ -136,18 +139,17 @@ class LookupCalls(Surface):
     @operation
     def examples(self) -> Steps[tuple[ExampleBody, ...]]:
         """Return cases to begin with."""
-        exchange = self.session.exchange
-        return (yield from exchange.read(_examples, "GET", "/v1/examples"))
+        return self._listed("/v1/examples", "ExampleBody")
 
     @operation
     def effects(self) -> Steps[tuple[EffectBody, ...]]:
         """Return the optional physics, which a case switches in its table ``[effects]``."""
-        return (yield from self.session.exchange.read(_effects, "GET", "/v1/effects"))
+        return self._listed("/v1/effects", "EffectBody")
 
     @operation
     def case_from_toml(self, toml: str) -> Steps[schemas.Case]:
         """Return the case in the text of a case file; raises `BadInput` with the lines at fault."""
-        return (yield from self._answer("/v1/cases/from-toml", {"toml": toml}, _case))
+        return self._validated("/v1/cases/from-toml", toml, "case", schemas.Case)
 
     @operation
     def case_to_toml(self, case: CaseLike) -> Steps[str]:
@@ -158,7 +160,7 @@ class LookupCalls(Surface):
     @operation
     def scene_from_toml(self, toml: str) -> Steps[schemas.SceneInput]:
         """Return the scene in the text of a scene file; raises `BadInput` with the lines at fault."""
-        return (yield from self._answer("/v1/scenes/from-toml", {"toml": toml}, _scene))
+        return self._validated("/v1/scenes/from-toml", toml, "scene", schemas.SceneInput)
 
     @operation
     def scene_to_toml(self, scene: SceneLike) -> Steps[str]:
@@ -188,40 +190,28 @@ class LookupCalls(Surface):
         except OSError as error:
             raise BadInput.of("file", str(file), f"a file that can be read ({error.strerror})") from None
         body = {"rexs_base64": base64.b64encode(data).decode(), "assume": list(assume)}
-        return (yield from self._answer("/v1/units/open", body, _unit))
+        unit: UnitBody = yield from self._answer("/v1/units/open", body, _model("UnitBody").model_validate)
+        return unit
 
     def _answer(self, path: str, body: dict[str, Any], reader: Callable[[Any], T]) -> Steps[T]:
-        return (yield from self.session.exchange.read(reader, "POST", path, json=body))
+        return self.session.exchange.read(reader, "POST", path, json=body)
 
+    def _validated(self, path: str, toml: str, name: str, model: type[M]) -> Steps[M]:
+        return self._answer(path, {"toml": toml}, lambda answer: schemas.validated(model, answer[name]))
 
-def _case(answer: dict[str, Any]) -> schemas.Case:
-    return schemas.validated(schemas.Case, answer["case"])
-
-
-def _scene(answer: dict[str, Any]) -> schemas.SceneInput:
-    return schemas.validated(schemas.SceneInput, answer["scene"])
+    def _listed(self, path: str, model: str) -> Steps[tuple[Any, ...]]:
+        return self.session.exchange.read(
+            lambda answer: tuple(map(_model(model).model_validate, answer)), "GET", path
+        )
 
 
 def _text(answer: dict[str, Any]) -> str:
     return str(answer["toml"])
 
 
-def _effects(answer: list[Any]) -> tuple[EffectBody, ...]:
-    return tuple(map(_bodies().EffectBody.model_validate, answer))
-
-
-def _examples(answer: list[Any]) -> tuple[ExampleBody, ...]:
-    return tuple(map(_bodies().ExampleBody.model_validate, answer))
-
-
-def _unit(answer: dict[str, Any]) -> UnitBody:
-    unit: UnitBody = _bodies().UnitBody.model_validate(answer)
-    return unit
-
-
-def _bodies() -> Any:
-    """Return the models of answers, loaded with the first of them."""
-    return import_module("service.schemas.answers")
+def _model(name: str) -> Any:
+    """Return a model of answers; all are loaded with the first of them."""
+    return getattr(import_module("service.schemas.answers"), name)
 
 
 # The address of a service, and how HTTP libraries are to reach it.
@@ -243,7 +233,7 @@ def _http_options(base_url: str | None, timeout: float, key: str | None) -> dict
         "base_url": address.rstrip("/"),
         "headers": agent | ({"Authorization": f"Bearer {key}"} if key else {}),
         "timeout": timeout,
-        "trust_env": not _is_loopback(_host(address)),
+        "trust_env": not is_loopback(_host(address)),
     }
 
 
@@ -258,14 +248,7 @@ def _host(base_url: str) -> str:
     return url.host
 
 
-def _is_loopback(host: str) -> bool:
-    try:
-        return host == "localhost" or ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
-
-
-class Client(Processes, JobCalls, ResultCalls, LookupCalls, SceneCalls):
+class Client(Processes, JobCalls, ResultCalls, _LookupCalls, _SceneCalls):
     """All calls of a client.
 
     Parameters

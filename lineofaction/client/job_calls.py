@@ -155,13 +155,9 @@ class JobCalls(Surface):
         """
         path = f"/v1/processes/{process}/execution"
         headers = {"Idempotency-Key": idempotency_key or str(uuid.uuid4())}
-        body = {**self.session.terms, "inputs": inputs}
+        sent = {"json": {**self.session.terms, "inputs": inputs}, "headers": headers}
         try:
-            return (
-                yield from self.session.exchange.read(
-                    JobState.from_json, "POST", path, json=body, headers=headers
-                )
-            )
+            return (yield from self.session.exchange.read(JobState.from_json, "POST", path, **sent))
         except BadInput as error:
             yield from self._note_other_version(error)
             raise
@@ -186,27 +182,24 @@ class JobCalls(Surface):
             With the faults of all jobs, by their index: ``jobs[3].pair.pinion.teeth``.
         QueueFull, Unreachable, ServiceError
         """
-        headers = {"Idempotency-Key": str(uuid.uuid4())}
         body = {**self.session.terms, "process": process, "inputs": inputs or {}, "jobs": list(jobs)}
-        exchange = self.session.exchange
-        return (
-            yield from exchange.read(JobState.from_json, "POST", "/v1/batches", json=body, headers=headers)
-        )
+        sent = {"json": body, "headers": {"Idempotency-Key": str(uuid.uuid4())}}
+        return (yield from self.session.exchange.read(JobState.from_json, "POST", "/v1/batches", **sent))
 
     @operation
     def version(self) -> Steps[str]:
         """Return the version of the service."""
-        return (yield from self.session.exchange.read(lambda facts: str(facts["version"]), "GET", "/v1/"))
+        return self.session.exchange.read(lambda facts: str(facts["version"]), "GET", "/v1/")
 
     @operation
     def status(self, job: str) -> Steps[JobState]:
         """Return the state of a job."""
-        return (yield from self.session.exchange.read(JobState.from_json, "GET", f"/v1/jobs/{job}"))
+        return self.session.exchange.read(JobState.from_json, "GET", f"/v1/jobs/{job}")
 
     @operation
     def dismiss(self, job: str) -> Steps[JobState]:
         """Cancel a job; its work ends unless other jobs share it."""
-        return (yield from self.session.exchange.read(JobState.from_json, "DELETE", f"/v1/jobs/{job}"))
+        return self.session.exchange.read(JobState.from_json, "DELETE", f"/v1/jobs/{job}")
 
     @operation
     def relabel(
@@ -214,9 +207,7 @@ class JobCalls(Surface):
     ) -> Steps[JobState]:
         """Change title and tags of a job, ended or not; None: they stay. Raises `BadInput`, `NotFound`."""
         body = {"title": title, "tags": None if tags is None else list(tags)}
-        return (
-            yield from self.session.exchange.read(JobState.from_json, "PATCH", f"/v1/jobs/{job}", json=body)
-        )
+        return self.session.exchange.read(JobState.from_json, "PATCH", f"/v1/jobs/{job}", json=body)
 
     @listing
     def jobs(
@@ -332,7 +323,7 @@ class JobCalls(Surface):
     def result(self, job: str) -> Steps[Result]:
         """Return where the result of a job is; raises as `wait`, or `ResultNotReady`."""
         path = f"/v1/jobs/{job}/results"
-        return (yield from self.session.exchange.read(Result.from_json, "GET", path, params=_REFERENCES))
+        return self.session.exchange.read(Result.from_json, "GET", path, params=_REFERENCES)
 
     @operation
     def obtain(self, process: str, inputs: dict[str, Any], progress: Watch | None = None) -> Steps[Result]:

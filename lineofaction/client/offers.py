@@ -86,25 +86,11 @@ def libraries() -> Iterator[None]:
         raise ModuleNotFoundError(f"{error.name} is not installed. {_ADVICE}", name=error.name) from None
 
 
-def _read_database(file: Path) -> Any:
+def _read(module: str, kind: str, file: Path) -> Any:
+    """Read a file as a class of a library, which is loaded now."""
     with libraries():
-        from fe_contact.ste import SteDatabase  # noqa: PLC0415 (keeps the import of the client light)
-
-    return SteDatabase.from_netcdf(file)
-
-
-def _read_run(file: Path) -> Any:
-    with libraries():
-        from dynamics.results import RunResult  # noqa: PLC0415 (keeps the import of the client light)
-
-    return RunResult.from_netcdf(file)
-
-
-def _read_study(study: Study, file: Path) -> Any:
-    """Read the result of a study; the study's module is loaded now."""
-    with libraries():
-        stored = study.run.file
-    return stored.read(file)
+        result = getattr(import_module(module), kind)
+    return result.from_netcdf(file)
 
 
 def _signature(subject: str, *further: Parameter) -> Signature:
@@ -117,12 +103,20 @@ def _study_offer(study: Study) -> Offer:
         if study.from_file
         else Parameter("options", Parameter.VAR_KEYWORD)
     )
+
+    def read(file: Path) -> Any:
+        with libraries():
+            stored = study.run.file
+        return stored.read(file)
+
     signature = _signature(study.argument, varied)
-    return Offer(study.name, study.description, signature, study.subject, partial(_read_study, study))
+    return Offer(study.name, study.description, signature, study.subject, read)
 
 
-ANALYZE = Offer("analyze", "Compute the STE database of a case.", _signature("case"), "case", _read_database)
-SIMULATE = Offer("simulate", "Compute the run of a scene.", _signature("scene"), "scene", _read_run)
+_DATABASE = partial(_read, "fe_contact.ste", "SteDatabase")
+_RUN = partial(_read, "dynamics.results", "RunResult")
+ANALYZE = Offer("analyze", "Compute the STE database of a case.", _signature("case"), "case", _DATABASE)
+SIMULATE = Offer("simulate", "Compute the run of a scene.", _signature("scene"), "scene", _RUN)
 
 
 @cache

@@ -29,10 +29,6 @@ Column = float | Collection[float]
 """One value for all points, or a list or one-dimensional array with one for each."""
 
 
-def _numbers(column: Column) -> list[float]:
-    return [float(value) for value in ([column] if isinstance(column, int | float) else column)]
-
-
 # What a live question may ask beside the torques.
 
 
@@ -128,7 +124,7 @@ class ResultCalls(Surface):
     @operation
     def fetch_result(self, key: str, *kinds: str) -> Steps[tuple[Path, str]]:
         """Return the file of a result of one of some kinds, default all, and its kind; as `fetch_file`."""
-        return (yield from _fetched(self.session, key, kinds or RESULT_KINDS, NETCDF))
+        return _fetched(self.session, key, kinds or RESULT_KINDS, NETCDF)
 
     @operation
     def report(self, key: str, *, against: str | None = None) -> Steps[Report]:
@@ -145,7 +141,7 @@ class ResultCalls(Surface):
 
         parameters = {} if against is None else {"against": against}
         path = f"{RESULTS}/{key}/figures"
-        return (yield from self.session.exchange.read(Report.model_validate, "GET", path, params=parameters))
+        return self.session.exchange.read(Report.model_validate, "GET", path, params=parameters)
 
     @operation
     def sound(
@@ -209,7 +205,8 @@ class ResultCalls(Surface):
             "misalignment_um": misalignment_um,
             "center_distance_change_mm": center_distance_change_mm,
         }
-        numbers = {name: _numbers(column) for name, column in columns.items()}
+        lists = {name: [of] if isinstance(of, int | float) else of for name, of in columns.items()}
+        numbers = {name: [float(value) for value in values] for name, values in lists.items()}
         points = schemas.validated(QueryInput, numbers).model_dump(mode="json")
         reader, path = schemas.QueryOutput.model_validate, f"/v1/databases/{key}/query"
         return (yield from self.session.exchange.read(reader, "POST", path, json=points))

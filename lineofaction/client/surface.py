@@ -112,8 +112,12 @@ class BlockingDriver:
                 if not window:
                     return
                 while not window[0].ended:
-                    self._until_pause(min((each for each in window if not each.ended), key=_due), streams)
-                yield window.popleft().result()
+                    under_way = (each for each in window if not each.ended)
+                    self._until_pause(min(under_way, key=lambda begun: begun.due), streams)
+                first = window.popleft()
+                if first.error is not None:
+                    raise first.error
+                yield cast("T", first.value)
 
     def _until_pause(self, begun: _Begun[Any], streams: ExitStack) -> None:
         """Perform what an operation wants until it pauses or ends."""
@@ -160,16 +164,6 @@ class _Begun(Generic[T]):
     ended: bool = False
     value: T | None = None
     error: Exception | None = None
-
-    def result(self) -> T:
-        """Return what it returned, or raise what it raised."""
-        if self.error is not None:
-            raise self.error
-        return cast("T", self.value)
-
-
-def _due(begun: _Begun[Any]) -> float:
-    return begun.due
 
 
 # The driver that awaits: the steps of many tasks of one event loop.
@@ -300,14 +294,37 @@ class Awaiting(Surface):
     driver: AwaitingDriver
 
 
-class Operation(Generic[P, T]):
-    """A method with one result, made of a method that is a generator of steps.
+class _Method:
+    """A method made of a method that is a generator of steps, which a verb of the driver performs.
 
     On the class it is the generator, for other operations to ``yield from``.
     """
 
-    def __init__(self, steps: Callable[Concatenate[Any, P], Steps[T]]) -> None:
+    _verb: str
+
+    def __init__(self, steps: Callable[..., Any]) -> None:
         self._steps = steps
+
+    def _of(self, surface: Any) -> Callable[..., Any]:
+        """Return the generator of a class, the method of an object."""
+        steps = self._steps
+        if surface is None:
+            return steps
+
+        @wraps(steps)
+        def perform(*args: Any, **kwargs: Any) -> Any:
+            return getattr(surface.driver, self._verb)(steps(surface, *args, **kwargs))
+
+        return perform
+
+
+class Operation(_Method, Generic[P, T]):
+    """A method with one result."""
+
+    _verb = "run"
+
+    def __init__(self, steps: Callable[Concatenate[Any, P], Steps[T]]) -> None:
+        super().__init__(steps)
 
     @overload
     def __get__(self, surface: None, owner: type) -> Callable[Concatenate[Any, P], Steps[T]]: ...
@@ -317,22 +334,16 @@ class Operation(Generic[P, T]):
     def __get__(self, surface: Awaiting, owner: type) -> Callable[P, Coroutine[Any, Any, T]]: ...
     def __get__(self, surface: Any, owner: type) -> Callable[..., Any]:
         """Return the generator of a class, the method of an object."""
-        steps = self._steps
-        if surface is None:
-            return steps
-
-        @wraps(steps)
-        def perform(*args: P.args, **kwargs: P.kwargs) -> Any:
-            return surface.driver.run(steps(surface, *args, **kwargs))
-
-        return perform
+        return self._of(surface)
 
 
-class Listing(Generic[P, T]):
-    """A method that yields items, made of a method that is a generator of steps and items."""
+class Listing(_Method, Generic[P, T]):
+    """A method that yields items."""
+
+    _verb = "iterate"
 
     def __init__(self, steps: Callable[Concatenate[Any, P], Items[T]]) -> None:
-        self._steps = steps
+        super().__init__(steps)
 
     @overload
     def __get__(self, surface: None, owner: type) -> Callable[Concatenate[Any, P], Items[T]]: ...
@@ -342,15 +353,7 @@ class Listing(Generic[P, T]):
     def __get__(self, surface: Awaiting, owner: type) -> Callable[P, AsyncIterator[T]]: ...
     def __get__(self, surface: Any, owner: type) -> Callable[..., Any]:
         """Return the generator of a class, the method of an object."""
-        steps = self._steps
-        if surface is None:
-            return steps
-
-        @wraps(steps)
-        def iterate(*args: P.args, **kwargs: P.kwargs) -> Any:
-            return surface.driver.iterate(steps(surface, *args, **kwargs))
-
-        return iterate
+        return self._of(surface)
 
 
 operation, listing = Operation, Listing

@@ -20,6 +20,7 @@ from lineofaction.cli.options import (
     TaskWorkers,
     file_argument,
     overridable,
+    to_file,
 )
 from lineofaction.cli.verbs import Later
 from lineofaction.gearbox.input_file import InputFile, number_list
@@ -41,10 +42,6 @@ _ASSUME = (
     "repeatable."
 )
 
-NewFile = Annotated[
-    Path | None, typer.Option("-o", "--output", help="New file to write (TOML); default: print it.")
-]
-
 
 @verbs.command("new", epilog="Example: loa new --helical --module 1.8 --teeth 23 --ratio 2.9 -o pair.toml")
 @guarded
@@ -57,7 +54,7 @@ def _new(
     planetary: Annotated[bool, typer.Option("--planetary", help="A planetary stage, as a scene.")] = False,
     scene: Annotated[bool, typer.Option("--scene", help="A helical pair between shafts.")] = False,
     wanted: PairWishes,
-    output: NewFile = None,
+    output: Annotated[Path | None, to_file("New file to write (TOML); default: print it.")] = None,
 ) -> None:
     """Write a first case or scene file; rules set all data that are not given."""
     kinds = {"spur": spur, "helical": helical, "internal": internal, "planetary": planetary, "scene": scene}
@@ -90,7 +87,7 @@ def _open_unit(
 @overridable("case")
 def _analyze(
     case: CaseFile,
-    output: Annotated[Path, typer.Option("-o", "--output", help="STE database to write (netCDF).")],
+    output: Annotated[Path, to_file("STE database to write (netCDF).")],
     workers: TaskWorkers = 1,
     dask: DaskScheduler = None,
     json: AsJson = False,
@@ -106,7 +103,7 @@ def _geometry(
     case: CaseFile,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="Drawing or page to write, ending in .html, .png or .svg."),
+        to_file("Drawing or page to write, ending in .html, .png or .svg."),
     ] = None,
     json: AsJson = False,
 ) -> None:
@@ -140,10 +137,11 @@ def _ste(
 class _LoadPoint:
     """One load and alignment."""
 
-    torque: Annotated[
-        float | None, typer.Option(help="Torque on the driving gear in N m; default: the highest load.")
+    torque_n_m: Annotated[
+        float | None,
+        typer.Option("--torque", help="Torque on the driving gear in N m; default: the highest load."),
     ] = None
-    force: Force = None
+    normal_force_n: Force = None
     misalignment_um: Annotated[
         float | None, typer.Option(help="Misalignment in um; default: the value of the case nearest to 0.")
     ] = None
@@ -151,16 +149,6 @@ class _LoadPoint:
         float | None,
         typer.Option(help="Change of the center distance in mm; default: the value nearest to 0."),
     ] = None
-
-    @property
-    def inputs(self) -> dict[str, float | None]:
-        """The load and the alignment under the names of their fields."""
-        return {
-            "torque_n_m": self.torque,
-            "normal_force_n": self.force,
-            "misalignment_um": self.misalignment_um,
-            "center_distance_change_mm": self.center_distance_change_mm,
-        }
 
 
 @dataclass(frozen=True)
@@ -208,11 +196,9 @@ def _export(
     ],
     output: Annotated[
         Path,
-        typer.Option(
-            "-o",
-            "--output",
-            help="Folder for pinion.vtu and wheel.vtu, or MESH.fmu; for a run .unv or .csv; "
-            "with --rexs .rexs, .rexsj or .rexsz.",
+        to_file(
+            "Folder for pinion.vtu and wheel.vtu, or MESH.fmu; for a run .unv or .csv; "
+            "with --rexs .rexs, .rexsj or .rexsz."
         ),
     ],
     point: _LoadPoint,
@@ -230,7 +216,7 @@ def _export(
 ) -> None:
     """Write gears as they bend in mesh, the mesh force as FMU, results into REXS, a run as UFF or CSV."""
     further = asdict(fmu) | asdict(part)
-    export.run_export(case, output, point.inputs, rexs, at=at, beside=beside, as_json=json, **further)
+    export.run_export(case, output, asdict(point), rexs, at=at, beside=beside, as_json=json, **further)
 
 
 # Verbs on scenes that are no studies: runs.
@@ -286,7 +272,7 @@ class _HousingOptions:
 @overridable("scene", "scene")
 def _simulate(
     scene: SceneFile,
-    output: Annotated[Path, typer.Option("-o", "--output", help="Run to write (netCDF).")],
+    output: Annotated[Path, to_file("Run to write (netCDF).")],
     service: TableService = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue a run that was interrupted or killed.")
@@ -303,10 +289,7 @@ def _simulate(
 def _listen(
     *,
     runs: Annotated[list[Path], typer.Argument(help="Runs (netCDF); several are written on one full scale.")],
-    output: Annotated[
-        Path,
-        typer.Option("-o", "--output", help="WAV file, or folder of one file per run, named as the run."),
-    ],
+    output: Annotated[Path, to_file("WAV file, or folder of one file per run, named as the run.")],
     heard: _HeardOptions,
     housing: _HousingOptions,
     json: AsJson = False,
@@ -339,9 +322,7 @@ def _hardcases(
     only: Annotated[
         list[str] | None, typer.Option("--only", help="Names or families of scenes, separated by commas.")
     ] = None,
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Report page to write (HTML).")
-    ] = None,
+    output: Annotated[Path | None, to_file("Report page to write (HTML).")] = None,
     json: AsJson = False,
 ) -> None:
     """Run the hard scenes: cases known to break solvers, each checked against laws of physics."""
@@ -400,7 +381,7 @@ def _report(
             help="Result files, netCDF or JSON: STE database, flank results, studies, run; one of each kind."
         ),
     ],
-    output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("report.html"),
+    output: Annotated[Path, to_file("Page to write.")] = Path("report.html"),
     images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
     flank: Annotated[
         bool,
@@ -422,7 +403,7 @@ def _compare(
         list[Path],
         typer.Argument(help="Two STE databases, two runs, or one of them and a measurement (CSV, UFF)."),
     ],
-    output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("comparison.html"),
+    output: Annotated[Path, to_file("Page to write.")] = Path("comparison.html"),
     torque: Annotated[
         float | None,
         typer.Option(help="Torque of the ripples shown, N m.", show_default="the middle one"),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from lineofaction.cli.guard import computing, grouped, guarded
-from lineofaction.cli.options import DEFAULT_SERVICE, AsJson, Service, file_argument, overridable
+from lineofaction.cli.options import DEFAULT_SERVICE, AsJson, Service, file_argument, overridable, to_file
 from lineofaction.cli.verbs import Later
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.registry import studies_of
@@ -22,6 +22,11 @@ else:
 
 verbs = typer.Typer()
 
+DataDirectory = Annotated[
+    Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
+]
+Workers = Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")]
+
 
 @verbs.command("serve", epilog="Example: loa serve --port 8321 --workers 2")
 @guarded
@@ -31,10 +36,8 @@ def _serve(
         typer.Option(help="Address to listen on; loopback only without access keys [LOA_HOST]."),
     ] = None,
     port: Annotated[int | None, typer.Option(help="Port; 0 selects a free one [LOA_PORT].")] = None,
-    data_directory: Annotated[
-        Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
-    ] = None,
-    workers: Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")] = None,
+    data_directory: DataDirectory = None,
+    workers: Workers = None,
     processes: Annotated[
         int | None, typer.Option(help="Processes that answer requests [LOA_PROCESSES].")
     ] = None,
@@ -53,7 +56,7 @@ def _work(
     data_directory: Annotated[
         Path | None, typer.Option(help="Directory of workspaces, one per loa work [LOA_DATA_DIRECTORY].")
     ] = None,
-    workers: Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")] = None,
+    workers: Workers = None,
 ) -> None:
     """Run the jobs of a database that loa serve --no-work fills, until stopped."""
     serve.run_work(data_directory=data_directory, workers=workers)
@@ -86,9 +89,7 @@ def _submit(
     file: Annotated[InputFile, file_argument("Case or scene file", "FILE")],
     service: Service = DEFAULT_SERVICE,
     wait: Annotated[bool, typer.Option("--wait", help="Wait for the result.")] = False,
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Wait for the result and write it to this file.")
-    ] = None,
+    output: Annotated[Path | None, to_file("Wait for the result and write it to this file.")] = None,
     process: Annotated[
         str | None,
         typer.Option(
@@ -111,10 +112,7 @@ def _submit(
 @computing
 def _fetch(
     name: Annotated[str, typer.Argument(help="Identifier of a job, or content hash of a result.")],
-    output: Annotated[
-        Path,
-        typer.Option("-o", "--output", help="File to write: netCDF or JSON, by its kind."),
-    ],
+    output: Annotated[Path, to_file("File to write: netCDF or JSON, by its kind.")],
     service: Service = DEFAULT_SERVICE,
     wait: Annotated[bool, typer.Option("--wait", help="Wait for the job.")] = False,
     json: AsJson = False,
@@ -245,10 +243,6 @@ store = typer.Typer(help="The store of results: verify, collect, reindex.", no_a
 cache = typer.Typer(
     help="The cache of gears, results, searches and studies on this machine.", no_args_is_help=True
 )
-
-DataDirectory = Annotated[
-    Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
-]
 
 
 @database.command("upgrade", epilog="Example: LOA_DATABASE_URL=postgresql://loa@db/loa loa database upgrade")

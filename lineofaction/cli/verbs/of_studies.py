@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from lineofaction.cli.guard import computing
+from lineofaction.cli.guard import computing, keyword
 from lineofaction.cli.options import (
     AsCsv,
     AsJson,
@@ -69,31 +69,26 @@ def _parameters(study: Study) -> Iterator[Parameter]:
     """Yield argument and options of a verb."""
     metavar = study.subject.upper().replace(" ", "_")
     argument = file_argument(f"{study.subject.capitalize()} file", metavar)
-    yield _parameter(study.argument, Annotated[list[InputFile] if study.several else InputFile, argument])
-    if study.from_file:
-        yield _study_file(study)
+    yield keyword(study.argument, Annotated[list[InputFile] if study.several else InputFile, argument])
+    if study.from_file and study.bare:
+        file = typer.Argument(help="Study file (TOML); left out: all defaults.")
+        yield keyword("study", Annotated[Path | None, file], None)
+    elif study.from_file:
+        yield keyword("study", Annotated[Path, typer.Argument(help="Study file (TOML).")])
     else:
         yield from (_option(name, field) for name, field in study.inputs.model_fields.items())
     place = "Folder, or a file" if study.folder else "File to write,"
     names = ("-o", "--output", *study.aliases)
     target = typer.Option(*names, help=f"{place} ending in one of {', '.join(study.endings)}.")
-    yield _parameter("output", Annotated[Path | None, target], None)
+    yield keyword("output", Annotated[Path | None, target], None)
     if study.shared:
-        yield _parameter("workers", TaskWorkers, 1)
-        yield _parameter("dask", DaskScheduler, None)
+        yield keyword("workers", TaskWorkers, 1)
+        yield keyword("dask", DaskScheduler, None)
     if study.subject != "case":
-        yield _parameter("service", TableService, None)
+        yield keyword("service", TableService, None)
     if ".csv" in study.endings:
-        yield _parameter("csv", AsCsv, False)
-    yield _parameter("json", AsJson, False)
-
-
-def _study_file(study: Study) -> Parameter:
-    """Return the argument of the file of the inputs."""
-    if study.bare:
-        file = typer.Argument(help="Study file (TOML); left out: all defaults.")
-        return _parameter("study", Annotated[Path | None, file], None)
-    return _parameter("study", Annotated[Path, typer.Argument(help="Study file (TOML).")])
+        yield keyword("csv", AsCsv, False)
+    yield keyword("json", AsJson, False)
 
 
 def _option(name: str, field: FieldInfo) -> Parameter:
@@ -101,21 +96,13 @@ def _option(name: str, field: FieldInfo) -> Parameter:
     spelling = spelling_of(field)
     option = typer.Option(*([spelling.option] if spelling else []), help=field.description)
     if spelling and spelling.value is not None:
-        return _parameter(name, Annotated[bool, option], field.default == spelling.value)
+        return keyword(name, Annotated[bool, option], field.default == spelling.value)
     if spelling and spelling.file:
-        return _parameter(name, Annotated[Path | None, option], field.default)
+        return keyword(name, Annotated[Path | None, option], field.default)
     kind = str | None if item_type(field) else field.annotation
     if field.is_required():
-        return _parameter(name, Annotated[str if item_type(field) else kind, option])
-    return _parameter(name, Annotated[kind, option], _typed(field.default))
-
-
-def _typed(default: Any) -> Any:
-    """Return a default as it would be typed; an empty list is none."""
-    if not isinstance(default, tuple):
-        return default
-    return ",".join(item if isinstance(item, str) else f"{item:g}" for item in default) or None
-
-
-def _parameter(name: str, annotation: Any, default: Any = Parameter.empty) -> Parameter:
-    return Parameter(name, Parameter.KEYWORD_ONLY, annotation=annotation, default=default)
+        return keyword(name, Annotated[str if item_type(field) else kind, option])
+    typed = field.default  # as it would be typed; an empty list is none
+    if isinstance(typed, tuple):
+        typed = ",".join(item if isinstance(item, str) else f"{item:g}" for item in typed) or None
+    return keyword(name, Annotated[kind, option], typed)
