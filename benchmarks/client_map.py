@@ -18,7 +18,7 @@ from benchmarks.service_process import cpu_seconds, memory_mb, running
 from lineofaction.client import AsyncLineOfActionClient
 from lineofaction.gearbox.subjects import case_inputs
 from service.page.files import examples
-from service.store import stored_results
+from service.store.places import stored_results
 from service.worker.process import ANALYZE
 
 COUNT, CONCURRENCY = 1000, 16

@@ -20,7 +20,7 @@ from benchmarks.service_process import cpu_seconds, memory_mb, running
 from lineofaction.gearbox.subjects import case_inputs
 from service.page.files import examples
 from service.queue.claims import Claims
-from service.queue.machinery import Machinery, job_machinery
+from service.queue.scheduler import Machinery, job_machinery
 from service.settings import load_settings
 from service.worker.process import ANALYZE, default_registry
 

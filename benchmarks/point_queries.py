@@ -15,7 +15,7 @@ from benchmarks.example_pair import PAIR, TORQUES
 from benchmarks.figures import Figure
 from benchmarks.fresh_process import measure
 from benchmarks.service_process import family_cpu_seconds, idle_memory_mb, running
-from service.store import stored_results
+from service.store.places import stored_results
 
 KEY = "ab" * 32
 CALLERS, SECONDS, ROUNDS = 16, 4.0, 3

@@ -17,7 +17,7 @@ from benchmarks.figures import Figure
 from benchmarks.fresh_process import measure
 from benchmarks.service_process import idle_memory_mb, memory_mb, running
 from lineofaction.client import LineOfActionClient
-from service.store import stored_results
+from service.store.places import stored_results
 
 KEY = "ab" * 32
 PATH = f"/v1/databases/{KEY}/query"

@@ -25,7 +25,7 @@ _WRITERS = """
 import sys
 from pathlib import Path
 from service.queue.submissions import Submissions
-from service.store import open_database
+from service.store.database import open_database
 file, inputs = Path(sys.argv[1]), {inputs!r}
 engine = open_database(file)
 submissions = Submissions(engine, 1)

@@ -9,13 +9,13 @@ from functools import partial
 from typing import Any
 
 from fastapi import FastAPI
-from prometheus_client import CollectorRegistry
 
-from service.access import open_identities
 from service.access.capacity import capacity
+from service.access.identities import open_identities
+from service.folders import DirectoryLock
 from service.live.pool import KeptAnswers, LivePool
 from service.management.figures import Metrics, process_registry
-from service.queue.machinery import job_machinery
+from service.queue.scheduler import job_machinery
 from service.queue.watcher import Watcher
 from service.reading.pool import ReadingPool
 from service.routes import cases, documents, events, health, jobs, processes, queries, results
@@ -26,7 +26,6 @@ from service.routes.openapi import ABOUT, install_description
 from service.routes.scopes import DirectRoutes
 from service.routes.warm_up import warm_up
 from service.settings import Settings
-from service.store import DirectoryLock
 from service.store.deployment import Deployment, WriteCheck
 from service.store.places import CACHE_DIRECTORY
 from service.tracing.tracer import tracer
@@ -74,7 +73,8 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
         **tracer().options,
     )
     app.state.context, app.state.capacity = context, bearable
-    app.state.metrics = Metrics(_registry(context))
+    parts = (context.engine, context.store, context.writes, context.scheduler)
+    app.state.metrics = Metrics(process_registry(*parts, settings))
     install_error_handlers(app)
     install_description(app)
     app.add_middleware(DirectRoutes, router=queries.router, prefix=API_PREFIX)
@@ -94,11 +94,6 @@ def _route(app: FastAPI, offered: Registry) -> None:
         app.include_router(router, prefix=API_PREFIX)
     for router in (documents.pages_router, health.router):
         app.include_router(router)
-
-
-def _registry(context: Context) -> CollectorRegistry:
-    parts = (context.engine, context.store, context.writes, context.scheduler)
-    return process_registry(*parts, context.settings)
 
 
 def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI], Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ipaddress
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Self
 from urllib.parse import urlsplit
@@ -42,12 +43,18 @@ class Origin:
     @property
     def is_address(self) -> bool:
         """Whether the host is written as an address, not as a name."""
-        try:
+        with suppress(ValueError):
             ipaddress.ip_address(self.host)
-        except ValueError:
-            return False
-        return True
+            return True
+        return False
 
     def __str__(self) -> str:
         host = f"[{self.host}]" if ":" in self.host else self.host
         return f"{self.scheme}://{host}:{self.port}"
+
+
+def is_loopback(host: str) -> bool:
+    """Whether a host, by its name or address, is this machine and reached from nowhere else."""
+    with suppress(ValueError):
+        return host == "localhost" or ipaddress.ip_address(host).is_loopback
+    return False

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import binascii
-import ipaddress
 import os
 import re
 from importlib.util import find_spec
@@ -25,7 +24,7 @@ from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, Settings
 
 from host.directories import absolute, data_home
 from lineofaction.gearbox.problems import BadInput, Fault
-from service.origin import Origin
+from service.origin import Origin, is_loopback
 
 # Secrets of the settings from files: ``LOA_NAME_FILE`` instead of ``LOA_NAME``.
 
@@ -253,10 +252,7 @@ class Settings(BaseSettings):
     @property
     def loopback(self) -> bool:
         """Whether only this machine reaches the service."""
-        try:
-            return self.host == "localhost" or ipaddress.ip_address(self.host).is_loopback
-        except ValueError:
-            return False
+        return is_loopback(self.host)
 
     @property
     def key_file(self) -> Path:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import ipaddress
 import json
 import time
 from collections.abc import Callable
@@ -18,6 +17,7 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from lineofaction.gearbox.problems import BadInput, Fault, IssuerUnavailable, KeyExpired, Unauthorised
 from service.access.keyring import PREFIX, Holder, KeyFile, Keyring, Scope
+from service.origin import is_loopback
 from service.project import COMMON, PROJECT
 from service.settings import Settings
 
@@ -174,7 +174,6 @@ class _OidcSettings(BaseSettings):
 
     @property
     def allowed(self) -> list[str]:
-        """The algorithms."""
         return [name.strip() for name in self.algorithms.split(",")]
 
     @field_validator("issuer", "keys_url")
@@ -186,7 +185,7 @@ class _OidcSettings(BaseSettings):
         parts = urlsplit(url)
         if not parts.hostname or "@" in parts.netloc or parts.query or parts.fragment:
             raise ValueError("an address such as https://login.example/realm")
-        if parts.scheme != "https" and not (parts.scheme == "http" and _loopback(parts.hostname)):
+        if parts.scheme != "https" and not (parts.scheme == "http" and is_loopback(parts.hostname)):
             raise ValueError("an https address, or http on loopback")
         return url
 
@@ -208,26 +207,12 @@ class _OidcSettings(BaseSettings):
         return self
 
 
-def _load_oidc_settings() -> _OidcSettings:
-    try:
-        return _OidcSettings()
-    except ValidationError as error:
-        raise BadInput(_fault(dict(item)) for item in error.errors(include_url=False)) from None
-
-
 def _fault(item: dict[str, object]) -> Fault:
     location = item["loc"]
     name = str(location[0]) if isinstance(location, tuple) and location else "issuer"
     bound = str(item["msg"]).removeprefix("Value error, ")
     value = item.get("input") if isinstance(item.get("input"), str) else None
     return Fault(f"oidc_{name}", value, bound, f"It is set by LOA_OIDC_{name.upper()}.")
-
-
-def _loopback(host: str) -> bool:
-    try:
-        return host == "localhost" or ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
 
 
 # Bearer tokens of an OpenID Connect issuer (RFC 9068, RFC 8725): checked, and read as a holder.
@@ -239,14 +224,7 @@ _REQUIRED = ["exp", "iss", "aud"]
 
 
 class _Tokens:
-    """Finds the holders of tokens.
-
-    Parameters
-    ----------
-    settings : _OidcSettings
-        With an issuer.
-    issuer : Issuer
-    """
+    """Finds the holders of tokens."""
 
     def __init__(self, settings: _OidcSettings, issuer: Issuer) -> None:
         self._settings, self._issuer = settings, issuer
@@ -265,7 +243,10 @@ class _Tokens:
         import jwt  # noqa: PLC0415 (an extra)
 
         try:
-            algorithm, identifier = self._head(jwt.get_unverified_header(token))
+            head = jwt.get_unverified_header(token)
+            algorithm, identifier = head.get("alg"), head.get("kid")
+            if algorithm not in self._settings.allowed or not isinstance(identifier, str):
+                raise ValueError(head)
             key = jwt.PyJWK(await self._key(identifier, algorithm), algorithm)
             claims = jwt.decode(
                 token,
@@ -282,13 +263,6 @@ class _Tokens:
             raise Unauthorised.of("This token is not good for this service.") from None
         return self._mapped(claims)
 
-    def _head(self, head: Json) -> tuple[str, str]:
-        """Return algorithm and key identifier of a token; raise ValueError of what is not allowed."""
-        algorithm, identifier = head.get("alg"), head.get("kid")
-        if algorithm not in self._settings.allowed or not isinstance(identifier, str):
-            raise ValueError(head)
-        return algorithm, identifier
-
     async def _key(self, identifier: str, algorithm: str) -> Json:
         key = await self._issuer.key(identifier)
         if key.get("kty") == "oct" or key.get("alg", algorithm) != algorithm:
@@ -300,7 +274,12 @@ class _Tokens:
         name = _claim(claims, settings.name_claim)
         if not isinstance(name, str) or not 0 < len(name) <= _LONGEST_NAME:
             raise Unauthorised.of(f"This token names nobody in its claim {settings.name_claim!r}.")
-        return Holder(name=f"oidc:{name}", project=self._project(claims), scopes=self._scopes(claims))
+        # our scopes among those of the token, written as a list or with spaces between
+        listed = _claim(claims, settings.scopes_claim) or ()
+        names = listed.split() if isinstance(listed, str) else listed
+        several, prefix = isinstance(names, list | tuple), settings.scope_prefix
+        scopes = tuple(scope for scope in Scope if several and prefix + scope in names)
+        return Holder(name=f"oidc:{name}", project=self._project(claims), scopes=scopes)
 
     def _project(self, claims: Json) -> str:
         """Return the project; a token that should name one and does not is not of the common one."""
@@ -311,13 +290,6 @@ class _Tokens:
         if not isinstance(project, str) or PROJECT.fullmatch(project) is None:
             raise Unauthorised.of(f"This token names no project in its claim {named!r}.")
         return project
-
-    def _scopes(self, claims: Json) -> tuple[Scope, ...]:
-        """Return our scopes among those of a token, written as a list or with spaces between."""
-        listed = _claim(claims, self._settings.scopes_claim) or ()
-        names = listed.split() if isinstance(listed, str) else listed
-        prefix = self._settings.scope_prefix
-        return tuple(scope for scope in Scope if isinstance(names, list | tuple) and prefix + scope in names)
 
 
 def _claim(claims: Json, path: str) -> Any:
@@ -368,7 +340,10 @@ def open_identities(settings: Settings) -> Identities:
         The address is not loopback and there are neither keys nor an issuer of tokens, or their file or its
         settings cannot be used.
     """
-    oidc = _load_oidc_settings()
+    try:
+        oidc = _OidcSettings()
+    except ValidationError as error:
+        raise BadInput(_fault(dict(item)) for item in error.errors(include_url=False)) from None
     tokens = None if oidc.issuer is None else _Tokens(oidc, Issuer(oidc.issuer, oidc.keys_url))
     identities = Identities(Keyring(KeyFile(settings.key_file)), tokens)
     if not settings.loopback and not identities:

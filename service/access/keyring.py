@@ -257,12 +257,15 @@ class KeyFile:
         if not old:
             raise _unknown(name, known)
         last, instant = old[-1], datetime.now(UTC)
-        life = _life(last) if expires is None else _duration("expires", expires)
+        life = None if expires is None else _duration("expires", expires)
+        if expires is None and last.expires is not None:
+            life = _instant_of(last.expires) - _instant_of(last.created)
         holder = Holder(**{field.name: getattr(last, field.name) for field in fields(Holder)})
         secret, key = _made(holder, life)
         rest = timedelta(0) if overlap == "0h" else _duration("overlap", overlap)
-        others = (entry for entry in known if entry.name != name)
-        self._write((*others, *_ending(old, instant, rest), key))
+        end, left = _written(instant + rest), [entry for entry in old if rest and not entry.expired]
+        ending = [each if each.ends_within(rest, instant) else replace(each, expires=end) for each in left]
+        self._write((*(entry for entry in known if entry.name != name), *ending, key))
         return secret
 
     def remove(self, name: str) -> None:
@@ -308,17 +311,6 @@ def _made(holder: Holder, life: timedelta | None) -> tuple[str, AccessKey]:
     expires = None if life is None else _written(instant + life)
     facts = vars(holder) | {"expires": expires}
     return secret, AccessKey(**facts, sha256=_digest_of(secret), created=_written(instant))
-
-
-def _ending(keys: Iterable[AccessKey], instant: datetime, rest: timedelta) -> tuple[AccessKey, ...]:
-    """Return keys that end after the time that is left them, or before if they do so anyway."""
-    left = [key for key in keys if rest and not key.expired]
-    end = _written(instant + rest)
-    return tuple(key if key.ends_within(rest, instant) else replace(key, expires=end) for key in left)
-
-
-def _life(key: AccessKey) -> timedelta | None:
-    return None if key.expires is None else _instant_of(key.expires) - _instant_of(key.created)
 
 
 def _unknown(name: str, known: Iterable[AccessKey]) -> BadInput:

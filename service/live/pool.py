@@ -75,12 +75,10 @@ class _LiveWorker:
 
     @property
     def pid(self) -> int:
-        """Process id, also of its group and session."""
         return self._process.pid
 
     @property
     def alive(self) -> bool:
-        """Whether the process runs."""
         return self._process.poll() is None
 
     def ask(self, order: LiveOrder, limit_s: float) -> tuple[str, bytes]:

@@ -33,9 +33,9 @@ from lineofaction.gearbox.problems import DatabaseUnavailable, ServiceError, las
 from service.queue.scheduler import Scheduler
 from service.queue.workload import Workload, WorkloadReader
 from service.settings import Settings
-from service.store import ResultStore
 from service.store.deployment import WriteCheck
 from service.store.migrations import REVISIONS
+from service.store.results import ResultStore
 from service.version import solver_version
 from service.worker.cluster import RemoteWork
 
@@ -53,7 +53,6 @@ class _Collected(Collector):
         self._read = read
 
     def collect(self) -> Iterable[Metric]:
-        """Return the figures."""
         return self._read()
 
 

@@ -11,7 +11,7 @@ import json
 import socket
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
 from socketserver import TCPServer, ThreadingMixIn
@@ -53,10 +53,6 @@ class EventLoop:
         return ""
 
 
-def _sound() -> str:
-    return ""
-
-
 @dataclass(frozen=True)
 class Vitals:
     """The signs of one process. A fault is a sentence; empty: there is none.
@@ -71,7 +67,7 @@ class Vitals:
 
     scheduler: Scheduler | RemoteWork
     writes: WriteCheck
-    serving: Callable[[], str] = field(default=_sound)
+    serving: Callable[[], str] = lambda: ""
 
     def fault_of_health(self) -> str:
         """Return why the process is to be started again."""
@@ -173,7 +169,6 @@ class _Server(ThreadingMixIn, TCPServer):
             self.shutdown_request(request)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Answer."""
         try:
             super().process_request_thread(request, client_address)
         finally:
@@ -190,16 +185,15 @@ class _Handler(BaseHTTPRequestHandler):
     server: _Server
 
     def do_GET(self) -> None:
-        """Answer with a body."""
         self._answer(with_body=True)
 
     def do_HEAD(self) -> None:
-        """Answer without."""
         self._answer(with_body=False)
 
     def _answer(self, *, with_body: bool) -> None:
-        known = self.server.paths.get(urlsplit(self.path).path)
-        status, media_type, body = _absent() if known is None else known()
+        absent = _document(HTTPStatus.NOT_FOUND, {"detail": "Here are /health, /ready and /metrics."})
+        answer = self.server.paths.get(urlsplit(self.path).path, lambda: absent)
+        status, media_type, body = answer()
         self.send_response(status)
         fields = {"Content-Type": media_type, "Content-Length": str(len(body)), "Cache-Control": "no-store"}
         for name, value in fields.items():
@@ -220,10 +214,6 @@ def _told(fault: str, well: str) -> _Answer:
     if fault:
         return _document(HTTPStatus.SERVICE_UNAVAILABLE, {"status": f"not {well}", "detail": fault})
     return _document(HTTPStatus.OK, {"status": well})
-
-
-def _absent() -> _Answer:
-    return _document(HTTPStatus.NOT_FOUND, {"detail": "Here are /health, /ready and /metrics."})
 
 
 def _document(status: HTTPStatus, facts: dict[str, str]) -> _Answer:

@@ -9,7 +9,7 @@ import tomllib
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 _DIRECTORY = Path(__file__).parent / "static"
 _TYPES = {
@@ -50,7 +50,12 @@ class PageFile:
 @lru_cache(maxsize=64)
 def page_file(name: str) -> PageFile | None:
     """Return the file of this name, None if the page has none."""
-    path = _of_package(name) if name in _FROM_PACKAGES else _own().get(name)
+    path = _own().get(name)
+    if name in _FROM_PACKAGES:  # of a package that need not be imported for it
+        package, folder = _FROM_PACKAGES[name]
+        spec = importlib.util.find_spec(package)
+        assert spec is not None and spec.origin is not None
+        path = Path(spec.origin).parent / folder / name
     return None if path is None else PageFile(path.read_bytes(), _TYPES[path.suffix])
 
 
@@ -58,14 +63,6 @@ def page_file(name: str) -> PageFile | None:
 def _own() -> dict[str, Path]:
     """Return the files of this package by name: only those can be requested."""
     return {path.name: path for path in _DIRECTORY.iterdir() if path.suffix in _TYPES}
-
-
-def _of_package(name: str) -> Path:
-    """Return a file of another package, which need not be imported for it."""
-    package, folder = _FROM_PACKAGES[name]
-    spec = importlib.util.find_spec(package)
-    assert spec is not None and spec.origin is not None
-    return Path(spec.origin).parent / folder / name
 
 
 # Cases that the page offers to begin with.
@@ -91,19 +88,8 @@ _OFFERED = (
 """The first is computed when the page opens with an empty address."""
 
 
-@dataclass(frozen=True)
-class Example:
-    """A case to begin with.
-
-    Attributes
-    ----------
-    name : str
-        Of its file, without the ending.
-    title, note : str
-        What it is, for the list.
-    content : dict
-        As read from the file.
-    """
+class Example(NamedTuple):
+    """A case to begin with: the name of its file without the ending, what it is, and its content."""
 
     name: str
     title: str
@@ -114,8 +100,6 @@ class Example:
 @lru_cache(maxsize=1)
 def examples() -> tuple[Example, ...]:
     """Return the cases in the order in which they are offered."""
-    return tuple(Example(*offered, tomllib.loads(_text(offered[0]))) for offered in _OFFERED)
-
-
-def _text(name: str) -> str:
-    return (_EXAMPLES / f"{name}.toml").read_text(encoding="utf-8")
+    files = (_EXAMPLES / f"{name}.toml" for name, *_ in _OFFERED)
+    tables = (tomllib.loads(file.read_text(encoding="utf-8")) for file in files)
+    return tuple(Example(*offered, table) for offered, table in zip(_OFFERED, tables, strict=True))

@@ -21,7 +21,7 @@ from model_studies.progress import stage_name
 from service.queue.claims import Claim, Claims
 from service.queue.terms import LOWER_COST
 from service.settings import LEAST_MEMORY_MB, Settings
-from service.store import ResultStore
+from service.store.results import ResultStore
 from service.tracing.tracer import Fact, Span, trace_facts, tracer
 from service.worker.forks import Launch
 from service.worker.order import USABLE, Outcome, WorkOrder
@@ -98,16 +98,7 @@ _MOST_STAGES = 200
 
 
 class _AttemptTrace:
-    """Spans that end as the attempt goes on.
-
-    Parameters
-    ----------
-    claim : Claim
-    pid : int
-        Of the worker.
-    launched : float
-        When it was launched, s since the epoch: no stage of it begins before.
-    """
+    """Spans that end as the attempt goes on; no stage begins before it was `launched`, s since 1970."""
 
     def __init__(self, claim: Claim, pid: int, launched: float) -> None:
         facts: dict[str, Fact] = {

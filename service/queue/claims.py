@@ -21,7 +21,8 @@ from sqlalchemy import ColumnElement, Connection, Engine, Row, select, update
 from service.project import COMMON, at_address
 from service.queue.tables import computations
 from service.queue.workload import batch_steps, end_computations
-from service.store import dialect_of, now, reading, retried, writing
+from service.store.database import now, reading, writing
+from service.store.dialects import dialect_of, retried
 from service.version import solver_version
 from service.worker.order import USABLE
 
@@ -128,8 +129,10 @@ class Claims:
                 return row
             if is_newer(row.program, self.program):
                 self._newer.add(row.program)
-            else:
-                _end_former(connection, row)
+            else:  # 0.2.0 did not write its version down
+                text = f"The job was entered by version {row.program or '0.2.0 or older'}; submit it again."
+                former = {"state": "failed", "message": text}
+                end_computations(connection, computations.c.id == row.id, former)
 
     def _end(self, connection: Connection) -> float:
         return dialect_of(connection).clock(connection) + self._lease_s
@@ -259,12 +262,6 @@ def _claimed(row: Row[Any], requested: float) -> Claim:
     inputs, (project, key) = json.loads(row.inputs), at_address(row.key)
     facts = (row.id, row.process, key, inputs, row.attempts, row.lease, requested)
     return Claim(*facts, row.max_cost_s, row.traceparent, project=project)
-
-
-def _end_former(connection: Connection, row: Row[Any]) -> None:
-    """End a computation that an older program entered; 0.2.0 did not write its version down."""
-    text = f"The job was entered by version {row.program or '0.2.0 or older'}; submit it again."
-    end_computations(connection, computations.c.id == row.id, {"state": "failed", "message": text})
 
 
 def is_newer(program: str, than: str) -> bool:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Engine, Update, func, insert, select, update
+from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select, update
 
 from lineofaction.gearbox.problems import BadInput, QueueFull
 from service.access.keyring import Holder
@@ -28,7 +28,8 @@ from service.queue.terms import (
 )
 from service.queue.workload import FOR_EVER, HELD, batch_steps
 from service.schemas.answers import Differences
-from service.store import now, retried, writing
+from service.store.database import now, writing
+from service.store.dialects import retried
 from service.tracing.tracer import TRACEPARENT
 from service.version import solver_version
 
@@ -110,7 +111,13 @@ class Entry:
         return identifier
 
     def _identifier(self, what: str, name: str | None) -> str:
-        return str(uuid.uuid4() if name is None else _identifier_of(self._project, self._caller, what, name))
+        """Return the identifier of a job; that of one with a name, which another caller's is not."""
+        if name is None:
+            return str(uuid.uuid4())
+        named = [self._caller.name, what, name]
+        return str(
+            uuid.uuid5(_NAMES, json.dumps(named if self._project == COMMON else [self._project, *named]))
+        )
 
     def _addressed(self, work: BatchCase) -> BatchCase:
         return replace(work, key=address_of(self._project, work.key))
@@ -123,9 +130,12 @@ class Entry:
                 return identifier
             ended, terms = _ended_since(work, looked), self._terms
             if terms.reuse:
-                equal = _equal_job(connection, work.key, ended, self._caller, terms.stated)
-                if equal is not None:
-                    return equal
+                mine = (jobs.c.caller == self._caller.name, jobs.c.dismissed.is_(None))
+                equal = select(jobs.c.id).join(computations).where(*mine, jobs.c.stated == terms.stated)
+                newest = equal.where(_live(work.key) | ended).order_by(jobs.c.created.desc()).limit(1)
+                known: str | None = connection.execute(newest).scalar()
+                if known is not None:
+                    return known
             if not work.stored:
                 _refuse_if_busy(connection, self._caller)
             computation = _shared_computation(connection, work.key, ended)
@@ -137,12 +147,24 @@ class Entry:
         return identifier
 
     def _joined(self, connection: Connection, process: str, work: BatchCase, shared: str | None) -> str:
-        """Return the computation of a job: the shared one, to these terms, or a new one."""
+        """Return the computation of a job: the shared one, to these terms, or a new one.
+
+        A shared one that waits gets at least this priority, and may cost what the most generous of its jobs
+        allows. Work in flight of an older program becomes this one's: ended as former it would end the new
+        job too.
+        """
         if shared is None:
             return _enter_computation(connection, process, work, self._terms)
-        connection.execute(_raised(shared, self._terms.priority))
-        connection.execute(_extended(shared, self._terms.max_cost_s))
-        _take_over(connection, shared)
+        mine, table, terms = computations.c.id == shared, computations.c, self._terms
+        lower = mine & (table.state == "accepted") & (table.priority < terms.priority)
+        connection.execute(update(computations).where(lower).values(priority=terms.priority))
+        limit = terms.max_cost_s
+        tighter = table.max_cost_s.is_not(None) if limit is None else table.max_cost_s < limit
+        connection.execute(update(computations).where(mine, tighter).values(max_cost_s=limit))
+        live = mine & table.state.in_(LIVE)
+        program = connection.execute(select(table.program).where(live)).scalar()
+        if program is not None and not is_newer(program, solver_version()):
+            connection.execute(update(computations).where(live).values(program=solver_version()))
         return shared
 
     @retried
@@ -209,8 +231,10 @@ def _is_entered(connection: Connection, which: ColumnElement[bool], works: Seque
     """Whether jobs are in already; raises if they are other work than that of this program's name."""
     known = select(computations.c.key, computations.c.program).join(jobs)
     entered = connection.execute(known.where(which).order_by(jobs.c.place)).all()
-    if entered and all(row.program == solver_version() for row in entered):  # others name work differently
-        _refuse_unless_same(" ".join(row.key for row in entered), " ".join(work.key for work in works))
+    named_alike = all(row.program == solver_version() for row in entered)  # others name work differently
+    if entered and named_alike and [row.key for row in entered] != [work.key for work in works]:
+        advice = "Give a request with other inputs another."
+        raise BadInput.of("Idempotency-Key", None, "the name of one request", advice)
     return entered != []
 
 
@@ -235,20 +259,6 @@ def _differences(cases: Sequence[BatchCase], names: Sequence[str]) -> Iterator[D
 def _refuse_more(number: int, most: int, of_what: str) -> None:
     if number > most:
         raise BadInput.of("jobs", f"{number} jobs", f"at most {most} {of_what}", "Split the batch.")
-
-
-def _identifier_of(project: str, caller: Holder, process: str, name: str) -> uuid.UUID:
-    """Return the identifier of the job that a caller gives a name; another caller's is another."""
-    named = [caller.name, process, name]
-    return uuid.uuid5(_NAMES, json.dumps(named if project == COMMON else [project, *named]))
-
-
-def _refuse_unless_same(entered: str, key: str) -> None:
-    """Raise if a name that stands for some work is used for other work."""
-    if entered != key:
-        raise BadInput.of(
-            "Idempotency-Key", None, "the name of one request", "Give a request with other inputs another."
-        )
 
 
 def _refuse_if_full(connection: Connection, limit: int, further: int = 1) -> None:
@@ -285,15 +295,6 @@ def _shared_computation(connection: Connection, key: str, ended: ColumnElement[b
     return connection.execute(statement.order_by(computations.c.created.desc()).limit(1)).scalar()
 
 
-def _equal_job(
-    connection: Connection, key: str, ended: ColumnElement[bool], caller: Holder, stated: str
-) -> str | None:
-    """Return the caller's newest job of the `stated` inputs that waits, runs or has `ended` with a result."""
-    theirs = (jobs.c.caller == caller.name, jobs.c.dismissed.is_(None), jobs.c.stated == stated)
-    statement = select(jobs.c.id).join(computations).where(_live(key) | ended, *theirs)
-    return connection.execute(statement.order_by(jobs.c.created.desc()).limit(1)).scalar()
-
-
 def _live(key: str) -> ColumnElement[bool]:
     return (computations.c.key == key) & computations.c.state.in_(LIVE)
 
@@ -319,27 +320,3 @@ def _enter_computation(connection: Connection, process: str, work: BatchCase, te
         row |= {"started": instant, "finished": instant}
     connection.execute(insert(computations).values(**row))
     return identifier
-
-
-def _take_over(connection: Connection, computation: str) -> None:
-    """Make work in flight of an older program this one's: ended as former it would end the new job too."""
-    mine = (computations.c.id == computation) & computations.c.state.in_(LIVE)
-    program = connection.execute(select(computations.c.program).where(mine)).scalar()
-    if program is not None and not is_newer(program, solver_version()):
-        connection.execute(update(computations).where(mine).values(program=solver_version()))
-
-
-def _raised(computation: str, priority: int) -> Update:
-    """Return the statement that gives a computation at least this priority, as long as it waits."""
-    lower = computations.c.priority < priority
-    waits = (computations.c.id == computation) & (computations.c.state == "accepted")
-    return update(computations).where(waits & lower).values(priority=priority)
-
-
-def _extended(computation: str, limit: float | None) -> Update:
-    """Return the statement that lets a computation cost what one more job of it may; None: there is no limit.
-
-    A computation costs as much as the most generous of its jobs allows.
-    """
-    lower = computations.c.max_cost_s < limit if limit is not None else computations.c.max_cost_s.is_not(None)
-    return update(computations).where(computations.c.id == computation, lower).values(max_cost_s=limit)

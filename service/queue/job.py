@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import lru_cache
-from typing import Any, Protocol
+from typing import Any
 
 from sqlalchemy import ColumnElement, case, select
 
@@ -102,6 +101,17 @@ class Job:
         return max(left - (instant - updated).total_seconds(), 0.0)
 
 
+_AS_STORED = (
+    *("process", "stage", "stage_fraction", "fraction", "attempts", "started", "reference", "inputs"),
+    *("priority", "max_cost_s", "caller", "parent", "place", "children"),
+)
+"""Fields of a job that are columns of its row."""
+_OF_JOB = (
+    *("dismissed", "asked", "delivery", "title", "tags", "differences", "stated"),
+    *("caller", "parent", "place", "children"),
+)
+
+
 def job_state() -> ColumnElement[Any]:
     """Return a job's state: a caller who dismissed sees that, whatever became of the shared work."""
     return case((jobs.c.dismissed.is_not(None), "dismissed"), else_=computations.c.state)
@@ -112,17 +122,7 @@ def jobs_of_all_projects() -> Any:
     return select(
         jobs.c.id.label("job_id"),
         jobs.c.created.label("job_created"),
-        jobs.c.dismissed,
-        jobs.c.asked,
-        jobs.c.delivery,
-        jobs.c.title,
-        jobs.c.tags,
-        jobs.c.differences,
-        jobs.c.stated,
-        jobs.c.caller,
-        jobs.c.parent,
-        jobs.c.place,
-        jobs.c.children,
+        *(jobs.c[name] for name in _OF_JOB),
         computations,
     ).join(computations, jobs.c.computation_id == computations.c.id)
 
@@ -131,46 +131,21 @@ def job_of(row: Any) -> Job:
     """Return a row as a job: a caller who dismissed sees that, whatever became of the shared work."""
     dismissed = row.dismissed is not None
     return Job(
+        **{name: getattr(row, name) for name in _AS_STORED},
         id=row.job_id,
         computation=row.id,
-        process=row.process,
         key=at_address(row.key)[1],
         status="dismissed" if dismissed else row.state,
         message="Cancelled." if dismissed else row.message,
-        stage=row.stage,
-        stage_fraction=row.stage_fraction,
-        fraction=row.fraction,
-        attempts=row.attempts,
         created=row.job_created,
-        started=row.started,
         finished=row.dismissed or row.finished,
         updated=row.dismissed or row.updated,
         faults=tuple(json.loads(row.faults)),
-        reference=row.reference,
         delivery=Delivery.of(row.delivery),
-        inputs=row.inputs,
         stated=row.stated or row.inputs,
         label=Label.from_row(row),
         differences=differences_of(row.differences),
-        priority=row.priority,
-        max_cost_s=row.max_cost_s,
-        caller=row.caller,
-        parent=row.parent,
-        place=row.place,
-        children=row.children,
     )
-
-
-class _Timed(Protocol):
-    """A computation that has begun or ended, RFC 3339."""
-
-    @property
-    def started(self) -> str | None:
-        """When it began."""
-
-    @property
-    def finished(self) -> str | None:
-        """When it ended."""
 
 
 @dataclass(frozen=True)
@@ -203,8 +178,9 @@ class JobFilter:
 
     def conditions(self) -> list[ColumnElement[bool]]:
         """Return what the database decides: all but the time run."""
-        within = jobs.c.parent.is_(None) if self.parent is None else jobs.c.parent == self.parent
-        conditions = [within, *_labeled(self.tags, self.words)]
+        conditions = [jobs.c.parent.is_(None) if self.parent is None else jobs.c.parent == self.parent]
+        conditions += [jobs.c.tags.contains(f"\n{tag.lower()}\n", autoescape=True) for tag in self.tags]
+        conditions += [jobs.c.title_folded.contains(w.casefold(), autoescape=True) for w in self.words]
         if self.processes:
             conditions.append(computations.c.process.in_(self.processes))
         if self.statuses:
@@ -220,7 +196,7 @@ class JobFilter:
         """Whether jobs have to be looked at one by one."""
         return self.shortest_s is not None or self.longest_s is not None
 
-    def lasted(self, job: _Timed) -> bool:
+    def lasted(self, job: Job) -> bool:
         """Whether the time a job has run is within bounds."""
         if not self.asks_duration:
             return True
@@ -230,13 +206,6 @@ class JobFilter:
         seconds = (end - datetime.fromisoformat(job.started)).total_seconds()
         low = 0.0 if self.shortest_s is None else self.shortest_s
         return low <= seconds and (self.longest_s is None or seconds <= self.longest_s)
-
-
-def _labeled(tags: Iterable[str], words: Iterable[str]) -> list[ColumnElement[bool]]:
-    """Return the conditions of jobs that have all of these tags, and all of these words in their title."""
-    of_tags = [jobs.c.tags.contains(f"\n{tag.lower()}\n", autoescape=True) for tag in tags]
-    of_words = [jobs.c.title_folded.contains(word.casefold(), autoescape=True) for word in words]
-    return [*of_tags, *of_words]
 
 
 EVERY_JOB = JobFilter()

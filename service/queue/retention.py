@@ -12,9 +12,11 @@ import structlog
 from sqlalchemy import Engine, delete, exists, func, select
 
 from lineofaction.gearbox.problems import ServiceError
+from service.queue.job import ENDED
 from service.queue.tables import computations, jobs, webhooks
-from service.store import reading, retried, writing
+from service.store.database import reading, writing
 from service.store.deployment import Deployment
+from service.store.dialects import retried
 from service.store.maintenance import (
     GRACE_S,
     Leftover,
@@ -28,7 +30,6 @@ from service.store.results import ResultStore
 
 logger = structlog.get_logger(__name__)
 
-_ENDED = ("successful", "failed", "dismissed")
 _AT_ONCE = 500
 
 
@@ -67,22 +68,22 @@ class Retention:
         self._quarantine.confirm()
         if older_than_days is not None:
             yield from expire_results(self._store, self._quarantine, older_than_days, dry_run=dry_run)
-            yield from self._jobs(days_ago(older_than_days), dry_run=dry_run)
+            since = days_ago(older_than_days)
+            while names := self._forgotten(since, dry_run=dry_run):
+                yield from (Leftover("not asked for", f"job {name}", 0) for name in names)
+                if dry_run:
+                    break
         yield from self._workspaces(dry_run=dry_run)
         yield from self._logs(dry_run=dry_run)
         yield from purge_quarantine(self._quarantine, dry_run=dry_run)
 
-    def _jobs(self, since: str, *, dry_run: bool) -> Iterator[Leftover]:
-        """Remove ended jobs that nobody requested since an instant, and the computations of no job."""
-        while names := self._forgotten(since, dry_run=dry_run):
-            yield from (Leftover("not asked for", f"job {name}", 0) for name in names)
-            if dry_run:
-                return
-
     @retried
     def _forgotten(self, since: str, *, dry_run: bool) -> list[str]:
-        """Return some of the jobs to remove; remove them unless it is a trial. A batch goes as a whole."""
-        ended = computations.c.state.in_(_ENDED) & (computations.c.updated < since)
+        """Return some ended jobs that nobody requested since an instant; remove them unless it is a trial.
+
+        A batch goes as a whole; computations of no job go with them.
+        """
+        ended = computations.c.state.in_(ENDED) & (computations.c.updated < since)
         unasked = func.coalesce(jobs.c.asked, jobs.c.created) < since
         batch = jobs.alias()
         of_no_batch = ~exists().where(batch.c.id == jobs.c.parent)

@@ -1,4 +1,4 @@
-"""The scheduler: one thread that claims computations, minds their workers and settles how they end."""
+"""The scheduler: a thread that claims computations, minds workers, settles ends; and what it works with."""
 
 from __future__ import annotations
 
@@ -9,16 +9,23 @@ import shutil
 import threading
 import time
 import uuid
+from dataclasses import dataclass
 
 import structlog
+from sqlalchemy import Engine
 
-from host import never_wait_at
+from host import never_wait_at, require_sessions
 from lineofaction.gearbox.problems import DatabaseUnavailable, ServiceError, StoreUnavailable
+from service.folders import identity_of
 from service.queue.attempt import Attempt, Ended, Settlement, WorkerFigures, begun
 from service.queue.claims import RENEWALS, Claim, Claims, Leases
-from service.queue.retention import Housekeeper
+from service.queue.retention import Housekeeper, Retention
+from service.queue.submissions import Submissions
 from service.settings import Settings
-from service.store import ResultStore
+from service.store.database import Schema, open_database
+from service.store.places import DATABASE_FILE, result_store
+from service.store.results import ResultStore
+from service.worker.cluster import RemoteWork
 from service.worker.forks import Forks
 from service.worker.order import Outcome
 from service.worker.process import Registry
@@ -253,10 +260,15 @@ class Scheduler:
                     self._claims.put_back(running.claim, "Waits: the database was lost.", counted=False)
 
     def _enforce_deadline(self) -> None:
+        deadline_s = self._settings.deadline_s
+        text = (
+            f"The deadline of {deadline_s:g} s (LOA_DEADLINE_S) passed. Select a coarser level or fewer "
+            "positions, of a run for a shorter one, or start the service with a later deadline."
+        )
         for running in list(self._running.values()):
-            if running.worker.age > self._settings.deadline_s:
+            if running.worker.age > deadline_s:
                 self._kill(running, "too late", keep_lease=True)
-                self._end(running, Outcome(failure=_too_late(self._settings.deadline_s)))
+                self._end(running, Outcome(failure=text))
 
     def _enforce_costs(self) -> None:
         """End workers that have used the CPU time that their computation may take."""
@@ -275,8 +287,60 @@ class Scheduler:
                 shutil.rmtree(running.workspace, ignore_errors=True)
 
 
-def _too_late(deadline_s: float) -> str:
-    return (
-        f"The deadline of {deadline_s:g} s (LOA_DEADLINE_S) passed. Select a coarser level or fewer "
-        "positions, of a run for a shorter one, or start the service with a later deadline."
-    )
+# Job table, store and scheduler of one process, put together from its settings.
+
+
+@dataclass(frozen=True)
+class Machinery:
+    """The parts of the service that work on one database and one store.
+
+    Attributes
+    ----------
+    engine : Engine
+    store : ResultStore
+    submissions : Submissions
+    scheduler : Scheduler or RemoteWork
+        Not started.
+    """
+
+    engine: Engine
+    store: ResultStore
+    submissions: Submissions
+    scheduler: Scheduler | RemoteWork
+
+    def close(self) -> None:
+        """Close what is open; it opens again when it is needed."""
+        self.engine.dispose()
+
+
+def job_machinery(settings: Settings, registry: Registry, *, works: bool = True) -> Machinery:
+    """Open the database and put the parts together; a process that `works` has locked its data directory.
+
+    Raises
+    ------
+    BadInput
+        The database or the place of results is none, or they do not belong together, or the schema is another
+        program's.
+    DatabaseUnavailable, StoreUnavailable
+        One does not answer; `DatabaseDamaged`: it has to be mended.
+    Unavailable
+        It works, and the system has no sessions of processes.
+    """
+    if works:
+        require_sessions()
+    engine = open_database(settings.database_address or settings.data_directory / DATABASE_FILE)
+    try:
+        Schema(engine).check()
+        target = (settings.results_url, settings.results_cache_mb, settings.results_keys)
+        store = result_store(engine, settings.data_directory, *target)
+    except BaseException:
+        engine.dispose()
+        raise
+    scheduler: Scheduler | RemoteWork = RemoteWork()
+    if works:
+        claims = Claims(engine, identity_of(settings.data_directory), settings.lease_s)
+        retention = Retention(engine, store, settings.data_directory, settings.quarantine_days)
+        days = settings.retention_days
+        housekeeper = None if days is None else Housekeeper(retention, days)
+        scheduler = Scheduler(settings, registry, claims, store, housekeeper)
+    return Machinery(engine, store, Submissions(engine, settings.queue_limit), scheduler)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Engine, Select, bindparam, exists, select, update
+from sqlalchemy import Engine, bindparam, exists, select, update
 
 from lineofaction.gearbox.problems import NoSuchJob
 from service.access.keyring import Holder
@@ -18,34 +18,30 @@ from service.queue.job import ENDED, EVERY_JOB, Job, JobFilter, job_of, jobs_of_
 from service.queue.tables import computations, jobs
 from service.queue.terms import ANYBODY, USUAL, Label, Terms
 from service.queue.workload import HELD, end_computations, states_of
-from service.store import BRIEF_MS, Mark, behind, instant, now, optional, reading, retried, writing
-from service.store.results import USE_NOTED_EVERY_S
+from service.store.database import BRIEF_MS, instant, now, reading, writing
+from service.store.dialects import optional, retried
+from service.store.results import USE_NOTED_EVERY_S, Mark, behind
 
 _FORMER = 200
 """Jobs of a caller, the newest first, among which one of the process is sought."""
 
 
-def _newest() -> Select[Any]:
-    recent = (
-        select(jobs.c.id, jobs.c.created, jobs.c.computation_id)
-        .where(jobs.c.caller == bindparam("caller"), jobs.c.project == bindparam("project"))
-        .where(jobs.c.children == 0)
-        .order_by(jobs.c.created.desc(), jobs.c.id.desc())
-        .limit(_FORMER)
-        .subquery()
-    )
-    return (
-        select(recent.c.id, computations.c.inputs)
-        .join(computations, recent.c.computation_id == computations.c.id)
-        .where(computations.c.process == bindparam("process"))
-        .order_by(recent.c.created.desc(), recent.c.id.desc())
-        .limit(1)
-    )
-
-
-_NEWEST = _newest()  # made once: composing it takes longer than running it
-
-
+# made once: composing them takes longer than running them
+_RECENT = (
+    select(jobs.c.id, jobs.c.created, jobs.c.computation_id)
+    .where(jobs.c.caller == bindparam("caller"), jobs.c.project == bindparam("project"))
+    .where(jobs.c.children == 0)
+    .order_by(jobs.c.created.desc(), jobs.c.id.desc())
+    .limit(_FORMER)
+    .subquery()
+)
+_NEWEST = (
+    select(_RECENT.c.id, computations.c.inputs)
+    .join(computations, _RECENT.c.computation_id == computations.c.id)
+    .where(computations.c.process == bindparam("process"))
+    .order_by(_RECENT.c.created.desc(), _RECENT.c.id.desc())
+    .limit(1)
+)
 _LOOKED_AT = 500  # at a time, where durations are requested
 
 
@@ -210,7 +206,10 @@ class Submissions:
             connection.execute(update(jobs).where(mine, goes_on).values(dismissed=now()))
             wanted = exists().where(jobs.c.computation_id == computations.c.id, undismissed)
             owners = select(jobs.c.computation_id).where(mine)
-            _abandon(connection, computations.c.id.in_(owners) & ~wanted)
+            # the scheduler kills their workers; a batch ends by its jobs
+            unwanted = computations.c.id.in_(owners) & ~wanted & computations.c.state.in_(LIVE)
+            values = {"state": "dismissed", "message": "Cancelled."}
+            end_computations(connection, unwanted & (computations.c.lease != HELD), values)
 
     def _jobs(self) -> Any:
         return jobs_of_all_projects().where(jobs.c.project == self._project)
@@ -228,10 +227,3 @@ def _is_identifier(text: str) -> bool:
         return str(uuid.UUID(text)) == text
     except ValueError:
         return False
-
-
-def _abandon(connection: Connection, unwanted: ColumnElement[bool]) -> None:
-    """End computations that nobody wants; the scheduler kills their workers. A batch ends by its jobs."""
-    live = computations.c.state.in_(LIVE) & (computations.c.lease != HELD)
-    values = {"state": "dismissed", "message": "Cancelled."}
-    end_computations(connection, unwanted & live, values)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import Any
+
 from sqlalchemy import BigInteger, Column, Float, ForeignKey, Index, Integer, String, Table, Text, text
 
 from service.store.database import metadata
@@ -9,32 +12,28 @@ from service.version import solver_version
 
 _LIVE = text("state IN ('accepted', 'running')")
 
+
+def _columns(kind: Any, *names: str, **options: Any) -> Iterator[Column[Any]]:
+    return (Column(name, kind, nullable=False, **options) for name in names)
+
+
 computations = Table(
     "computation",
     metadata,
     Column("id", String, primary_key=True),
-    Column("process", String, nullable=False),
-    Column("key", String, nullable=False),
-    Column("inputs", Text, nullable=False),
-    Column("state", String, nullable=False),
-    Column("stage", String, nullable=False, default=""),
-    Column("stage_fraction", Float, nullable=False, default=0.0),
-    Column("fraction", Float, nullable=False, default=0.0),
-    Column("message", Text, nullable=False, default=""),
-    Column("faults", Text, nullable=False, default="[]"),
-    Column("reference", String, nullable=False, default=""),
-    Column("attempts", Integer, nullable=False, default=0),
-    Column("created", String, nullable=False),
+    *_columns(String, "process", "key", "state", "created", "updated"),
+    *_columns(Text, "inputs"),
+    *_columns(String, "stage", "reference", "owner", "lease", default=""),
+    *_columns(Float, "stage_fraction", "fraction", "leased_until", default=0.0),
+    *_columns(Text, "message", default=""),
+    *_columns(Text, "faults", default="[]"),
+    *_columns(Integer, "attempts", default=0),
     Column("started", String),
     Column("finished", String),
-    Column("updated", String, nullable=False),
-    Column("owner", String, nullable=False, default=""),
-    Column("lease", String, nullable=False, default=""),
-    Column("leased_until", Float, nullable=False, default=0.0),
     Column("max_cost_s", Float),
-    Column("priority", Integer, nullable=False, default=0, server_default="0"),
-    Column("traceparent", String, nullable=False, default="", server_default=""),
-    Column("program", String, nullable=False, default=solver_version),
+    *_columns(Integer, "priority", default=0, server_default="0"),
+    *_columns(String, "traceparent", default="", server_default=""),
+    *_columns(String, "program", default=solver_version),
 )
 
 # Single flight: at most one computation of a key waits or runs. A key is an address: see `service.project`.
@@ -54,12 +53,9 @@ Index("computation_by_turn", computations.c.state, computations.c.priority, comp
 durations = Table(
     "duration",
     metadata,
-    Column("process", String, primary_key=True),
-    Column("outcome", String, primary_key=True),
-    Column("le", String, primary_key=True),
-    Column("number", BigInteger, nullable=False),
-    Column("seconds", Float, nullable=False),
-    Column("attempts", BigInteger, nullable=False),
+    *(Column(name, String, primary_key=True) for name in ("process", "outcome", "le")),
+    *_columns(BigInteger, "number", "attempts"),
+    *_columns(Float, "seconds"),
 )
 
 # Calls about jobs to other services, see `service.webhooks`.
@@ -67,17 +63,13 @@ webhooks = Table(
     "webhook",
     metadata,
     Column("id", String, primary_key=True),
-    Column("job", String, nullable=False),
-    Column("event", String, nullable=False),
-    Column("uri", Text, nullable=False),
-    Column("origin", String, nullable=False),
-    Column("state", String, nullable=False, server_default="waiting"),
-    Column("attempts", Integer, nullable=False, server_default="0"),
-    Column("due", Float, nullable=False, server_default="0"),
-    Column("lease", String, nullable=False, server_default=""),
-    Column("leased_until", Float, nullable=False, server_default="0"),
-    Column("message", Text, nullable=False, server_default=""),
-    Column("updated", String, nullable=False),
+    *_columns(String, "job", "event", "origin", "updated"),
+    *_columns(Text, "uri"),
+    *_columns(String, "state", server_default="waiting"),
+    *_columns(Integer, "attempts", server_default="0"),
+    *_columns(Float, "due", "leased_until", server_default="0"),
+    *_columns(String, "lease", server_default=""),
+    *_columns(Text, "message", server_default=""),
 )
 Index("webhook_by_job", webhooks.c.job)
 Index("webhook_by_state", webhooks.c.state, webhooks.c.due)
@@ -88,21 +80,13 @@ jobs = Table(
     metadata,
     Column("id", String, primary_key=True),
     Column("computation_id", String, ForeignKey("computation.id"), nullable=False),
-    Column("created", String, nullable=False),
-    Column("dismissed", String),
-    Column("asked", String),
-    Column("caller", String, nullable=False, default=""),
-    Column("delivery", String, nullable=False),
-    Column("title", String, nullable=False, server_default=""),
-    Column("title_folded", String, nullable=False, server_default=""),
-    Column("tags", Text, nullable=False, server_default=""),
-    Column("differences", Text, nullable=False, server_default=""),
-    Column("stated", Text, nullable=False, server_default=""),
-    Column("project", String, nullable=False, default=""),
-    Column("parent", String),
-    Column("place", Integer, nullable=False, server_default="0"),
-    Column("children", Integer, nullable=False, server_default="0"),
-    Column("weight", Float, nullable=False, server_default="0"),
+    *_columns(String, "created", "delivery"),
+    *(Column(name, String) for name in ("dismissed", "asked", "parent")),
+    *_columns(String, "caller", "project", default=""),
+    *_columns(String, "title", "title_folded", server_default=""),
+    *_columns(Text, "tags", "differences", "stated", server_default=""),
+    *_columns(Integer, "place", "children", server_default="0"),
+    *_columns(Float, "weight", server_default="0"),
 )
 Index("job_by_parent", jobs.c.parent)
 Index("job_by_caller", jobs.c.caller)

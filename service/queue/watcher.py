@@ -14,7 +14,8 @@ from sqlalchemy import Engine, func, select
 
 from service.queue.job import Job, job_of, jobs_of_all_projects
 from service.queue.tables import computations, jobs
-from service.store import dialect_of, reading
+from service.store.database import reading
+from service.store.dialects import dialect_of
 
 REST_S = 0.2
 """Between two looks at the table, however often it changes."""
@@ -114,7 +115,10 @@ class Watcher(Generic[T]):
         self._new = False
         with self._lock:
             known = {identifier: followed.updated for identifier, followed in self._jobs.items()}
-        updated = self._updated(known)
+        instant = func.coalesce(jobs.c.dismissed, computations.c.updated)
+        statement = select(jobs.c.id, instant).join(computations).where(jobs.c.id.in_(known))
+        with reading(self._engine) as connection:
+            updated: dict[str, str] = {row[0]: row[1] for row in connection.execute(statement)}
         changed = [identifier for identifier in updated if updated[identifier] != known[identifier]]
         for job in self._read(changed):
             shown = self._show(job)
@@ -131,12 +135,6 @@ class Watcher(Generic[T]):
             if identifier in self._jobs:
                 for told in self._jobs[identifier].followers:
                     told(shown)
-
-    def _updated(self, identifiers: Collection[str]) -> dict[str, str]:
-        instant = func.coalesce(jobs.c.dismissed, computations.c.updated)
-        statement = select(jobs.c.id, instant).join(computations).where(jobs.c.id.in_(identifiers))
-        with reading(self._engine) as connection:
-            return {row[0]: row[1] for row in connection.execute(statement)}
 
     def _read(self, identifiers: Collection[str]) -> list[Job]:
         if not identifiers:

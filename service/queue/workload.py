@@ -11,7 +11,8 @@ from sqlalchemy import ColumnElement, Connection, Engine, Row, Update, case, fun
 
 from service.queue.job import ENDED, job_state
 from service.queue.tables import computations, durations, jobs
-from service.store import dialect_of, now, reading, retried
+from service.store.database import now, reading
+from service.store.dialects import dialect_of, retried
 from service.store.results import results
 
 # Batches: how far one is follows from the jobs in it.

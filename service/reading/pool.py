@@ -64,12 +64,7 @@ class _Pipes:
 class _Reader:
     """Starts a child for each question, forked from a warm process where the system forks. For any thread.
 
-    Parameters
-    ----------
-    home : Path
-        Where each child has a folder of its own.
-    logs : Path
-        Where the children's log is.
+    Each child has a folder of its own below `home`.
     """
 
     def __init__(self, home: Path, logs: Path) -> None:
@@ -90,7 +85,9 @@ class _Reader:
         with own_folder(self._home) as folder:
             child, pipes = self._started(folder)
             try:
-                _give(order, pipes.orders)
+                # a child that died before it has read the order shows by its answer
+                with suppress(BrokenPipeError), os.fdopen(pipes.orders, "wb") as stream:
+                    stream.write(order.line())
                 answer = _heard(pipes.answers, time.monotonic() + LONGEST_S + _PATIENCE_S)
             finally:
                 os.close(pipes.answers)
@@ -158,12 +155,6 @@ class _Reader:
             logger.error("reading failed", entry=order.entry, reference=reference, log=self._log.name)
             raise Unexpected(reference)
         return body
-
-
-def _give(order: LiveOrder, descriptor: int) -> None:
-    """Write an order; a child that died before it has read it shows by its answer."""
-    with suppress(BrokenPipeError), os.fdopen(descriptor, "wb") as stream:
-        stream.write(order.line())
 
 
 def _heard(descriptor: int, end: float) -> tuple[AnswerHead, bytes] | None:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import ipaddress
 import re
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from typing import Any
 
 import structlog
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars
 
 from lineofaction.gearbox.problems import KeyExpired, NotForUs, RateExceeded, ServiceError
-from service.access import NOBODY, Held, Holder, Identities, RateLimits
-from service.access.capacity import Capacity
+from service.access.capacity import NOBODY, Capacity, Held, RateLimits
+from service.access.identities import Identities
+from service.access.keyring import Holder
+from service.origin import is_loopback
 from service.routes.media_types import for_one_caller
 
 # How many requests are answered at once, and how many bodies are awaited: of one caller and in all.
@@ -61,8 +61,10 @@ class Admission:
             The caller has as many as it may, or all together have; nothing was read then.
         """
         self._answered.refuse_beyond(name, most)
+        headers = dict(scope["headers"])  # whether a body follows the head: RFC 9112, section 6.3
+        follows = b"transfer-encoding" in headers or headers.get(b"content-length", b"0") != b"0"
         with ExitStack() as place:
-            if not _announces_body(scope):
+            if not follows:
                 place.enter_context(self._answered.one(name))
                 yield receive
                 return
@@ -82,12 +84,6 @@ class Admission:
             yield received
 
 
-def _announces_body(scope: Scope) -> bool:
-    """Whether a body follows the head (RFC 9112, section 6.3)."""
-    headers = dict(scope["headers"])
-    return b"transfer-encoding" in headers or headers.get(b"content-length", b"0") != b"0"
-
-
 # The line of every access in the log: who did what to what, under which scope, and what came of it.
 
 
@@ -98,13 +94,7 @@ logger = structlog.get_logger(__name__)
 
 
 class _Visit:
-    """One access to a service with keys, until it is noted.
-
-    Attributes
-    ----------
-    holder : Holder or None
-        Who it is, once that is known.
-    """
+    """One access to a service with keys, until it is noted; `holder` is who it is, once that is known."""
 
     def __init__(self, scope: Scope, send: Send) -> None:
         self._scope, self._send = scope, send
@@ -113,13 +103,11 @@ class _Visit:
         self._problem: str | None = None
 
     async def send(self, message: Message) -> None:
-        """Pass on a piece of the answer."""
         if message["type"] == "http.response.start":
             self._status = message["status"]
         await self._send(message)
 
     def refused(self, error: ServiceError) -> None:
-        """Note why there is no answer but a problem."""
         self._status, self._problem = error.status, error.kind
 
     def note(self) -> None:
@@ -127,17 +115,14 @@ class _Visit:
         problem = self._problem or self._scope["state"].get("problem")
         logger.info(
             "access",
-            **self._who(),
+            caller=self.holder and self.holder.name,
+            project=self.holder and self.holder.project,
             scope=getattr(self._scope.get("endpoint"), "scope", None),
             operation=getattr(self._scope.get("route"), "name", None),
             target=f"{self._scope['method']} {_KEY.sub('(key)', self._scope['path'])[:_LONGEST]}",
             outcome=problem or "granted",
             status=self._status,
         )
-
-    def _who(self) -> dict[str, Any]:
-        holder = self.holder
-        return {"caller": holder and holder.name, "project": holder and holder.project}
 
 
 # Whether a request was meant for this machine: what protects a service without keys from pages of others.
@@ -153,21 +138,8 @@ def _meant_for_us(scope: Scope) -> bool:
     server = scope.get("server")
     if named is None or server is None:
         return True
-    host = _without_port(named).lower()
-    return host in ("localhost", str(server[0]).lower()) or _is_loopback(host)
-
-
-def _without_port(host: str) -> str:
-    if host.startswith("["):
-        return host[1:].partition("]")[0]
-    return host.partition(":")[0]
-
-
-def _is_loopback(host: str) -> bool:
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False
+    host = named[1:].partition("]")[0] if named.startswith("[") else named.partition(":")[0]
+    return host.lower() == str(server[0]).lower() or is_loopback(host.lower())
 
 
 OPEN_PATHS = ("/health", "/ready", "/", "/docs")
@@ -209,7 +181,7 @@ class Access:
         if scope["path"] in VITAL_PATHS:
             await self._app(scope, receive, send)
             return
-        if not closed or _open(scope["path"]):
+        if not closed or scope["path"] in OPEN_PATHS or scope["path"].startswith(OPEN_FOLDER):
             most = self._admission.share if closed else None
             with self._admission.admitted(scope, receive, NOBODY, most) as received:
                 await self._app(scope, received, send)
@@ -238,10 +210,6 @@ class Access:
             received = held.enter_context(self._admission.admitted(scope, receive, key.name, most))
             scope["state"] |= {"caller": key, "held": held, "streams": self._streams}
             await self._app(scope, received, for_one_caller(visit.send))
-
-
-def _open(path: str) -> bool:
-    return path in OPEN_PATHS or path.startswith(OPEN_FOLDER)
 
 
 def _presented(scope: Scope) -> str | None:

@@ -18,9 +18,9 @@ from lineofaction.gearbox.schemas.plan import OutlineBody
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
-from service.access import Scope
+from service.access.keyring import Scope
 from service.live.order import LiveOrder
-from service.page.files import Example, examples
+from service.page.files import examples
 from service.routes.context import Context, Ctx, key_of
 from service.routes.media_types import JSON
 from service.routes.openapi import documented
@@ -76,7 +76,12 @@ class CaseBody(BaseModel):
 @needs(Scope.READ)
 def example_cases() -> list[ExampleBody]:
     """List the pairs that the page offers."""
-    return [_example(example) for example in examples()]
+    bodies = []
+    for example in examples():
+        case = case_json(validated(Case, example.content))
+        own = example._asdict() | {"case": case, "hash": ANALYZE.key({"case": case})}
+        bodies.append(ExampleBody.model_validate(own))
+    return bodies
 
 
 @router.post("/cases/outline", summary="Drawing of the two gears", response_model=OutlineBody)
@@ -95,13 +100,11 @@ def case_outline(body: CaseRequest) -> Response:
 @needs(Scope.READ, body=CaseText)
 async def case_from_toml(body: CaseText, context: Ctx, request: Request) -> Response:
     """Read the case in a file's text and in the files that it names, with all defaults."""
-    return await _read_by(
-        context, LiveOrder("service.reading.texts:case_of_toml", body.model_dump(mode="json")), request
-    )
+    return await _read_by(context, "service.reading.texts:case_of_toml", body, request)
 
 
-async def _read_by(context: Context, order: LiveOrder, request: Request) -> Response:
-    caller = key_of(request)
+async def _read_by(context: Context, entry: str, body: BaseModel, request: Request) -> Response:
+    caller, order = key_of(request), LiveOrder(entry, body.model_dump(mode="json"))
     answer = context.reader.ask(order, None if caller is None else caller.name)
     return Response(await asyncio.wrap_future(answer), media_type=JSON)
 
@@ -111,12 +114,6 @@ async def _read_by(context: Context, order: LiveOrder, request: Request) -> Resp
 def case_to_toml(body: CaseRequest) -> TomlBody:
     """Write the case with all defaults as a file's text."""
     return TomlBody(toml=toml_text(case_json(body.inputs.case)))
-
-
-def _example(example: Example) -> ExampleBody:
-    case = case_json(validated(Case, example.content))
-    facts = {"name": example.name, "title": example.title, "note": example.note}
-    return ExampleBody(**facts, case=case, hash=ANALYZE.key({"case": case}))
 
 
 scenes_router = APIRouter(tags=["scenes"], route_class=ScopedRoute)
@@ -157,9 +154,7 @@ class SceneBody(BaseModel):
 @needs(Scope.READ, body=SceneText)
 async def scene_from_toml(body: SceneText, context: Ctx, request: Request) -> Response:
     """Read the scene in a file's text and in the files that it names; names of cases not given stay."""
-    return await _read_by(
-        context, LiveOrder("service.reading.texts:scene_of_toml", body.model_dump(mode="json")), request
-    )
+    return await _read_by(context, "service.reading.texts:scene_of_toml", body, request)
 
 
 @scenes_router.post("/scenes/to-toml", summary="Write a scene file")
@@ -186,4 +181,4 @@ async def open_unit(body: UnitFile, context: Ctx, request: Request) -> Response:
 
     A process of its own reads the file; nothing outside of it is opened.
     """
-    return await _read_by(context, LiveOrder(ENTRY, body.model_dump()), request)
+    return await _read_by(context, ENTRY, body, request)

@@ -12,7 +12,7 @@ from fastapi import Depends, Request
 from sqlalchemy import Engine
 
 from lineofaction.gearbox.loading import LOADING
-from service.access import Holder
+from service.access.keyring import Holder
 from service.live.pool import KeptAnswers, LivePool
 from service.project import COMMON
 from service.queue.scheduler import Scheduler
@@ -21,8 +21,8 @@ from service.queue.terms import ANYBODY
 from service.queue.watcher import Watcher
 from service.reading.pool import ReadingPool
 from service.settings import Settings
-from service.store import ResultStore
 from service.store.deployment import WriteCheck
+from service.store.results import ResultStore
 from service.worker.cluster import RemoteWork
 from service.worker.process import Registry
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-from typing import Any
 
 from fastapi import APIRouter, Request
 from starlette.responses import Response
 
 from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.problems import NotFound
-from service.access import Scope
+from service.access.keyring import Scope
 from service.page.files import PageFile, page_file
 from service.routes.media_types import JSON, OPENAPI, media_type, negotiated
 from service.routes.scopes import OPEN_TO_ALL, ScopedRoute, needs
@@ -61,17 +60,7 @@ def list_effects() -> list[EffectBody]:
     with LOADING:
         from fe_contact.effects import EFFECTS  # noqa: PLC0415 (start-up time)
 
-    return [
-        EffectBody(
-            name=effect.name,
-            needs=list(effect.needs),
-            adds=list(effect.adds),
-            cost=effect.cost,
-            sources=list(effect.sources),
-            valid_for=effect.valid_for,
-        )
-        for effect in EFFECTS
-    ]
+    return [EffectBody.model_validate(effect, from_attributes=True) for effect in EFFECTS]
 
 
 # The pages at / and /docs: plain files, nothing from elsewhere, and a policy that says so.
@@ -142,10 +131,7 @@ _OFFERED = (JSON, media_type(OPENAPI))
 def description(request: Request) -> Response:
     """Return the description, under the type of OpenAPI to those who prefer that."""
     accepted = negotiated(request.headers.get("accept", "*/*"), _OFFERED)
-    answer = _served(PageFile(_text(request.app.openapi()), JSON if accepted == JSON else OPENAPI), request)
+    content = json.dumps(request.app.openapi(), ensure_ascii=False, allow_nan=False).encode()
+    answer = _served(PageFile(content, JSON if accepted == JSON else OPENAPI), request)
     answer.headers.add_vary_header("Accept")
     return answer
-
-
-def _text(document: dict[str, Any]) -> bytes:
-    return json.dumps(document, ensure_ascii=False, allow_nan=False).encode()

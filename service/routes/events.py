@@ -13,11 +13,11 @@ from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
 from lineofaction.gearbox.problems import NoSuchJob, QueueFull
-from service import access
+from service.access import keyring
 from service.queue.job import Job
 from service.routes.context import Context, Ctx, JobEvent, Streams
 from service.routes.jobs import status_info
-from service.routes.media_types import EVENT_STREAM, NO_STORE, described_headers
+from service.routes.media_types import EVENT_STREAM, NO_STORE, answer
 from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
 from service.worker.process import Registry
@@ -43,16 +43,16 @@ class _TooManyStreams(QueueFull):
     summary="Changes of a job's status",
     response_class=Response,
     responses={
-        200: {
-            "description": "Events `status`, each with the status document",
-            "content": {EVENT_STREAM: {}},  # OpenAPI 3.1 has no schema of events
-            "headers": described_headers("Cache-Control"),
-        },
+        200: answer(
+            "Events `status`, each with the status document",
+            "Cache-Control",
+            content={EVENT_STREAM: {}},  # OpenAPI 3.1 has no schema of events
+        ),
         204: {"description": "The last event was the final one: browsers connect no more"},
         **documented(NoSuchJob, _TooManyStreams),
     },
 )
-@needs(access.Scope.READ, streams=True)
+@needs(keyring.Scope.READ, streams=True)
 async def job_events(job_id: str, context: Ctx, last_event_id: LastEvent = None) -> Response:
     """Send the status now and whenever it changes; the stream ends after the final one.
 
@@ -64,9 +64,8 @@ async def job_events(job_id: str, context: Ctx, last_event_id: LastEvent = None)
     if event.last and event.id == last_event_id:
         return Response(status_code=204)
     if not context.streams.enter():
-        raise _TooManyStreams(
-            f"{context.streams.most} event streams are open. Poll the status, or try again."
-        )
+        text = f"{context.streams.most} event streams are open. Poll the status, or try again."
+        raise _TooManyStreams(text)
     headers = {"Cache-Control": NO_STORE, "X-Accel-Buffering": "no"}
     return _Stream(context.streams, _changes(context, job, event, last_event_id), headers)
 
@@ -86,7 +85,6 @@ class _Stream(StreamingResponse):
         self._streams = streams
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Send the stream."""
         try:
             await super().__call__(scope, receive, send)
         finally:
@@ -102,12 +100,13 @@ class _Latest:
 
     def tell(self, event: JobEvent | None) -> None:
         """Take an event, in any thread; who has not sent the one before sends this one instead."""
-        with contextlib.suppress(RuntimeError):  # the loop was closed
-            self._loop.call_soon_threadsafe(self._take, event)
 
-    def _take(self, event: JobEvent | None) -> None:
-        self.event = event
-        self._changed.set()
+        def take() -> None:
+            self.event = event
+            self._changed.set()
+
+        with contextlib.suppress(RuntimeError):  # the loop was closed
+            self._loop.call_soon_threadsafe(take)
 
     async def changed(self, patience_s: float) -> bool:
         """Wait for the next event; False: there is none yet."""

@@ -10,7 +10,7 @@ from starlette.responses import PlainTextResponse
 
 from host import missing_protections
 from lineofaction.gearbox.problems import ServiceError
-from service.access import Scope
+from service.access.keyring import Scope
 from service.management.server import METRICS_TYPE, Vitals
 from service.routes.context import Ctx
 from service.routes.media_types import NO_STORE

@@ -24,7 +24,7 @@ from lineofaction.gearbox.problems import (
 )
 from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.result_kinds import RESULTS
-from service.access import Scope
+from service.access.keyring import Scope
 from service.queue.job import Job, JobFilter, subject_of
 from service.queue.terms import Delivery, Transmission, delivery
 from service.queue.terms import Response as Form
@@ -34,7 +34,7 @@ from service.routes.media_types import (
     OF_VERSIONS,
     Cursor,
     Limit,
-    described_headers,
+    answer,
     mark_of,
     negotiated,
     page_links,
@@ -53,7 +53,7 @@ from service.schemas.answers import (
     results_document,
 )
 from service.schemas.execute import BatchResult, BatchResults, LabelChange, Tag, Title
-from service.store import Mark
+from service.store.results import Mark
 from service.webhooks.calls import Calls
 from service.worker.process import Registry
 
@@ -221,30 +221,18 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
     if job.status == "successful" or (job.children and job.ended):
         relation = "http://www.opengis.net/def/rel/ogc/1.0/results"
         links.append(Link(href=f"{path}/results", rel=relation, title="Results"))
-    status: JobStatus = job.status  # type: ignore[assignment]  # the table holds no others
+    alike = {name: getattr(job, name) for name in StatusInfo.model_fields.keys() & vars(job)}
     return StatusInfo(
+        **alike,
         processID=job.process,
         jobID=job.id,
-        status=status,
         title=job.label.title,
         tags=list(job.label.tags),
-        priority=job.priority,
-        max_cost_s=job.max_cost_s,
         subject=subject_of(job.inputs),
-        differences=job.differences,
-        message=job.message,
-        created=job.created,
-        started=job.started,
-        finished=job.finished,
-        updated=job.updated,
         progress=min(int(100 * job.fraction), 100 if job.status == "successful" else 99),
         remaining_s=job.remaining_s(datetime.now(UTC)),
-        stage=job.stage,
         stage_progress=int(100 * job.stage_fraction),
-        attempts=job.attempts,
         parentID=job.parent,
-        place=job.place,
-        children=job.children,
         links=links,
         warnings=list(input_warnings(job.inputs)),
     )
@@ -274,21 +262,15 @@ def job_results_router(registry: Registry) -> APIRouter:
     router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
     documents = [results_document(process.id, process.output) for process in registry.values()]
     answers: dict[int | str, dict[str, Any]] = {
-        200: {
-            "model": Union[(*documents, BatchResults)],
-            "description": "A document of where the result is by the name of its output, or its file; of a "
-            "batch what came of each of its jobs, in order",
-            "content": {JSON: {}, NETCDF: {"schema": FILE}},
-            "headers": described_headers(*OF_RESULT, "Content-Digest", "Content-Location"),
-        },
-        204: {
-            "description": "The result is where the header Link says",
-            "headers": described_headers("Link", "Vary"),
-        },
-        304: {
-            "description": "Not modified",
-            "headers": described_headers(*OF_VERSIONS, "Result-Kind", "Content-Location"),
-        },
+        200: answer(
+            "A document of where the result is by the name of its output, or its file; of a batch what came "
+            "of each of its jobs, in order",
+            *(*OF_RESULT, "Content-Digest", "Content-Location"),
+            model=Union[(*documents, BatchResults)],
+            content={JSON: {}, NETCDF: {"schema": FILE}},
+        ),
+        204: answer("The result is where the header Link says", "Link", "Vary"),
+        304: answer("Not modified", *OF_VERSIONS, "Result-Kind", "Content-Location"),
     }
     router.add_api_route(
         "/{job_id}/results",
@@ -322,8 +304,11 @@ def job_results(
     else:
         form = delivery(response or job.delivery.response, mode, "transmissionMode")
     reference = reference_of(job)
+    if form.transmission == "reference" and form.response == "raw":
+        link = f'<{reference.href}>; rel="item"; type="{NETCDF}"; title="{process.output}"'
+        return Response(status_code=204, headers={"Link": link, "Vary": "Accept"})
     if form.transmission == "reference":
-        return _referenced(form, process.output, reference)
+        return JSONResponse({process.output: reference.model_dump()}, headers={"Vary": "Accept"})
     place = {"Content-Location": reference.href}
     return file_response(known_result(context, job.key, process.kind), request, place)
 
@@ -335,13 +320,6 @@ def _accepted(ordered: Delivery, accept: str) -> Delivery:
     if accepted in (None, offered[0]):
         return ordered
     return delivery("document" if accepted == JSON else "raw", None, "transmissionMode")
-
-
-def _referenced(form: Delivery, output: str, reference: ResultReference) -> Response:
-    if form.response == "raw":
-        link = f'<{reference.href}>; rel="item"; type="{NETCDF}"; title="{output}"'
-        return Response(status_code=204, headers={"Link": link, "Vary": "Accept"})
-    return JSONResponse({output: reference.model_dump()}, headers={"Vary": "Accept"})
 
 
 def batch_results(context: Context, batch: Job) -> BatchResults:

@@ -16,7 +16,7 @@ from starlette.types import Message, Send
 
 from lineofaction.gearbox.problems import BadInput
 from service.schemas.answers import Link
-from service.store import Mark
+from service.store.results import Mark
 
 JSON, CBOR, RAW = "application/json", "application/cbor", "application/octet-stream"
 WAV = "audio/wav"
@@ -131,6 +131,11 @@ def described_headers(*names: str) -> dict[str, Any]:
     return {name: {"$ref": f"#/components/headers/{name}"} for name in names}
 
 
+def answer(description: str, *headers: str, **further: Any) -> dict[str, Any]:
+    """Return what a route declares of an answer; `further`: its ``model`` or its ``content``."""
+    return {"description": description, **further, "headers": described_headers(*headers)}
+
+
 # Cursors of pages: opaque to callers, good as long as the service, whatever becomes of what they name.
 
 
@@ -149,17 +154,14 @@ def page_links(request: Request, path: str, last: Mark | None) -> list[Link]:
     parameters = [(name, value) for name, value in request.query_params.multi_items() if name != "cursor"]
     links = [Link(href=_href(path, request.query_params.multi_items()), rel="self", title="This page")]
     if last is not None:
-        following = _href(path, [*parameters, ("cursor", _cursor_of(last))])
+        cursor = base64.urlsafe_b64encode(" ".join(last).encode()).decode().rstrip("=")
+        following = _href(path, [*parameters, ("cursor", cursor)])
         links.append(Link(href=following, rel="next", title="Next page"))
     return links
 
 
 def _href(path: str, parameters: Sequence[tuple[str, str]]) -> str:
     return f"{path}?{urlencode(parameters)}" if parameters else path
-
-
-def _cursor_of(mark: Mark) -> str:
-    return base64.urlsafe_b64encode(" ".join(mark).encode()).decode().rstrip("=")
 
 
 def mark_of(cursor: str | None) -> Mark | None:

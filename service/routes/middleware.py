@@ -73,15 +73,12 @@ def _invalid_request(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     sent = media_type(request.headers.get("content-type", ""))
     unread = any(item["loc"][0] == "body" and item["type"] != "missing" for item in error.errors())
-    if unread and not _is_json(sent):
+    as_json = sent == JSON or (sent.startswith("application/") and sent.endswith("+json"))
+    if unread and not as_json:
         return _raised_on_purpose(request, UnsupportedMediaType.of(sent, JSON))
     model = getattr(request.scope.get("endpoint"), "body_model", None)
     faults = (_request_fault(item, model) for item in innermost(error.errors()))
     return _raised_on_purpose(request, BadInput(faults))
-
-
-def _is_json(kind: str) -> bool:
-    return kind == JSON or (kind.startswith("application/") and kind.endswith("+json"))
 
 
 def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fault:
@@ -117,34 +114,18 @@ def _refused_by_framework(request: Request, error: Exception) -> Response:
     }
     headers = dict(error.headers or {})
     if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
-        headers["Allow"] = ", ".join(_methods(request))
+        # whichever routes hold them: the framework names those of one route only
+        paths = request.app.openapi()["paths"]
+        matching = [path for path in paths if compile_path(path)[0].match(request.url.path)]
+        headers["Allow"] = ", ".join(sorted({name.upper() for path in matching for name in paths[path]}))
     return _problem_response(facts, headers)
-
-
-def _methods(request: Request) -> list[str]:
-    """Methods of a path, whichever routes hold them (the framework names those of one route only)."""
-    paths = request.app.openapi()["paths"]
-    matching = [path for path in paths if compile_path(path)[0].match(request.url.path)]
-    return sorted({method.upper() for path in matching for method in paths[path]})
 
 
 # Event streams as they are sent: how many are open, and how many events went out.
 
 
 class _StreamFigures:
-    """Watches the answer to one request; anything but an event stream leaves no trace.
-
-    Parameters
-    ----------
-    metrics : Metrics
-    route : callable
-        Returns the template of the request's path, once it was matched.
-
-    Attributes
-    ----------
-    route : str
-        Of the stream; empty while the answer is none.
-    """
+    """Watches the answer to one request; anything but an event stream leaves no trace and no `route`."""
 
     def __init__(self, metrics: Metrics, route: Callable[[], str]) -> None:
         self._metrics, self._template = metrics, route
@@ -162,7 +143,6 @@ class _StreamFigures:
             self._metrics.sent(self.route, events)
 
     def end(self) -> None:
-        """Note that nothing more is sent."""
         if self.route:
             self._metrics.streams(self.route, -1)
 
@@ -263,11 +243,6 @@ def _template(scope: Scope) -> str:
     return f"{API_PREFIX}{template}" if inside else str(template)
 
 
-def _identifier(sent: bytes) -> str:
-    """Return the identifier that the caller sent, or another for none or one that a log should not hold."""
-    return sent.decode() if _IDENTIFIER.fullmatch(sent) else uuid.uuid4().hex[:12]
-
-
 class _Exchange:
     """One request and its answer, watched."""
 
@@ -281,7 +256,8 @@ class _Exchange:
         self._extent = _Extent(self._headers.get(b"content-type", b"").decode("latin-1"))
         self.refusal: ServiceError | None = None
         self.status: int | None = None
-        self.identifier = _identifier(self._headers.get(b"x-request-id", b""))
+        named = self._headers.get(b"x-request-id", b"")  # another for none, or one that a log should not hold
+        self.identifier = named.decode() if _IDENTIFIER.fullmatch(named) else uuid.uuid4().hex[:12]
         sent = self._headers.get(b"traceparent", b"").decode("latin-1")
         self.traceparent = tracer().current(valid_traceparent(sent))
 
@@ -300,13 +276,13 @@ class _Exchange:
         """Pass on a piece of the body, counting; once it is whole wait as long as it takes."""
         if self._whole:
             return await self._receive()
+        left = PATIENCE_S + self._received / LEAST_BYTES_PER_S - (time.perf_counter() - self._begin)
         try:
-            async with asyncio.timeout_at(self._due()):
+            async with asyncio.timeout(left):
                 message = await self._receive()
         except TimeoutError:
-            self._refuse(
-                TooSlow(f"The body did not arrive within {time.perf_counter() - self._begin:.0f} s.")
-            )
+            waited = time.perf_counter() - self._begin
+            self._refuse(TooSlow(f"The body did not arrive within {waited:.0f} s."))
         piece = message.get("body", b"")
         self._received += len(piece)
         self._whole = not message.get("more_body", False)
@@ -322,11 +298,6 @@ class _Exchange:
         """Raise why the body is not read on, and keep it: the framework takes it for an unreadable body."""
         self.refusal = error
         raise error from None
-
-    def _due(self) -> float:
-        """Return when the next piece is to be there, by the clock of the event loop."""
-        left = PATIENCE_S + self._received / LEAST_BYTES_PER_S - (time.perf_counter() - self._begin)
-        return asyncio.get_running_loop().time() + left
 
     async def send(self, message: Message) -> None:
         """Pass on a piece of the answer.

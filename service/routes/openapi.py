@@ -36,7 +36,7 @@ from lineofaction.gearbox.problems import (
 from lineofaction.gearbox.schemas.model import with_named
 from lineofaction.gearbox.schemas.plan import InputWarning
 from lineofaction.gearbox.schemas.query import QueryInput
-from service.access import MEANINGS
+from service.access.keyring import MEANINGS
 from service.routes.access import OPEN_PATHS
 from service.routes.media_types import (
     CBOR,
@@ -84,17 +84,18 @@ def documented(*problems: type[ServiceError]) -> dict[int | str, Json]:
 
 
 def _describe_refusals(document: Json) -> None:
-    """Give every operation all its refusals, as references to one response a status."""
-    found: Kinds = {}
-    for path, methods in document["paths"].items():
-        for operation in methods.values():
-            responses = operation["responses"]
-            for kinds in (_taken_out(responses), _of_request(path, operation)):
-                for status, named in kinds.items():
-                    found.setdefault(status, {}).update(named)
-                    responses[str(status)] = {"$ref": f"#/components/responses/{_name(status)}"}
+    """Give every operation all its refusals, those its route declares too, by reference: one a status."""
+    all_kinds: Kinds = {}
+    for path, operation in _operations(document):
+        responses = operation["responses"]
+        refused = {status: responses.pop(status) for status in list(responses) if int(status) >= 400}
+        own = {int(status): entry[_KINDS] for status, entry in refused.items() if _KINDS in entry}
+        for kinds in (own, _of_request(path, operation)):
+            for status, named in kinds.items():
+                all_kinds.setdefault(status, {}).update(named)
+                responses[str(status)] = {"$ref": f"#/components/responses/{_name(status)}"}
     document["components"]["responses"] = {
-        _name(status): _response(status, found[status]) for status in found
+        _name(status): _response(status, kinds) for status, kinds in all_kinds.items()
     }
 
 
@@ -117,12 +118,6 @@ def _of_request(path: str, operation: Mapping[str, Any]) -> Kinds:
     if "parameters" in operation:
         problems.append(BadInput)
     return _by_status(problems) | _OF_ROUTING
-
-
-def _taken_out(responses: Json) -> Kinds:
-    """Take the refusals out of the responses of an operation; return those that its route declares."""
-    refused = {status: responses.pop(status) for status in list(responses) if int(status) >= 400}
-    return {int(status): entry[_KINDS] for status, entry in refused.items() if _KINDS in entry}
 
 
 def _name(status: int) -> str:
@@ -193,7 +188,6 @@ def install_description(app: FastAPI) -> None:
     written = app.openapi
 
     def described() -> Json:
-        """Return the description, made once."""
         fresh = app.openapi_schema is None
         document = written()
         if fresh:
@@ -206,14 +200,18 @@ def install_description(app: FastAPI) -> None:
 def _complete(document: Json) -> None:
     """Add what holds for all operations: refusals, headers, links, keys; and an example of every body."""
     components = document["components"]
-    components["schemas"] = with_named(components["schemas"])
-    _add_models(components["schemas"])
+    schemas = components["schemas"] = with_named(components["schemas"])
+    beside: Any = [(model, "validation") for model in _BESIDE]
+    schemas.update(models_json_schema(beside, ref_template=_REF)[1]["$defs"])
+    for unused in ("HTTPValidationError", "ValidationError"):  # the framework's own
+        schemas.pop(unused, None)
     components["headers"] = dict(HEADERS)
     components["securitySchemes"] = {KEY_SCHEME: _KEY}
     _describe_refusals(document)
     for path, operation in _operations(document):
         _show(operation.get("requestBody", {}).get("content", {}), request_example(path))
-        for response in _answers(operation):
+        answers = (answer for answer in operation["responses"].values() if "$ref" not in answer)
+        for response in answers:
             response["headers"] = described_headers(*OF_ALL) | response.get("headers", {})
             _show(response.get("content", {}), answer_example(path))
             _add_links(response)
@@ -223,19 +221,6 @@ def _operations(document: Json) -> Iterator[tuple[str, Json]]:
     for path, methods in document["paths"].items():
         for operation in methods.values():
             yield path, operation
-
-
-def _answers(operation: Json) -> Iterator[Json]:
-    """Yield the responses of an operation that are no refusals."""
-    return (response for response in operation["responses"].values() if "$ref" not in response)
-
-
-def _add_models(schemas: Json) -> None:
-    """Add the schemas of models that no handler names, in place of the framework's own error body."""
-    asked: Any = [(model, "validation") for model in _BESIDE]
-    schemas.update(models_json_schema(asked, ref_template=_REF)[1]["$defs"])
-    for unused in ("HTTPValidationError", "ValidationError"):
-        schemas.pop(unused, None)
 
 
 def _show(content: Json, example: Any) -> None:

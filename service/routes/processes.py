@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import cache
 from typing import Annotated, Any, cast
 
@@ -17,7 +18,7 @@ from lineofaction.gearbox.problems import BadInput, Fault, LiveUnavailable, NoSu
 from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.model import MOST_FAULTS, BoundaryModel
 from lineofaction.gearbox.schemas.reading import validated
-from service.access import Holder, Scope
+from service.access.keyring import Holder, Scope
 from service.live.order import LiveOrder
 from service.origin import Origin
 from service.queue.entry import BatchCase
@@ -32,12 +33,11 @@ from service.queue.terms import (
 )
 from service.routes.context import Context, Ctx, From
 from service.routes.jobs import batch_results, problem_of, reference_of, status_info
-from service.routes.media_types import Limit, described_headers
+from service.routes.media_types import Limit, answer
 from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.answers import (
     AdditionalParameters,
-    Differences,
     Link,
     Parameter,
     ProcessDescription,
@@ -49,7 +49,7 @@ from service.schemas.answers import (
 )
 from service.schemas.execute import BatchRequest, execute_model
 from service.settings import Settings
-from service.store import now
+from service.store.database import now
 from service.webhooks.calls import Calls
 from service.webhooks.deliverer import Deliverer, Outbox
 from service.worker.process import Process, Registry
@@ -66,9 +66,11 @@ def _checked_uris(settings: Settings, subscriber: Subscriber | None) -> dict[str
         bound = "left out: this service sends no requests to addresses that its callers name"
         raise BadInput.of("subscriber", None, bound, "Follow /v1/jobs/{id}/events.")
     for event, uri in subscriber.uris.items():
-        if _origin(uri) not in listed:
-            bound = f"an address at {' or '.join(map(str, sorted(listed, key=str)))}"
-            raise BadInput.of(f"subscriber.{event}Uri", uri, bound)
+        with suppress(ValueError):
+            if Origin.of(uri) in listed:
+                continue
+        bound = f"an address at {' or '.join(map(str, sorted(listed, key=str)))}"
+        raise BadInput.of(f"subscriber.{event}Uri", uri, bound)
     return subscriber.uris
 
 
@@ -105,13 +107,6 @@ def _message(context: Context, identifier: str, event: str) -> Any:
     return {context.registry[job.process].output: reference_of(job).model_dump()}
 
 
-def _origin(uri: str) -> Origin | None:
-    try:
-        return Origin.of(uri)
-    except ValueError:
-        return None
-
-
 logger = structlog.get_logger(__name__)
 
 After = Annotated[str, Query(max_length=64, description="Last process of the previous page")]
@@ -137,7 +132,8 @@ def processes_router(registry: Registry) -> APIRouter:
     @needs(Scope.READ)
     def list_processes(limit: Limit = 100, after: After = "") -> ProcessList:
         """All that can be run."""
-        behind = list(registry.values())[_place(registry, after) :]
+        passed = list(registry).index(registry[after].id) + 1 if after else 0
+        behind = list(registry.values())[passed:]
         shown = behind[:limit]
         links = [Link(href="/v1/processes", rel="self", title="Processes")]
         if len(behind) > limit:
@@ -153,28 +149,14 @@ def processes_router(registry: Registry) -> APIRouter:
 
     for offered in registry.values():
         _add_execution(router, offered)
-    router.add_api_route(
-        "/{process_id}/execution",
-        _other_name(registry),
-        methods=["POST"],
-        include_in_schema=False,
-    )
-    return router
 
-
-def _place(registry: Registry, after: str) -> int:
-    """Return how many processes come before what follows `after`, none without it."""
-    return list(registry).index(registry[after].id) + 1 if after else 0
-
-
-def _other_name(registry: Registry) -> Any:
-    """Return the handler of executions by names without a route: those of no process."""
-
+    @router.post("/{process_id}/execution", include_in_schema=False)
     @needs(Scope.SUBMIT)
-    def execute_other(process_id: str) -> Response:
-        raise registry.unknown(process_id)
+    def execute_other(process_id: str) -> ProcessDescription:
+        """Refuse a name without a route: it is that of no process."""
+        return _description(registry[process_id])
 
-    return execute_other
+    return router
 
 
 def _add_execution(router: APIRouter, process: Process) -> None:
@@ -195,11 +177,18 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         form = delivery(request.response, output and output.transmissionMode, field)
         uris = _checked_uris(context.settings, request.subscriber)
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
-        since = _differences(context, process, caller, inputs, request.inputs)
+        former = context.submissions.newest(caller, process.id)
+        if former is None:
+            defaults = request.inputs.model_dump(mode="json", exclude_defaults=True)
+            since = differences_between({}, defaults)
+        else:
+            since = differences_between(former[1], inputs, former[0])
         check_priority(request.priority, caller)
         limit = cost_limit(request.max_cost_s, caller)
-        label, stated = Label.of(request.title, request.tags), _stated(request.inputs)
-        terms = Terms(form, label, since, request.priority, limit, stated, request.reuse)
+        stated = json.dumps(request.inputs.model_dump(mode="json", exclude_unset=True))
+        kept = stated if len(stated) <= _LONGEST_STATED else ""
+        label = Label.of(request.title, request.tags)
+        terms = Terms(form, label, since, request.priority, limit, kept, request.reuse)
         status = _submit(context, process, inputs, caller, terms, idempotency_key)
         _enter_calls(context, status.jobID, uris)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
@@ -217,24 +206,8 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         summary=process.title,
         description=process.description,
         responses=documented(QueueFull, LiveUnavailable)
-        | {201: {"description": "The job", "headers": described_headers("Location", "Preference-Applied")}},
+        | {201: answer("The job", "Location", "Preference-Applied")},
     )
-
-
-def _stated(inputs: BoundaryModel) -> str:
-    """Return inputs as JSON without what the caller left out; empty if they are long."""
-    text = json.dumps(inputs.model_dump(mode="json", exclude_unset=True))
-    return text if len(text) <= _LONGEST_STATED else ""
-
-
-def _differences(
-    context: Context, process: Process, caller: Holder, inputs: dict[str, Any], stated: BoundaryModel
-) -> Differences:
-    """Return what sets normalized inputs apart from the caller's job before, or else from the defaults."""
-    former = context.submissions.newest(caller, process.id)
-    if former is None:
-        return differences_between({}, stated.model_dump(mode="json", exclude_defaults=True))
-    return differences_between(former[1], inputs, former[0])
 
 
 def _submit(
@@ -344,8 +317,7 @@ predicted_seconds = on_demand("service.worker.preparations:predicted_seconds")
     "",
     summary="Submit a batch",
     status_code=201,
-    responses=documented(QueueFull)
-    | {201: {"description": "The batch, a job like others", "headers": described_headers("Location")}},
+    responses=documented(QueueFull) | {201: answer("The batch, a job like others", "Location")},
 )
 @needs(Scope.SUBMIT, body=BatchRequest)
 def submit_batch(
@@ -381,7 +353,13 @@ def submit_batch(
 
 
 def _checked_inputs(context: Context, process: Process, request: BatchRequest) -> list[Json]:
-    """Return the normalized inputs of all jobs; raises `BadInput` with the faults of all, by their index."""
+    """Return the normalized inputs of all jobs.
+
+    Raises
+    ------
+    BadInput
+        With the faults of all, by their index; if they are too many with the first of each job.
+    """
     inputs, faults = [], []
     for index in range(len(request.jobs)):
         try:
@@ -389,8 +367,10 @@ def _checked_inputs(context: Context, process: Process, request: BatchRequest) -
             inputs.append(process.prepare(model, context.store))
         except BadInput as error:
             faults.append(_of_job(index, error))
+    if sum(map(len, faults)) > MOST_FAULTS:
+        faults = [of_job[:1] for of_job in faults]
     if faults:
-        raise BadInput(_few(faults))
+        raise BadInput(fault for of_job in faults for fault in of_job)
     return inputs
 
 
@@ -401,13 +381,6 @@ def _of_job(index: int, error: BadInput) -> list[Fault]:
         name = fault.field.removeprefix("case.").removeprefix("scene.")
         faults.append(Fault(f"jobs[{index}].{name}", fault.value, fault.bound, fault.suggestion))
     return faults
-
-
-def _few(faults: Sequence[Sequence[Fault]]) -> list[Fault]:
-    """Return all faults, or of each job the first if there are too many."""
-    if sum(map(len, faults)) > MOST_FAULTS:
-        return [of_job[0] for of_job in faults]
-    return [fault for of_job in faults for fault in of_job]
 
 
 def _cases(context: Context, process: Process, inputs: Sequence[Json]) -> list[BatchCase]:

@@ -40,7 +40,7 @@ from lineofaction.gearbox.schemas.live import LiveInput, LiveOutput, PlanRequest
 from lineofaction.gearbox.schemas.model import HASH
 from lineofaction.gearbox.schemas.plan import PlanBody
 from lineofaction.gearbox.schemas.query import LIMITS, QueryInput, QueryOutput, validity_words
-from service.access import Scope
+from service.access.keyring import Scope
 from service.live.order import LiveOrder
 from service.project import address_of
 from service.routes.context import Context, Ctx, context_of
@@ -97,26 +97,16 @@ def _points_of_raw(body: bytes, columns: Sequence[str]) -> FloatArray:
     return points_of_columns(np.frombuffer(body, "<f8").reshape(len(columns), -1), columns)
 
 
-def _as_json(answer: ForceAnswer) -> bytes:
-    """Write an answer in JSON: the shortest decimals that give the same float64."""
-    return to_json(_plain(answer))
-
-
-def _as_cbor(answer: ForceAnswer) -> bytes:
-    return cbor2.dumps(_plain(answer))
-
-
-def _as_raw(answer: ForceAnswer) -> bytes:
-    """Write force, stiffness and validity (sum of flags) as columns of little-endian float64."""
-    return np.array(answer, dtype="<f8").tobytes()
-
-
 READ: dict[str, Callable[[bytes, Sequence[str]], FloatArray]] = {
     JSON: _points_of_json,
     CBOR: _points_of_cbor,
     RAW: _points_of_raw,
 }
-WRITE: dict[str, Callable[[ForceAnswer], bytes]] = {JSON: _as_json, CBOR: _as_cbor, RAW: _as_raw}
+WRITE: dict[str, Callable[[ForceAnswer], bytes]] = {
+    JSON: lambda answer: to_json(_plain(answer)),  # the shortest decimals that give the same float64
+    CBOR: lambda answer: cbor2.dumps(_plain(answer)),
+    RAW: lambda answer: np.array(answer, dtype="<f8").tobytes(),  # force, stiffness, validity: sum of flags
+}
 
 
 def _plain(answer: ForceAnswer) -> dict[str, Any]:
@@ -138,7 +128,6 @@ def _refuse(error: ValidationError, form: str) -> NoReturn:
 
 
 def _typed_array(tag: Any, _immutable: bool) -> list[float]:
-    """Read the one tag that a query may have."""
     if tag.tag != _FLOAT64_ARRAY or not isinstance(tag.value, bytes):
         raise ValueError("a tag that a query does not have")
     values: list[float] = np.frombuffer(tag.value, "<f8").tolist()
@@ -197,7 +186,6 @@ async def _answer(request: Request) -> Response:
     opened = context.databases.at_hand(context.store, key)
 
     def work() -> bytes:
-        """Read, evaluate, write."""
         table = opened or context.databases.get(context.store, key)
         return WRITE[accepted](force_answer(table.law, READ[sent](body, columns)))
 

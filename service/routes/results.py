@@ -13,12 +13,12 @@ from fastapi import APIRouter, Header, Path, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, JSONResponse, Response
 
-from lineofaction.gearbox.loading import LOADING
+from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import BadInput, DamagedFile, LiveUnavailable, NotFound, QueueFull
 from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.model import HASH
 from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX
-from service.access import Scope
+from service.access.keyring import Scope
 from service.live.order import LiveOrder
 from service.routes.context import Context, Ctx
 from service.routes.media_types import (
@@ -27,7 +27,7 @@ from service.routes.media_types import (
     WAV,
     Cursor,
     Limit,
-    described_headers,
+    answer,
     mark_of,
     negotiated,
     page_links,
@@ -35,8 +35,8 @@ from service.routes.media_types import (
 from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.answers import DatabaseEntry, DatabaseList, ReportBody, ResultFigures
-from service.store import IndexLine, Mark, ResultStore, StoredResult
 from service.store.files import WrongContent
+from service.store.results import IndexLine, Mark, ResultStore, StoredResult
 from service.version import program_tag
 
 # Answers that a worker makes from stored results, kept in memory while they are asked for.
@@ -54,15 +54,7 @@ async def _kept_answer(
     media_type: str,
     body_of: Callable[[bytes], bytes] = lambda answer: answer,
 ) -> Response:
-    """Return the answer to an order by its tag; 304 to a caller that has it.
-
-    Parameters
-    ----------
-    tag : str
-        Names the content, in quotes.
-    body_of : callable
-        From the worker's answer to the body.
-    """
+    """Return the answer to an order by its tag, in quotes; 304 to a caller that has it."""
     headers = {"ETag": tag, "Cache-Control": "no-cache"}
     if tag in request.headers.get("if-none-match", ""):
         return Response(status_code=304, headers=headers)
@@ -81,15 +73,17 @@ Key = Annotated[str, Path(pattern=HASH, description="Content hash of the input")
 Accept = Annotated[str, Header(description=f"{NETCDF} for the file, application/json for its figures")]
 FILE = {"type": "string", "format": "binary"}
 OF_RESULT = (*OF_VERSIONS, "Result-Kind")
-_ANSWERS: dict[int | str, dict[str, Any]] = {
-    200: {
-        "model": ResultFigures,
-        "description": "The figures of the result, or its file",
-        "content": {JSON: {}, NETCDF: {"schema": FILE}},
-        "headers": described_headers(*OF_RESULT, "Content-Digest"),
-    },
-    304: {"description": "Not modified", "headers": described_headers(*OF_RESULT)},
-}
+_FIGURES_OR_FILE = answer(
+    "The figures of the result, or its file",
+    *(*OF_RESULT, "Content-Digest"),
+    model=ResultFigures,
+    content={JSON: {}, NETCDF: {"schema": FILE}},
+)
+_NETCDF_FILE = answer("The netCDF file", *OF_RESULT, "Content-Digest", content={NETCDF: {"schema": FILE}})
+_UNMODIFIED, _UNMODIFIED_ANSWER = answer("Not modified", *OF_RESULT), answer("Not modified", *_VERSION)
+case_of_file = on_demand("lineofaction.gearbox.convert.result_files:case_of_file")
+figures_of = on_demand("lineofaction.gearbox.convert.result_files:figures_of")
+metadata_json = on_demand("lineofaction.gearbox.convert.answers:metadata_json")
 
 router = APIRouter(tags=["results"], route_class=ScopedRoute)
 
@@ -110,9 +104,6 @@ def list_databases(request: Request, context: Ctx, limit: Limit = 20, cursor: Cu
 
 def _entry(store: ResultStore, mark: Mark, line: IndexLine) -> DatabaseEntry:
     """Return what the list tells of a database, which is not thereby used; of a damaged file its name."""
-    with LOADING:
-        from lineofaction.gearbox.convert.result_files import case_of_file  # noqa: PLC0415 (start-up time)
-
     try:
         case = case_of_file(store.files.local(line.file, line.sha256))
     except (FileNotFoundError, WrongContent):
@@ -126,7 +117,7 @@ def _entry(store: ResultStore, mark: Mark, line: IndexLine) -> DatabaseEntry:
     "/results/{key}",
     summary="A result",
     response_class=Response,
-    responses=_ANSWERS | documented(NotFound, DamagedFile),
+    responses={200: _FIGURES_OR_FILE, 304: _UNMODIFIED, **documented(NotFound, DamagedFile)},
 )
 @needs(Scope.READ)
 def get_result(key: Key, request: Request, context: Ctx, accept: Accept = JSON) -> Response:
@@ -134,22 +125,16 @@ def get_result(key: Key, request: Request, context: Ctx, accept: Accept = JSON) 
     stored = known_result(context, key)
     if negotiated(accept, (JSON, NETCDF)) == NETCDF:
         return file_response(stored, request)
-    return _metadata(stored, request, _figures(context, stored))
+    if stored.kind == "database":
+        return _metadata(stored, request, metadata_json(context.databases.get(context.store, key).database))
+    return _metadata(stored, request, figures_of(stored.kind, stored.path))
 
 
 @router.get(
     "/results/{key}/file",
     summary="The file of a result",
     response_class=Response,
-    responses={
-        200: {
-            "description": "The netCDF file",
-            "content": {NETCDF: {"schema": FILE}},
-            "headers": described_headers(*OF_RESULT, "Content-Digest"),
-        },
-        304: _ANSWERS[304],
-        **documented(NotFound, DamagedFile),
-    },
+    responses={200: _NETCDF_FILE, 304: _UNMODIFIED, **documented(NotFound, DamagedFile)},
 )
 @needs(Scope.READ)
 def result_file(key: Key, request: Request, context: Ctx) -> Response:
@@ -174,19 +159,6 @@ def known_result(context: Context, key: str, kind: str | None = None) -> StoredR
     return stored
 
 
-def _figures(context: Context, stored: StoredResult) -> dict[str, Any]:
-    """Return the figures of a stored file; the libraries that read it are loaded when they are needed."""
-    if stored.kind == "database":
-        with LOADING:
-            from lineofaction.gearbox.convert.answers import metadata_json  # noqa: PLC0415 (start-up time)
-
-        return metadata_json(context.databases.get(context.store, stored.key).database)
-    with LOADING:
-        from lineofaction.gearbox.convert.result_files import figures_of  # noqa: PLC0415 (start-up time)
-
-    return figures_of(stored.kind, stored.path)
-
-
 def file_response(
     stored: StoredResult, request: Request, further: Mapping[str, str] | None = None
 ) -> Response:
@@ -206,11 +178,10 @@ def _metadata(stored: StoredResult, request: Request, facts: dict[str, Any]) -> 
     headers = _headers(stored, _FIGURES)
     if _known(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
-    answer = JSONResponse(
-        {"hash": stored.key, "sha256": stored.sha256, "size": stored.size, **facts}, headers=headers
-    )
-    answer.headers.update(_digest(hashlib.sha256(answer.body).digest()))
-    return answer
+    own = {"hash": stored.key, "sha256": stored.sha256, "size": stored.size}
+    response = JSONResponse(own | facts, headers=headers)
+    response.headers.update(_digest(hashlib.sha256(response.body).digest()))
+    return response
 
 
 def _digest(sha256: bytes) -> dict[str, str]:
@@ -240,12 +211,8 @@ COMPARISON = "lineofaction.report.comparison.compare:stored_comparison"
     summary="Figures of a result",
     response_class=Response,
     responses={
-        200: {
-            "model": ReportBody,
-            "description": "The report",
-            "headers": described_headers(*_VERSION),
-        },
-        304: {"description": "Not modified", "headers": described_headers(*_VERSION)},
+        200: answer("The report", *_VERSION, model=ReportBody),
+        304: _UNMODIFIED_ANSWER,
         **documented(NotFound, QueueFull, LiveUnavailable, DamagedFile),
     },
 )
@@ -291,12 +258,12 @@ def _named(description: str) -> object:
     summary="The sound of a run or a recording",
     response_class=Response,
     responses={
-        200: {
-            "description": "The WAV file: 32-bit floats, 48 kHz; its comment states quantity and full scale",
-            "content": {WAV: {"schema": FILE}},
-            "headers": described_headers(*_VERSION),
-        },
-        304: {"description": "Not modified", "headers": described_headers(*_VERSION)},
+        200: answer(
+            "The WAV file: 32-bit floats, 48 kHz; its comment states quantity and full scale",
+            *_VERSION,
+            content={WAV: {"schema": FILE}},
+        ),
+        304: _UNMODIFIED_ANSWER,
         **documented(NotFound, BadInput, QueueFull, LiveUnavailable, DamagedFile),
     },
 )
@@ -323,8 +290,6 @@ async def result_sound(
     named = json.dumps([*(one.sha256 for one in stored), view, program_tag()])
     tag = f'"{hashlib.sha256(named.encode()).hexdigest()}-sound"'
     order = LiveOrder(SOUND, {"kind": kind, "files": [str(one.path) for one in stored], "view": view})
-    return await _kept_answer(request, context, tag, order, WAV, _wav)
-
-
-def _wav(answer: bytes) -> bytes:
-    return base64.b64decode(json.loads(answer)["wav"])
+    return await _kept_answer(
+        request, context, tag, order, WAV, lambda made: base64.b64decode(json.loads(made)["wav"])
+    )

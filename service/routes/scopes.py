@@ -12,7 +12,7 @@ from starlette import types
 from starlette.responses import Response
 
 from lineofaction.gearbox.problems import MissingScope
-from service.access import Scope
+from service.access.keyring import Scope
 from service.routes.context import key_of
 
 Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])
@@ -64,8 +64,10 @@ class ScopedRoute(APIRoute):
 
         async def admitted(request: Request) -> Response:
             require(request, scope)
-            if streams:
-                _hold_stream(request)
+            key = key_of(request)
+            if streams and key is not None:  # counted until the last byte is sent
+                request.state.streams.refuse_beyond(key.name, key.streams)
+                request.state.held.enter_context(request.state.streams.one(key.name))
             response: Response = await answer(request)
             return response
 
@@ -77,14 +79,6 @@ def require(request: Request, scope: Scope) -> None:
     key = key_of(request)
     if key is not None and scope not in key.scopes:
         raise MissingScope.of(key.name, scope, key.scopes)
-
-
-def _hold_stream(request: Request) -> None:
-    """Count a stream of the caller until its last byte is sent; raises `TooManyHeld`."""
-    key = key_of(request)
-    if key is not None:
-        request.state.streams.refuse_beyond(key.name, key.streams)
-        request.state.held.enter_context(request.state.streams.one(key.name))
 
 
 # Routes that take the request as it is: no dependencies, no validation by the framework.

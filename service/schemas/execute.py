@@ -127,15 +127,15 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
         ),
         "tags": (Tags, Field([], description="What the job is found by", examples=[["ev-3", "draft"]])),
         "subscriber": (Subscriber | None, Field(None, description="Who is told about the job")),
+        "max_cost_s": (
+            Cost | None,
+            Field(None, description="CPU seconds that the job may take; default: no limit", examples=[600.0]),
+        ),
+        "reuse": (
+            bool,
+            Field(False, description="Answer with the caller's equal job, if one is under way or done"),
+        ),
     }
-    fields["max_cost_s"] = (
-        Cost | None,
-        Field(None, description="CPU seconds that the job may take; default: no limit", examples=[600.0]),
-    )
-    fields["reuse"] = (
-        bool,
-        Field(False, description="Answer with the caller's equal job, if one is under way or done"),
-    )
     return create_model(f"Execute{title}", __base__=_ExecuteBody, **fields)
 
 

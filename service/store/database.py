@@ -24,7 +24,7 @@ _UNNUMBERED = "computation"
 
 
 @dataclass(frozen=True)
-class SchemaNumbers:
+class _SchemaNumbers:
     """What a database says of its schema.
 
     Attributes
@@ -54,15 +54,15 @@ class SchemaNumbers:
         return self.ours or (self.unknown and self.usable_since in REVISIONS)
 
 
-def _schema_numbers(connection: Connection) -> SchemaNumbers:
+def _schema_numbers(connection: Connection) -> _SchemaNumbers:
     """Read the numbers of a database; one of version 0.2.0 or older has the second alone."""
     tables = inspect(connection).get_table_names()
     oldest = _number(connection, _OLDEST) if _OLDEST in tables else None
     if NEWEST in tables:
-        return SchemaNumbers(_number(connection, NEWEST), oldest)
+        return _SchemaNumbers(_number(connection, NEWEST), oldest)
     if oldest is None and _UNNUMBERED in tables:
         oldest = REVISIONS[0]
-    return SchemaNumbers(oldest, oldest)
+    return _SchemaNumbers(oldest, oldest)
 
 
 def _write_number(connection: Connection, table: str, number: str) -> None:
@@ -84,7 +84,7 @@ class Schema:
         self._engine = engine
 
     @retried
-    def numbers(self) -> SchemaNumbers:
+    def numbers(self) -> _SchemaNumbers:
         """Return the numbers of the schema."""
         with self._engine.begin() as connection:
             return _schema_numbers(connection)
@@ -123,7 +123,9 @@ class Schema:
             numbers = _schema_numbers(connection)
             _refuse_newer(numbers, self._engine)
             if not numbers.usable:
-                _migrate(connection, numbers.newest)
+                migrate(connection, numbers.newest)
+                _write_number(connection, NEWEST, REVISIONS[-1])
+                _write_number(connection, _OLDEST, USABLE_SINCE)
 
 
 def _prepare_schema(engine: Engine) -> None:
@@ -152,17 +154,11 @@ def shown(engine: Engine) -> str:
     return engine.url.render_as_string(hide_password=True)
 
 
-def _refuse_newer(numbers: SchemaNumbers, engine: Engine) -> None:
+def _refuse_newer(numbers: _SchemaNumbers, engine: Engine) -> None:
     if numbers.unknown and not numbers.usable:
         bound = f"of schema {REVISIONS[-1]} or older: it has {numbers.newest}"
         tip = "A newer lineofaction made it. Use that one, or another database."
         raise BadInput.of("database_url", shown(engine), bound, tip)
-
-
-def _migrate(connection: Connection, revision: str | None) -> None:
-    migrate(connection, revision)
-    _write_number(connection, NEWEST, REVISIONS[-1])
-    _write_number(connection, _OLDEST, USABLE_SINCE)
 
 
 metadata = MetaData()
@@ -201,12 +197,8 @@ def open_database(where: Path | str, *, pooled: bool = True) -> Engine:
 
 def database_engine(where: Path | str, *, pooled: bool = True) -> Engine:
     """Return an engine on the database, whatever its schema; raises `BadInput` as `open_database`."""
-    url = _file_url(where) if isinstance(where, Path) else _url(where)
+    url = URL.create("sqlite", database=str(where)) if isinstance(where, Path) else _url(where)
     return dialect_of(url).engine(url, pooled=pooled)
-
-
-def _file_url(file: Path) -> URL:
-    return URL.create("sqlite", database=str(file))
 
 
 def _url(text: str) -> URL:

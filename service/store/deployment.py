@@ -259,7 +259,7 @@ logger = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True)
-class Writable:
+class _Writable:
     """Faults of writing by part, empty if there is none.
 
     `late`: the database did not answer in time, or others held it; nothing is known to be broken.
@@ -281,11 +281,11 @@ class WriteCheck:
     def __init__(self, deployment: Deployment) -> None:
         self._deployment = deployment
         self._lock = threading.Lock()
-        self._outcome: Future[Writable] | None = None
+        self._outcome: Future[_Writable] | None = None
         self._begun = 0.0
         self._succeeded = -math.inf
 
-    def outcome(self) -> Writable:
+    def outcome(self) -> _Writable:
         """Return what can be written, within `PATIENCE_S`."""
         with self._lock:
             old = time.monotonic() - self._begun > KEPT_S
@@ -297,15 +297,15 @@ class WriteCheck:
             written = outcome.result(timeout=PATIENCE_S)
         except NotDone:
             text = f"What is written to the database and the results is not there after {PATIENCE_S:g} s."
-            written = Writable(text, text, late=True)
+            written = _Writable(text, text, late=True)
         waits = written.late and time.monotonic() - self._succeeded < LATE_S
-        return Writable() if waits else written
+        return _Writable() if waits else written
 
-    def _try(self, outcome: Future[Writable]) -> None:
+    def _try(self, outcome: Future[_Writable]) -> None:
         begun = time.monotonic()
         results, _ = self._fault("results", self._deployment.write_place)
         database, late = self._fault("database", self._deployment.write_database)
-        written = Writable(database, results, late=late and not results)
+        written = _Writable(database, results, late=late and not results)
         if not written.fault:
             self._succeeded = begun
         outcome.set_result(written)

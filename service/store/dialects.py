@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import errno
 import functools
 import os
@@ -62,7 +61,7 @@ _POLL_S = 0.05
 _SLICE_S = 0.25
 
 
-class Commits(Protocol):
+class _Commits(Protocol):
     """A connection of its own that hears of commits; of the thread that made it alone."""
 
     def heard(self) -> bool:
@@ -93,7 +92,6 @@ class _SqliteCommits:
             cursor.close()
 
     def close(self) -> None:
-        """Close the connection."""
         self._connection.close()
 
 
@@ -112,7 +110,6 @@ class _PostgresCommits:
         return any(True for _ in self._connection.notifies(timeout=_SLICE_S, stop_after=1))
 
     def close(self) -> None:
-        """Close the connection."""
         self._connection.close()
 
 
@@ -136,7 +133,7 @@ _SILENT: Mapping[str, Any] = {
 _POOL: Mapping[str, Any] = {"pool_size": 5, "max_overflow": 15, "pool_timeout": 5.0, "pool_pre_ping": True}
 
 
-class Dialect(Protocol):
+class _Dialect(Protocol):
     """The functions of a database beyond SQL that all understand, for the store and the job table."""
 
     upgrades_itself: bool
@@ -153,7 +150,7 @@ class Dialect(Protocol):
     def clock(self, connection: Connection) -> float:
         """Return the seconds since 1970 on the one clock that all users of the database read."""
 
-    def commits(self, engine: Engine) -> Commits:
+    def commits(self, engine: Engine) -> _Commits:
         """Return a connection that hears of commits."""
 
     def lost(self, error: DBAPIError) -> bool:
@@ -175,9 +172,11 @@ class _SQLite:
     upgrades_itself = True
 
     def engine(self, url: URL, *, pooled: bool) -> Engine:
-        """Return an engine on the file."""
-        if url.database:
-            _make_private(Path(url.database))
+        if url.database:  # an empty file of its owner's alone; SQLite gives its log the same rights
+            file = Path(url.database)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            with suppress(OSError):  # SQLite tells why it cannot be opened
+                os.close(os.open(file, os.O_WRONLY | os.O_CREAT, 0o600))
         # no pool: a connection kept for a thread that has ended is closed by nobody, and opening one is cheap
         engine = create_engine(url, poolclass=NullPool)
         event.listen(engine, "connect", _prepare)
@@ -185,7 +184,6 @@ class _SQLite:
         return engine
 
     def insert(self, table: Table) -> sqlite.Insert:
-        """Return SQLite's insert."""
         return sqlite.insert(table)
 
     def take_turn(self, connection: Connection) -> None:
@@ -195,8 +193,7 @@ class _SQLite:
         """Return the machine's time: all users are on it."""
         return time.time()
 
-    def commits(self, engine: Engine) -> Commits:
-        """Return what reads the version of the file."""
+    def commits(self, engine: Engine) -> _Commits:
         return _SqliteCommits(engine)
 
     def lost(self, error: DBAPIError) -> bool:
@@ -216,20 +213,12 @@ class _SQLite:
         return _SQLITE_REMEDIES.get(code)
 
     def folder(self, url: URL) -> Path | None:
-        """Return the folder of the file."""
         return Path(url.database).parent if url.database else None
 
     def check(self, connection: Connection) -> str | None:
         """Read every page, some 0.1 to 1 s for 100 MB."""
         verdict = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar_one())
         return None if verdict == "ok" else verdict
-
-
-def _make_private(file: Path) -> None:
-    """Make an empty file of its owner's alone, unless there is one; SQLite gives its log the same rights."""
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with contextlib.suppress(OSError):  # SQLite tells why it cannot be opened
-        os.close(os.open(file, os.O_WRONLY | os.O_CREAT, 0o600))
 
 
 RESTORE = (
@@ -306,7 +295,6 @@ class _PostgreSQL:
         return engine
 
     def insert(self, table: Table) -> postgresql.Insert:
-        """Return PostgreSQL's insert."""
         return postgresql.insert(table)
 
     def take_turn(self, connection: Connection) -> None:
@@ -314,11 +302,9 @@ class _PostgreSQL:
         connection.execute(select(func.pg_advisory_xact_lock(_TURN)))
 
     def clock(self, connection: Connection) -> float:
-        """Return the server's time."""
         return float(connection.execute(text("SELECT extract(epoch FROM clock_timestamp())")).scalar_one())
 
-    def commits(self, engine: Engine) -> Commits:
-        """Return what the server notifies."""
+    def commits(self, engine: Engine) -> _Commits:
         return _PostgresCommits(engine)
 
     def lost(self, error: DBAPIError) -> bool:
@@ -333,7 +319,6 @@ class _PostgreSQL:
         return error.connection_invalidated or state.startswith(("08", "40", "53", "57P", "55P03"))
 
     def remedy(self, error: DBAPIError, url: URL) -> str | None:
-        """Tell by the SQLSTATE."""
         return _POSTGRESQL_REMEDIES.get(getattr(error.orig, "sqlstate", None) or "")
 
     def folder(self, url: URL) -> Path | None:
@@ -351,10 +336,10 @@ def _begin_on_server(connection: Connection) -> None:
         connection.exec_driver_sql(f"SET LOCAL lock_timeout = {patience_ms:d}")
 
 
-_DIALECTS: Mapping[str, Dialect] = {"sqlite": _SQLite(), "postgresql": _PostgreSQL()}
+_DIALECTS: Mapping[str, _Dialect] = {"sqlite": _SQLite(), "postgresql": _PostgreSQL()}
 
 
-def dialect_of(database: Engine | Connection | URL) -> Dialect:
+def dialect_of(database: Engine | Connection | URL) -> _Dialect:
     """Return what is particular to the database."""
     if isinstance(database, URL):
         return _DIALECTS[database.get_backend_name()]

@@ -248,7 +248,6 @@ def digest_of(file: Path) -> str:
 
 
 def _sync(path: Path) -> None:
-    """Force a file or a directory to disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -175,7 +175,9 @@ def collect_orphans(store: ResultStore, quarantine: Quarantine, *, dry_run: bool
     for file in _orphans(store):
         if not dry_run:
             quarantine.admit(file.name)
-        yield Leftover(_why_orphan(file.name), file.name, file.size, quarantined=True)
+        why = "damaged" if file.name.endswith(SET_ASIDE) else "not in the index"
+        why = "half written" if file.name.endswith(PARTIAL) else why
+        yield Leftover(why, file.name, file.size, quarantined=True)
 
 
 def _orphans(store: ResultStore) -> list[KeptFile]:
@@ -194,13 +196,6 @@ def _is_ours(name: str) -> bool:
     return name not in NOTES and not is_quarantined(name)
 
 
-def _why_orphan(name: str) -> str:
-    """Return why a file may be removed; quarantined files are kept as long as anything young."""
-    if name.endswith(PARTIAL):
-        return "half written"
-    return "damaged" if name.endswith(SET_ASIDE) else "not in the index"
-
-
 def purge_quarantine(quarantine: Quarantine, *, dry_run: bool) -> Iterator[Leftover]:
     """Remove for good what has been in quarantine for long enough."""
     for file in quarantine.purge(dry_run=dry_run):
@@ -216,7 +211,7 @@ def days_ago(days: float) -> str:
 
 
 @dataclass(frozen=True)
-class Reindexed:
+class _Reindexed:
     """The result of rebuilding the index: its files and lines.
 
     Attributes
@@ -237,7 +232,7 @@ class Reindexed:
     struck: tuple[str, ...]
 
 
-def reindex(store: ResultStore, deployment: Deployment) -> Reindexed:
+def reindex(store: ResultStore, deployment: Deployment) -> _Reindexed:
     """Make the place this deployment's, enter the files that no line names, strike lines whose file is gone.
 
     A result is dated by its file for lists, and for retention by this instant: the former may be that of a
@@ -249,7 +244,8 @@ def reindex(store: ResultStore, deployment: Deployment) -> Reindexed:
         The files are another deployment's, and the index has results of its own.
     """
     deployment.take_over()
-    struck = tuple(line.file for line in store.lines() if _gone(store, line))
+    lost = (line for line in store.lines() if not store.files.has(line.file))
+    struck = tuple(line.file for line in lost if store.strike(line))
     named = {line.file for line in store.lines()}
     entered, damaged, doubled = 0, [], []
     for file in list(store.files.files()):
@@ -260,15 +256,14 @@ def reindex(store: ResultStore, deployment: Deployment) -> Reindexed:
             sha256 = store.files.digest(file.name)
             if not (name.agrees(sha256) and _opens(store.files.local(file.name, sha256))):
                 damaged.append(file.name)
-            elif _enter(store, file, name, sha256):
+                continue
+            made = instant(datetime.fromtimestamp(file.modified, UTC))
+            line = IndexLine(name.key, name.kind, sha256, file.size, file.name, now(), project=name.project)
+            if store.enter(line, made=min(made, line.used)).file == file.name:
                 entered += 1
             else:
                 doubled.append(file.name)
-    return Reindexed(len(named), entered, tuple(damaged), tuple(doubled), struck)
-
-
-def _gone(store: ResultStore, line: IndexLine) -> bool:
-    return not store.files.has(line.file) and store.strike(line)
+    return _Reindexed(len(named), entered, tuple(damaged), tuple(doubled), struck)
 
 
 def _opens(path: Path) -> bool:
@@ -282,10 +277,3 @@ def _opens(path: Path) -> bool:
     except (OSError, ValueError):
         return False
     return True
-
-
-def _enter(store: ResultStore, file: KeptFile, name: ResultName, sha256: str) -> bool:
-    """Enter a file; whether it is the one of its result."""
-    made = instant(datetime.fromtimestamp(file.modified, UTC))
-    line = IndexLine(name.key, name.kind, sha256, file.size, file.name, now(), project=name.project)
-    return store.enter(line, made=min(made, line.used)).file == file.name

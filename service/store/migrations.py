@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import sqlalchemy as sa
@@ -80,12 +80,16 @@ def _computations(op: Operations) -> None:
     op.create_index("computation_by_state", "computation", ["state", "created"])
 
 
-def _leases(op: Operations) -> None:
-    """Add the owner of a computation and its lease; what runs now is nobody's, and its lease has ended."""
-    op.add_column("computation", _column("owner"))
-    op.add_column("computation", _column("lease"))
-    op.add_column("computation", _column("leased_until", "0", sa.Float))
-    op.create_index("computation_by_lease", "computation", ["lease"])
+def _added(table: str, *columns: tuple[Any, ...], **indexes: Sequence[str]) -> Callable[[Operations], None]:
+    """Return the step that adds columns, as of `_column`, and indexes."""
+
+    def step(op: Operations) -> None:
+        for column in columns:
+            op.add_column(table, _column(*column))
+        for name, of in indexes.items():
+            op.create_index(name, table, of)
+
+    return step
 
 
 _NAMES = """
@@ -102,17 +106,6 @@ def _uses_of_results(op: Operations) -> None:
     op.create_index("result_by_use", "result", ["used"])
     op.add_column("job", sa.Column("asked", sa.String))
     op.create_index("job_by_use", "job", ["asked"])
-
-
-def _callers(op: Operations) -> None:
-    """Add the key that a job was entered with; jobs of before are nobody's."""
-    op.add_column("job", _column("caller"))
-    op.create_index("job_by_caller", "job", ["caller"])
-
-
-def _delivery(op: Operations) -> None:
-    """Add the form in which a result is wanted; jobs of before had the one there was."""
-    op.add_column("job", _column("delivery", "document reference"))
 
 
 def _durations(op: Operations) -> None:
@@ -149,11 +142,6 @@ def _terms_of_jobs(op: Operations) -> None:
     op.create_index("computation_by_turn", "computation", ["state", "priority", "created"])
 
 
-def _traces(op: Operations) -> None:
-    """Add the trace of a computation; what was entered before belongs to none."""
-    op.add_column("computation", _column("traceparent"))
-
-
 _FUNCTION = """
 CREATE FUNCTION loa_job_changed() RETURNS trigger LANGUAGE plpgsql
 AS $$ BEGIN NOTIFY loa_jobs; RETURN NULL; END $$
@@ -173,11 +161,6 @@ def _changed_jobs(op: Operations) -> None:
             f"CREATE TRIGGER {table}_changed AFTER UPDATE OF {column} ON {table} "
             "FOR EACH STATEMENT EXECUTE FUNCTION loa_job_changed()"
         )
-
-
-def _programs(op: Operations) -> None:
-    """Add the program that entered a computation; programs that do not know the column leave it empty."""
-    op.add_column("computation", _column("program"))
 
 
 def _projects(op: Operations) -> None:
@@ -213,26 +196,28 @@ def _batches(op: Operations) -> None:
     op.create_index("webhook_by_lease", "webhook", ["lease"])
 
 
-def _stated_inputs(op: Operations) -> None:
-    """Add inputs as stated; jobs of before, or of a former program, have those of their computation alone."""
-    op.add_column("job", _column("stated", kind=sa.Text))
-
-
 STEPS: Mapping[str, Callable[[Operations], None]] = {
     "0001": _jobs_and_results,
-    "0002": _leases,
+    # what runs now is nobody's, and its lease has ended
+    "0002": _added(
+        *("computation", ("owner",), ("lease",), ("leased_until", "0", sa.Float)),
+        computation_by_lease=["lease"],
+    ),
     "0003": _uses_of_results,
-    "0004": _callers,
-    "0005": _delivery,
+    # the key that a job was entered with; jobs of before are nobody's
+    "0004": _added("job", ("caller",), job_by_caller=["caller"]),
+    # the form in which a result is wanted; jobs of before had the one there was
+    "0005": _added("job", ("delivery", "document reference")),
     "0006": _durations,
     "0007": _deployments,
     "0008": _terms_of_jobs,
-    "0009": _traces,
+    "0009": _added("computation", ("traceparent",)),  # what was entered before belongs to no trace
     "0010": _changed_jobs,
-    "0011": _programs,
+    "0011": _added("computation", ("program",)),  # programs that do not know the column leave it empty
     "0012": _projects,
     "0013": _batches,
-    "0014": _stated_inputs,
+    # jobs of before, or of a former program, have the inputs of their computation alone
+    "0014": _added("job", ("stated", "", sa.Text)),
 }
 REVISIONS = tuple(STEPS)
 """All schemas there have been, the newest last."""

@@ -294,12 +294,6 @@ class ResultStore:
             return connection.execute(delete(results).where(*mine)).rowcount > 0
 
     @retried
-    def is_empty(self) -> bool:
-        """Whether the index has no line."""
-        with reading(self._engine) as connection:
-            return connection.execute(select(results.c.key).limit(1)).first() is None
-
-    @retried
     def lines(self) -> list[IndexLine]:
         """Return the whole index."""
         with reading(self._engine) as connection:

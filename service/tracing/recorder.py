@@ -48,13 +48,7 @@ def _exporter(name: str) -> SpanExporter | None:
 
 
 class _Recorder:
-    """A tracer of OpenTelemetry.
-
-    Parameters
-    ----------
-    provider : TracerProvider
-        With its exporter.
-    """
+    """A tracer of OpenTelemetry."""
 
     def __init__(self, provider: TracerProvider) -> None:
         self._provider = provider
@@ -78,7 +72,6 @@ class _Recorder:
         return _traceparent(trace.get_current_span()) or sent
 
     def begin(self, name: str, parent: str, at_s: float, facts: Mapping[str, Fact]) -> Span:
-        """Begin a span."""
         context = _W3C.extract({"traceparent": parent})
         started = int(at_s * _NS)
         return _Recorded(self._tracer.start_span(name, context, attributes=dict(facts), start_time=started))
@@ -98,11 +91,9 @@ class _Recorded:
 
     @property
     def traceparent(self) -> str:
-        """By which parts of it name it as their parent."""
         return _traceparent(self._span)
 
     def end(self, at_s: float, facts: Mapping[str, Fact], *, fault: str = "") -> None:
-        """End it."""
         self._span.set_attributes(dict(facts))
         if fault:
             self._span.set_status(StatusCode.ERROR, fault)

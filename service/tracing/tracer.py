@@ -41,16 +41,11 @@ _DESTINATIONS = (
 
 
 class Span(Protocol):
-    """A part of the work, from its begin to its end.
-
-    Attributes
-    ----------
-    traceparent : str
-        By which parts of it name it as their parent.
-    """
+    """A part of the work, from its begin to its end."""
 
     @property
-    def traceparent(self) -> str: ...  # noqa: D102 (see the attribute)
+    def traceparent(self) -> str:
+        """By which parts of it name it as their parent."""
 
     def end(self, at_s: float, facts: Mapping[str, Fact], *, fault: str = "") -> None:
         """End it at an instant, s since 1970, with facts and, if it failed, the reason."""
@@ -106,9 +101,11 @@ class Silent:
 @cache
 def tracer() -> Tracer:
     """Return the tracer of this process, as the standard variables ``OTEL_...`` choose it."""
-    if not _requested():
+    off = os.environ.get("OTEL_SDK_DISABLED", "").strip().lower() == "true"
+    none = os.environ.get("OTEL_TRACES_EXPORTER", "").strip().lower() == "none"
+    if off or none or not any(os.environ.get(name) for name in _DESTINATIONS):
         return Silent()
-    if not _installed():
+    if find_spec("opentelemetry") is None or find_spec("opentelemetry.sdk") is None:  # the API comes anyway
         logger.warning(
             "no traces", reason="left out without the extra: pip install 'lineofaction[telemetry]'"
         )
@@ -116,15 +113,3 @@ def tracer() -> Tracer:
     from service.tracing.recorder import recorder  # noqa: PLC0415 (an extra)
 
     return recorder()
-
-
-def _installed() -> bool:
-    """Whether the extra is there; the API alone comes with the web framework."""
-    return find_spec("opentelemetry") is not None and find_spec("opentelemetry.sdk") is not None
-
-
-def _requested() -> bool:
-    """Whether the environment names where traces go, and does not switch them off."""
-    off = os.environ.get("OTEL_SDK_DISABLED", "").strip().lower() == "true"
-    none = os.environ.get("OTEL_TRACES_EXPORTER", "").strip().lower() == "none"
-    return not (off or none) and any(os.environ.get(name) for name in _DESTINATIONS)

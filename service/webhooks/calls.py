@@ -16,7 +16,8 @@ from service.origin import Origin
 from service.queue.job import ENDED, job_state
 from service.queue.tables import computations, jobs, webhooks
 from service.schemas.answers import WebhookState
-from service.store import dialect_of, now, reading, retried, writing
+from service.store.database import now, reading, writing
+from service.store.dialects import dialect_of, retried
 
 LEASE_S = 30.0
 MOST_ATTEMPTS = 8
@@ -128,19 +129,15 @@ def _due(connection: Connection) -> Select[Any]:
     earlier = (other.c.job == webhooks.c.job) & (other.c.event == "inProgress") & (other.c.state == "waiting")
     blocked = select(other.c.id).where(busy | (earlier & (webhooks.c.event != "inProgress"))).exists()
     status = job_state()
+    never = status.in_(ENDED) & ~_now(status)  # no state of their job will ask for these any more
     return (
         select(webhooks.c.id, webhooks.c.event, status.label("status"))
         .select_from(webhooks.join(jobs, jobs.c.id == webhooks.c.job).join(computations))
         .where(webhooks.c.state == "waiting", webhooks.c.leased_until <= instant)
-        .where(or_(and_(webhooks.c.due <= instant, _now(status)), _never(status)), ~blocked)
+        .where(or_(and_(webhooks.c.due <= instant, _now(status)), never), ~blocked)
         .order_by(webhooks.c.due, webhooks.c.id)
     )
 
 
 def _now(status: ColumnElement[Any]) -> ColumnElement[bool]:
     return or_(*(and_(webhooks.c.event == event, status.in_(EVENTS[event])) for event in EVENTS))
-
-
-def _never(status: ColumnElement[Any]) -> ColumnElement[bool]:
-    """Condition of calls that no state of their job will ask for any more."""
-    return status.in_(ENDED) & ~_now(status)

@@ -22,7 +22,6 @@ import time
 import traceback
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, TextIO
 
 from fe_contact.cache_reads import COMPLIANCE_READS
@@ -46,7 +45,11 @@ def work(descriptor: int) -> None:
     order = WorkOrder.from_line(line)
     threading.Thread(target=_watch_parent, args=(order.lease_until, renewals), daemon=True).start()
     lock(os.open(order.workspace, os.O_RDONLY), wait=True)  # open, and so locked, until we end
-    _draft_in(order.workspace / "drafts")
+    # temporary files are below the workspace, which the service removes however this process ends
+    drafts = order.workspace / "drafts"
+    shutil.rmtree(drafts, ignore_errors=True)  # of an attempt that was killed
+    drafts.mkdir()
+    os.environ["TMPDIR"] = tempfile.tempdir = str(drafts)
     lower_priority(_NICENESS)
     if order.memory_limit_mb is not None:
         hold_to(order.memory_limit_mb)
@@ -84,13 +87,6 @@ def _watch_parent(until: float | None, rest: bytes) -> None:
         rest += piece
 
 
-def _draft_in(folder: Path) -> None:
-    """Let all temporary files be below the workspace, which the service removes however this process ends."""
-    shutil.rmtree(folder, ignore_errors=True)  # of an attempt that was killed
-    folder.mkdir()
-    os.environ["TMPDIR"] = tempfile.tempdir = str(folder)
-
-
 class _Telling(logging.Handler):
     """Passes warnings on to the log of the service."""
 
@@ -99,7 +95,6 @@ class _Telling(logging.Handler):
         self._channel = channel
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Send one."""
         _send(self._channel, {"warning": record.getMessage()})
 
 

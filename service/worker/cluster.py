@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TypeVar
 
 from fe_contact.errors import InputError, WorkersLost
@@ -63,35 +64,21 @@ def cluster_of(order: WorkOrder) -> Iterator[Workers]:
         return
     cluster = _WhenNeeded(order.dask_scheduler)
     try:
-        yield OrHere(cluster, _told)
+        yield OrHere(cluster, partial(logger.warning, "cluster away, the job goes on here: %s"))
     finally:
         for connected in cluster.connected:
             connected.client.close()  # type: ignore[no-untyped-call]
 
 
-def _told(reason: WorkersLost) -> None:
-    logger.warning("cluster away, the job goes on here: %s", reason)
-
-
 @dataclass(frozen=True)
 class _WhenNeeded:
-    """A cluster that is connected to by the first run: small jobs have none, and connecting costs a second.
-
-    Attributes
-    ----------
-    scheduler : str
-        Its address.
-    cost : RunCost
-    connected : list of ByDask
-        The cluster, once it is.
-    """
+    """A cluster that the first run connects to: small jobs have none, and connecting costs a second."""
 
     scheduler: str
     cost: RunCost = field(default_factory=RunCost, compare=False)
     connected: list[ByDask] = field(default_factory=list, compare=False)
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Connect if that was not done, and run there."""
         if not self.connected:
             self.connected.append(_connected(self.scheduler, self.cost))
         return self.connected[0].run(function, shared, items)

@@ -34,7 +34,10 @@ def main() -> None:
     channel = socket.socket(fileno=int(sys.argv[1]))
     work: Work = importlib.import_module(sys.argv[2]).work
     for name in sys.argv[3:]:
-        _warm(name)
+        try:
+            getattr(importlib.import_module(name), "warm_up", lambda: None)()
+        except Exception:  # noqa: BLE001 (the log has it; the job that needs it says so)
+            traceback.print_exc()
     gc.collect()
     gc.freeze()  # what is here is shared by all children: collections shall not touch it
     channel.send(READY)
@@ -43,14 +46,6 @@ def main() -> None:
         if not message:
             return
         channel.send(json.dumps(_obeyed(json.loads(message), descriptors, channel, work)).encode())
-
-
-def _warm(name: str) -> None:
-    """Import a module and warm it up; what fails here is told by the job that needs it."""
-    try:
-        getattr(importlib.import_module(name), "warm_up", lambda: None)()
-    except Exception:  # noqa: BLE001 (the log has it)
-        traceback.print_exc()
 
 
 def _obeyed(request: dict[str, Any], descriptors: list[int], channel: socket.socket, work: Work) -> Any:

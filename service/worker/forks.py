@@ -69,11 +69,9 @@ class _StartedChild:
     pid: int
 
     def has_exited(self) -> bool:
-        """Whether it has ended."""
         return has_exited(self.pid)
 
     def reap(self) -> Ended:
-        """Wait for its end."""
         return reap(self.pid)
 
 
@@ -203,7 +201,6 @@ class _Server:
 
     @property
     def ready(self) -> bool:
-        """Whether it has warmed up."""
         if not self._ready and self.usable:
             heard, _, _ = select.select([self._channel], [], [], 0.0)
             self._ready = bool(heard) and self._channel.recv(MESSAGE_BYTES) == READY
@@ -219,7 +216,6 @@ class _Server:
         return self._ready and not self._gone
 
     def fork(self, ends: Ends) -> _ForkedChild:
-        """Fork a child."""
         descriptors = [ends.orders, ends.channel, ends.log]
         pid = self.ask({"workspace": str(ends.workspace)}, descriptors)
         if isinstance(pid, dict):
@@ -241,7 +237,6 @@ class _Server:
         return json.loads(answer)
 
     def close(self) -> None:
-        """End the process."""
         self._channel.close()
         self._process.kill()
         self._process.wait()
@@ -249,21 +244,13 @@ class _Server:
 
 @dataclass(frozen=True)
 class _ForkedChild:
-    """A child of the warm process.
-
-    Attributes
-    ----------
-    pid : int
-    handle : int
-        Descriptor that becomes readable when it ends.
-    """
+    """A child of the warm process; `handle` is a descriptor that becomes readable when it ends."""
 
     pid: int
     handle: int
     parent: _Server
 
     def has_exited(self) -> bool:
-        """Whether it has ended."""
         return bool(select.select([self.handle], [], [], 0.0)[0])
 
     def reap(self) -> Ended:

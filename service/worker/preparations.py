@@ -21,7 +21,7 @@ from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.schemas.execute import AnalyzeInputs, SimulateInputs
-from service.store import ResultStore
+from service.store.results import ResultStore
 
 CASES = CheckedCases()
 """The last cases of this process, a service or a worker: a submission, its predicted cost and its warnings

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import rfc8785
 
 from lineofaction.gearbox.loading import on_demand
-from lineofaction.gearbox.problems import NoSuchProcess, NotFound
+from lineofaction.gearbox.problems import NoSuchProcess
 from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.stages import Stage
@@ -19,7 +19,7 @@ from service.schemas.execute import AnalyzeInputs, SimulateInputs, study_inputs
 from service.version import solver_version
 
 if TYPE_CHECKING:
-    from service.store import ResultStore
+    from service.store.results import ResultStore
 
 
 # Names of results: the hash of what decides them.
@@ -91,35 +91,19 @@ class Process:
         return content_key(self.id, self.version, inputs)
 
 
-class Registry(Mapping[str, Process]):
-    """The processes of a service, by id."""
+class Registry(dict[str, Process]):
+    """The processes of a service, by id; raises `NoSuchProcess` of another name."""
 
     def __init__(self, *processes: Process) -> None:
-        self._processes = {process.id: process for process in processes}
+        super().__init__({process.id: process for process in processes})
 
-    def __getitem__(self, name: str) -> Process:
-        try:
-            return self._processes[name]
-        except KeyError:
-            raise self.unknown(name) from None
-
-    def unknown(self, name: str) -> NotFound:
-        """Return the error of a name that no process has."""
-        return NoSuchProcess(f"There is no process {name!r}. Known: {', '.join(self._processes)}.")
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._processes
+    def __missing__(self, name: str) -> NoReturn:
+        raise NoSuchProcess(f"There is no process {name!r}. Known: {', '.join(self)}.")
 
     @property
     def modules(self) -> frozenset[str]:
         """Names of the modules that hold the entries."""
-        return frozenset(process.entry.partition(":")[0] for process in self._processes.values())
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._processes)
-
-    def __len__(self) -> int:
-        return len(self._processes)
+        return frozenset(process.entry.partition(":")[0] for process in self.values())
 
 
 _HOUSING = Stage("housing", 0.3)

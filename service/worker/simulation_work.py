@@ -27,7 +27,8 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.stages import TableFraction, staged
 from lineofaction.gearbox.tabled_scene import checked_table
 from model_studies.progress import Report, by_cost
-from service.store import ResultStore, stored_results
+from service.store.places import stored_results
+from service.store.results import ResultStore
 from service.worker.cluster import table_workers
 from service.worker.order import Product, Progress, WorkOrder
 from service.worker.preparations import CASES
@@ -101,7 +102,7 @@ def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
 
 
 @dataclass(frozen=True)
-class OrderedScene:
+class _OrderedScene:
     """The scene of an order with its tables, those of them that had to be computed, and its warnings."""
 
     tabled: TabledScene
@@ -109,7 +110,7 @@ class OrderedScene:
     warnings: list[dict[str, Any]]
 
 
-def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
+def ordered_scene(order: WorkOrder, progress: Progress) -> _OrderedScene:
     """Reduce the housings of the scene of an order, gather or compute its tables."""
     housed = housed_scene(order, progress)
     inputs, housings = housed.inputs, housed.housings
@@ -122,7 +123,7 @@ def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
     scene = dynamic_scene(inputs, databases, housings)
     warnings = {name: database.metadata.warnings for name, database in databases.items()}
     tabled = TabledScene(inputs, databases, scene, housings)
-    return OrderedScene(tabled, tuple(products), scene_warnings(inputs, scene, warnings))
+    return _OrderedScene(tabled, tuple(products), scene_warnings(inputs, scene, warnings))
 
 
 def housed_scene(order: WorkOrder, progress: Progress) -> HousedScene:

@@ -13,7 +13,7 @@ from lineofaction.gearbox.registry import STUDIES, Study
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.result_kinds import SUFFIX
 from lineofaction.gearbox.studies.computation import Means
-from service.store import ResultStore
+from service.store.results import ResultStore
 from service.worker.cluster import cluster_of, table_workers
 from service.worker.order import Product, Progress, WorkOrder
 from service.worker.preparations import CASES, check_run, check_scene_inputs
@@ -50,8 +50,9 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
     varied = {name: value for name, value in order.inputs.items() if name not in ("case", "scene")}
     inputs = study.inputs.model_validate_json(json.dumps(varied))
     with (table_workers if study.run.resumed else cluster_of)(order) as workers:
-        folder, run = order.workspace / "runs", _run(order, inputs)
-        means = Means(order.data_directory, progress, workers, folder=folder, run=run)
+        key = getattr(inputs, "run", None)
+        run = None if key is None else RunResult.from_netcdf(store_of(order).verified(key, "run").path)
+        means = Means(order.data_directory, progress, workers, folder=order.workspace / "runs", run=run)
         found = study.run.compute(subject, inputs, means)
     file = order.workspace / f"{study.kind}{SUFFIX}"
     study.run.file.write(found, file)
@@ -60,11 +61,6 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
         own = [*left_out_warnings(subject.inputs.left_out), *(own or ())]
     runs = (Product(key, "run", run) for key, run in study.run.kept(found, means).items())
     return (*products, *runs, Product(order.key, study.kind, file, own))
-
-
-def _run(order: WorkOrder, inputs: Any) -> RunResult | None:
-    key = getattr(inputs, "run", None)
-    return None if key is None else RunResult.from_netcdf(store_of(order).verified(key, "run").path)
 
 
 def _subject(study: Study, order: WorkOrder, progress: Progress) -> tuple[Any, tuple[Product, ...], Any]:

@@ -73,10 +73,7 @@ class Worker:
         finally:
             os.close(theirs)
             os.close(answers)
-        self._give(order)
-
-    def _give(self, order: WorkOrder) -> None:
-        """Write the order; a child that died before reading it shows when its channel ends."""
+        # a child that died before reading the order shows when its channel ends
         with contextlib.suppress(BrokenPipeError), os.fdopen(self._orders, "wb", closefd=False) as stream:
             stream.write(order.line())
         never_wait_at(self._orders)
@@ -134,7 +131,11 @@ class Worker:
         if self._outcome is not None:
             return self._outcome
         assert self._ended is not None
-        return Outcome(failure=_cause(self._ended.code), died=True)
+        text = f"The worker ended early with exit code {self._ended.code}."
+        if name := ending_signal(self._ended.code):
+            hint = " (it may have run out of memory)" if name in _OF_LITTLE_MEMORY else ""
+            text = f"The worker was ended by {name}{hint}."
+        return Outcome(failure=text, died=True)
 
     def _has_exited(self, patience_s: float) -> bool:
         """Whether the child leaves within a moment; do not reap it yet.
@@ -163,7 +164,9 @@ class Worker:
         if self._ended is None:
             self.end_group()
             if patience_s is None or self._has_exited(patience_s):
-                self._reap()
+                self._ended = ended = self._process.reap()
+                peak_mb = ended.peak_memory / BYTES_PER_MB if self._peak_mb is None else self._peak_mb
+                self.usage = Usage(self.age, ended.cpu_seconds, peak_mb)
         with self._giving:
             if self._orders >= 0:
                 os.close(self._orders)
@@ -171,15 +174,3 @@ class Worker:
         if self.channel >= 0:
             os.close(self.channel)
             self.channel = -1
-
-    def _reap(self) -> None:
-        self._ended = ended = self._process.reap()
-        peak_mb = ended.peak_memory / BYTES_PER_MB if self._peak_mb is None else self._peak_mb
-        self.usage = Usage(self.age, ended.cpu_seconds, peak_mb)
-
-
-def _cause(code: int) -> str:
-    if name := ending_signal(code):
-        hint = " (it may have run out of memory)" if name in _OF_LITTLE_MEMORY else ""
-        return f"The worker was ended by {name}{hint}."
-    return f"The worker ended early with exit code {code}."

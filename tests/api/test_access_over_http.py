@@ -14,7 +14,7 @@ from service_fakes import REGISTRY
 
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.problems import RateExceeded, Unauthorised
-from service.access import KeyFile
+from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

@@ -11,7 +11,7 @@ from httpx2 import Response
 
 from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS
-from service.access import KeyFile
+from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

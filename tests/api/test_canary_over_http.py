@@ -15,7 +15,7 @@ from housing_solid import housed_scene
 from running_service import until
 from study_service import empty_service
 
-from service.store import stored_results
+from service.store.places import stored_results
 
 TABLE = "cd" * 32
 LEAST = 40

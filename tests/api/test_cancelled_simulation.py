@@ -17,7 +17,7 @@ from lineofaction.gearbox.schemas import read_model
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.app import create_app
 from service.settings import Settings
-from service.store import stored_results
+from service.store.places import stored_results
 
 KEY = "cd" * 32
 DURATION, RATE = 900.0, 20e3

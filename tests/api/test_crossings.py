@@ -18,7 +18,7 @@ from small_table import small_table
 from walked_routes import WalkedRoute, walked_routes
 
 from lineofaction.gearbox.problems import KeyExpired, MissingScope, NotFound, Unauthorised
-from service.access import KeyFile, Scope
+from service.access.keyring import KeyFile, Scope
 from service.app import create_app
 from service.routes.access import OPEN_FOLDER, OPEN_PATHS
 from service.routes.scopes import OPEN_TO_ALL, ScopedRoute

@@ -11,12 +11,12 @@ from fastapi.testclient import TestClient
 from sqlalchemy import delete
 
 from lineofaction.client import LineOfActionClient
-from service.access import KeyFile
+from service.access.keyring import KeyFile
 from service.app import create_app
 from service.queue.tables import jobs
 from service.schemas.examples import CASE
 from service.settings import Settings
-from service.store import writing
+from service.store.database import writing
 
 Json = dict[str, Any]
 

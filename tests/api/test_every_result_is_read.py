@@ -25,7 +25,7 @@ from lineofaction.gearbox.problems import ServiceError
 from lineofaction.report.drawing.figure import Figure
 from service.app import create_app
 from service.settings import Settings
-from service.store import StoredResult
+from service.store.results import StoredResult
 from service.worker.process import default_registry
 
 PROCESSES = tuple(default_registry())

@@ -17,7 +17,8 @@ from served_app import served
 from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import TooManyHeld, TooManyRequests
-from service.access import Held, KeyFile
+from service.access.capacity import Held
+from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

@@ -20,7 +20,7 @@ from typer.testing import CliRunner
 from lineofaction.cli.commands import app
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.problems import BadInput, NotFound
-from service.store import stored_results
+from service.store.places import stored_results
 
 TABLE, ABSENT = "cd" * 32, "ef" * 32
 COSTS = ("cpu_seconds", "models_cpu_seconds", "reduction_cost", "radiation_cost", "models_predicted")

@@ -23,7 +23,7 @@ from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.modes import Inputs
 from lineofaction.gearbox.studies.modes.run import RUN
 from lineofaction.gearbox.subjects import scene_inputs, scene_of
-from service.store import stored_results
+from service.store.places import stored_results
 
 KEY = "cd" * 32
 Served = tuple[LineOfActionClient, TestClient, Path]

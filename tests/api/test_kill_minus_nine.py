@@ -20,8 +20,8 @@ from killed_service import KilledService
 from postgres_server import migrated, running_server
 from running_service import until
 
-from service.store import stored_results
 from service.store.maintenance import verify_store
+from service.store.places import stored_results
 
 SEED = 20261120
 COMMON = {"LOA_WORKERS": "2", "LOA_ATTEMPTS": "10", "LOA_LEASE_S": "5"}

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from lineofaction.cli.commands import app as command
 from lineofaction.client import LineOfActionClient
-from service.access import KeyFile
+from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

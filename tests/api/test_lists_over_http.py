@@ -18,7 +18,7 @@ from sqlalchemy import delete, update
 from service.app import create_app
 from service.queue.tables import computations, jobs
 from service.settings import Settings
-from service.store import writing
+from service.store.database import writing
 
 EXECUTION = "/v1/processes/fake/execution"
 

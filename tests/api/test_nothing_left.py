@@ -19,7 +19,7 @@ from running_service import until
 from study_service import empty_service
 
 from host import kill, processes_in
-from service.store import stored_results
+from service.store.places import stored_results
 
 TABLE = "cd" * 32
 SLOW = "1," * 2_000_000

@@ -12,9 +12,9 @@ from local_issuer import AUDIENCE, LocalIssuer, local_issuer
 from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import BadInput, IssuerUnavailable, KeyExpired, MissingScope, Unauthorised
-from service.access import KeyFile, open_identities
 from service.access import identities as issuer_module
-from service.access.identities import FRESH_S, PAUSE_S, STALE_S
+from service.access.identities import FRESH_S, PAUSE_S, STALE_S, open_identities
+from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

@@ -13,7 +13,7 @@ from running_service import until
 from served_app import served
 
 from lineofaction.gearbox.registry import NETCDF
-from service.access import KeyFile
+from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

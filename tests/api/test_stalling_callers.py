@@ -15,8 +15,8 @@ from running_service import PATIENCE_S
 from served_app import served
 from service_fakes import REGISTRY
 
-from service.access import KeyFile
 from service.access.capacity import Capacity
+from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

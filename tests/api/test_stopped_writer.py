@@ -26,14 +26,13 @@ from structlog.testing import LogCapture
 from service.app import create_app
 from service.queue.tables import jobs
 from service.settings import Settings
-from service.store import BRIEF_MS, reading, writing
-from service.store.database import database_engine
+from service.store.database import BRIEF_MS, database_engine, reading, writing
 from service.store.results import results
 
 EXECUTION = "/v1/processes/fake/execution"
 HOLD = """
 import sys
-from service.store import writing
+from service.store.database import writing
 from service.store.database import database_engine
 with writing(database_engine(sys.argv[1]), in_turn=True):
     print("held", flush=True)

@@ -25,7 +25,7 @@ from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.convert.result_files import figures_of
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.stages import PacedFraction
-from service.store import stored_results
+from service.store.places import stored_results
 from service.store.results import IndexLine
 from service.worker import study_work
 from service.worker.order import WorkOrder

@@ -7,7 +7,7 @@ from pathlib import Path
 import page_visit
 from playwright.sync_api import Browser, expect
 
-from service.access import KeyFile
+from service.access.keyring import KeyFile
 
 
 def test_the_description_is_shown_and_tried_with_the_key(browser: Browser, tmp_path: Path) -> None:

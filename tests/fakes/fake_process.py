@@ -17,9 +17,9 @@ from importlib.util import find_spec
 import structlog
 from service_fakes import REGISTRY
 
-from service.queue.machinery import job_machinery
+from service.folders import DirectoryLock
+from service.queue.scheduler import job_machinery
 from service.settings import load_settings
-from service.store import DirectoryLock
 
 OLD = find_spec("service.cli") is not None
 """Of 0.2 and before: the service was all that there was."""

@@ -9,7 +9,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from lineofaction.gearbox.convert.result_files import stamp
-from service.store import StoredResult, stored_results
+from service.store.places import stored_results
+from service.store.results import StoredResult
 from service.worker.order import WorkOrder
 from service.worker.process import default_registry
 

@@ -19,7 +19,7 @@ _statements: list[str] = []
 @pytest.fixture(scope="module", autouse=True)
 def migrated_once() -> Iterator[None]:
     """Migrate what is no empty SQLite database."""
-    migrate = database._migrate
+    migrate = database.migrate
 
     def copied(connection: Connection, revision: str | None) -> None:
         if revision is not None or connection.dialect.name != "sqlite":
@@ -32,7 +32,7 @@ def migrated_once() -> Iterator[None]:
             _statements.extend(_content(connection))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(database, "_migrate", copied)
+        patch.setattr(database, "migrate", copied)
         yield
 
 

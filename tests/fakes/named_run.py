@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 from service.schemas.examples import INPUTS
-from service.store import ResultStore
+from service.store.results import ResultStore
 
 RUN: str = INPUTS["listen"]["run"]
 

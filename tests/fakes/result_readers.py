@@ -19,7 +19,7 @@ from lineofaction.client.report import Report
 from lineofaction.gearbox.registry import study_of
 from lineofaction.report.document import read_stored
 from lineofaction.report.presentation import presentation_of
-from service.store import StoredResult
+from service.store.results import StoredResult
 
 DEFECT = 500
 

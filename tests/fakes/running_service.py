@@ -10,12 +10,15 @@ from typing import Any
 
 from sqlalchemy import Engine
 
+from service.folders import identity_of
 from service.queue.claims import Claims
 from service.queue.job import Job
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
 from service.settings import Settings
-from service.store import ResultStore, identity_of, open_database, result_store
+from service.store.database import open_database
+from service.store.places import result_store
+from service.store.results import ResultStore
 from service.worker.process import Registry
 
 REFERENCES = {"response": "document", "transmissionMode": "reference"}

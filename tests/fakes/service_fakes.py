@@ -8,7 +8,7 @@ from pydantic import Field
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from service.store import ResultStore
+from service.store.results import ResultStore
 from service.worker.process import Process, Registry, Stage
 
 

@@ -25,7 +25,7 @@ from lineofaction.gearbox.schemas.figures import Figures
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.app import create_app
 from service.settings import Settings
-from service.store import stored_results
+from service.store.places import stored_results
 from service.worker.process import Process
 
 KEY = "ab" * 32

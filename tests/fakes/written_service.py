@@ -13,10 +13,10 @@ from named_run import put_named_run
 from served_app import served
 from service_surroundings import FAKES
 
-from service.access import KeyFile
+from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings
-from service.store import stored_results
+from service.store.places import stored_results
 from service.worker.process import Registry, default_registry
 
 

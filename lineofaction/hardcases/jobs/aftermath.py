@@ -21,12 +21,12 @@ from host import kill, processes_in
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.hardcases.scene import TIME_LIMIT, Measured
 from service.queue.job import Job
-from service.queue.machinery import job_machinery
-from service.queue.scheduler import Scheduler
+from service.queue.scheduler import Scheduler, job_machinery
 from service.queue.submissions import Submissions
 from service.schemas.execute import AnalyzeInputs
 from service.settings import Settings
-from service.store import DATABASE_FILE, ResultStore
+from service.store.places import DATABASE_FILE
+from service.store.results import ResultStore
 from service.worker.cluster import RemoteWork
 from service.worker.process import ANALYZE, default_registry
 

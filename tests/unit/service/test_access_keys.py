@@ -14,7 +14,9 @@ from typer.testing import CliRunner
 
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.problems import BadInput
-from service.access import AccessKey, KeyFile, Keyring, RateLimits, Scope, open_identities
+from service.access.capacity import RateLimits
+from service.access.identities import open_identities
+from service.access.keyring import AccessKey, KeyFile, Keyring, Scope
 from service.settings import Settings
 
 

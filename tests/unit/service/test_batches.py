@@ -17,7 +17,7 @@ from service.queue.entry import BatchCase, Entry
 from service.queue.job import Job, JobFilter
 from service.queue.retention import Retention
 from service.queue.tables import computations, durations, jobs
-from service.store import now, reading, writing
+from service.store.database import now, reading, writing
 
 LONG_AGO = "2026-01-01T00:00:00.000000Z"
 

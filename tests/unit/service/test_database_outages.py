@@ -21,8 +21,7 @@ from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable
 from service.app import create_app
 from service.queue.entry import BatchCase, Entry
 from service.settings import Settings, load_settings
-from service.store import now, open_database
-from service.store.database import Schema, database_engine
+from service.store.database import Schema, database_engine, now, open_database
 
 KEEPALIVE = (socket.TCP_KEEPIDLE, socket.TCP_KEEPINTVL, socket.TCP_KEEPCNT)
 

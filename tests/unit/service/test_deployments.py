@@ -24,11 +24,11 @@ from lineofaction.gearbox.problems import BadInput
 from service.app import create_app
 from service.queue.retention import Retention
 from service.settings import Settings
-from service.store import ResultStore, open_database, writing
+from service.store.database import open_database, writing
 from service.store.deployment import NOTE, Deployment, deployments
 from service.store.files import DirectoryFiles
 from service.store.maintenance import reindex, verify_store
-from service.store.results import results
+from service.store.results import ResultStore, results
 
 LONG_AGO = "2016-01-01T00:00:00.000000Z"
 KEYS = [hashlib.sha256(bytes([n])).hexdigest() for n in range(3)]
@@ -194,7 +194,7 @@ def test_an_empty_place_beside_an_index_with_results_is_refused(
     for name in {*held(first), NOTE}:
         first.store.files.delete(name)
     found = reindex(first.store, Deployment(first.engine, first.store))
-    assert len(found.struck) == 3 and first.store.is_empty()
+    assert len(found.struck) == 3 and first.store.lines() == []
     opened(tmp_path, url, place).close()
 
 

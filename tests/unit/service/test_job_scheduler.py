@@ -15,8 +15,7 @@ from service_fakes import REGISTRY
 
 from host.directories import cache_home, data_home
 from service.settings import LEAST_MEMORY_MB, Settings
-from service.store import ResultStore
-from service.store.results import StoredResult
+from service.store.results import ResultStore, StoredResult
 from service.worker.forks import Forks, start_child
 from service.worker.usage import machine_memory_mb
 

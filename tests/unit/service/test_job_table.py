@@ -14,10 +14,11 @@ from running_service import Bench, bench
 from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import NoSuchJob, QueueFull
-from service.access import Holder
+from service.access.keyring import Holder
 from service.queue.job import Job
 from service.queue.terms import ANYBODY, Terms
-from service.store import Mark, instant, now
+from service.store.database import instant, now
+from service.store.results import Mark
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ import pytest
 from lineofaction.gearbox.problems import BadInput
 from service.page.files import examples
 from service.schemas.execute import AnalyzeInputs
-from service.store import stored_results
+from service.store.places import stored_results
 from service.worker import preparations
 from service.worker.preparations import name_database, prepare_analyze
 

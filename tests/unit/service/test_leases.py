@@ -24,7 +24,7 @@ from service.app import create_app
 from service.queue.job import Job
 from service.queue.tables import computations
 from service.settings import Settings
-from service.store import reading, writing
+from service.store.database import reading, writing
 
 Schedulers = Callable[..., Bench]
 

@@ -22,7 +22,7 @@ from running_service import PATIENCE_S, bench, until
 from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import BadInput
-from service.access import KeyFile
+from service.access.keyring import KeyFile
 from service.management import server
 from service.management.server import EventLoop, ManagementServer, Vitals
 from service.store.deployment import Deployment, WriteCheck

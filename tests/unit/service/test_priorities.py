@@ -10,7 +10,7 @@ from running_service import Bench, bench
 from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import BadInput
-from service.access import Holder, KeyFile
+from service.access.keyring import Holder, KeyFile
 from service.queue.job import Job
 from service.queue.terms import ANYBODY, Terms, check_priority
 

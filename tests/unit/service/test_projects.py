@@ -15,13 +15,14 @@ from small_table import small_table
 from sqlalchemy import text
 
 from lineofaction.gearbox.problems import NoSuchJob, NotFound
-from service.access import Holder
+from service.access.keyring import Holder
 from service.project import COMMON, PROJECT, address_of, at_address
 from service.queue.job import Job
-from service.store import Mark, ResultStore, writing
+from service.store.database import writing
 from service.store.deployment import Deployment
 from service.store.files import ResultName, new_name
 from service.store.maintenance import reindex, verify_store
+from service.store.results import Mark, ResultStore
 from service.worker.order import WorkOrder
 from service.worker.simulation_work import _table
 

@@ -13,11 +13,13 @@ from s3_server import Objects
 from sqlalchemy import event
 
 from lineofaction.gearbox.problems import BadInput, DamagedFile, NotFound, StoreUnavailable
+from service.folders import DirectoryLock
 from service.settings import Settings, load_settings
-from service.store import DirectoryLock, ResultStore, open_database, reading, stored_results, writing
+from service.store.database import open_database, reading, writing
 from service.store.deployment import NOTE
 from service.store.files import DirectoryFiles
-from service.store.places import ObjectFiles, object_files, result_files, result_store
+from service.store.places import ObjectFiles, object_files, result_files, result_store, stored_results
+from service.store.results import ResultStore
 from service.worker.order import WorkOrder
 
 KEY = hashlib.sha256(b"input").hexdigest()

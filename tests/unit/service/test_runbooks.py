@@ -18,7 +18,7 @@ from typer.main import get_command
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.problems import ServiceError
 from service.queue.tables import computations, jobs
-from service.store import writing
+from service.store.database import writing
 from service.store.maintenance import verify_store
 from service.store.results import results
 

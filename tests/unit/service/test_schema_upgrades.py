@@ -18,8 +18,8 @@ from service_fakes import REGISTRY
 from sqlalchemy import Engine, inspect, text
 
 from lineofaction.gearbox.problems import BadInput
-from service.store import migrations, open_database, writing
-from service.store.database import Schema, database_engine, metadata
+from service.store import migrations
+from service.store.database import Schema, database_engine, metadata, open_database, writing
 from service.store.migrations import REVISIONS, STEPS, USABLE_SINCE
 
 OLD = """

@@ -20,7 +20,7 @@ from lineofaction.gearbox.problems import NoSuchJob, NotFound
 from service.queue.job import Job
 from service.queue.retention import Retention
 from service.queue.tables import computations, jobs
-from service.store import writing
+from service.store.database import writing
 from service.store.deployment import NOTE
 from service.store.maintenance import is_quarantined, verify_store
 from service.store.results import results

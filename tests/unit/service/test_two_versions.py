@@ -18,7 +18,7 @@ from service.queue.entry import BatchCase
 from service.queue.job import Job
 from service.queue.tables import computations
 from service.schemas.examples import INPUTS, SCENE
-from service.store import now, writing
+from service.store.database import now, writing
 from service.version import solver_version
 from service.webhooks.calls import Calls
 from service.worker.process import default_registry

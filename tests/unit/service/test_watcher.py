@@ -18,8 +18,7 @@ from service.queue.claims import Claim
 from service.queue.job import Job
 from service.queue.tables import jobs
 from service.queue.watcher import Watcher
-from service.store import writing
-from service.store.database import database_engine
+from service.store.database import database_engine, writing
 
 
 @pytest.fixture

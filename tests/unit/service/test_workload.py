@@ -17,8 +17,7 @@ from service.queue.claims import Claim
 from service.queue.retention import Retention
 from service.queue.tables import computations, jobs
 from service.queue.workload import BOUNDS_S, Durations, WorkloadReader, bound_of
-from service.store import writing
-from service.store.database import instant
+from service.store.database import instant, writing
 
 
 @pytest.fixture
