@@ -7,9 +7,12 @@ from __future__ import annotations
 
 import re
 import sys
+from collections import Counter
+from collections.abc import Mapping
 from dataclasses import MISSING
 from pathlib import Path
 from textwrap import fill
+from types import MappingProxyType
 
 from bounds import Choice
 from fe_contact.geometry import Gear, GearPair, RingGear
@@ -22,23 +25,73 @@ LISTS = {kind: figures(kind) for kind in DECLARED} | {GearPair: OF_PAIR, Gear: o
 BY_NAME = {f"{kind.__module__.partition('.')[0]}.{kind.__name__}": own for kind, own in LISTS.items()}
 LIST = re.compile(r"(<!-- fields of ([\w.]+) -->\n\n)(.*?)(\n\n<!-- end of fields -->)", re.DOTALL)
 LINE = 120
+TABLE = re.compile(r"^(?:#+ )?`(\[\[?[\w.]+\]\]?|\w+(?= = [\[{]))", re.MULTILINE)
+USUAL, UNLESS, AS_OF = 5, "Unless stated:", "As of"
 
 
 def page(text: str) -> str:
-    """Return the page with its lists anew."""
-    return LIST.sub(lambda found: f"{found[1]}{definitions(BY_NAME[found[2]], found[3])}{found[4]}", text)
+    """Return the page with its lists anew; what an earlier list says of a field is not said again."""
+    said: dict[str, str] = {}
+
+    def anew(found: re.Match[str]) -> str:
+        table = TABLE.findall(text, 0, found.start())[-1]
+        return f"{found[1]}{definitions(BY_NAME[found[2]], found[3], said, table)}{found[4]}"
+
+    return LIST.sub(anew, text)
 
 
-def definitions(declared: tuple[Figure, ...], before: str = "") -> str:
-    """Return the list of declared fields, after the entries of others that it had before."""
-    own = {f"`{figure.field}`" for figure in declared}
-    others = [entry for entry in before.split("\n\n") if entry and entry.partition("\n")[0] not in own]
-    return "\n\n".join((*others, *map(definition, declared)))
+def definitions(
+    declared: tuple[Figure, ...], before: str = "", said: dict[str, str] | None = None, table: str = ""
+) -> str:
+    """Return the list of declared fields, after the entries of others that it had before.
+
+    Bounds and defaults of many fields of one unit are said once. An entry that was `said` of another table is
+    not repeated; those of this one are added to them.
+    """
+    own = {figure.field for figure in declared}
+    others = [entry for entry in before.split("\n\n") if entry and not _own(entry, own)]
+    usual = _usual(declared)
+    known: dict[str, list[str]] = {}
+    shown = []
+    for figure in declared:
+        entry = definition(figure, usual)
+        first = table if said is None else said.setdefault(entry, table)
+        if first == table:
+            shown.append(entry)
+        else:
+            known.setdefault(first, []).append(f"`{figure.field}`")
+    as_before = [_filled(f"{AS_OF} `{first}`: {', '.join(fields)}.") for first, fields in known.items()]
+    return "\n\n".join((*others, *_heading(usual), *shown, *as_before))
 
 
-def definition(figure: Figure) -> str:
-    """Return the entry of a field: its name; what it means, accepts and is if left out."""
-    text = f"{figure.what.description}. {accepted(figure)}; {default(figure)}."
+def _own(entry: str, fields: set[str]) -> bool:
+    return entry.startswith((UNLESS, AS_OF)) or entry.partition("\n")[0].strip("`") in fields
+
+
+def _usual(declared: tuple[Figure, ...]) -> dict[str, str]:
+    """Return by the end of a name what at least USUAL fields with it accept and are by default."""
+    counts = Counter((_end(figure), f"{accepted(figure)}; {default(figure)}") for figure in declared)
+    return {end: text for (end, text), count in counts.items() if count >= USUAL}
+
+
+def _end(figure: Figure) -> str:
+    named = re.search(r"(_length)?_[a-z]+$", figure.field)
+    return named[0] if named else figure.field
+
+
+def _heading(usual: dict[str, str]) -> list[str]:
+    text = ". ".join(f"`..{end}`: {text}" for end, text in usual.items())
+    return [_filled(f"{UNLESS} {text}.")] if usual else []
+
+
+def _filled(text: str) -> str:
+    return fill(text, LINE, break_on_hyphens=False)
+
+
+def definition(figure: Figure, usual: Mapping[str, str] = MappingProxyType({})) -> str:
+    """Return the entry of a field: its name, meaning, bounds and default; not those that are `usual`."""
+    bounds = f"{accepted(figure)}; {default(figure)}"
+    text = f"{figure.what.description}." + ("" if usual.get(_end(figure)) == bounds else f" {bounds}.")
     lines = fill(text, LINE, initial_indent=": ", subsequent_indent="  ", break_on_hyphens=False)
     return f"`{figure.field}`\n{lines}"
 

@@ -36,11 +36,14 @@ def test_every_declared_dataclass_has_a_list(script: ModuleType) -> None:
 
 def test_an_entry_says_the_unit_the_bounds_and_the_default(script: ModuleType) -> None:
     entries = script.definitions(figures(FlankModification)).split("\n\n")
-    assert "`tip_relief_um`\n: Tip relief at the tip diameter. 0 to 1000; default 0." in entries
-    shape = next(
-        entry for entry in entries if entry.startswith("`tip_relief_shape`\n: Tip relief over its length.")
+    usual = entries[0].replace("\n", " ")
+    assert (
+        "`.._um`: 0 to 1000; default 0." in usual
+        and "`tip_relief_um`\n: Tip relief at the tip diameter." in entries
     )
-    assert '`"linear"`, `"parabolic"`, ' in shape and shape.split()[-2:] == ["default", '`"linear"`.']
+    assert '`.._shape`: `"linear"`, `"parabolic"`, ' in usual and usual.endswith('; default `"linear"`.')
+    assert "`tip_relief_shape`\n: Tip relief over its length." in entries
+    assert any(entry.endswith(" -1000 to 1000; default 0.") for entry in entries)
     assert any(entry.endswith(" 5 to 85; default 30.") for entry in entries)
 
 
@@ -49,6 +52,16 @@ def test_a_list_keeps_the_entries_of_others_and_renews_its_own(script: ModuleTyp
     before = "`seat`\n: How the bore sits.\n\n`tip_relief_um`\n: As it was."
     renewed = script.definitions(declared, before)
     assert renewed == f"`seat`\n: How the bore sits.\n\n{script.definitions(declared)}"
+
+
+def test_what_another_table_says_of_a_field_is_not_repeated(script: ModuleType) -> None:
+    declared, said = figures(FlankModification), dict[str, str]()
+    first = script.definitions(declared, "", said, "[first]")
+    again = script.definitions(declared, "", said, "[second]")
+    assert first == script.definitions(declared)
+    entries = again.replace("\n", " ")
+    assert "As of `[first]`: " in entries and all(f"`{figure.field}`" in entries for figure in declared)
+    assert script.definitions(declared, again, said, "[second]") == again
 
 
 def test_no_list_holds_what_another_declares(script: ModuleType) -> None:
