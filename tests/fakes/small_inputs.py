@@ -48,9 +48,8 @@ _FEW: dict[str, Json] = {
 def small_inputs(process: str) -> Json:
     """Return the inputs of a process; those of `listen` lack the hash of its run."""
     inputs = copy.deepcopy(INPUTS[process])
-    if "scene" in inputs:
-        return {"scene": _small_scene(inputs["scene"])} | _FEW.get(process, {})
-    return {"case": _CASE} | _FEW.get(process, {})
+    subject = {"scene": _small_scene(inputs["scene"])} if "scene" in inputs else {"case": _CASE}
+    return copy.deepcopy(subject | _FEW.get(process, {}))
 
 
 def _small_scene(scene: Json) -> Json:

@@ -8,8 +8,8 @@ import numpy as np
 from sounding_scene import sound
 
 from dynamics.noise import RadiatedSound
-from lineofaction.report.drawing.figure import HeatMap, Panel, Table
-from lineofaction.report.housing.noise import DEPTH, _sound_map
+from lineofaction.report.drawing.figure import HeatMap
+from lineofaction.report.housing.noise import DEPTH, _cells, row_axis
 
 
 def quiet_above() -> RadiatedSound:
@@ -20,9 +20,9 @@ def quiet_above() -> RadiatedSound:
 
 
 def shade() -> HeatMap:
-    (panel,) = _sound_map(quiet_above(), Table("", (), ()), ()).content
-    assert isinstance(panel, Panel) and panel.shade is not None
-    return panel.shade
+    sound = quiet_above()
+    _, along = row_axis(sound.speed, sound.facts)
+    return _cells(sound.orders, along)
 
 
 def test_it_holds_the_power_of_every_speed() -> None:

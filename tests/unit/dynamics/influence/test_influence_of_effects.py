@@ -84,7 +84,8 @@ def test_a_housing_is_estimated_as_ablation_shows_it(rpm: float) -> None:
     size = np.max(entry.with_effect.orders)
     np.testing.assert_allclose(entry.estimate.orders, entry.order_change, rtol=0.05, atol=2e-3 * size)
     assert "% of their order 1)" in entry.estimate.words
-    json.dumps(entry.to_json(), allow_nan=False)
+    json.dumps(entry.estimate.to_json(), allow_nan=False)
+    assert np.all(np.isfinite(entry.order_change)) and np.all(np.isfinite(entry.mean_change))
 
 
 @pytest.mark.law
