@@ -22,6 +22,7 @@ import time
 import traceback
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, TextIO
 
 from fe_contact.cache_reads import COMPLIANCE_READS
@@ -49,6 +50,7 @@ def work(descriptor: int) -> None:
     drafts = order.workspace / "drafts"
     shutil.rmtree(drafts, ignore_errors=True)  # of an attempt that was killed
     drafts.mkdir()
+    _part_from_stored(order.workspace)
     os.environ["TMPDIR"] = tempfile.tempdir = str(drafts)
     lower_priority(_NICENESS)
     if order.memory_limit_mb is not None:
@@ -62,6 +64,17 @@ def work(descriptor: int) -> None:
             "misses": COMPLIANCE_READS.misses - begun.misses,
         }
         _send(channel, outcome | {"peak_mb": peak_memory() / BYTES_PER_MB, "compliance_reads": reads})
+
+
+def _part_from_stored(workspace: Path) -> None:
+    """Remove second names of stored results.
+
+    A service that is killed between storing a result and noting so leaves its file in the workspace, where
+    the next attempt would write into what is stored.
+    """
+    for file in workspace.rglob("*"):
+        if file.is_file() and file.stat().st_nlink > 1:
+            file.unlink()
 
 
 def _first_line() -> tuple[bytes, bytes]:
