@@ -149,6 +149,7 @@ def log_lines(service: Process) -> list[dict[str, Any]]:
     return [json.loads(line) for line in service.log.read_text().splitlines() if line.startswith("{")]
 
 
+@pytest.mark.law  # those after it need what it leaves
 @pytest.mark.parametrize("kind", EACH)
 def test_four_bodies_that_cost_much_hold_nobody_up(service: Process, kind: str) -> None:
     path, body = ATTACKS[kind]()

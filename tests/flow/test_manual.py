@@ -35,6 +35,7 @@ PAGES = [
 ]
 
 
+@pytest.mark.law  # those after it need what it leaves
 @pytest.mark.parametrize("page", PAGES)
 def test_the_page_runs_and_makes_its_pictures(page: Path, folder: Path) -> None:
     manual.run_page(page)
