@@ -30,7 +30,7 @@ from dynamics.motion.force_balance import swept_by_frames
 from dynamics.motion.observation import local_state
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
-from dynamics.types import ComplexArray, FloatArray, Json
+from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
 
 # The parts of a linearized system that take power from its vibration, each assembled by itself.
@@ -311,10 +311,6 @@ def forced_response(
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
     if not speeds.size:
         raise InputError("speed", [], "at least one speed")
-
-    def half(start: float) -> Callable[[float], None] | None:
-        return None if progress is None else lambda fraction: progress(start + 0.5 * fraction)
-
     began = cpu_seconds()
     at, harmonics = excited_harmonics(system, orders, time)
     system, start = at.system, at.linear.equilibrium
@@ -322,10 +318,7 @@ def forced_response(
     frequency = natural_modes(at.linear).frequency
     seconds = {"equilibrium_and_modes": cpu_seconds() - began}
     began = cpu_seconds()
-    steady, blocked = (
-        steady_vibration(at, speeds, harmonics, excitation, half(part))
-        for excitation, part in zip(EXCITATIONS, (0.0, 0.5), strict=True)
-    )
+    steady, blocked = _by_both_excitations(at, speeds, harmonics, progress)
     if not steady.harmonics.size:
         raise InputError("orders", orders, NOTHING_EXCITES, "Give a mesh a table, or let a load vary.")
     response, other = (response_of(at, speeds, each) for each in (steady, blocked))
@@ -340,15 +333,31 @@ def forced_response(
         power_sink=power.sink,
         power_sink_kind=power.kind,
         power_loss=power.loss,
-        facts={
-            "leading_shaft": system.scene.references[leading_law(system)].shaft,
-            "time": time,
-            "equilibrium": {"status": start.status.name, "residual": start.residual},
-            "seconds": seconds,
-            "effect_ledger": ledger,
-            **system.corrections,
-        },
+        facts=_facts(at, time, seconds) | {"effect_ledger": ledger} | system.corrections,
     )
+
+
+def _facts(at: Excited, time: float, seconds: Json) -> Json:
+    start = at.linear.equilibrium
+    return {
+        "leading_shaft": at.system.scene.references[leading_law(at.system)].shaft,
+        "time": time,
+        "equilibrium": {"status": start.status.name, "residual": start.residual},
+        "seconds": seconds,
+    }
+
+
+def _by_both_excitations(
+    at: Excited, speeds: FloatArray, harmonics: IntArray, progress: Callable[[float], None] | None
+) -> Iterator[Steady]:
+    """Yield the vibration by each of `EXCITATIONS`, each half of the work."""
+    for excitation, start in zip(EXCITATIONS, (0.0, 0.5), strict=True):
+
+        def half(fraction: float, start: float = start) -> None:
+            if progress is not None:
+                progress(start + 0.5 * fraction)
+
+        yield steady_vibration(at, speeds, harmonics, excitation, half if progress else None)
 
 
 def _difference(response: HarmonicResponse, other: HarmonicResponse) -> FloatArray:

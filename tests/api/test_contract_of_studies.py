@@ -24,14 +24,13 @@ import meshlane
 import numpy as np
 import pytest
 from click import Context
-from condensed_once import find_condensed
 from declared_figures import check_declared
 from running_service import until
 from shown_effects import check_effects_shown
 from small_inputs import small_inputs
 from study_rows import ROWS, StudyRow
 from study_runs import StudyRuns, unmeasured, without_file
-from study_service import Served, empty_service
+from study_service import Served, service_on_bodies
 from typer.main import get_command
 from typer.testing import CliRunner
 
@@ -56,10 +55,8 @@ BEFORE = {"compliance", "contact", "housing"}
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Iterator[Served]:
     """One running service with its real processes, on the bodies that all tests share."""
-    data = tmp_path_factory.mktemp("service") / "data"
-    find_condensed(condensed_bodies, data)
-    with empty_service(data) as (client, http):
-        yield Served(client, http, data)
+    with service_on_bodies(tmp_path_factory.mktemp("service") / "data", condensed_bodies) as running:
+        yield running
 
 
 @pytest.fixture(scope="module")

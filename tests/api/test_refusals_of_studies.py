@@ -13,10 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from condensed_once import find_condensed
 from small_inputs import small_inputs
 from study_runs import refused_call, verb_call
-from study_service import Served, empty_service
+from study_service import Served, service_on_bodies
 
 from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
 from lineofaction.gearbox import workbench
@@ -163,10 +162,8 @@ QUESTIONS = [(name, inputs, field) for name, refused in REFUSED.items() for inpu
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Iterator[Served]:
     """A running service with its real processes."""
-    data = tmp_path_factory.mktemp("service") / "data"
-    find_condensed(condensed_bodies, data)
-    with empty_service(data) as (client, http):
-        yield Served(client, http, data)
+    with service_on_bodies(tmp_path_factory.mktemp("service") / "data", condensed_bodies) as running:
+        yield running
 
 
 def subject_of(study: str) -> tuple[str, Json]:

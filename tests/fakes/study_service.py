@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from condensed_once import find_condensed
 from declared_figures import check_declared, document, undeclared
 from fastapi.testclient import TestClient
 from running_service import REFERENCES
@@ -82,6 +83,14 @@ def empty_service(data: Path) -> Iterator[tuple[LineOfActionClient, TestClient]]
         ) as found,
     ):
         yield found, service
+
+
+@contextmanager
+def service_on_bodies(data: Path, bodies: Path) -> Iterator[Served]:
+    """Run a service without a table on bodies that other tests condensed."""
+    find_condensed(bodies, data)
+    with empty_service(data) as (client, http):
+        yield Served(client, http, data)
 
 
 @contextmanager

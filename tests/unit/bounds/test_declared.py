@@ -61,7 +61,7 @@ def test_a_value_out_of_its_declared_bound_is_refused(
 
 def test_the_ends_of_a_declared_bound_are_accepted() -> None:
     for width in (0.0, 2.0):
-        CHECKS.declared_fields(Strip(width, law="round"))
+        assert CHECKS.declared_fields(Strip(width, law="round")) is None  # raises otherwise
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,7 @@ def client(tmp_path: Path) -> Iterator[TestClient]:
 
 @pytest.mark.parametrize("name", CASES)
 def test_every_example_can_be_computed(name: str) -> None:
-    check_case(CASES[name])
+    assert check_case(CASES[name]).transverse_contact_ratio > 1.0
 
 
 def test_examples_that_fake_the_folder_too_are_the_same() -> None:
