@@ -37,7 +37,6 @@ def playwright() -> Iterator[Playwright]:
 
 @pytest.fixture(scope="session")
 def browser(playwright: Playwright) -> Iterator[Browser]:
-    """Start the browser."""
     path = chromium()
     if path is None:
         pytest.skip("no Chromium on this machine: apt-get install chromium, or name one in CHROMIUM")
@@ -56,7 +55,6 @@ def _closed(browser: Browser) -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def address(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Iterator[str]:
-    """One service for all tests of the page."""
     home = tmp_path_factory.mktemp("service")
     find_condensed(condensed_bodies, home / "lineofaction")
     with served(home) as found:

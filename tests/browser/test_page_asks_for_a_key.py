@@ -15,7 +15,6 @@ from service.access.keyring import KeyFile
 
 @pytest.fixture
 def served(tmp_path: Path) -> Iterator[tuple[str, str]]:
-    """The address of a service and its key."""
     file = tmp_path / "keys.json"
     secret = KeyFile(file).add("reader")
     with page_visit.served(tmp_path, LOA_KEYS_FILE=str(file)) as address:

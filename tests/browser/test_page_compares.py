@@ -50,7 +50,6 @@ def curves(page: Page, folder: Path) -> dict[str, list[float]]:
 
 
 def change(page: Page) -> str:
-    """Return the change of peak-to-peak that is shown."""
     return page.locator("#live-figures dd small").first.text_content() or ""
 
 

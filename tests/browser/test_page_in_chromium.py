@@ -64,7 +64,6 @@ def visit(browser: Browser, address: str, tmp_path_factory: pytest.TempPathFacto
 
 
 def peak_to_peak(page: Page) -> str:
-    """Return what the page says of the live curve."""
     return page.locator("#live-figures dd").first.text_content() or ""
 
 

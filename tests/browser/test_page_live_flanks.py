@@ -18,7 +18,6 @@ def visit(browser: Browser, address: str) -> Visit:
 
 
 def figure(page: Page, name: str) -> float:
-    """Return a main figure of the live flanks."""
     node = page.locator("#live-figures > div").filter(has=page.locator("dt", has_text=name)).locator("dd")
     return float((node.text_content() or "nan").split()[0])
 

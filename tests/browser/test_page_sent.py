@@ -42,7 +42,6 @@ def other_browser(browser: Browser, address: str) -> Iterator[Page]:
 
 
 def typed(page: Page) -> dict[str, str]:
-    """Return what the controls hold, by their ids."""
     fields: dict[str, str] = page.evaluate(TYPED)
     return fields
 

@@ -35,7 +35,6 @@ class Runs:
     files: dict[str, str]
 
     def answer(self, route: Route) -> None:
-        """Answer a request for figures or a sound of one of them."""
         address = urlsplit(route.request.url)
         key, what = address.path.split("/")[-2:]
         query = {name: values[0] for name, values in parse_qs(address.query).items()}

@@ -55,7 +55,6 @@ def visit(browser: Browser, address: str, analyzed: str) -> Visit:
 
 
 def card(page: Page, title: str) -> Locator:
-    """Return the part of the page with a study."""
     heading = page.get_by_role("heading", name=title, exact=True)
     return page.locator(".study").filter(has=heading)
 

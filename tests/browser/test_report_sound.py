@@ -29,14 +29,12 @@ def folder(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -
 
 @pytest.fixture(scope="module")
 def order_map(browser: Browser, folder: Path) -> Iterator[Locator]:
-    """The order map of a report."""
     write_report(folder / "loud.nc", folder / "report.html")
     yield from figure(browser, folder / "report.html", "#order_map")
 
 
 @pytest.fixture(scope="module")
 def levels(browser: Browser, folder: Path) -> Iterator[Locator]:
-    """The levels of a comparison."""
     write_whole(compare([folder / "loud.nc", folder / "quiet.nc"], RunView()), folder / "comparison.html")
     yield from figure(browser, folder / "comparison.html", "#levels")
 
@@ -63,7 +61,6 @@ def speed(of: Locator) -> float:
 
 
 def times(of: Locator) -> list[float]:
-    """Return where the players are, s."""
     found: list[float] = of.locator("audio").evaluate_all("all => all.map((one) => one.currentTime)")
     return found
 

@@ -23,25 +23,21 @@ from service.settings import Settings
 
 
 def names(cases: tuple[BadInput, ...]) -> Any:
-    """Parametrize by the cases' names."""
     return pytest.mark.parametrize("bad", cases, ids=[case.name.replace(" ", "_") for case in cases])
 
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    """A client of a running app."""
     with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("data")))) as found:
         yield found
         assert found.get("/v1/jobs").json()["jobs"] == []
 
 
 def children() -> set[str]:
-    """Return the process ids of our own children."""
     return set(Path(f"/proc/{os.getpid()}/task/{os.getpid()}/children").read_text().split())
 
 
 def toml(table: dict[str, Any], prefix: str = "") -> str:
-    """Write a case as TOML."""
     plain = {key: value for key, value in table.items() if not isinstance(value, dict)}
     text = f"[{prefix}]\n" if prefix else ""
     text += "".join(f"{key} = {_value(value)}\n" for key, value in plain.items())

@@ -42,7 +42,6 @@ def with_length(figure: Figure) -> dict[str, Any]:
 
 
 def as_written(facts: dict[str, Any]) -> dict[str, Any]:
-    """Return figures as a case has them."""
     return {each.field: each.own(facts[each.name]) for each in FIGURES if each.name in facts}
 
 
@@ -177,7 +176,6 @@ OF_GEARS = pytest.mark.parametrize(
 
 
 def case_of(kind: type[Any]) -> tuple[dict[str, Any], str]:
-    """Return a case that has a gear of a kind, and which of its gears that is."""
     table = json.loads(json.dumps(CASE))
     if kind is Gear:
         return table, "pinion"

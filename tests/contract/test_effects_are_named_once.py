@@ -33,12 +33,10 @@ CHOSEN_BY = ("choices", "decided", "effect", "effects", "ledger", "neglected", "
 
 
 def files_of(effects: Sequence[object]) -> set[Path]:
-    """Return the files in which the classes of effects are."""
     return {Path(inspect.getfile(type(effect))).resolve() for effect in effects}
 
 
 def parents(tree: ast.AST) -> dict[ast.AST, ast.AST]:
-    """Return the parent of every node."""
     return {child: node for node in ast.walk(tree) for child in ast.iter_child_nodes(node)}
 
 

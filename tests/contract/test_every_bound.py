@@ -174,7 +174,6 @@ TABLES: dict[str, Table] = {
 
 @cache
 def pair_facts(case: str) -> PairFacts:
-    """Return the facts of the pair of a case as JSON."""
     return PairFacts.of(check_case(Case.model_validate_json(case)))
 
 
@@ -188,7 +187,6 @@ def check(given: Case | SceneInput) -> None:
 
 
 def kind_of(table: Table) -> type[Case] | type[SceneInput]:
-    """Return the schema of a table."""
     return SceneInput if "run" in table else Case
 
 
@@ -215,7 +213,6 @@ EVERY = pytest.mark.parametrize("name", TABLES)
 
 
 def own(trial: Trial) -> bool:
-    """Whether a trial is refused by its own field."""
     return trial.fault is not None and trial.fault.field == dotted(trial.place)
 
 
@@ -291,7 +288,6 @@ def test_http_says_the_same(name: str, client: TestClient) -> None:
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    """A client of a running app."""
     with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("data")))) as found:
         yield found
         assert found.get("/v1/jobs").json()["jobs"] == []

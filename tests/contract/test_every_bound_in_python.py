@@ -57,7 +57,6 @@ OBJECTS: dict[str, Any] = {
 
 
 def numbers(thing: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], type]]:
-    """Yield the numbers of a dataclass and of those inside it."""
     for field in fields(thing):
         value = getattr(thing, field.name)
         if is_dataclass(value):

@@ -67,7 +67,6 @@ def is_there(text: str, called: str = "") -> bool:
 
 
 def stale(content: str) -> Iterator[str]:
-    """Yield the names in a text that are not there."""
     for found in NAME.finditer(content):
         if not is_there(found[1], found[2] or "") and found[1] not in OTHERS:
             yield found[0]

@@ -42,7 +42,6 @@ def table(scene: str, cache: Path, effects: dict[str, str]) -> SteDatabase:
 
 
 def arrays(found: SteDatabase) -> Iterator[tuple[str, np.ndarray]]:
-    """Every number of a table."""
     for name, values in vars(found).items():
         if isinstance(values, np.ndarray):
             yield name, values

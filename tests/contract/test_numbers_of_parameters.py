@@ -27,7 +27,6 @@ def parameters(function: Function) -> int:
 
 
 def exported(package: Path) -> set[str]:
-    """Return the names in the export lists of a package and of all below it."""
     names: set[str] = set()
     for file in package.rglob("__init__.py"):
         for node in ast.parse(file.read_text("utf-8")).body:

@@ -36,7 +36,6 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
 
 @pytest.fixture(scope="module")
 def loaded_with_lines(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
-    """Return what is loaded for bearings by their catalog line."""
     folder = tmp_path_factory.mktemp("lines")
     line = {"bearing_type": "radial_grooved_ball_bearing", "radial_static_load_rating": 11.6}
     line |= {"inner_diameter": 25.0, "outer_diameter": 62.0, "u_coordinate_on_shaft_inner_side": 15.0}

@@ -28,7 +28,6 @@ HEADERS = {"Content-Type": "application/json"}
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    """A client of a running app."""
     with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("data")))) as found:
         yield found
         assert found.get("/v1/jobs").json()["jobs"] == []
@@ -48,7 +47,6 @@ def commanded(bad: BadScene, folder: Path) -> Any:
 
 
 def inline(value: Any) -> str:
-    """One TOML value."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{key} = {inline(item)}" for key, item in value.items()) + "}"
     if isinstance(value, list):

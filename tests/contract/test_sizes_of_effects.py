@@ -81,7 +81,6 @@ def _one_cache(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 def boundary_case(name: str) -> Json:
-    """The case as users write it."""
     made, torques, more = CASES[name]
     more = dict(more)
     accuracy = {"tolerance": more.pop("tolerance")} if "tolerance" in more else {"level": "draft"}
@@ -91,7 +90,6 @@ def boundary_case(name: str) -> Json:
 
 
 def invoked(*words: object) -> str:
-    """Output of the command line."""
     run = CliRunner().invoke(app, [str(word) for word in words])
     assert run.exit_code == 0, run.output
     return run.stdout
@@ -174,7 +172,6 @@ def ablated(case: Json, home: Path, monkeypatch: pytest.MonkeyPatch) -> Json:
 
 
 def check_ablation(estimate: Json, influence: Json) -> None:
-    """The same numbers."""
     for key, value in influence.items():
         if key.endswith("_um"):
             assert estimate[key] == pytest.approx(value, rel=1e-12)
@@ -183,5 +180,4 @@ def check_ablation(estimate: Json, influence: Json) -> None:
 
 
 def numbers(words: str) -> list[float]:
-    """All numbers in a text."""
     return [float(text) for text in re.findall(r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?", words)]

@@ -15,13 +15,11 @@ from fe_contact.options import AnalysisOptions, Levels, OperatingPoint, TableAxe
 
 
 def table_request(**keywords: Any) -> tuple[TableAxes, AnalysisOptions]:
-    """Return the axes and the options that keywords ask for."""
     options = _options(keywords)
     return TableAxes(**keywords), options
 
 
 def point_request(**keywords: Any) -> tuple[OperatingPoint, AnalysisOptions]:
-    """Return the operating point and the options that keywords ask for."""
     options = _options(keywords)
     return OperatingPoint(**keywords), options
 

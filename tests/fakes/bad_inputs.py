@@ -28,19 +28,8 @@ GOOD: Table = {
 
 @dataclass(frozen=True)
 class BadInput:
-    """One input.
-
-    Attributes
-    ----------
-    name : str
-    python : callable
-        Raises the error of the library.
-    python_field : str
-        Ending of the field it names.
-    changes : dict
-        Dotted path in the case to the wrong value; `DROP` removes the field.
-    case_field : str
-        The field that the case's entry points name.
+    """One input: the call that raises, the ending of the field it names; the same as `changes` of a case
+    (`DROP` removes a field), and the field that its entry points name.
     """
 
     name: str
@@ -50,7 +39,6 @@ class BadInput:
     case_field: str = ""
 
     def case(self) -> Table:
-        """Return the case with the changes."""
         found = copy.deepcopy(GOOD)
         for path, value in self.changes.items():
             *tables, last = path.split(".")
@@ -68,14 +56,12 @@ DROP = object()
 
 
 def gear(**changes: Any) -> Gear:
-    """Return the good gear with changes."""
     return Gear(
         **{"teeth": 20, "normal_module": 4 * MM, "face_width": 25 * MM, "bore_diameter": 40 * MM} | changes
     )
 
 
 def pair(pinion: Table | None = None, wheel: Table | None = None, distance: float = 80 * MM) -> GearPair:
-    """Return the good pair with changes."""
     return GearPair(gear(**pinion or {}), gear(**wheel or {}), distance)
 
 
@@ -85,7 +71,6 @@ def helical() -> GearPair:
 
 
 def crowned() -> GearPair:
-    """Return the good pair with a crowned pinion."""
     return pair({"modification": FlankModification(helix_crowning=5 * UM)})
 
 
@@ -95,13 +80,11 @@ def run(**arguments: Any) -> object:
 
 
 def of_gear(name: str, si: str, value: Any, case: str, shown: Any, at: str = "") -> BadInput:
-    """Return a wrong field of the pinion."""
     path = f"pair.pinion.{case}"
     return BadInput(name, lambda: gear(**{si: value}), si, {path: shown}, at or path)
 
 
 def of_flank(name: str, si: Table, at: str, shown: Table, case_at: str) -> BadInput:
-    """Return a wrong modification of the pinion."""
     changes = {f"pair.pinion.{key}": value for key, value in shown.items()}
     return BadInput(
         name, lambda: gear(modification=FlankModification(**si)), at, changes, f"pair.pinion.{case_at}"

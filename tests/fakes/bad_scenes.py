@@ -46,17 +46,14 @@ class BadScene:
 
 
 def run(**changes: Any) -> object:
-    """Run the good set with changes."""
     return simulate(replace(driven_scene(published_set(3)), **changes))
 
 
 def drives(**speed: float) -> tuple[ImposedRotation, ...]:
-    """Return drives of shafts at speeds."""
     return tuple(ImposedRotation(name, name, TimeLaw.constant(value)) for name, value in speed.items())
 
 
 def load(shaft: str, torque: float) -> tuple[LoadTorque, ...]:
-    """Return a load."""
     return (LoadTorque("brake", shaft, TimeLaw.constant(torque)),)
 
 

@@ -36,7 +36,6 @@ class Trial:
 
 
 def dotted(place: Place) -> str:
-    """Return a place as the user writes it."""
     text = ""
     for part in place:
         text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
@@ -77,14 +76,12 @@ def is_field(model: type[BaseModel], name: str) -> bool:
 
 
 def _model_in(annotation: Any) -> type[BaseModel] | None:
-    """Return the model inside an annotation."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
     return next(filter(None, map(_model_in, get_args(annotation))), None)
 
 
 def changed(table: Table, place: Place, value: float) -> Table:
-    """Return the table with one number changed."""
     other = copy.deepcopy(table)
     inner: Any = other
     for part in place[:-1]:
@@ -128,7 +125,6 @@ def _chain(
 
 
 def trial(table: Table, place: Place, value: float, refusal: Refusal) -> Trial:
-    """Return the trial of one value."""
     typed = changed(table, place, value)
     return Trial(place, value, refusal(typed), typed)
 

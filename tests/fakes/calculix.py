@@ -27,16 +27,9 @@ from host import child_environment, ending_signal
 
 @dataclass(frozen=True)
 class PlacedPair:
-    """Two undeformed gears, the driving one `approach` beyond the conjugate position.
+    """Two undeformed gears, driving and driven, the driving one `approach` (m) beyond the conjugate position.
 
-    Attributes
-    ----------
-    gears : (PlacedBody, PlacedBody)
-        Driving and driven. The driving gear turns clockwise.
-    meetings : tuple of (int, int)
-        Flanks of gear 1 and gear 2 that may touch.
-    approach : float
-        Part of the transmission error, in m, by which the driving gear is turned already.
+    The driving gear turns clockwise; `meetings` are flanks of gear 1 and gear 2 that may touch.
     """
 
     gears: tuple[PlacedBody, PlacedBody]
@@ -45,16 +38,7 @@ class PlacedPair:
 
 
 def placed_pair(pair: ParallelAxes, bodies: tuple[PlacedBody, PlacedBody], approach: float) -> PlacedPair:
-    """Turn the driving gear beyond the conjugate position.
-
-    Parameters
-    ----------
-    pair : GearPair or InternalGearPair
-    bodies : (PlacedBody, PlacedBody)
-        In the conjugate position.
-    approach : float
-        m, >= 0. Where it exceeds the gap, teeth overlap at the start, so that they hold each other.
-    """
+    """Turn the driving gear of conjugate bodies; beyond the gap teeth overlap, and hold each other."""
     turns = (-approach / pair.pinion.base_radius, 0.0)
     first, second = (_placed(body, turn) for body, turn in zip(bodies, turns, strict=True))
     return PlacedPair((first, second), tuple((ahead, ahead) for ahead in bodies[0].strips), approach)
@@ -96,19 +80,9 @@ TURNING, HELD = "TURNING", "HELD"
 
 @dataclass(frozen=True)
 class Loading:
-    """The load of a placed pair.
+    """The load of a placed pair: force on the base circle in N, base radius of gear 1 and face width in m.
 
-    Attributes
-    ----------
-    materials : (Material, Material)
-    base_radius : float
-        Of gear 1, m.
-    face_width : float
-        m.
-    transverse_force : float
-        F_bt in N: the torque on gear 1 over its base radius.
-    penalty : float
-        Pressure over overlap in the contact, Pa/m.
+    `penalty` is pressure over overlap in the contact, Pa/m.
     """
 
     materials: tuple[Material, Material]
@@ -119,7 +93,6 @@ class Loading:
 
 
 def input_deck(placed: PlacedPair, loading: Loading) -> str:
-    """Return the deck of one position."""
     gears, bodies = placed.gears, numbered_bodies(placed.gears)
     turning = bodies[-1].last_node + 1
     lines = ["*HEADING", "full contact of a gear pair, mm N MPa", "*NODE, NSET=ALL"]
@@ -155,7 +128,6 @@ def numbered_bodies(gears: Sequence[PlacedBody]) -> tuple[NumberedBody, ...]:
 
 
 def _nodes(points: FloatArray, body: NumberedBody) -> Iterable[str]:
-    """One line for each node."""
     rows = (points * MM).tolist()
     return (f"{body.first_node + i},{_number(x)},{_number(y)},0." for i, (x, y) in enumerate(rows))
 
@@ -227,19 +199,7 @@ _LIMITED = 'ulimit -S -t "$1"; exec "$2" -i job'  # the limit ends it even where
 
 @dataclass(frozen=True)
 class Run:
-    """The end of a CalculiX run.
-
-    Attributes
-    ----------
-    status : Status
-        CONVERGED; ITERATION_LIMIT where it gave up; NOT_COMPUTED past its limit or where it did not start.
-    reason : str
-        In words; empty if it converged.
-    iterations : int
-        Equilibrium iterations.
-    printed : str
-        Its .dat file.
-    """
+    """The end of a run; NOT_COMPUTED past its limit or where it did not start."""
 
     status: Status
     reason: str
@@ -248,30 +208,17 @@ class Run:
 
 
 def find_calculix() -> str | None:
-    """Return the program, None if it is not installed."""
     return shutil.which(PROGRAM)
 
 
 def version_of(program: str) -> str:
-    """Return the name and version that the program states."""
     process = subprocess.run([program, "-v"], capture_output=True, text=True, timeout=60.0, check=False)
     stated = re.search(r"Version\s+(\S+)", process.stdout)
     return f"CalculiX {stated.group(1)}" if stated else "CalculiX"
 
 
 def run_calculix(program: str, deck: str, folder: Path, cpu_limit: float) -> Run:
-    """Run a deck in an empty folder.
-
-    Parameters
-    ----------
-    program : str
-        From `find_calculix`.
-    deck : str
-    folder : Path
-        Everything is written here.
-    cpu_limit : float
-        CPU seconds after which it is ended; 20 times as much by the clock.
-    """
+    """Run a deck in an empty folder, for at most these CPU seconds, 20 times as much by the clock."""
     (folder / "job.inp").write_text(deck, encoding="ascii")
     command = ("sh", "-c", _LIMITED, "sh", f"{max(1, round(cpu_limit))}", program)
     threads = dict.fromkeys(("OMP_NUM_THREADS", "CCX_NPROC_EQUATION_SOLVER", "NUMBER_OF_CPUS"), "1")
@@ -317,17 +264,7 @@ _HEAD = re.compile(r"^\s*(displacements|forces)\s.*for set (\S+) and time", re.M
 
 @dataclass(frozen=True)
 class Printed:
-    """One solved position.
-
-    Attributes
-    ----------
-    turning : float
-        Displacement of the turning node, m: transmission error beyond the approach of the placed pair.
-    nodes : (b,) int array
-        Numbers of gear 2's bore nodes in the deck.
-    reactions : (b, 2) array
-        Forces of the shaft on them, N.
-    """
+    """One position: turning (m) beyond the approach, and the shaft's forces (b, 2) on nodes of the bore."""
 
     turning: float
     nodes: IntArray
@@ -340,13 +277,7 @@ class Printed:
 
 
 def read_printed(text: str) -> Printed:
-    """Return the last values that were printed.
-
-    Raises
-    ------
-    ValueError
-        Something is missing, or no number.
-    """
+    """Return the last values that were printed; `ValueError`: something is missing, or no number."""
     blocks: dict[tuple[str, str], str] = {}
     heads = list(_HEAD.finditer(text))
     ends = [*(head.start() for head in heads), len(text)][1:]
@@ -384,26 +315,9 @@ def solve_position(
     cpu_limit: float,
     resolution: Resolution | None = None,
 ) -> FullContactPoint:
-    """Solve one position on a mesh of its own: that of the condensed peer.
+    """Solve one position (base pitches, by the driven gear) on a mesh of its own, the condensed peer's.
 
-    Parameters
-    ----------
-    program : str
-        CalculiX.
-    pair : GearPair or InternalGearPair
-        Without `refusal`.
-    normal_force : float
-        N; its torque is that of gear 1.
-    position : float
-        By the driven gear, base pitches; any.
-    cpu_limit : float
-        CPU seconds.
-    resolution : Resolution, optional
-
-    Raises
-    ------
-    MeshError
-        There is no mesh.
+    The torque is that of gear 1; `MeshError`: there is no mesh.
     """
     phase = position - round(position)
     line_load = normal_force / pair.face_width
@@ -438,7 +352,6 @@ def _loading(pair: ParallelAxes, normal_force: float, deflection: float) -> Load
 def _point(
     pair: ParallelAxes, placed: PlacedPair, loading: Loading, position: float, run: Run
 ) -> FullContactPoint:
-    """Read what was printed."""
     try:
         printed = read_printed(run.printed)
     except ValueError as error:
@@ -459,5 +372,4 @@ def _point(
 
 
 def _failed(run: Run) -> FullContactPoint:
-    """Return a point without a solution."""
     return FullContactPoint.failed(run.status, run.reason, run.iterations)

@@ -51,19 +51,16 @@ def questions(folder: Path, canary: Path, table: str) -> Iterator[Question]:
 
 
 def packed(name: str, content: bytes) -> Body:
-    """Return a file as a request has it."""
     return {"name": name, "content": base64.b64encode(zlib.compress(content)).decode()}
 
 
 def _text(fields: Body, *files: Body) -> Body:
-    """Return the text of the scene with a housing, and files."""
     scene = tomllib.loads((_EXAMPLES / "palermo_scene.toml").read_text("utf-8"))
     scene["housings"] = [{"name": "case"} | fields]
     return {"toml": toml_text(scene), "files": list(files)}
 
 
 def _reduced_housings(folder: Path, canary: Path) -> Iterator[Question]:
-    """Yield reduced housings that lead to other files."""
     for name, strike in STRIKES.items():
         file = folder / "housing.nc"
         random_housing().to_netcdf(file)

@@ -14,10 +14,9 @@ from fe_contact.planning.plan import SECTOR_RECIPE
 
 @pytest.fixture(scope="module")
 def coarse_sectors() -> Iterator[None]:
-    """Give each level elements twice as large, and little more than half the layers.
+    """Give each level elements twice as large, and little more than half the layers: a third of the time.
 
-    A draft of six layers condenses in a third of the time; its coarse mesh, for the discretization error,
-    still has four. What a test says of the accuracy of a level needs the level itself.
+    What a test says of the accuracy of a level needs the level itself.
     """
     with pytest.MonkeyPatch.context() as patch:
         for level, recipe in list(SECTOR_RECIPE.items()):

@@ -33,7 +33,6 @@ def condensed_bodies(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module", autouse=True)
 def condensed_once(condensed_bodies: Path) -> Iterator[None]:
-    """Condense what no other test has condensed."""
     with pytest.MonkeyPatch.context() as patch:
         condense_once(condensed_bodies, patch)
         yield
@@ -52,7 +51,6 @@ def find_condensed(bodies: Path, home: Path) -> None:
 
 
 def condense_once(folder: Path, patch: pytest.MonkeyPatch) -> None:
-    """Let this process condense what is not in a folder yet."""
     plane, face = flank_compliance_2d, cyclic_compliance
     for module, name, key, kind in (
         (plane, "compute_flank_compliance", plane.compliance_key, FlankCompliance),
@@ -64,8 +62,6 @@ def condense_once(folder: Path, patch: pytest.MonkeyPatch) -> None:
 def _kept(
     compute: Callable[..., Any], key_of: Callable[..., str], kind: type[Any], folder: Path
 ) -> Callable[..., Any]:
-    """Return the computation that looks first."""
-
     @wraps(compute)
     def found(*asked: Any, **reports: Any) -> Any:
         key = key_of(*asked)

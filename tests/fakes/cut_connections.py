@@ -15,12 +15,7 @@ _RESET = struct.pack("ii", 1, 0)  # closing sends a reset and forgets what was n
 
 
 class Relay:
-    """Passes bytes between a port of its own on loopback and a socket in the file system.
-
-    Attributes
-    ----------
-    port : int
-    """
+    """Passes bytes between a port of its own on loopback and a socket in the file system."""
 
     def __init__(self, target: Path) -> None:
         self._target = target
@@ -83,7 +78,6 @@ class Relay:
 
 @contextmanager
 def relay(target: Path) -> Iterator[Relay]:
-    """Run a relay."""
     found = Relay(target)
     try:
         yield found

@@ -15,7 +15,6 @@ _OF_FILE = {"hash": "", "sha256": "", "size": 0}
 
 
 def document(figures: Figures) -> dict[str, Any]:
-    """Return the document that figures were read from."""
     return figures.model_dump(mode="json", by_alias=True, exclude_unset=True)
 
 

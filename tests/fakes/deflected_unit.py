@@ -23,7 +23,6 @@ POSITIONS = 3
 
 
 def scene_in_si(unit: OpenedUnit) -> Scene:
-    """Return the unit's scene for dynamics."""
     assert unit.scene is not None
     facts = {f"{case.name}.toml": PairFacts.of(gear_pair(case.case)) for case in unit.cases}
     return check_scene(unit.scene, {mesh.name: facts[str(mesh.case_file)] for mesh in unit.scene.meshes})

@@ -23,7 +23,6 @@ Case = TypeVar("Case")
 
 
 def leave_to_the_night(items: Iterable[pytest.Item]) -> None:
-    """Mark as nightly what is not drawn."""
     global _by_day  # noqa: PLW0603 (what a run draws inside of its tests it knows once)
     _by_day = True
     functions: dict[str, list[pytest.Item]] = {}

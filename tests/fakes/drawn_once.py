@@ -32,8 +32,6 @@ def drawn_once(condensed_bodies: Path) -> Iterator[None]:
 
 
 def _kept(draw: Callable[[Figure], bytes], folder: Path) -> Callable[[Figure], bytes]:
-    """Return the drawing that looks first."""
-
     @wraps(draw)
     def found(figure: Figure) -> bytes:
         file = folder / hashlib.sha256(pickle.dumps(figure)).hexdigest()

@@ -87,7 +87,6 @@ def _renamed(value: Any, names: dict[str, str], key: str = "") -> Any:
 
 
 def _tables(parts: Any) -> list[Json]:
-    """Return the named parts of a kind."""
     return (
         [part for part in parts if isinstance(part, dict) and "name" in part]
         if isinstance(parts, list)
@@ -111,7 +110,6 @@ def _least(name: str, field: FieldInfo, value: Any, draw: Random) -> Json:
 
 
 def _cases(inputs: Json) -> list[Json]:
-    """Return the cases in inputs."""
     meshes = inputs.get("scene", {}).get("meshes", ())
     return [
         *(mesh["case"] for mesh in meshes if "case" in mesh),
@@ -120,22 +118,18 @@ def _cases(inputs: Json) -> list[Json]:
 
 
 def _one_torque(case: Json, draw: Random) -> None:
-    """Leave one torque."""
     case["load"] = {"torque_n_m": [draw.choice((0.5, 1e-6, 50.0))]}
 
 
 def _center_distances(case: Json, _draw: Random) -> None:
-    """Add an axis to the table."""
     case["errors"] = {"center_distance_change_mm": [0.0, 0.02]}
 
 
 def _few_positions(case: Json, _draw: Random) -> None:
-    """Leave few positions."""
     case["accuracy"] = case["accuracy"] | {"positions": 8}
 
 
 def _full_receipt(case: Json, _draw: Random) -> None:
-    """Ask for the full receipt."""
     case["accuracy"] = case["accuracy"] | {"receipt": "full"}
 
 
@@ -160,7 +154,6 @@ def _speed(scene: Json, draw: Random) -> None:
 
 
 def _standing_to_fast(scene: Json, draw: Random) -> None:
-    """Start from rest, or pass it."""
     ends = draw.choice(([0.0, 1000.0], [1000.0, -1000.0]))
     scene["drives"][0] |= {"time_s": [0.0, scene["run"]["duration_s"]], "speed_rpm": ends}
 
@@ -172,7 +165,6 @@ def _idle(scene: Json, draw: Random) -> None:
 
 
 def _outputs(scene: Json, draw: Random) -> None:
-    """Store more or less."""
     fields = OutputsInput.model_fields.items()
     scene["outputs"] = {"sample_rate_hz": draw.choice((20000.0, 100.0, 1.0))}
     for name, field in fields:
@@ -181,7 +173,6 @@ def _outputs(scene: Json, draw: Random) -> None:
 
 
 def _effects(scene: Json, draw: Random) -> None:
-    """Switch effects on and off."""
     scene["effects"] = {
         name: draw.choice(("on", "off")) for name in draw.sample([effect.name for effect in EFFECTS], 2)
     }
@@ -201,7 +192,6 @@ def _spring(scene: Json, _draw: Random) -> None:
 
 
 def _no_bushings(scene: Json, _draw: Random) -> None:
-    """Hold all shafts on their axes."""
     if not scene.get("housings"):
         scene["bushings"], scene["effects"] = [], {"lateral": "off", "axial": "off", "tilt": "off"}
 

@@ -24,12 +24,10 @@ def value(number: int, name: str, text: str) -> Edit:
 
 
 def more(number: int, attribute: str) -> Edit:
-    """Return what adds an attribute to a component."""
     return _once(rf'(<component id="{number}"[^>]*)/?>', rf"\g<1>>{attribute}")
 
 
 def without(number: int, name: str) -> Edit:
-    """Return what takes an attribute from a component."""
     return _once(rf'(<component id="{number}".*?)<attribute id="{name}"[^>]*>[^<]*</attribute>', r"\g<1>")
 
 
@@ -48,7 +46,6 @@ def retyped(number: int, kind: str) -> Edit:
 
 
 def added(component: str) -> Edit:
-    """Return what adds a component."""
     return _once(r"(?=\s*</components>)", component)
 
 
@@ -58,8 +55,6 @@ def removed(number: int) -> Edit:
 
 
 def all_of(*edits: Edit) -> Edit:
-    """Return edits one after the other."""
-
     def edit(text: str) -> str:
         for each in edits:
             text = each(text)

@@ -20,15 +20,7 @@ MOST_CHANGES = 2
 
 
 class FeasibleBodies:
-    """The bodies of the operations of a document.
-
-    Parameters
-    ----------
-    document : mapping
-        OpenAPI description.
-    examples : mapping
-        Bodies by path, in place of the document's.
-    """
+    """The bodies of the operations of a document; `examples` by path are in place of the document's."""
 
     def __init__(self, document: Mapping[str, Any], examples: Mapping[str, Json]) -> None:
         self._paths = document["paths"]
@@ -47,7 +39,6 @@ class FeasibleBodies:
 
 
 def about(example: Json, case: Json) -> Json:
-    """Return an example with another pair."""
     body = copy.deepcopy(example)
     inputs = body.get("inputs", {})
     if "case" in inputs:
@@ -61,7 +52,6 @@ def about(example: Json, case: Json) -> Json:
 
 
 def _put_in(scene: Json, case: Json) -> None:
-    """Let the one mesh of a scene be that of a case."""
     pair = case["pair"]
     scene["meshes"][0]["case"] = case
     distance = -pair["center_distance_mm"] if pair["wheel"].get("internal") else pair["center_distance_mm"]

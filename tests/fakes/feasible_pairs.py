@@ -78,7 +78,6 @@ def _racks(draw: st.DrawFn) -> dict[str, float]:
 
 @st.composite
 def _gears(draw: st.DrawFn, rack: dict[str, float], least: int, most: int) -> Gear:
-    """Draw an external gear of a rack."""
     module, teeth = rack["normal_module"], draw(st.integers(least, most))
     sizes = {"face_width": draw(st.floats(4.0, 15.0)) * module, "bore_diameter": 0.4 * teeth * module}
     shift = draw(st.floats(0.4 if teeth < 17 else -0.2, 0.6))
@@ -90,7 +89,6 @@ def _gears(draw: st.DrawFn, rack: dict[str, float], least: int, most: int) -> Ge
 
 
 def _apart(draw: st.DrawFn, pinion: Gear, wheel: Any) -> Any:
-    """Return a pair with some backlash."""
     kind, sign = (InternalGearPair, -1.0) if isinstance(wheel, RingGear) else (GearPair, 1.0)
     more = sign * draw(st.floats(0.01, 0.08)) * pinion.normal_module
     try:
@@ -101,7 +99,6 @@ def _apart(draw: st.DrawFn, pinion: Gear, wheel: Any) -> Any:
 
 
 def _gear(gear: Any) -> Json:
-    """Return a gear as a case has it."""
     heights = HEIGHTS if isinstance(gear, RingGear) else ()
     kind = {"internal": True} if isinstance(gear, RingGear) else {}
     return kind | _written(gear, figures(type(gear)), (*GEAR, *heights))

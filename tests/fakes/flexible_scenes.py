@@ -15,7 +15,6 @@ STEEL = BeamSection(0.2, 0.04)
 
 
 def with_sections(scene, section=STEEL, shafts=("input", "output"), **changes):
-    """The scene with shafts of one section, as long as they are."""
     found = []
     for shaft in scene.shafts:
         own = (replace(section, length=shaft.length),) if shaft.name in shafts else shaft.sections

@@ -32,7 +32,6 @@ def _objects(canary: Path) -> bytes:
 
 
 def _npy(header: str, data: bytes = b"") -> bytes:
-    """Return an array file of a header as it stands."""
     return np.lib.format.magic(1, 0) + struct.pack("<H", len(header)) + header.encode() + data
 
 

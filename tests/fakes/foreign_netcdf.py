@@ -25,7 +25,6 @@ def write_canary(folder: Path) -> Path:
 
 
 def struck(file: Path, variable: str, strike: Strike, canary: Path) -> bytes:
-    """Return the bytes of a file after one strike on a variable."""
     with h5py.File(file, "r+") as content:
         strike(content, variable, canary)
     return file.read_bytes()

@@ -14,16 +14,9 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class HeldOutError:
-    """Difference between a table's interpolant and solves at other points.
+    """Difference between a table's interpolant and solves at other points, m, and where the maximum is.
 
-    Attributes
-    ----------
-    maximum, rms : float
-        m, over all held-out points.
-    relative_maximum, relative_rms : float
-        The largest over the loads and alignments, each by its own held-out peak-to-peak.
-    position, force, misalignment, center_distance_change : float
-        Where the maximum is (base pitches, N, m, m).
+    Relative ones: the largest over the loads and alignments, each by its own held-out peak-to-peak.
     """
 
     maximum: float
@@ -37,16 +30,7 @@ class HeldOutError:
 
 
 def held_out_error(database: SteDatabase, other: SteDatabase) -> HeldOutError:
-    """Compare the interpolant of `database` with what `other` stores at its own positions and loads.
-
-    Raises
-    ------
-    InputError
-        If `other` reaches beyond the loads or alignments of `database`, or holds too few positions for a
-        peak-to-peak.
-    SolveError
-        If either table has failed points.
-    """
+    """Compare the interpolant of `database` with what `other` stores at its own positions and loads."""
     other.require_complete()
     _require_inside(database, other)
     grid = np.meshgrid(

@@ -20,19 +20,7 @@ from fe_contact.types import FloatArray
 def edge_contact_length(
     line_load: ArrayLike, slope: ArrayLike, radius: ArrayLike, modulus: float
 ) -> FloatArray:
-    """Contact length c in m from the edge.
-
-    Parameters
-    ----------
-    line_load : array_like
-        p in N/m, >= 0.
-    slope : array_like
-        phi in rad, angle between the two flanks at the edge, positive = they open away from the edge.
-    radius : array_like
-        Relative radius R in m.
-    modulus : float
-        Contact modulus E* in Pa.
-    """
+    """Contact length c in m from the edge; the flanks open away from it at `slope` rad."""
     p, phi, r = (np.asarray(v, dtype=float) for v in (line_load, slope, radius))
     root = np.sqrt(phi**2 + 12.0 * p / (math.pi * modulus * r)) + np.abs(phi)
     opening = phi > 0.0  # there root - phi would cancel
@@ -59,28 +47,12 @@ def line_load_at_half_width(width: ArrayLike, radius: ArrayLike, modulus: float)
 def local_approach(
     line_load: ArrayLike, patch: ArrayLike, width: ArrayLike, material: Material
 ) -> FloatArray:
-    """Approach that Hertz pressure causes in one body beyond the patch of the finite-element model.
+    """Approach (m) that Hertz pressure causes in one body beyond the patch of the finite-element model.
 
     Two half-plane solutions with the same resultant are subtracted, so the far field cancels and no
     reference depth appears: k p [ln(a/b) + 1/4] with k = 2 (1 - nu^2)/(pi E). The surface under a
     semi-elliptic pressure of half-width a falls off as x^2/a^2, whose mean weighted by that pressure is the
     1/4; under the Hertz strip the center point counts.
-
-    Parameters
-    ----------
-    line_load : array_like
-        p in N/m.
-    patch : array_like
-        Half-width a in m of the semi-elliptic load and displacement weight in the finite-element model.
-    width : array_like
-        Hertz half-width b in m (or the equivalent half-width of an edge contact).
-    material : Material
-        The body.
-
-    Returns
-    -------
-    ndarray
-        Approach in m, positive = bodies come closer; zero where p = 0.
     """
     p = np.asarray(line_load, dtype=float)
     k = 2.0 / (math.pi * material.plane_strain_modulus)

@@ -150,7 +150,6 @@ def _archives() -> Iterator[tuple[str, bytes, str]]:
 
 
 def archive(files: list[tuple[str, bytes]]) -> bytes:
-    """Return an archive of files of any names."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as target:
         for name, data in files:
@@ -161,7 +160,6 @@ def archive(files: list[tuple[str, bytes]]) -> bytes:
 
 
 def _false_size() -> bytes:
-    """Return an archive that says its file is small."""
     data = bytearray(archive([("a.rexs", b"\0" * 30_000_000)]))
     place = data.rindex(b"PK\1\2")
     data[place + 24 : place + 28] = (100).to_bytes(4, "little")
@@ -169,7 +167,6 @@ def _false_size() -> bytes:
 
 
 def _encrypted() -> bytes:
-    """Return an archive that says its file is encrypted."""
     data = bytearray(archive([("a.rexs", XML)]))
     data[6] |= 1
     data[data.rindex(b"PK\1\2") + 8] |= 1

@@ -56,7 +56,6 @@ def housing(**fields: Any) -> dict[str, Any]:
 
 
 def write_housed_scene(folder: Path, **fields: Any) -> Path:
-    """Write the scene, its solid and its table into a folder, which is returned."""
     write_block(folder / "block.step")
     (folder / "scene.json").write_text(json.dumps(housed_scene(folder, **fields)))
     return folder

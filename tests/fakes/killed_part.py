@@ -14,19 +14,7 @@ from running_service import PATIENCE_S
 
 @dataclass
 class Part:
-    """A process: what it does, and how it is started.
-
-    Attributes
-    ----------
-    role : str
-        ``"all"``, ``"serve"`` or ``"work"``.
-    environment : mapping
-    log : Path
-    descriptor : int or None
-        The socket it answers on.
-    revived : int
-        How often it was started again after it had ended by itself.
-    """
+    """A process that does a role on a socket; `revived` counts starts after it had ended by itself."""
 
     role: str
     environment: Mapping[str, str]
@@ -36,7 +24,6 @@ class Part:
     revived: int = 0
 
     def start(self) -> None:
-        """Start it."""
         script = str(Path(__file__).with_name("fake_process.py"))
         listener = [] if self.descriptor is None else [str(self.descriptor)]
         fds = () if self.descriptor is None else (self.descriptor,)
@@ -57,7 +44,6 @@ class Part:
 
     @property
     def pid(self) -> int:
-        """Process id."""
         assert self.process is not None
         return self.process.pid
 
@@ -68,12 +54,10 @@ class Part:
         return bool(caught >> (signal.SIGTERM - 1) & 1)
 
     def send(self, number: signal.Signals) -> None:
-        """Send a signal."""
         assert self.process is not None
         self.process.send_signal(number)
 
     def end(self, number: signal.Signals) -> int:
-        """Send a signal and wait."""
         assert self.process is not None
         self.process.send_signal(number)
         return self.process.wait(timeout=PATIENCE_S)

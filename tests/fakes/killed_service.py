@@ -32,20 +32,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 
 @dataclass
 class KilledService:
-    """The service, its victims and its witness.
-
-    Attributes
-    ----------
-    directory : Path
-    settings : dict
-        Environment of all parts.
-    roles : sequence of str
-        Of its processes.
-    harms : mapping
-        What else can be done to it, by name: something that ends connections, say.
-    headers : mapping
-        Of requests: an access key.
-    """
+    """The service, its victims and its witness; `harms` is what else can be done to it, by name."""
 
     directory: Path
     settings: dict[str, str]
@@ -109,7 +96,6 @@ class KilledService:
                 part.revive()
 
     def submit(self, text: str) -> None:
-        """Enter a job."""
         answer = self.request("POST", EXECUTION, json={"inputs": {"wish": {"mode": "slow", "text": text}}})
         assert answer.status_code == 201, answer.text
         self.jobs[answer.json()["jobID"]] = text

@@ -23,13 +23,11 @@ def echo(inputs: dict[str, Any]) -> dict[str, Any]:
 
 
 def hang(_inputs: dict[str, Any]) -> dict[str, Any]:
-    """Never answer."""
     while True:
         time.sleep(1.0)
 
 
 def die(_inputs: dict[str, Any]) -> dict[str, Any]:
-    """End as the system ends a process."""
     os.kill(os.getpid(), signal.SIGKILL)
     return {}
 
@@ -40,10 +38,8 @@ def hog(_inputs: dict[str, Any]) -> dict[str, Any]:
 
 
 def refuse(_inputs: dict[str, Any]) -> dict[str, Any]:
-    """Refuse the input."""
     raise BadInput.of("torque_n_m[0]", 5.0, "at most 4", "Ask for less.")
 
 
 def defect(_inputs: dict[str, Any]) -> dict[str, Any]:
-    """Fail as no code should."""
     raise RuntimeError("secret text of a defect")

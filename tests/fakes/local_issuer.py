@@ -22,18 +22,7 @@ AUDIENCE = "gears"
 
 
 class LocalIssuer:
-    """Signs tokens and publishes the keys for them.
-
-    Attributes
-    ----------
-    url : str
-    asked : list of str
-        Paths that were fetched.
-    answers : bool
-        Whether it does.
-    changes : dict
-        Of its configuration.
-    """
+    """Signs tokens and publishes the keys for them; `asked` are the paths that were fetched."""
 
     def __init__(self, url: str) -> None:
         self.url, self.asked, self.answers = url, list[str](), True
@@ -47,13 +36,11 @@ class LocalIssuer:
 
     @property
     def kid(self) -> str:
-        """Identifier of its key."""
         (kid,) = self._keys
         return kid
 
     @property
     def public_pem(self) -> bytes:
-        """Its public key, as anybody can have it."""
         form = serialization.PublicFormat.SubjectPublicKeyInfo
         return self._keys[self.kid].public_key().public_bytes(serialization.Encoding.PEM, form)
 
@@ -65,12 +52,10 @@ class LocalIssuer:
         return {name: value for name, value in (claims | changes).items() if value is not None}
 
     def token(self, algorithm: str = "RS256", kid: str | None = None, **changes: Any) -> str:
-        """Return a token signed by the issuer."""
         head = {"kid": kid or self.kid}
         return jwt.encode(self.claims(**changes), self._keys[self.kid], algorithm, headers=head)
 
     def unsigned(self) -> str:
-        """Return a token of the algorithm none."""
         return f"{_packed({'alg': 'none', 'kid': self.kid})}.{_packed(self.claims())}."
 
     def confused(self) -> str:
@@ -91,7 +76,6 @@ class LocalIssuer:
         return jwt.encode(self.claims(), other, "RS256", headers=head)
 
     def document(self, path: str) -> Json | None:
-        """Return what stands at a path."""
         if path == "/.well-known/openid-configuration":
             return {"issuer": self.url, "jwks_uri": f"{self.url}/keys"} | self.changes
         if path != "/keys":
@@ -130,7 +114,6 @@ def local_issuer() -> Iterator[LocalIssuer]:
 
 
 def _packed(content: Json) -> str:
-    """Return a part of a token."""
     return _base64(json.dumps(content).encode())
 
 

@@ -18,13 +18,7 @@ Json = dict[str, Any]
 
 
 def make(home: Path, process: str, inputs: Json) -> list[StoredResult]:
-    """Do a process, and store what it makes; a study of a run does that too.
-
-    Raises
-    ------
-    ServiceError
-        It refuses its inputs, or finds nothing.
-    """
+    """Do a process, and store what it makes; a study of a run does that too."""
     offered, store = default_registry()[process], stored_results(home)
     if "run" in offered.inputs.model_fields and offered.inputs.model_fields["run"].is_required():
         *_, run = make(home, "simulate", {"scene": inputs["scene"]})

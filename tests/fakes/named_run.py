@@ -12,7 +12,6 @@ RUN: str = INPUTS["listen"]["run"]
 
 
 def put_named_run(store: ResultStore) -> None:
-    """Store an empty file for it."""
     with tempfile.TemporaryDirectory(prefix="loa-run-") as folder:
         file = Path(folder) / "run.nc"
         file.touch()

@@ -25,7 +25,6 @@ def executed(client: TestClient, **wish: Any) -> dict[str, Any]:
 
 
 def ended(client: TestClient, process: str, body: dict[str, Any]) -> dict[str, Any]:
-    """Execute a process and wait for the end of its job."""
     answer = client.post(f"/v1/processes/{process}/execution", json=body)
     assert answer.status_code == 201, answer.text
     location = answer.headers["location"]

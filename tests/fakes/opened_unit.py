@@ -13,7 +13,6 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 
 
 def scene_of(document: Document) -> SceneInput:
-    """Return the scene of a unit, which dynamics takes."""
     unit = opened(document)
     assert unit.scene is not None, [line for line in unit.lines if line.fate == "refused"]
     facts = {f"{case.name}.toml": PairFacts.of(gear_pair(case.case)) for case in unit.cases}
@@ -35,6 +34,5 @@ def content(scene: SceneInput) -> dict[str, Any]:
 
 
 def said(unit: OpenedUnit, component: int, item: str) -> tuple[str, str]:
-    """Return fate and words of a line."""
     (line,) = [line for line in unit.lines if (line.component, line.item) == (component, item)]
     return line.fate, line.words

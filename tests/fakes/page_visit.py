@@ -102,7 +102,6 @@ def _tab(browser: Browser, address: str) -> Page:
 
 
 def choose_case(page: Page, folder: Path) -> None:
-    """Open the small case as a file."""
     file = folder / "case.json"
     file.write_text(json.dumps(CASE), encoding="utf-8")
     page.locator("#import-file").set_input_files(file)
@@ -130,14 +129,12 @@ def answers(page: Page) -> int:
 
 
 def moved(page: Page, slider: str, key: str) -> None:
-    """Move a slider by a key and wait for the answer."""
     count = answers(page)
     page.locator(slider).press(key)
     until(lambda: answers(page) > count)
 
 
 def unfold(page: Page) -> None:
-    """Open everything that is folded."""
     page.evaluate("() => { for (const folded of document.querySelectorAll('details')) folded.open = true; }")
 
 

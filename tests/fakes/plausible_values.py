@@ -17,13 +17,7 @@ Place = tuple[str | int, ...]
 
 
 class Fields:
-    """The fields of a document's schemas.
-
-    Parameters
-    ----------
-    document : mapping
-        OpenAPI description with `components.schemas`.
-    """
+    """The fields of a document's schemas."""
 
     def __init__(self, document: Mapping[str, Any]) -> None:
         self._components = document["components"]
@@ -41,7 +35,6 @@ class Fields:
         return found
 
     def allows(self, schema: Json, body: Json) -> bool:
-        """Whether a body is valid."""
         name = json.dumps(schema)
         if name not in self._validators:
             whole = schema | {"components": self._components}
@@ -123,25 +116,21 @@ _FACTORS = st.sampled_from([1.0]) | st.floats(0.5, 2.0)
 
 
 def _put(body: Any, place: Place, value: Any) -> None:
-    """Put a value at a place."""
     for key in place[:-1]:
         body = body[key]
     body[place[-1]] = value
 
 
 def _is_number(schema: Json) -> bool:
-    """Whether a schema is that of a number."""
     return schema.get("type") in ("number", "integer")
 
 
 def _ends(schema: Json) -> tuple[float, float]:
-    """Return the ends of a number."""
     low = schema.get("minimum", schema.get("exclusiveMinimum", -1e6))
     return low, schema.get("maximum", schema.get("exclusiveMaximum", 1e6))
 
 
 def _within(value: float, schema: Json) -> float:
-    """Return the allowed number next to a value."""
     low, high = _ends(schema)
     whole = schema["type"] == "integer"
     if "exclusiveMinimum" in schema:

@@ -32,16 +32,7 @@ _ABSENT = "PostgreSQL is not installed (Debian: apt-get install postgresql); ini
 
 @dataclass
 class PostgresServer:
-    """A server; whoever may reach its socket is its superuser.
-
-    Attributes
-    ----------
-    directory : Path
-        Of its socket, its log and its data.
-    program : str
-    user : dict
-        Whom it runs as.
-    """
+    """A server in a directory; whoever may reach its socket is its superuser."""
 
     directory: Path
     program: str
@@ -51,11 +42,9 @@ class PostgresServer:
 
     @property
     def socket(self) -> Path:
-        """Where it answers."""
         return self.directory / ".s.PGSQL.5432"
 
     def start(self) -> None:
-        """Start it, and wait until it answers."""
         options = [part for setting in _FAST for part in ("-c", setting)]
         with (self.directory / "log").open("ab") as log:
             arguments = [self.program, "-D", str(self.directory / "data"), "-k", str(self.directory)]
@@ -77,7 +66,6 @@ class PostgresServer:
         self.start()
 
     def new_database(self) -> str:
-        """Return the URL of a new, empty database."""
         name = f"loa_{uuid.uuid4().hex[:12]}"
         with self.administration() as connection:
             connection.execute(sql.SQL("CREATE DATABASE {} ENCODING 'UTF8'").format(sql.Identifier(name)))
@@ -159,7 +147,6 @@ def running_server() -> Iterator[PostgresServer]:
 
 
 def _await(server: PostgresServer, process: subprocess.Popen[bytes]) -> None:
-    """Wait until the server answers."""
     end = time.monotonic() + 60.0
     while True:
         try:
@@ -174,7 +161,6 @@ def _await(server: PostgresServer, process: subprocess.Popen[bytes]) -> None:
 
 @pytest.fixture(scope="session")
 def postgres() -> Iterator[PostgresServer]:
-    """A server for all tests of a process."""
     with running_server() as found:
         yield found
 

@@ -19,7 +19,6 @@ Row = dict[str, str]
 
 
 def printed_pairs() -> list[Row]:
-    """Return the rows of the file."""
     with FILE.open(encoding="utf-8", newline="") as lines:
         return list(csv.DictReader(lines))
 

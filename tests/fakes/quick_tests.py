@@ -36,5 +36,4 @@ def imports_long(module: ModuleType) -> bool:
 
 
 def _origin(value: object) -> str:
-    """Return the module that a value comes from."""
     return value.__name__ if isinstance(value, ModuleType) else str(getattr(value, "__module__", ""))

@@ -32,17 +32,7 @@ _NODES = (2, 12)
 
 
 def _with_random_grid(gear: Gear, random: np.random.Generator, size: float, across_face: bool) -> Gear:
-    """Return the gear with a grid of its own added to its modification.
-
-    Parameters
-    ----------
-    gear : Gear
-    random : numpy.random.Generator
-    size : float
-        Largest height in modules.
-    across_face : bool
-        Whether heights differ along the face; in the plane all are those of mid-face.
-    """
+    """Return the gear with a grid of its own, `size` modules high; in the plane all as mid-face."""
     profile, face = (int(count) for count in random.integers(*_NODES, 2))
     heights = random.uniform(0.0, size * gear.normal_module, (profile, face if across_face else 1))
     grid = FlankGrid(
@@ -77,7 +67,6 @@ class _Draw:
         self.chance = float(self.random.choice(chances, p=weights))
 
     def between(self, usual: tuple[float, float], anywhere: tuple[float, float]) -> float:
-        """Return a number from where it usually is, or from anywhere."""
         return float(self.random.uniform(*(anywhere if self.random.random() < self.chance else usual)))
 
     def power(self, usual: tuple[float, float], anywhere: tuple[float, float]) -> float:
@@ -90,13 +79,7 @@ class _Draw:
 
 
 def random_request(kind: Kind, seed: int) -> tuple[ParallelAxes, Fields]:
-    """Return the pair and the other arguments of `analyze` that `seed` picks.
-
-    Raises
-    ------
-    InputError
-        There is no such gear or pair: a refusal, which is as good an end as a table.
-    """
+    """Return the pair and the other arguments of `analyze` that `seed` picks; a refusal is as good an end."""
     draw = _Draw(kind, seed)
     rack = _rack(draw)
     pinion = _gear(draw, rack)
@@ -168,7 +151,6 @@ def _gear(draw: _Draw, rack: Fields) -> Gear:
 
 
 def _material(draw: _Draw) -> Material:
-    """Return steel, or anything."""
     if draw.sometimes(0.6):
         return Material()
     return Material(draw.power((9.0, 11.5), (7.0, 13.0)), draw.between((0.2, 0.45), (0.0, 0.52)))
@@ -225,7 +207,6 @@ _HANGS = 3600.0
 
 
 def sweep_case(kind: Kind, seed: int) -> HardScene:
-    """Return one random case as a scene."""
     return HardScene(
         f"{kind}_{seed}",
         "sweep",

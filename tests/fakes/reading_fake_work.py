@@ -30,7 +30,6 @@ def echo(inputs: Json, folder: Path) -> Json:
 
 
 def loop(_inputs: Json, folder: Path) -> Json:
-    """Compute for ever."""
     _drafted(folder)
     while True:
         pass
@@ -43,7 +42,6 @@ def hog(_inputs: Json, folder: Path) -> Json:
 
 
 def die(_inputs: Json, folder: Path) -> Json:
-    """End as a library that crashes."""
     _drafted(folder)
     os.kill(os.getpid(), signal.SIGSEGV)
     return {}
@@ -55,7 +53,6 @@ def swell(_inputs: Json, _folder: Path) -> Json:
 
 
 def refuse(_inputs: Json, folder: Path) -> Json:
-    """Refuse the input."""
     _drafted(folder)
     raise BadInput.of("toml", 5.0, "at most 4", "Send less.")
 
@@ -67,5 +64,4 @@ def defect(inputs: Json, folder: Path) -> Json:
 
 
 def peek(inputs: Json, _folder: Path) -> Json:
-    """Read a file of the service."""
     return {"content": Path(inputs["file"]).read_text("utf-8")}

@@ -42,7 +42,6 @@ def bare_housing(
 
 
 def seat(name: str, angle: float = 0.0, motions: int = PER_SEAT, position=(0.0, 0.0, 0.0)) -> SeatFrame:
-    """A seat turned about z."""
     c, s = math.cos(angle), math.sin(angle)
     axes = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     return SeatFrame(name, np.array(position), axes, Ring.RIGID, MOTIONS[:motions])

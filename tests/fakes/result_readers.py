@@ -51,7 +51,6 @@ def _verb(*arguments: object) -> None:
 
 
 def figures_as_json(reading: Reading) -> None:
-    """Read the figures, all of which their model declares."""
     answer = _got(reading, "")
     assert answer is not None
     check_declared(reading.result.kind, answer.json())
@@ -66,7 +65,6 @@ def drawings(reading: Reading) -> None:
 
 
 def sound(reading: Reading) -> None:
-    """Hear it."""
     for query in (
         {},
         {"quantity": "mesh_force"},
@@ -77,7 +75,6 @@ def sound(reading: Reading) -> None:
 
 
 def table_queries(reading: Reading) -> None:
-    """Ask a table for forces and curves."""
     path = f"/v1/databases/{reading.result.key}"
     columns = np.array([0.0, 0.25, -1.0, 5.0]).tobytes()
     raw = {"Content-Type": "application/octet-stream", "Accept": "application/octet-stream"}
@@ -91,7 +88,6 @@ def table_queries(reading: Reading) -> None:
 
 
 def report(reading: Reading) -> None:
-    """Write the page and its images."""
     _verb(
         "report",
         reading.result.path,
@@ -108,12 +104,10 @@ def comparison(reading: Reading) -> None:
 
 
 def recording(reading: Reading) -> None:
-    """Write its sound."""
     _verb("listen", reading.result.path, "-o", reading.folder / "run.wav")
 
 
 def exports(reading: Reading) -> None:
-    """Write it for other programs."""
     for name, *options in (
         ("run.csv",),
         ("run.unv",),
@@ -125,7 +119,6 @@ def exports(reading: Reading) -> None:
 
 
 def curves(reading: Reading) -> None:
-    """Print a curve of a table."""
     for form in ("--csv", "--json", "--at=0,0.5"):
         _verb("ste", reading.result.path, "--torque", "1", form)
 

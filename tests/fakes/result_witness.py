@@ -19,24 +19,9 @@ _AT_ONCE = 10  # of those that were seen before
 
 
 class Witness:
-    """Looks at the results of jobs.
+    """Looks at the results of jobs (the text of the wish by job; may grow meanwhile).
 
-    Parameters
-    ----------
-    address : str
-    jobs : mapping
-        Text of the wish by job; may grow meanwhile.
-    headers : mapping
-        Of its requests.
-
-    Attributes
-    ----------
-    served : dict
-        Digests of what was served, by text: one each, if all is well.
-    faults : list of str
-        What should not have been.
-    answers : Counter
-        Of answers by status.
+    `served` are digests by text, one each if all is well; `faults` is what should not have been.
     """
 
     def __init__(self, address: str, jobs: Mapping[str, str], headers: Mapping[str, str]) -> None:
@@ -48,11 +33,9 @@ class Witness:
         self._thread = threading.Thread(target=self._look)
 
     def start(self) -> None:
-        """Begin."""
         self._thread.start()
 
     def stop(self) -> None:
-        """End."""
         self._stop.set()
         self._thread.join()
 
@@ -68,13 +51,11 @@ class Witness:
                         self._look_at(client, job, text)
 
     def _get(self, client: httpx2.Client, path: str, **more: Mapping[str, str]) -> httpx2.Response:
-        """Ask, and count the answer."""
         answer = client.get(path, **more)  # type: ignore[arg-type]
         self.answers[answer.status_code] += 1
         return answer
 
     def _look_at(self, client: httpx2.Client, job: str, text: str) -> None:
-        """Fetch one result."""
         status = self._get(client, f"/v1/jobs/{job}/results", params=REFERENCES)
         if status.status_code != 200:
             if status.status_code not in (404, 503):

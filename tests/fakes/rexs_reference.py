@@ -24,7 +24,6 @@ needs_reference = pytest.mark.skipif(
 
 
 def reference(name: str) -> Path:
-    """Return a file of the reference folder."""
     return _folder / name
 
 
@@ -35,7 +34,6 @@ def examples() -> list[Path]:
 
 @functools.cache
 def parsed_schema(version: str) -> Element:
-    """Return the schema of a version."""
     return ElementTree.parse(reference(f"schema/rexs_schema_{version}.xml")).getroot()
 
 
@@ -56,7 +54,6 @@ def attributes_of(version: str) -> dict[str, tuple[str, str, list[str]]]:
 
 
 def owners(version: str) -> dict[str, set[str]]:
-    """Return the types of components that have each attribute of a version."""
     found: dict[str, set[str]] = {}
     for entry in parsed_schema(version).iter("componentAttributeMapping"):
         found.setdefault(str(entry.get("attributeId")), set()).add(str(entry.get("componentId")))
@@ -65,7 +62,6 @@ def owners(version: str) -> dict[str, set[str]]:
 
 @functools.cache
 def changelog(old: str, new: str) -> Element:
-    """Return the changelog of a step."""
     return ElementTree.parse(reference(f"changelog/rexs_changelog_{old}_to_{new}.xml")).getroot()
 
 
@@ -152,7 +148,6 @@ def _edits(changes: list[Element], key: str) -> dict[str, list[str]]:
 
 
 def _enum(change: Element) -> tuple[str, dict[str, Any]]:
-    """Return an attribute and what its enum lost and renamed."""
     removed, renamed = [], {}
     for entry in change.iter("enumValueChange"):
         if entry.get("type") == "DELETE":
@@ -204,7 +199,6 @@ def _kinds_of_schemas() -> dict[str, str]:
 
 
 def entry_kind(kind: str) -> str:
-    """Return the kind of the entries of a kind of values."""
     return (
         kind.removeprefix("array_of_").removesuffix("_arrays").removesuffix("_array").removesuffix("_matrix")
     )

@@ -62,7 +62,6 @@ _TYPES = {
 
 
 def relation(number: int, kind: str, order: int | None = None, **roles: int) -> Relation:
-    """Return a relation by its roles."""
     return Relation(number, kind, tuple(Reference(part, role) for role, part in roles.items()), order)
 
 
@@ -76,7 +75,6 @@ _RELATIONS = (
 
 
 def attribute(name: str, value: Any) -> Attribute:
-    """Return an attribute in the unit that REXS gives it."""
     unit = next((unit for unit, names in _UNITS.items() if name in names), "mm")
     if isinstance(value, bool):
         return Attribute(name, "boolean", value, "none")

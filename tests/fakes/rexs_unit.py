@@ -40,7 +40,6 @@ NORMAL_LOAD, NORMAL_SPEED = 100.0, 1500.0
 
 
 def attribute(name: str, value: Any) -> Attribute:
-    """Return an attribute in the unit of REXS."""
     unit = UNITS.get(name, "none")
     if isinstance(value, bool):
         return Attribute(name, "boolean", value, unit)
@@ -123,7 +122,6 @@ def parts() -> dict[int, tuple[str, dict[str, Any]]]:
 
 
 def relations() -> list[Relation]:
-    """Return the relations of the two-stage unit."""
     rows: list[tuple[str, dict[str, int]]] = [
         *(("assembly", {"assembly": shaft, "part": gear}) for gear, (shaft, *_) in _TOOTHING.items()),
         *(("assembly", {"assembly": s, "part": 100 + 10 * s + n}) for s in _SHAFTS for n in (0, 1)),

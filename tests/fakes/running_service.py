@@ -48,12 +48,10 @@ class Bench:
         return job
 
     def ended(self, job: Job) -> Job:
-        """Wait for a job."""
         until(lambda: self.submissions.find(job.id).ended)
         return self.submissions.find(job.id)
 
     def close(self) -> None:
-        """Stop what runs and close what is open."""
         if self.scheduler.alive:
             self.scheduler.stop()
         self.engine.dispose()

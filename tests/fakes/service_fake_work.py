@@ -20,7 +20,6 @@ _TEXT, _NONCE = 20, 20
 
 
 def work(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
-    """Do what was wished."""
     wish = order.inputs["wish"]
     with (order.data_directory / f"started_{order.key[:8]}").open("a") as stream:
         stream.write(f"{os.getpid()} {os.nice(0)} {os.environ['OMP_NUM_THREADS']}\n")
@@ -52,7 +51,6 @@ def is_slow_content(content: bytes, text: str) -> bool:
 
 
 def _repeated(text: str, nonce: bytes) -> bytes:
-    """Return text and nonce over and over."""
     return (text.encode().ljust(_TEXT, b".") + nonce) * 5_000
 
 
@@ -68,7 +66,6 @@ def _write_slowly(file: Path, content: bytes, progress: Progress) -> None:
 
 
 def _misbehave(order: WorkOrder, mode: str) -> None:
-    """Fail in the way that is requested."""
     if mode == "hang":
         grandchild = subprocess.Popen(["sleep", "600"])
         (order.data_directory / f"grandchild_{order.key[:8]}").write_text(str(grandchild.pid))
@@ -95,7 +92,6 @@ def _misbehave(order: WorkOrder, mode: str) -> None:
 
 
 def _raise(mode: str) -> None:
-    """Raise the error that is requested, if one is."""
     if mode == "mesh":
         raise MeshError("element 7 has a negative Jacobian")
     if mode == "input":
@@ -106,5 +102,4 @@ def _raise(mode: str) -> None:
 
 
 def _first_time(order: WorkOrder) -> bool:
-    """Whether this is the first attempt."""
     return len((order.data_directory / f"started_{order.key[:8]}").read_text().splitlines()) == 1

@@ -53,7 +53,6 @@ def small_inputs(process: str) -> Json:
 
 
 def _small_scene(scene: Json) -> Json:
-    """Let a scene be short, and its pair the small one."""
     scene["run"]["duration_s"] = 0.01
     scene["meshes"][0]["case"] = _CASE
     scene["shafts"][1]["origin_mm"] = [20.0, 0.0, 0.0]
@@ -82,6 +81,5 @@ def _around_two_bearings(scene: Json, housing: Json) -> None:
 
 @cache
 def _block() -> Json:
-    """Return the file of the block's solid."""
     with tempfile.TemporaryDirectory() as folder:
         return FileContentInput.of(write_block(Path(folder) / "block.step", "small")).model_dump()

@@ -50,7 +50,6 @@ def small_model(version: str = "1.7") -> Model:
 
 
 def small_document() -> Document:
-    """Return the model with a file that it names."""
     return Document(small_model(), {"matrices/housing.txt": b"1 2 3"})
 
 

@@ -49,7 +49,6 @@ def flank_of_springs(gear: Gear, teeth: int) -> FlankCompliance:
 
 
 def on_springs(pair: GearPair, plan: Plan) -> PairContact:
-    """Return the pair with these compliances."""
     teeth = max(teeth_in_reach(pair), teeth_in_reach(pair.swapped())) + 2
     first, second = (flank_of_springs(gear, teeth) for gear in (pair.pinion, pair.wheel))
     return PairContact(pair, plan, plane=(first, second))

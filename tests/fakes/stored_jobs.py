@@ -28,7 +28,6 @@ class StoredJobs:
     _content: dict[str, bytes] = field(default_factory=dict)
 
     def __call__(self, request: httpx2.Request) -> httpx2.Response:
-        """Answer a request."""
         _, _, _, *parts = f"/{request.url.path}".split("/")
         if parts == [""]:
             return httpx2.Response(200, json={"version": self.version})
@@ -65,7 +64,6 @@ class StoredJobs:
 
 
 def state(job: str, status: str) -> dict[str, Any]:
-    """Return a status document."""
     numbers = {"progress": 10, "stage_progress": 20}
     return {"jobID": job, "processID": "analyze", "status": status, "message": "", "stage": "mesh"} | numbers
 

@@ -34,22 +34,10 @@ TORQUE = 1
 class StudyRow:
     """One study of one kind of subject.
 
-    Attributes
-    ----------
-    study : str
-        Its name in the registry.
-    subject : "case" or "scene"
-    witness : callable
-        Of figures, result and the table of the small case: yields pairs of a figure in the units of the
-        boundary and what it must be, from the result in SI, from another study or in closed form.
-    question : dict, optional
-        Inputs in place of those of `small_inputs`.
-    columns : callable, optional
-        Of the figures: what stands in the columns of the CSV, by their heads.
-    own : tuple of str
-        Names of figures that differ by who asks: the verb has the name of a file.
-    undeclared : tuple of str
-        Stages that it reports beside those of its row in the registry and of tables and housings.
+    `witness` yields, of figures, result and the table of the small case, pairs of a figure in the units of
+    the boundary and what it must be: from the result in SI, from another study or in closed form.
+    `columns` are those of the CSV, `own` the figures that differ by who asks (the verb has the name of a
+    file), `undeclared` the stages beside those of its row in the registry and of tables and housings.
     """
 
     study: str
@@ -65,7 +53,6 @@ class StudyRow:
 
     @property
     def registered(self) -> Study:
-        """Its row of the registry."""
         return STUDIES[self.study]
 
     @property

@@ -66,16 +66,7 @@ class Ended:
 
 
 class StudyRuns:
-    """A row of the studies, and what its question gives each way.
-
-    Parameters
-    ----------
-    row : StudyRow
-    folder : Path
-        For the files of the verb.
-    served : Served
-        A running service.
-    """
+    """A row of the studies, and what its question gives each way."""
 
     def __init__(self, row: StudyRow, folder: Path, served: Served) -> None:
         self.row, self.folder, self.served = row, folder, served
@@ -93,7 +84,6 @@ class StudyRuns:
 
     @cached_property
     def python(self) -> Computed:
-        """What Python gives."""
         seen: list[tuple[str, float]] = []
         function = getattr(workbench, self.study.package)
         run = {} if self.run is None else {"run": self.run}
@@ -105,7 +95,6 @@ class StudyRuns:
 
     @cached_property
     def run(self) -> RunResult | None:
-        """The run that is listened to."""
         if self.study.name != "listen":
             return None
         with self.at_home(), warnings.catch_warnings(record=True):
@@ -115,7 +104,6 @@ class StudyRuns:
 
     @contextmanager
     def at_home(self) -> Iterator[pytest.MonkeyPatch]:
-        """Keep the caches in the folder."""
         with pytest.MonkeyPatch.context() as patch:
             patch.setenv("XDG_CACHE_HOME", str(self.folder / "cache"))
             yield patch
@@ -123,7 +111,6 @@ class StudyRuns:
     # By the verb.
 
     def call(self, inputs: Json, *further: object, subject: Path | None = None) -> Result:
-        """Call the verb with inputs."""
         arguments = [subject or self.file, *_spelled(self.study, inputs, self.folder), *further]
         with self.at_home():
             return CliRunner().invoke(app, [self.study.name, *map(str, arguments)])
@@ -157,7 +144,6 @@ class StudyRuns:
 
     @cached_property
     def printed(self) -> Json:
-        """What the verb prints as JSON, and nothing else."""
         done = self.verb("--json")
         assert (done.exit_code, done.stderr) == (0, ""), done.output
         answer: Json = json.loads(done.stdout)
@@ -178,7 +164,6 @@ class StudyRuns:
 
     @property
     def body(self) -> Json:
-        """The inputs of its process."""
         run = {"run": self._run_key} if self.study.name == "listen" else {}
         return {self.row.subject: self.subject, **self.inputs, **run}
 
@@ -188,13 +173,11 @@ class StudyRuns:
         return key
 
     def execute(self, body: Json, **headers: str) -> Any:
-        """Post an execution."""
         path = f"/v1/processes/{self.study.name}/execution"
         return self.served.http.post(path, json={"inputs": body}, headers=headers)
 
     @cached_property
     def job(self) -> Ended:
-        """The question as a job."""
         http = self.served.http
         entered = self.execute(self.body)
         assert entered.status_code == 201, entered.text
@@ -244,7 +227,6 @@ def _option(study: Study, name: str, value: Any) -> Iterator[object]:
 
 
 def verb_call(study: str, subject: Json, folder: Path, *arguments: object) -> Result:
-    """Call the verb of a study with a subject, which is written to a folder."""
     file = folder / "subject.json"
     file.write_text(json.dumps(subject), encoding="utf-8")
     return CliRunner().invoke(app, [study, str(file), *map(str, arguments)])
@@ -256,5 +238,4 @@ def refused_call(study: str, subject: Json, inputs: Json, folder: Path) -> Resul
 
 
 def without_file(figures: Json) -> Json:
-    """Return figures without what is said of a file."""
     return {name: value for name, value in figures.items() if name not in _OF_FILE}

@@ -95,7 +95,6 @@ def service_on_bodies(data: Path, bodies: Path) -> Iterator[Served]:
 
 @contextmanager
 def study_service(directory: Path) -> Iterator[Served]:
-    """Run a service that holds a table in a directory."""
     scene_file(directory)
     data = directory / "data"
     with empty_service(data) as (client, http):
@@ -112,7 +111,6 @@ def scene_by_hash(directory: Path, duration: float) -> SceneInput:
 
 
 def prepared(process: Process, **inputs: Any) -> dict[str, Any]:
-    """Return what a request with a case makes of its inputs."""
     return process.prepare(process.inputs.model_validate_json(json.dumps(inputs)), None)  # type: ignore[arg-type]
 
 

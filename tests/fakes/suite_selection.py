@@ -40,7 +40,6 @@ structure = _structure()
 
 
 def add_options(parser: pytest.Parser) -> None:
-    """Let the command line choose."""
     parser.addoption("--all", action="store_true", help="slow tests too, whatever changed")
     parser.addoption(
         "--day", action="store_true", help="no slow tests but laws, whatever changed or is named"
@@ -91,7 +90,6 @@ def houses_from(name: str) -> frozenset[str]:
 
 
 def name_of(file: Path) -> str:
-    """Return the name that records have of a test file."""
     return file.relative_to(ROOT).as_posix()
 
 
@@ -114,7 +112,6 @@ def _rows(file: Path) -> list[tuple[str, str]]:
 
 @cache
 def digest(file: Path) -> str:
-    """Return a hash of all that a test file rests on."""
     own, houses = rests_on(file)
     sums = hashlib.sha256()
     for path in sorted(own):

@@ -7,7 +7,6 @@ from typing import Any
 
 
 def toml_text(table: dict[str, Any]) -> str:
-    """Write a table, what is inside of it inline."""
     return "".join(f"{key} = {_inline(value)}\n" for key, value in table.items())
 
 

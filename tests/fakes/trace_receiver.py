@@ -38,11 +38,9 @@ class TraceReceiver:
     address: str = ""
 
     def named(self, name: str) -> list[ReceivedSpan]:
-        """Return the spans of a name."""
         return [span for span in self.spans if span.name == name]
 
     def take(self, body: bytes) -> None:
-        """Keep the spans of a request."""
         for group in ExportTraceServiceRequest.FromString(body).resource_spans:
             self.services.add(_facts(group.resource.attributes)["service.name"])
             for scope in group.scope_spans:
@@ -50,14 +48,12 @@ class TraceReceiver:
 
 
 def _received(span: Any) -> ReceivedSpan:
-    """Return a span of the wire."""
     identifiers = (span.trace_id.hex(), span.span_id.hex(), span.parent_span_id.hex())
     times = (span.start_time_unix_nano / 1e9, span.end_time_unix_nano / 1e9)
     return ReceivedSpan(span.name, *identifiers, *times, span.status.code == 2, _facts(span.attributes))
 
 
 def _facts(attributes: Any) -> dict[str, Any]:
-    """Return attributes as plain values."""
     return {entry.key: getattr(entry.value, entry.value.WhichOneof("value")) for entry in attributes}
 
 

@@ -34,16 +34,7 @@ _TRIES = (httpx2.TransportError, ConnectionError)
 
 @dataclass(frozen=True)
 class Version:
-    """A version of the program.
-
-    Attributes
-    ----------
-    number : str
-    tree : Path
-        Folder of its packages.
-    names : Path
-        Folder whose metadata give it its number, whatever the installed version is.
-    """
+    """A version of the program: its packages in `tree`, and in `names` the metadata of its number."""
 
     number: str
     tree: Path
@@ -51,7 +42,6 @@ class Version:
 
     @classmethod
     def of(cls, number: str, tree: Path, scratch: Path) -> Version:
-        """Give the program in a folder a number."""
         names = scratch / f"named_{number}"
         facts = names / f"lineofaction-{number}.dist-info"
         facts.mkdir(parents=True, exist_ok=True)
@@ -61,7 +51,6 @@ class Version:
 
     @property
     def path(self) -> str:
-        """The search path of its modules."""
         return os.pathsep.join(map(str, (self.names, self.tree, _FAKES)))
 
     def key(self, inputs: Mapping[str, Any]) -> str:
@@ -79,7 +68,6 @@ class Server:
 
     @property
     def address(self) -> str:
-        """Where it answers."""
         return f"http://127.0.0.1:{self.listener.getsockname()[1]}"
 
     def request(self, method: str, path: str, **more: Any) -> httpx2.Response:
@@ -100,16 +88,7 @@ class Server:
 
 @dataclass
 class RollingService:
-    """What runs of both versions, and the jobs that were entered.
-
-    Attributes
-    ----------
-    directory : Path
-    settings : dict
-        Environment of all parts.
-    jobs : dict
-        Text of the wish by job.
-    """
+    """What runs of both versions, and the jobs that were entered: the text of the wish by job."""
 
     directory: Path
     settings: dict[str, str]
@@ -124,7 +103,6 @@ class RollingService:
         subprocess.run(words, env=environment, check=True, capture_output=True, timeout=PATIENCE_S)
 
     def serve(self, version: Version) -> Server:
-        """Start a server of a version."""
         listener = socket.create_server(("127.0.0.1", 0), backlog=64)
         listener.set_inheritable(True)
         server = Server(self._part("serve", version, listener.fileno()), listener)
@@ -133,12 +111,10 @@ class RollingService:
         return server
 
     def work(self, version: Version) -> Part:
-        """Start a scheduler of a version."""
         self.workers.append(self._part("work", version))
         return self.workers[-1]
 
     def end(self, part: Part, number: signal.Signals) -> None:
-        """End a part, for good."""
         self.workers = [worker for worker in self.workers if worker is not part]
         gone = [server for server in self.servers if server.part is part]
         self.servers = [server for server in self.servers if server.part is not part]
@@ -191,12 +167,10 @@ class RollingService:
         return reference["hash"], answer.text
 
     def close(self) -> None:
-        """End whatever runs."""
         for part in [*self.workers, *(server.part for server in self.servers)]:
             self.end(part, signal.SIGKILL)
 
     def _part(self, role: str, version: Version, descriptor: int | None = None) -> Part:
-        """Start a process of a version."""
         name = f"{role}_{version.number}_{uuid.uuid4().hex[:6]}"
         part = Part(role, self._environment(version, name), self.directory / f"{name}.log", descriptor)
         part.start()

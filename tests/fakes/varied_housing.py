@@ -43,8 +43,6 @@ LOSS_FACTOR = 0.02
 
 
 def meshed(cells=COARSE, modes=24, mount=1.0) -> MeshedHousing:
-    """Return it with its mounts times a factor."""
-
     def place(unit):
         angle = -2.0 * np.pi * unit[:, 0]
         wall = WALL * (1.0 + 0.4 * np.cos(angle) + 0.3 * np.sin(2.0 * angle))
@@ -76,7 +74,6 @@ def plane_waves(housing: ReducedHousing, low=20.0, high=20e3) -> ModalResistance
 
 
 def sound_model(housing: ReducedHousing) -> SoundModel:
-    """Return the pair in this housing."""
     part = replace(scene_housing(housing, "case"), seat_positions=None)
     scene = replace(gear_pair_scene(square_wave_table(), effects=EFFECTS), housings=(part,))
     return SoundModel(scene, {"case": housing}, {"case": plane_waves(housing)})

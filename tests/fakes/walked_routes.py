@@ -11,15 +11,7 @@ from fastapi import FastAPI
 
 @dataclass(frozen=True)
 class WalkedRoute:
-    """A route with one of its methods.
-
-    Attributes
-    ----------
-    method, path : str
-        The path is a template.
-    route : Any
-        As the application has it.
-    """
+    """A route with one of its methods."""
 
     method: str
     path: str
@@ -34,12 +26,10 @@ class WalkedRoute:
 
 
 def walked_routes(app: FastAPI) -> list[WalkedRoute]:
-    """Return every route with every method."""
     return list(_walk(app.routes, ""))
 
 
 def _walk(routes: Any, prefix: str) -> Iterator[WalkedRoute]:
-    """Yield routes, and those of included routers."""
     for route in routes:
         inner = getattr(route, "original_router", None)
         if inner is not None:

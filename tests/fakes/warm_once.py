@@ -56,14 +56,12 @@ class _WarmProcesses:
         return server.fork(ends)
 
     def close(self) -> None:
-        """End them."""
         for server in self._found.values():
             server.close()
 
 
 @pytest.fixture(scope="session")
 def warm_processes(tmp_path_factory: pytest.TempPathFactory) -> Iterator[_WarmProcesses]:
-    """The warm processes of a test process."""
     made = _WarmProcesses(tmp_path_factory.mktemp("warm"))
     yield made
     made.close()

@@ -29,7 +29,6 @@ def read_wav(path: Path | str) -> Recording:
 
 
 def _comment(data: bytes) -> str:
-    """Return the comment of a file, empty without one."""
     for name, content in _chunks(data[12:]):
         if name == b"LIST" and content[:4] == b"INFO":
             return dict(_chunks(content[4:])).get(b"ICMT", b"").rstrip(b"\0").decode("ascii")
@@ -37,7 +36,6 @@ def _comment(data: bytes) -> str:
 
 
 def _chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """Yield names and contents of the chunks in a row."""
     at = 0
     while at + 8 <= len(data):
         (length,) = struct.unpack("<I", data[at + 4 : at + 8])

@@ -34,7 +34,6 @@ class Received:
 
     @property
     def json(self) -> Any:
-        """The body."""
         return json.loads(self.body)
 
 
@@ -51,11 +50,9 @@ class Receiver(ThreadingHTTPServer):
 
     @property
     def origin(self) -> str:
-        """Its address."""
         return f"http://127.0.0.1:{self.server_port}"
 
     def paths(self) -> list[str]:
-        """Return the paths of the requests that came, in order."""
         return [request.path for request in self.requests]
 
 
@@ -65,7 +62,6 @@ class _Handler(BaseHTTPRequestHandler):
     server: Receiver
 
     def do_POST(self) -> None:
-        """Do as the path says."""
         body = self.rfile.read(int(self.headers["content-length"]))
         headers = {name.lower(): value for name, value in self.headers.items()}
         self.server.requests.append(Received(self.path, headers, body))

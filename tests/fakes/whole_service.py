@@ -29,18 +29,7 @@ _HASH = re.compile(r"[0-9a-f]{64}\Z")
 
 @dataclass(frozen=True)
 class WholeService:
-    """An application and what is in it.
-
-    Attributes
-    ----------
-    app : FastAPI
-    headers : dict
-        With the access key.
-    key : str
-        Content hash of the one database.
-    job : str
-        Identifier of the job that made it.
-    """
+    """An application, its key, the hash of its one database and the job that made it."""
 
     app: FastAPI
     headers: dict[str, str]
@@ -59,7 +48,6 @@ class WholeService:
 
 
 def whole_service(directory: Path) -> WholeService:
-    """Analyze a small pair, and return a service that has it."""
     with TestClient(create_app(Settings(data_directory=directory))) as client:
         answer = client.post("/v1/processes/analyze/execution", json={"inputs": {"case": _CASE}})
         location = answer.headers["location"]

@@ -22,14 +22,7 @@ from service.worker.process import Registry, default_registry
 
 @dataclass(frozen=True)
 class Service:
-    """A service with a key.
-
-    Attributes
-    ----------
-    url, key : str
-    description : dict
-        OpenAPI.
-    """
+    """A service with a key."""
 
     url: str
     key: str
@@ -37,7 +30,6 @@ class Service:
 
     @property
     def headers(self) -> dict[str, str]:
-        """The headers of a caller with the key."""
         return {"Authorization": f"Bearer {self.key}"}
 
 

@@ -14,14 +14,12 @@ Work = Callable[[WorkOrder, Progress], tuple[Product, ...]]
 
 
 def __getattr__(name: str) -> Work:
-    """Return the work that makes a kind of result."""
     if name in RESULT_KINDS:
         return partial(_write, name)
     raise AttributeError(name)
 
 
 def _write(kind: str, order: WorkOrder, _progress: Progress) -> tuple[Product, ...]:
-    """Write a file of a kind."""
     path = order.workspace / "result.nc"
     with h5netcdf.File(path, "w") as file:
         file.attrs["kind"] = kind

@@ -30,7 +30,6 @@ KEY = "ab" * 32
 def service(
     tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path
 ) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """A service in a process of its own, and its address."""
     folder = tmp_path_factory.mktemp("service")
     find_condensed(condensed_bodies, folder)
     with subprocess.Popen(

@@ -49,7 +49,6 @@ class Cluster:
 
     @property
     def alive(self) -> list[subprocess.Popen[bytes]]:
-        """Processes that have not ended."""
         return [process for process in self.processes if process.poll() is None]
 
     def kill_busy(self, count: int) -> None:
@@ -99,7 +98,6 @@ def cluster() -> Iterator[Cluster]:
 
 @pytest.fixture(autouse=True)
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Cut small tables as large ones are."""
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.01)
 
 

@@ -23,7 +23,6 @@ def loa(*arguments: object) -> str:
 
 @pytest.fixture(scope="module")
 def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The table of the example."""
     file = tmp_path_factory.mktemp("ring") / "ring.nc"
     loa("analyze", EXAMPLE, "-o", file)
     return file

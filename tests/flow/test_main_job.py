@@ -57,7 +57,6 @@ def job(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> tup
 
 
 def number(text: str, label: str) -> float:
-    """Return the number printed after a label."""
     found = re.search(rf"{re.escape(label)}\s+([-\d.]+)", text)
     assert found, f"{label} is not in:\n{text}"
     return float(found.group(1))

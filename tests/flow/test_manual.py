@@ -50,13 +50,11 @@ def test_a_number_that_is_wrong_is_seen() -> None:
 
 
 def links(page: Path) -> set[Path]:
-    """Return the pages that a page leads to."""
     targets = re.findall(r"\]\(([^)#\s]+\.md)", page.read_text("utf-8"))
     return {(page.parent / target).resolve() for target in targets}
 
 
 def questions() -> list[tuple[str, Path]]:
-    """Return the questions of a newcomer, with the pages that answer them."""
     rows = re.findall(r"^\d+\. \[([^]]+)\]\(([^)#]+)", (DOCS / "questions.md").read_text("utf-8"), re.M)
     return [(question, (DOCS / target).resolve()) for question, target in rows]
 

@@ -34,12 +34,10 @@ pathlib.Path("housings.json").write_text(json.dumps([case]))
 
 
 def blocks(language: str) -> list[str]:
-    """Return the code blocks of a language."""
     return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
 
 
 def run_python(code: str, folder: Path, warnings: str = "error") -> subprocess.CompletedProcess[str]:
-    """Run a block in an interpreter of its own."""
     done = subprocess.run(
         [sys.executable, "-W", warnings, "-c", code],
         cwd=folder,

@@ -80,7 +80,6 @@ def with_twins(problem: Problem) -> Problem:
 
 
 def picked(problem: Problem, index: np.ndarray) -> Problem:
-    """Return the contacts of these indices."""
     names = ("gap", "motion_arm", "torque_arm", "width", "modulus")
     arrays = {name: getattr(problem, name)[index] for name in names}
     arrays["gap_about"] = GapAbout(*(part[index] for part in vars(problem.gap_about).values()))

@@ -66,7 +66,6 @@ def typed_suggestions(table: Table, fault: Fault) -> list[Table]:
 
 
 def changed(table: Table, field: str, value: float) -> Table:
-    """Return the case with one field of another value."""
     other = copy.deepcopy(table)
     *path, name = field.split(".")
     inner = other
@@ -104,7 +103,6 @@ def random_table(random: np.random.Generator) -> Table:
 
 
 def random_gear(random: np.random.Generator, module: float) -> Table:
-    """Return one external gear."""
     teeth = int(random.integers(8, 60))
     gear = {
         "teeth": teeth,

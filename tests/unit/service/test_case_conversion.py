@@ -26,7 +26,6 @@ ROOT = Path(__file__).parents[3]
 
 
 def case(**pinion: Any) -> Case:
-    """Return the good case with changes of the pinion."""
     table = copy.deepcopy(GOOD)
     table["pair"]["pinion"] |= pinion
     return validated(Case, table)

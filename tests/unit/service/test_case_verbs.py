@@ -29,7 +29,6 @@ PLAIN = SPUR + '\n[load]\ntorque_n_m = [50, 100]\n[accuracy]\nlevel = "draft"\n'
 
 
 def told(folder: Path, case: str, verb: str, *arguments: object) -> Any:
-    """Return what a verb prints of a case as JSON."""
     file = folder / "case.toml"
     file.write_text(case, encoding="utf-8")
     done = CliRunner().invoke(app, [verb, str(file), *map(str, arguments), "--json"])

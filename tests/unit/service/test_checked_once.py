@@ -49,7 +49,6 @@ class Calls:
 
     @property
     def counts(self) -> tuple[int, int, int]:
-        """Numbers of the three."""
         return self.validated, self.converted, len(self.checked)
 
 
@@ -82,7 +81,6 @@ def calls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Calls]:
 def _replace(
     monkeypatch: pytest.MonkeyPatch, name: str, function: Callable[..., Any], other: Callable[..., Any]
 ) -> None:
-    """Replace a function wherever it was imported."""
     for module in list(sys.modules.values()):
         if getattr(module, "__dict__", {}).get(name) is function:
             monkeypatch.setattr(module, name, other)

@@ -17,7 +17,6 @@ EXAMPLES = Path(__file__).parents[3] / "service" / "page" / "examples"
 
 
 def through_json(answer: dict[str, Any]) -> Any:
-    """Return an answer as it arrives."""
     return json.loads(json.dumps(answer, allow_nan=False))
 
 

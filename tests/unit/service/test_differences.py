@@ -14,7 +14,6 @@ from service.schemas.examples import CASE, SCENE
 
 
 def between(before: Any, now: Any) -> list[tuple[str, Any, Any]]:
-    """Return the differences of inputs."""
     found = differences_between(before, now).first
     return [(difference.field, difference.before, difference.value) for difference in found]
 

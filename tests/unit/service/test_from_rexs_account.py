@@ -46,7 +46,6 @@ def unit() -> GearUnit:
 
 
 def fates(gears: GearUnit) -> dict[tuple[str, str], str]:
-    """Return the fates by place and item."""
     return {(line.place, line.item): line.fate for line in gears.account.lines()}
 
 

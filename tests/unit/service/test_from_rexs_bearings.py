@@ -25,7 +25,6 @@ def by_name(unit: OpenedUnit) -> dict[int, RollingBearingInput]:
 
 
 def why(unit: OpenedUnit, number: int) -> str:
-    """Return what the account says of a bearing, which is a bushing."""
     assert unit.scene is not None and number not in by_name(unit)
     assert any(bushing.name.endswith(str(number)) for bushing in unit.scene.bushings)
     (line,) = [line for line in unit.lines if (line.component, line.item) == (number, "")]

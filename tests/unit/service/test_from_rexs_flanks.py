@@ -41,7 +41,6 @@ def modified(
     changes: Mapping[int, Mapping[str, Any]] | None = None,
     types: Mapping[int, str] | None = None,
 ) -> GearUnit:
-    """Return a unit with a modification of a flank."""
     return stage_unit(
         {MODIFICATION: values, **(changes or {})},
         {MODIFICATION: kind, **(types or {})},
@@ -56,7 +55,6 @@ def only_case(unit: GearUnit, torque: float = 10.0) -> Case:
 
 
 def account(unit: GearUnit, component: int, item: str) -> tuple[str, str]:
-    """Return fate and words of a line."""
     (line,) = [line for line in unit.account.lines() if (line.component, line.item) == (component, item)]
     return line.fate, line.words
 

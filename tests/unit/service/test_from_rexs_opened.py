@@ -53,7 +53,6 @@ def rotation(axis: int, degrees: float) -> np.ndarray[Any, np.dtype[np.float64]]
 
 
 def turned_document(turn: np.ndarray[Any, np.dtype[np.float64]], *, root: bool) -> Document:
-    """Return the unit with all places turned, or with its root turned alone."""
     vectors = ("support_vector", "u_axis_vector", "w_axis_vector")
 
     def each(number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:

@@ -13,7 +13,6 @@ from lineofaction.gearbox.problems import BadInput
 
 
 def frame_with(**values: Any) -> Any:
-    """Return the frame of the pinion, whose values are changed, and the unit."""
     unit = stage_unit({PINION: values})
     return frame_of(unit.part(PINION)), unit
 

@@ -26,7 +26,6 @@ from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
 
 
 def only(unit: GearUnit, **options: Any) -> StageCase:
-    """Return the one case of a unit."""
     (case,) = stage_cases(unit, **{"torques": {}, **options})
     return case
 
@@ -38,7 +37,6 @@ def said(unit: GearUnit, component: int, item: str) -> tuple[str, str]:
 
 
 def flanks(gear: tuple[int, int], **values: float | None) -> Values:
-    """Return the same values for both flanks of a gear."""
     return dict.fromkeys(gear, values)
 
 

@@ -57,7 +57,6 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(tmp_path: Path, shared: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with the STEP file."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(shared / "cache"))
     (tmp_path / "block.step").write_bytes((shared / "block.step").read_bytes())
     return tmp_path
@@ -71,7 +70,6 @@ def tabled(folder: Path, **fields: Any) -> TabledScene:
 
 
 def in_python(folder: Path, damping=None, mount: Mount | None = None) -> ReducedHousing:
-    """Return the reduction of the block by the library."""
     centers = {"input left": (0.0, 0.0, 0.1), "output left": (0.08, 0.0, 0.1)}
     seats = tuple(SeatBore(name, Bore(at, (0.0, 0.0, 1.0), 0.04, 0.03)) for name, at in centers.items())
     feet = [Foot("base", Plane((0.0, -0.04, 0.0), (0.0, -1.0, 0.0)), mount)]
@@ -85,7 +83,6 @@ def in_python(folder: Path, damping=None, mount: Mount | None = None) -> Reduced
 
 
 def same(one: ReducedHousing, other: ReducedHousing) -> None:
-    """Check that two housings are the same to the last bit."""
     for name in ("mass", "stiffness", "damping", "frequency"):
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
     np.testing.assert_array_equal(one.surface.motion, other.surface.motion)
@@ -301,7 +298,6 @@ def test_a_damaged_content_is_refused_at_the_request(folder: Path) -> None:
 
 
 def tabled_facts(folder: Path):
-    """Return the facts of the pair."""
     from fe_contact.ste import SteDatabase  # noqa: PLC0415
 
     return SteDatabase.from_netcdf(folder / "mesh.nc").facts

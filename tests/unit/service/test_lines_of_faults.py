@@ -21,7 +21,6 @@ SPUR = EXAMPLES / "palermo_spur_20_20.toml"
 
 
 def fields(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
-    """Yield paths of all values, and the last name of each."""
     if isinstance(value, dict):
         for name, inner in value.items():
             yield from fields(inner, f"{path}.{name}".lstrip("."))

@@ -27,7 +27,6 @@ LENGTH_OF = {
 
 
 def taken(case: dict[str, Any]) -> bool:
-    """Return whether the model takes a case."""
     try:
         gear_pair(validated(Case, case))
     except BadInput:

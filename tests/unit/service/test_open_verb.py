@@ -24,7 +24,6 @@ STAGES = ("cylindrical_stage_21", "cylindrical_stage_22")
 
 
 def opened(file: Path, folder: Path, *options: str) -> str:
-    """Return the output of the verb."""
     result = CliRunner().invoke(loa, ["open", str(file), "--out", str(folder), *options])
     assert result.exit_code == 0, result.output
     return result.output

@@ -22,7 +22,6 @@ MOST_LAYERS = 36
 def case(
     face_width: float = 20.0, helix: float = 20.0, torque: float = 100.0, distance: float = 86.0
 ) -> Case:
-    """Return the case of a helical pair."""
     gear = {"teeth": 20, "face_width_mm": face_width, "bore_diameter_mm": 20.0}
     sizes = {"normal_module_mm": 4.0, "normal_pressure_angle_deg": 20.0, "helix_angle_deg": helix}
     pair: dict[str, Any] = sizes | {"center_distance_mm": distance, "pinion": gear, "wheel": gear}

@@ -63,7 +63,6 @@ PLANETARY: dict[str, Any] = {
 
 
 def planetary(change: Change = lambda _table: None) -> Scene:
-    """Return a planetary scene with a change, on small tables."""
     table = copy.deepcopy(PLANETARY)
     change(table)
     tables = {"sun mesh": small_table(), "ring mesh": ring_table()}

@@ -18,7 +18,6 @@ PAGE = (DOCS / "plausibility.md").read_text(encoding="utf-8")
 
 
 def limits(check: Any) -> str:
-    """The limits of a check and their source as the page has them."""
     low, high = limit_text(check.low, check.unit), limit_text(check.high, check.unit)
     if low and high:
         return f"{low} to {high} ({check.source})."

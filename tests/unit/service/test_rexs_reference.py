@@ -191,7 +191,6 @@ def test_a_stage_with_results_is_valid() -> None:
 
 
 def with_load_case() -> Document:
-    """Return the two-stage unit with one load case."""
     return two_stages(cases=[{MOTOR: ("external_load", {"torque_around_u_axis": 50.0})}])
 
 

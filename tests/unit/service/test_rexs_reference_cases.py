@@ -25,7 +25,6 @@ EXAMPLES = pytest.mark.parametrize("path", examples(), ids=lambda path: path.nam
 
 
 def opened(path: object) -> tuple[GearUnit, tuple[StageCase, ...]]:
-    """Return the unit of a file and its cases."""
     unit = GearUnit(upgrade(read_rexs(path).model)[0])  # type: ignore[arg-type]
     return unit, stage_cases(unit, {})
 

@@ -230,14 +230,11 @@ def test_a_housing_has_its_mass_from_the_file() -> None:
 
 
 def housing_of(table: dict[str, Any], **fields: Any) -> dict[str, Any]:
-    """Return a housing under the first two bushings."""
     names = [bushing["name"] for bushing in table["bushings"][:2]]
     return {"name": "case", "bushings": names, "stiffness_matrix": HOUSING} | fields
 
 
 def housing(**fields: Any) -> Change:
-    """Return a change that adds this housing."""
-
     def change(table: dict[str, Any]) -> None:
         table["housings"] = [housing_of(table, **fields)]
 

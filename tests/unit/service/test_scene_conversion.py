@@ -24,7 +24,6 @@ Change = Callable[[dict[str, Any]], object]
 
 
 def scene(change: Change = lambda _table: None) -> Scene:
-    """Return the paper's scene with a change, on the small table."""
     table = copy.deepcopy(EXAMPLE)
     change(table)
     return dynamic_scene(validated(SceneInput, table), {"mesh": small_table()})

@@ -103,7 +103,6 @@ def test_discs_have_an_inertia_or_are_of_steel() -> None:
 
 
 def disc(**fields: Any) -> Change:
-    """Return a change that adds a disc."""
     steel = {"outer_diameter_mm": 100.0, "width_mm": 20.0}
     full = {"name": "disc", "shaft": "input", "position_mm": 10.0, "cylinder": steel}
     return lambda table: table.update(discs=[{**full, **fields}])

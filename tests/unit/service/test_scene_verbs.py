@@ -26,7 +26,6 @@ def loa(*arguments: object) -> Result:
 
 
 def told(*arguments: object) -> Any:
-    """Return what is printed as JSON."""
     result = loa(*arguments, "--json")
     assert (result.exit_code, result.stderr) == (0, "")
     return json.loads(result.stdout)

@@ -24,12 +24,10 @@ from lineofaction.gearbox.to_rexs import exported
 
 
 def unit() -> GearUnit:
-    """Return the unit of one stage."""
     return stage_unit()
 
 
 def stages() -> tuple[StageCase, ...]:
-    """Return its case."""
     return stage_cases(unit(), {})
 
 

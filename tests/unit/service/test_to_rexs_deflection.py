@@ -78,7 +78,6 @@ def with_sides_exchanged(document: Document, bearing: int) -> Document:
 
 
 def written(document: Document) -> tuple[Document, GearboxDeflection]:
-    """Return the document with the results of its deflection, and these."""
     unit = opened(document)
     result = deflection_of_unit(unit)
     return deflected(document, unit, result), result

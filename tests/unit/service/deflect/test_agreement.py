@@ -31,21 +31,18 @@ class SlicedContact:
     knots: list[list[float]] = field(default_factory=list)
 
     def table(self, misalignments: list[float]) -> Any:
-        """Return the table over misalignments."""
         self.knots.append(list(misalignments))
         forces = (300.0, 1000.0, 3000.0, 9000.0)
         return sliced_database(tuple(misalignments), positions=6, forces=forces).force_table()
 
 
 def agreed(scene: Any, cases: tuple[LoadCase, ...] = CASES) -> tuple[Any, dict[str, SlicedContact]]:
-    """The agreement of the two stages, and their contacts."""
     contacts: Any = {mesh.name: SlicedContact() for mesh in scene.meshes}
     first = deflect(scene, cases, POSITIONS)
     return in_agreement(scene, cases, POSITIONS, contacts, first), contacts
 
 
 def misalignments(deflection: Deflection, mesh: int) -> list[float]:
-    """Of a mesh over the cases."""
     return [case.meshes[mesh].misalignment for case in deflection.cases]
 
 

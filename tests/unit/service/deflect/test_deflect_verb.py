@@ -48,7 +48,6 @@ def loa(*arguments: object) -> Result:
 
 
 def flanks_of(case: Any, mesh: Any) -> MeshFlanks:
-    """Some flanks under a load."""
     along, across = np.linspace(-0.015, 0.015, 41), np.linspace(0.005, 0.02, 40)
     load = np.maximum(0.0, 1e5 * (1.0 - along / 0.02))
     numbers = {"torque": 0.02 * mesh.force, "mean": 1e-5, "peak_to_peak": 1e-6}
@@ -202,7 +201,6 @@ def test_deflections_are_drawn_a_round_number_of_times_enlarged(result: GearboxD
 
 
 def with_bearings(result: GearboxDeflection, change: Callable[[BearingLoad], BearingLoad]) -> Any:
-    """The result with other loads of its bearings."""
     cases = tuple(
         replace(case, bearings=tuple(change(load) for load in case.bearings))
         for case in result.deflection.cases

@@ -17,7 +17,6 @@ from lineofaction.hardcases import HARD_SCENES, Measured, run_scenes
 
 @pytest.fixture(autouse=True)
 def _imported_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Fork the processes of the scenes from one that has imported them."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["lineofaction.hardcases.scene", "scenes_that_break"])
     monkeypatch.setattr("lineofaction.hardcases.scene.multiprocessing.get_context", lambda _: context)

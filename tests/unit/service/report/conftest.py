@@ -211,7 +211,6 @@ def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) 
 
 
 def _scene(rate: float) -> dict[str, Any]:
-    """Return what a run keeps of its scene."""
     return {
         "meshes": [{"name": "mesh", "driver": "pinion", "driven": "wheel"}],
         "shafts": [{"name": "output"}, {"name": "input"}],

@@ -35,7 +35,6 @@ def drawn_at_random(seed: int) -> tuple[SteDatabase, dict[str, Figure]]:
 
 
 def says(text: str, value: float) -> bool:
-    """Whether a text is the value, rounded to the digits that it has."""
     digits = len(text.partition(".")[2])
     unit = 10.0 ** (-digits) if digits else 10.0 ** max(len(text.lstrip("-")) - 3, 0)
     return abs(float(text) - value) <= 0.501 * unit
@@ -244,7 +243,6 @@ CHECKS = {
 
 
 def check_loads(database: SteDatabase) -> None:
-    """All loads of a few, and the ends of many."""
     shown = shown_loads(database)
     chosen = few_loads(database)
     assert chosen == shown if len(shown) <= MOST_LINES else len(chosen) <= MOST_LINES
@@ -293,7 +291,6 @@ def test_the_random_pairs_have_every_figure() -> None:
 
 
 def computed() -> list[GearPair]:
-    """Return two pairs of the plane and a helical one."""
     relief = FlankModification(tip_relief=20e-6, tip_relief_length=1e-3)
     gear = Gear(teeth=23, normal_module=2e-3, face_width=12e-3, bore_diameter=20e-3)
     helical = replace(gear, helix_angle=math.radians(25.0), modification=relief)

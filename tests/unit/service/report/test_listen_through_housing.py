@@ -163,7 +163,6 @@ def test_housings_are_compared_by_what_they_state(run: RunResult) -> None:
 
 
 def _rows(matrix: FloatArray) -> tuple[tuple[float, ...], ...]:
-    """Return a matrix as rows."""
     return tuple(map(tuple, matrix.tolist()))
 
 

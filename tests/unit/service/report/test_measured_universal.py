@@ -44,7 +44,6 @@ def function(label: str, x: Any, values: Any, **changes: Any) -> dict[str, Any]:
 
 
 def written(file: Path, *functions: dict[str, Any], length: float = 1.0) -> Path:
-    """Write functions in units of a length factor."""
     units = pyuff.prepare_164(
         units_code=9,
         units_description="own",

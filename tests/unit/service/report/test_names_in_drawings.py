@@ -25,7 +25,6 @@ X = np.linspace(0.0, 2.0, 5)
 
 
 def named(name: str) -> Figure:
-    """Return a figure that has a name wherever one can stand."""
     lines = (Line(name, X, X, palette.BLUE), Line("other", X, 2.0 * X, palette.GREEN, label=name))
     bars = (Bars(f"{name} bar", X, X, 0.0, 0.1, palette.SKY),)
     names = ((0.0, name), (1.0, "one"))
@@ -37,7 +36,6 @@ def named(name: str) -> Figure:
 
 
 def texts(plot: Any, key: str = "") -> Iterator[str]:
-    """Yield what plotly.js writes of a plot."""
     if isinstance(plot, dict):
         for name, value in plot.items():
             yield from texts(value, name)

@@ -15,7 +15,6 @@ from lineofaction.report.effects.frontier import _frontier_page
 
 
 def rung(name: str, error: float, seconds: float) -> FidelityResult:
-    """Return a rung that is so far off."""
     ripple = np.array([1e-6, 2e-6])
     return FidelityResult(
         name, name, seconds, 4.0 * ripple, ripple, 0.01, {"contact": seconds}, 2**28, error, 2.0 * error

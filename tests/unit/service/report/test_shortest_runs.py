@@ -31,7 +31,6 @@ SHAPES = {name: series.dimensions for name, series in SERIES.items()}
 
 
 def first(run: RunResult, samples: int, **changes: Any) -> RunResult:
-    """Return the beginning of a run."""
     cut = {
         name: value[..., :samples]
         for name, value in vars(run).items()

@@ -15,7 +15,6 @@ SIDES = (0.3, 0.2, 0.1)
 
 
 def block() -> tuple[np.ndarray, np.ndarray]:
-    """Points and triangles of a block."""
     mesh = box(SIDES, (3, 2, 1))
     nodes, triangles = np.unique(mesh.surface[:, :3], return_inverse=True)
     return mesh.points[nodes], triangles.reshape(-1, 3)
