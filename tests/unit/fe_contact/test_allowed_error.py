@@ -11,7 +11,6 @@ from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import _adaptive_nodes
-from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.plan import FLOOR_SHARE, NodeRule
 
@@ -36,16 +35,6 @@ def test_the_larger_of_the_part_and_the_floor_is_allowed():
 def test_what_is_allowed_is_a_part_of_the_scale():
     for allowed in (AllowedError(), AllowedError(0.2, 3e-7), AllowedError(0.01, 0.0)):
         assert allowed.of(VALUES) == pytest.approx(allowed.relative * allowed.scale(VALUES), rel=1e-15)
-
-
-@pytest.mark.parametrize(
-    ("asked", "field"),
-    [((0.0,), "tolerance"), ((0.6,), "tolerance"), ((0.01, -1e-9), "tolerance_floor")],
-)
-def test_a_tolerance_that_cannot_be_is_refused_by_name(asked, field):
-    with pytest.raises(InputError) as caught:
-        AllowedError(*asked)
-    assert caught.value.field == field
 
 
 def test_a_number_is_the_relative_part():

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
-from fe_contact.errors import InputError
 
 
 def gear(teeth: int = 20, **changes: object) -> Gear:
@@ -120,44 +119,3 @@ def test_progress_reaches_the_end_of_every_stage(pair, cache):
     seen: dict[str, float] = {}
     draft(pair, cache, progress=lambda stage, fraction: seen.update({stage: fraction}))
     assert seen == {"compliance": 1.0, "contact": 1.0, "error estimate": 1.0}
-
-
-@pytest.mark.parametrize(
-    ("options", "field"),
-    [
-        ({"torques": None}, "torques"),
-        ({"normal_forces": [100.0]}, "torques"),
-        ({"torques": [100.0, 50.0]}, "torques"),
-        ({"torques": [0.0, 50.0]}, "torques[0]"),
-        ({"torques": [float("nan")]}, "torques"),
-        ({"torques": []}, "torques"),
-        ({"level": None, "tolerance": 0.0}, "tolerance"),
-        ({"tolerance": 0.01}, "level"),
-        ({"level": "finest"}, "level"),
-        ({"level": None, "time_budget": -1.0}, "time_budget"),
-        ({"model": "4d"}, "model"),
-        ({"positions": 3}, "positions"),
-        ({"positions": 6.5}, "positions"),
-        ({"misalignments": [1e-5], "model": "plane_strain"}, "misalignments"),
-        ({"misalignments": [30.0]}, "misalignments[0]"),
-        ({"center_distance_changes": [1e-5, 0.0]}, "center_distance_changes"),
-        ({"effects": {"corner_contact": "maybe"}}, "effects.corner_contact"),
-        ({"effects": {"magnetism": "on"}}, "effects.magnetism"),
-    ],
-)
-def test_bad_options_are_refused_by_name(pair, cache, options, field):
-    with pytest.raises(InputError) as caught:
-        draft(pair, cache, **options)
-    assert caught.value.field == field
-
-
-def test_lead_modification_is_refused_in_the_plane(cache):
-    crowned = gear(modification=FlankModification(helix_crowning=5e-6))
-    with pytest.raises(InputError, match=r"pinion\.modification"):
-        draft(GearPair(crowned, gear(), 80e-3), cache, model="plane_strain")
-
-
-def test_helical_gears_are_refused_in_the_plane(cache):
-    pair = GearPair(gear(helix_angle=0.2), gear(helix_angle=-0.2))
-    with pytest.raises(InputError, match="helix_angle"):
-        draft(pair, cache, model="plane_strain")

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import pytest
 
-from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.geometry import Gear, GearBlank, GearPair, blank_factor, iso6336_stiffness, web_compliance
 from fe_contact.geometry.web_compliance import shift_compliance, torsion_compliance
 from fe_contact.material import STEEL
@@ -40,41 +39,6 @@ def test_the_mirror_image_has_its_web_on_the_other_side() -> None:
     assert right.helix_angle == 0.3
     assert (right.web.low, right.web.high) == (-left.web.high, -left.web.low)  # type: ignore[union-attr]
     assert right.right_handed() is right
-
-
-@pytest.mark.parametrize(
-    ("field", "change"),
-    [
-        ("rim_thickness", {"rim_thickness": 0.0}),
-        ("web_thickness", {"web_thickness": math.nan}),
-        ("hub_diameter", {"hub_diameter": -1.0}),
-        ("web_offset", {"web_offset": math.inf}),
-    ],
-)
-def test_an_impossible_blank_is_refused_by_name(field: str, change: dict[str, float]) -> None:
-    with pytest.raises(InputError) as refusal:
-        replace(BLANK, **change)
-    assert refusal.value.field == field
-
-
-@pytest.mark.parametrize(
-    ("field", "change"),
-    [
-        ("blank.rim_thickness", {"rim_thickness": 50e-3}),
-        ("blank.rim_thickness", {"rim_thickness": 1e-3}),
-        ("blank.hub_diameter", {"hub_diameter": 39e-3}),
-        ("blank.hub_diameter", {"hub_diameter": 139e-3}),
-        ("blank.web_thickness", {"web_thickness": 41e-3, "web_offset": 0.0}),
-        ("blank.web_thickness", {"web_thickness": 0.5e-3}),
-        ("blank.web_offset", {"web_offset": -16e-3}),
-    ],
-)
-def test_a_blank_that_has_no_room_is_refused_by_name(field: str, change: dict[str, float]) -> None:
-    with pytest.raises(InfeasibleGeometry) as refusal:
-        replace(GEAR, blank=replace(BLANK, **change))
-    expected = "blank.rim_thickness" if change.get("hub_diameter", 0.0) > 130e-3 else field
-    assert refusal.value.field == expected
-    assert str(refusal.value.suggestion)
 
 
 def test_blank_factor_of_the_standard() -> None:

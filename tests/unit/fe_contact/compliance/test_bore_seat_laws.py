@@ -14,7 +14,6 @@ import fe_contact.compliance.cyclic_compliance as flow
 from fe_contact.compliance import FlankCompliance3D, flank_compliance_3d
 from fe_contact.compliance.condensed_gear import _probe_loads
 from fe_contact.compliance.sector_stiffness import _face_mass
-from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.geometry import BoreSeat, Gear, seat_compliance
 from fe_contact.mesh import ClampedBore, bore_support, swept_sector
 from fe_contact.mesh.sector_grid import SectorGrid
@@ -132,22 +131,3 @@ def test_face_functions_share_the_area_and_keep_its_moments() -> None:
     assert x @ mass @ x == pytest.approx(4.0 / 3.0, rel=1e-14)
     assert x**2 @ mass @ x**2 == pytest.approx(4.0 / 5.0, rel=1e-14)
     assert np.linalg.eigvalsh(mass).min() > 0.0
-
-
-@pytest.mark.parametrize(
-    ("field", "value"),
-    [("radial_foundation", 0.0), ("axial_foundation", -1.0), ("width", 0.0), ("offset", math.nan)],
-)
-def test_an_impossible_seat_is_refused_by_name(field: str, value: float) -> None:
-    with pytest.raises(InputError) as refusal:
-        BoreSeat(**{field: value})  # type: ignore[arg-type]
-    assert refusal.value.field == field
-
-
-@pytest.mark.parametrize(
-    ("field", "seat"), [("width", BoreSeat(width=21e-3)), ("offset", BoreSeat(width=10e-3, offset=6e-3))]
-)
-def test_a_seat_beside_the_face_is_refused_by_name(field: str, seat: BoreSeat) -> None:
-    with pytest.raises(InfeasibleGeometry) as refusal:
-        replace(SPUR, seat=seat)
-    assert refusal.value.field == f"seat.{field}"

@@ -1,124 +1,150 @@
+"""External and internal pairs: path of contact, backlash, forces, and what a refusal suggests."""
+
 from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
+import re
+from typing import Any
 
 import numpy as np
 import pytest
+from spur_gears import gear as bored
+from spur_gears import make_gear, make_ring
 
-from fe_contact.errors import InfeasibleGeometry, InputError
-from fe_contact.geometry import Gear, GearPair
+from fe_contact.errors import InfeasibleGeometry
+from fe_contact.flank.involute import involute_function
+from fe_contact.geometry import Gear, GearPair, ParallelAxes, RingGear
+from fe_contact.geometry.backlash import reference_center_distance
+from fe_contact.geometry.gear_pair import InternalGearPair
+
+MODULE = 4e-3
 
 
-def helical_pair(make_gear: Callable[..., Gear], **fields: float) -> GearPair:
-    pinion = make_gear(teeth=23, helix_angle=0.3, profile_shift_coefficient=0.3, **fields)
-    return GearPair(pinion, make_gear(teeth=47, helix_angle=-0.3, profile_shift_coefficient=0.1, **fields))
+def gear(teeth: int = 30, **fields: Any) -> Gear:
+    return make_gear(teeth, **fields)
 
 
-def test_contact_ratio_is_the_textbook_sum(make_gear: Callable[..., Gear]) -> None:
-    pair = helical_pair(make_gear)
-    first, second = pair.pinion, pair.wheel
-    tips = math.sqrt(first.tip_radius**2 - first.base_radius**2)
-    tips += math.sqrt(second.tip_radius**2 - second.base_radius**2)
-    length = tips - pair.center_distance * math.sin(pair.working_pressure_angle)
-    assert pair.transverse_contact_ratio == pytest.approx(length / pair.base_pitch, rel=1e-14)
-    overlap = 25e-3 * math.tan(0.3) / (math.pi * first.transverse_module)
+def ring(teeth: int = 80, **fields: Any) -> RingGear:
+    return make_ring(teeth, **({"rim_diameter": 1.3 * MODULE * teeth, "addendum_coefficient": 0.8} | fields))
+
+
+def external(allowances: tuple[float, float] = (3e-5, 3e-5)) -> GearPair:
+    first, second = allowances
+    pinion = gear(23, helix_angle=0.3, profile_shift_coefficient=0.3, thickness_allowance=first)
+    wheel = gear(47, helix_angle=-0.3, profile_shift_coefficient=0.1, thickness_allowance=second)
+    return GearPair(pinion, wheel)
+
+
+def internal(allowances: tuple[float, float] = (3e-5, 2e-5)) -> InternalGearPair:
+    first, second = allowances
+    pinion = gear(helix_angle=0.2, profile_shift_coefficient=0.3, thickness_allowance=first)
+    wheel = ring(helix_angle=0.2, profile_shift_coefficient=-0.5, thickness_allowance=second)
+    return InternalGearPair(pinion, wheel)
+
+
+MAKERS = pytest.mark.parametrize("make", [external, internal])
+
+
+def apart(pair: ParallelAxes, by: float) -> ParallelAxes:
+    """Return the pair with more backlash: the gears of an internal one come closer."""
+    return dataclasses.replace(pair, center_distance=pair.center_distance + pair.wheel.sign * by)
+
+
+@MAKERS
+def test_path_of_contact_and_contact_ratio_are_those_of_the_textbook(make: Any) -> None:
+    pair = make()
+    sign, (start, inner, pitch, outer, end) = pair.wheel.sign, pair.path_of_contact.points
+    assert end == pair.pinion.tip_roll_length
+    assert pair.roll_lengths(pair.position(start))[1] == pytest.approx(pair.wheel.tip_roll_length, rel=1e-13)
+    assert end - inner == pytest.approx(pair.base_pitch, rel=1e-14)
+    assert outer - start == pytest.approx(pair.base_pitch, rel=1e-14)
+    radius = math.hypot(pair.pinion.base_radius, pitch)
+    assert radius == pytest.approx(pair.operating_pitch_radii[0], rel=1e-14)
+    assert start < min(inner, pitch, outer) < max(inner, pitch, outer) < end
+    assert sign < 0 or inner < outer
+    tips = math.sqrt(pair.pinion.tip_radius**2 - pair.pinion.base_radius**2)
+    tips += sign * math.sqrt(pair.wheel.tip_radius**2 - pair.wheel.base_radius**2)
+    length = tips - sign * pair.center_distance * math.sin(pair.working_pressure_angle)
+    assert pair.transverse_contact_ratio == pytest.approx(length / pair.base_pitch, rel=1e-13)
+    overlap = 25e-3 * math.tan(pair.pinion.helix_angle) / (math.pi * pair.pinion.transverse_module)
     assert pair.overlap_ratio == pytest.approx(overlap, rel=1e-14)
     assert pair.total_contact_ratio == pair.transverse_contact_ratio + pair.overlap_ratio
 
 
-def test_points_of_the_path_of_contact(make_gear: Callable[..., Gear]) -> None:
-    pair = helical_pair(make_gear)
-    start, inner, pitch, outer, end = pair.path_of_contact.points
-    assert end == pair.pinion.tip_roll_length
-    assert pair.common_tangent - start == pytest.approx(pair.wheel.tip_roll_length, rel=1e-14)
-    assert end - inner == pytest.approx(pair.base_pitch, rel=1e-14)
-    assert outer - start == pytest.approx(pair.base_pitch, rel=1e-14)
-    assert math.hypot(pair.pinion.base_radius, pitch) == pytest.approx(
-        pair.operating_pitch_radii[0], rel=1e-14
-    )
-    assert start < inner < outer < end
-
-
-def test_position_zero_is_the_pitch_point_and_one_position_is_one_base_pitch(
-    make_gear: Callable[..., Gear],
-) -> None:
-    pair = helical_pair(make_gear)
+@MAKERS
+def test_position_zero_is_the_pitch_point_and_one_position_is_one_base_pitch(make: Any) -> None:
+    pair = make()
     first, second = pair.roll_lengths(np.array([0.0, 0.25, 0.0]), np.array([0, 0, 1]))
     assert first[0] == pair.path_of_contact.pitch_point
     assert first[1] - first[0] == pytest.approx(0.25 * pair.base_pitch, rel=1e-12)
     assert first[2] - first[0] == pytest.approx(pair.base_pitch, rel=1e-12)  # pair +1 is ahead
-    assert first + second == pytest.approx(np.full(3, pair.common_tangent), rel=1e-15)
+    both = pair.wheel.sign * first + second
+    assert both == pytest.approx(np.full(3, pair.common_tangent), rel=1e-12 if pair.internal else 1e-15)
     assert pair.position(first) == pytest.approx([0.0, 0.25, 1.0], abs=1e-14)
-
-
-def test_roll_lengths_broadcast(make_gear: Callable[..., Gear]) -> None:
-    pair = helical_pair(make_gear)
     first, second = pair.roll_lengths(np.linspace(0.0, 1.0, 5)[:, None], np.arange(-1, 2))
     assert first.shape == second.shape == (5, 3)
     assert pair.roll_lengths(0.5, -1)[0].shape == ()
 
 
-def test_both_gears_turn_through_the_same_arc_of_their_base_circles(make_gear: Callable[..., Gear]) -> None:
-    pair = helical_pair(make_gear)
+@MAKERS
+def test_the_gears_roll_on_their_operating_pitch_circles(make: Any) -> None:
+    pair = make()
+    first, second = pair.operating_pitch_radii
+    assert pair.wheel.sign * first + second == pytest.approx(pair.center_distance, rel=1e-14)
+    assert second / first == pytest.approx(pair.speed_ratio, rel=1e-14)
     assert pair.wheel.base_radius / pair.pinion.base_radius == pytest.approx(pair.speed_ratio, rel=1e-14)
-    assert sum(pair.operating_pitch_radii) == pytest.approx(pair.center_distance, rel=1e-14)
 
 
-def test_default_center_distance_without_shift_is_the_sum_of_the_reference_radii(
-    make_gear: Callable[..., Gear],
-) -> None:
-    pair = GearPair(
-        make_gear(teeth=23, profile_shift_coefficient=0.2),
-        make_gear(teeth=30, profile_shift_coefficient=-0.2),
-    )
-    assert pair.center_distance == pytest.approx(0.5 * 53 * 4e-3, rel=1e-14)
+@MAKERS
+def test_default_center_distance_has_no_backlash_but_the_allowances(make: Any) -> None:
+    assert make((0.0, 0.0)).transverse_base_backlash == pytest.approx(0.0, abs=1e-16)
+    allowances = (3e-5, 2e-5)  # in the normal plane at the reference circle
+    assert make(allowances).normal_backlash == pytest.approx(5e-5 * math.cos(math.radians(20.0)), rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", [GearPair, InternalGearPair])
+def test_opposite_shifts_leave_the_center_distance(kind: Any) -> None:
+    wheel = (gear if kind is GearPair else ring)(53, profile_shift_coefficient=-0.2)
+    pair = kind(gear(23, profile_shift_coefficient=0.2), wheel)
+    assert pair.center_distance == pytest.approx(0.5 * (76 if kind is GearPair else 30) * MODULE, rel=1e-13)
     assert pair.working_pressure_angle == pytest.approx(math.radians(20.0), rel=1e-12)
+    assert pair.transverse_base_backlash == pytest.approx(0.0, abs=1e-16)
 
 
-def test_default_center_distance_has_no_backlash_but_the_allowances(make_gear: Callable[..., Gear]) -> None:
-    assert helical_pair(make_gear).transverse_base_backlash == pytest.approx(0.0, abs=1e-16)
-    pair = helical_pair(make_gear, thickness_allowance=3e-5)
-    # both teeth thinner by 30 um in the normal plane at the reference circle
-    assert pair.normal_backlash == pytest.approx(2.0 * 3e-5 * math.cos(math.radians(20.0)), rel=1e-10)
-
-
-def test_backlash_is_the_pitch_less_both_teeth_on_the_operating_pitch_circles(
-    make_gear: Callable[..., Gear],
-) -> None:
-    tight = helical_pair(make_gear)
-    pair = GearPair(tight.pinion, tight.wheel, tight.center_distance + 2e-4)
-    thickness = 0.0
-    for gear, radius in zip((pair.pinion, pair.wheel), pair.operating_pitch_radii, strict=True):
-        angle = math.acos(gear.base_radius / radius)
-        thickness += 2.0 * radius * (gear.base_thickness_half_angle - math.tan(angle) + angle)
+@MAKERS
+def test_backlash_is_the_pitch_less_both_teeth_on_the_operating_pitch_circles(make: Any) -> None:
+    pair = apart(make(), 1e-4)
+    angle, thickness = pair.working_pressure_angle, 0.0
+    for each, radius in zip((pair.pinion, pair.wheel), pair.operating_pitch_radii, strict=True):
+        thickness += 2.0 * radius * (each.base_thickness_half_angle - each.sign * involute_function(angle))
     pitch = 2.0 * math.pi * pair.operating_pitch_radii[0] / pair.pinion.teeth
     assert pair.circumferential_backlash == pytest.approx(pitch - thickness, rel=1e-9)
-    along_line = pair.circumferential_backlash * math.cos(pair.working_pressure_angle)
+    along_line = pair.circumferential_backlash * math.cos(angle)
     assert pair.transverse_base_backlash == pytest.approx(along_line, rel=1e-12)
     assert pair.normal_backlash == pytest.approx(along_line * math.cos(pair.base_helix_angle), rel=1e-12)
 
 
-def test_backlash_grows_with_center_distance_by_twice_its_sine(make_gear: Callable[..., Gear]) -> None:
-    tight, step = helical_pair(make_gear), 1e-7
-    wide = GearPair(tight.pinion, tight.wheel, tight.center_distance + 1e-4)
-    wider = GearPair(tight.pinion, tight.wheel, tight.center_distance + 1e-4 + step)
-    rate = (wider.transverse_base_backlash - wide.transverse_base_backlash) / step
-    assert rate == pytest.approx(2.0 * math.sin(wide.working_pressure_angle), rel=1e-5)
+@MAKERS
+def test_backlash_grows_by_twice_the_sine_of_the_way(make: Any) -> None:
+    near, middle, far = (apart(make(), 1e-4 + way) for way in (-1e-7, 0.0, 1e-7))
+    rate = (far.transverse_base_backlash - near.transverse_base_backlash) / 2e-7
+    assert rate == pytest.approx(2.0 * math.sin(middle.working_pressure_angle), rel=1e-6)
 
 
-def test_forces_close_the_triangle(make_gear: Callable[..., Gear]) -> None:
-    pair = helical_pair(make_gear)
+@MAKERS
+def test_forces_close_the_triangle(make: Any) -> None:
+    pair = make()
     normal = pair.normal_force(np.array([10.0, 100.0]))
     transverse, axial = pair.transverse_force(normal), pair.axial_force(normal)
     assert np.hypot(transverse, axial) == pytest.approx(normal, rel=1e-14)
     assert transverse * pair.pinion.base_radius == pytest.approx([10.0, 100.0], rel=1e-14)
     assert pair.torque(normal) == pytest.approx([10.0, 100.0], rel=1e-14)
+    assert pair.wheel.base_helix_angle == -pair.wheel.sign * pair.base_helix_angle
 
 
-def test_swapped_pair_runs_the_same_path_backwards(make_gear: Callable[..., Gear]) -> None:
-    pair = helical_pair(make_gear)
+def test_swapped_pair_runs_the_same_path_backwards() -> None:
+    pair = external((0.0, 0.0))
     swapped = pair.swapped()
     assert swapped.swapped() == pair
     assert swapped.transverse_contact_ratio == pytest.approx(pair.transverse_contact_ratio, rel=1e-14)
@@ -128,47 +154,73 @@ def test_swapped_pair_runs_the_same_path_backwards(make_gear: Callable[..., Gear
     assert swapped.base_helix_angle == -pair.base_helix_angle
 
 
-@pytest.mark.parametrize(
-    ("name", "pinion", "wheel"),
-    [
-        ("normal module", {}, {"normal_module": 4.1e-3}),
-        ("pressure angle", {}, {"normal_pressure_angle": 0.36}),
-        ("helix angle", {"helix_angle": 0.2}, {"helix_angle": 0.2}),
-        ("helix angle", {"helix_angle": 0.2}, {"helix_angle": -0.21}),
-        ("interference", {"teeth": 10}, {"teeth": 60}),
-        ("interference", {"teeth": 60}, {"teeth": 10}),
-        ("tip clearance", {"teeth": 24, "dedendum_coefficient": 0.98}, {"teeth": 26}),
-        ("profile shift sum", {"profile_shift_coefficient": -1.2}, {"profile_shift_coefficient": -1.2}),
-    ],
-)
-def test_strangers_are_refused_by_name(
-    make_gear: Callable[..., Gear], name: str, pinion: dict[str, float], wheel: dict[str, float]
-) -> None:
-    first, second = make_gear(**({"teeth": 20} | pinion)), make_gear(**({"teeth": 20} | wheel))
-    with pytest.raises(InfeasibleGeometry) as caught:
-        GearPair(first, second)
-    assert caught.value.name == name
+def test_worked_example_of_the_handbooks() -> None:
+    # m 3 mm, 16 and 24 teeth, x_2 = +0.5 in the handbooks' sign (SDP/SI D785, KHK: table of internal gears)
+    pinion = Gear(teeth=16, normal_module=3e-3, face_width=0.01, bore_diameter=2e-3)
+    wheel = RingGear(
+        teeth=24,
+        normal_module=3e-3,
+        face_width=0.01,
+        rim_diameter=0.1,
+        profile_shift_coefficient=-0.5,
+        cutter_teeth=10,
+        tip_diameter=0.071,
+        root_radius_coefficient=0.0,
+    )
+    distance = reference_center_distance(pinion, wheel)
+    cosine = (wheel.base_radius - pinion.base_radius) / distance
+    assert distance == pytest.approx(13.1683e-3, abs=5e-8)
+    assert math.degrees(math.acos(cosine)) == pytest.approx(31.0937, abs=1e-4)
+    assert 2.0 * pinion.base_radius / cosine == pytest.approx(52.673e-3, abs=6e-7)
+    assert 2.0 * wheel.base_radius / cosine == pytest.approx(79.010e-3, abs=6e-7)
 
 
-@pytest.mark.parametrize(
-    ("name", "distance"),
-    [
-        ("profile shift sum", 0.0799),
-        ("profile shift sum", 0.07),
-        ("contact ratio", 0.0825),
-        ("contact ratio", 0.2),
-    ],
-)
-def test_impossible_center_distance_is_refused_by_name(
-    make_gear: Callable[..., Gear], name: str, distance: float
-) -> None:
-    with pytest.raises(InfeasibleGeometry) as caught:
-        GearPair(make_gear(), make_gear(), distance)
-    assert caught.value.name == name
-    assert caught.value.field == "center_distance"
+def test_both_flanks_touch_at_one_point_of_the_line_of_action() -> None:
+    pair = internal()
+    position = np.linspace(-0.6, 0.6, 7)
+    first, second = pair.roll_lengths(position)
+    height = pair.pinion.base_radius / math.cos(pair.working_pressure_angle)
+    for gear_, roll, center in ((pair.pinion, first, 0.0), (pair.wheel, second, -pair.center_distance)):
+        # the normals touch the base circle on one ray from the gear's center, where the line of action starts
+        angle = pair.working_pressure_angle
+        foot = gear_.base_radius * np.array([-math.sin(angle), math.cos(angle)])
+        point = foot + roll[:, None] * np.array([math.cos(angle), math.sin(angle)]) + np.array([0.0, center])
+        along = (position * pair.base_pitch)[:, None] * np.array([math.cos(angle), math.sin(angle)])
+        assert point == pytest.approx(np.array([0.0, height]) + along, rel=1e-12, abs=1e-15)
+    assert second - first == pytest.approx(np.full(7, pair.common_tangent), rel=1e-12)
+    assert pair.roll_lengths(0.0, 1)[0] - pair.roll_lengths(0.0)[0] == pytest.approx(
+        pair.base_pitch, rel=1e-12
+    )
 
 
-def test_refusal_of_jamming_teeth_tells_what_would_fit(make_gear: Callable[..., Gear]) -> None:
+def test_relative_curvature_is_the_difference_of_a_bulging_and_a_hollow_flank() -> None:
+    pair = internal()
+    first, second = pair.roll_lengths(0.2)
+    assert pair.relative_curvature(first) == pytest.approx(1.0 / first - 1.0 / second, rel=1e-14)
+    pitch = pair.relative_curvature(pair.path_of_contact.pitch_point)
+    r_1, r_2 = pair.operating_pitch_radii
+    assert pitch * math.sin(pair.working_pressure_angle) == pytest.approx(1.0 / r_1 - 1.0 / r_2, rel=1e-12)
+
+
+def test_ring_of_very_many_teeth_is_a_rack() -> None:
+    pinion, errors = gear(), []
+    for teeth in (1000, 4000):
+        pair = InternalGearPair(pinion, ring(teeth))
+        path, sine = pair.path_of_contact, math.sin(math.radians(20.0))
+        rack_start = path.pitch_point - 0.8 * MODULE / sine
+        curvature = pair.relative_curvature(path.pitch_point) * path.pitch_point
+        errors.append([path.start - rack_start, curvature - 1.0])
+    assert errors[0] == pytest.approx(4.0 * np.array(errors[1]), rel=0.02)  # first order in 1 / z_2
+    assert abs(errors[1][0]) < 4e-3 * MODULE
+
+
+def test_tip_clearances_and_tooth_number_difference() -> None:
+    pair = InternalGearPair(gear(), ring())
+    assert pair.tip_clearances == pytest.approx((0.25 * MODULE, 0.45 * MODULE), rel=1e-10)
+    assert pair.tooth_number_difference == 50
+
+
+def test_refusal_of_jamming_external_teeth_tells_what_would_fit() -> None:
     gear = make_gear(teeth=25, profile_shift_coefficient=0.2)
     with pytest.raises(InfeasibleGeometry) as caught:
         GearPair(gear, gear, 0.1008)
@@ -179,16 +231,35 @@ def test_refusal_of_jamming_teeth_tells_what_would_fit(make_gear: Callable[..., 
     assert GearPair(fitting, fitting, 0.1008).transverse_base_backlash == pytest.approx(0.0, abs=4e-9)
 
 
-@pytest.mark.parametrize("distance", [0.0, -1.0, math.nan, math.inf, "0.08"])
-def test_center_distance_that_is_no_length_is_refused(
-    make_gear: Callable[..., Gear], distance: float
-) -> None:
-    with pytest.raises(InputError) as caught:
-        GearPair(make_gear(), make_gear(), distance)
-    assert caught.value.field == "center_distance"
+def test_refusal_of_jamming_teeth_tells_what_would_fit() -> None:
+    with pytest.raises(InfeasibleGeometry) as caught:
+        InternalGearPair(gear(), ring(), 0.1002)
+    distance, total = (float(number) for number in re.findall(r"= ([\d.e-]+)", str(caught.value.suggestion)))
+    assert (
+        0.0 <= InternalGearPair(gear(), ring(), distance).transverse_base_backlash < 1e-7
+    )  # a seventh digit
+    fitting = InternalGearPair(
+        gear(), ring(profile_shift_coefficient=total, addendum_coefficient=0.9), 0.1002
+    )
+    assert fitting.transverse_base_backlash == pytest.approx(0.0, abs=4e-9)
 
 
-def test_tip_that_just_meets_the_form_circle_is_accepted(make_gear: Callable[..., Gear]) -> None:
+def test_refusal_of_a_tip_tells_the_tip_diameter_that_fits() -> None:
+    with pytest.raises(InfeasibleGeometry) as caught:
+        InternalGearPair(gear(), ring(addendum_coefficient=1.0))
+    smallest = float(str(caught.value.bound).split()[2])
+    pair = InternalGearPair(gear(), ring(tip_diameter=smallest + 1e-8))
+    assert pair.path_of_contact.start == pytest.approx(pair.pinion.form_roll_length, abs=1e-7)
+    with pytest.raises(InfeasibleGeometry) as caught:
+        InternalGearPair(gear(addendum_coefficient=1.24), ring())
+    largest = float(str(caught.value.bound).split()[2])
+    pair = InternalGearPair(gear(tip_diameter=largest - 1e-8), ring())
+    assert pair.roll_lengths(pair.position(pair.path_of_contact.end))[1] == pytest.approx(
+        pair.wheel.form_roll_length, abs=1e-7
+    )
+
+
+def test_tip_that_just_meets_the_form_circle_is_accepted() -> None:
     pinion = make_gear(teeth=10)
     with pytest.raises(InfeasibleGeometry) as caught:
         GearPair(pinion, make_gear(teeth=60))
@@ -197,9 +268,7 @@ def test_tip_that_just_meets_the_form_circle_is_accepted(make_gear: Callable[...
     assert pair.path_of_contact.start == pytest.approx(pinion.form_roll_length, abs=1e-6)
 
 
-def test_tip_that_cuts_the_mating_fillet_off_the_line_of_action_is_refused(
-    make_gear: Callable[..., Gear],
-) -> None:
+def test_tip_that_cuts_the_mating_fillet_off_the_line_of_action_is_refused() -> None:
     # a large shift sum on a low rack: both tips clear the form circles on the line of action
     rack = {"dedendum_coefficient": 1.13, "root_radius_coefficient": 0.27}
     pinion = make_gear(teeth=39, profile_shift_coefficient=0.51, **rack)
@@ -217,7 +286,7 @@ def test_tip_that_cuts_the_mating_fillet_off_the_line_of_action_is_refused(
 
 
 def test_the_common_face_follows_the_axial_offset():
-    narrow = Gear(teeth=20, normal_module=4e-3, face_width=20e-3, bore_diameter=40e-3)
+    narrow = bored(face_width=20e-3)
     wide = dataclasses.replace(narrow, face_width=30e-3)
     shifted = GearPair(narrow, wide, 80e-3, axial_offset=10e-3)
     assert shifted.common_face == pytest.approx((-5e-3, 10e-3))
@@ -226,6 +295,6 @@ def test_the_common_face_follows_the_axial_offset():
 
 
 def test_gears_beside_each_other_are_refused():
-    gear = Gear(teeth=20, normal_module=4e-3, face_width=20e-3, bore_diameter=40e-3)
+    gear = bored(face_width=20e-3)
     with pytest.raises(InfeasibleGeometry, match="face overlap"):
         GearPair(gear, gear, 80e-3, axial_offset=20e-3)

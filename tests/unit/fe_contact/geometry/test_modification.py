@@ -1,24 +1,27 @@
+"""Modified flanks, free-form flanks and pitch deviations: amounts, places, sums."""
+
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import asdict, fields, replace
 from typing import Any
 
 import numpy as np
 import pytest
+from spur_gears import make_gear
 
 from bounds import DEPTHS, Direction, Kind
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
-from fe_contact.geometry import FlankModification, Gear
+from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair, PitchDeviation, RingGear
 
 
 def over_profile(gear: Gear, count: int = 201) -> np.ndarray:
     return np.linspace(gear.form_roll_length, gear.tip_roll_length, count)
 
 
-def test_neutral_modification_is_exactly_zero(make_gear: Callable[..., Gear]) -> None:
+def test_neutral_modification_is_exactly_zero() -> None:
     gear = make_gear()
     assert FlankModification().neutral
     removed = FlankModification().material_removed(gear, over_profile(gear), 0.01)
@@ -30,9 +33,7 @@ def test_neutral_modification_is_exactly_zero(make_gear: Callable[..., Gear]) ->
 
 
 @pytest.mark.parametrize("shape", ["linear", "parabolic"])
-def test_tip_relief_starts_at_its_radius_and_reaches_its_amount_at_the_tip(
-    make_gear: Callable[..., Gear], shape: Any
-) -> None:
+def test_tip_relief_starts_at_its_radius_and_reaches_its_amount_at_the_tip(shape: Any) -> None:
     gear = make_gear()
     relief = FlankModification(tip_relief=20e-6, tip_relief_length=1.5e-3, tip_relief_shape=shape)
     start, tip = gear.roll_length(gear.tip_radius - 1.5e-3), gear.tip_roll_length
@@ -42,7 +43,7 @@ def test_tip_relief_starts_at_its_radius_and_reaches_its_amount_at_the_tip(
 
 
 @pytest.mark.parametrize("shape", ["linear", "parabolic"])
-def test_root_relief_is_the_mirror_of_tip_relief(make_gear: Callable[..., Gear], shape: Any) -> None:
+def test_root_relief_is_the_mirror_of_tip_relief(shape: Any) -> None:
     gear = make_gear()
     relief = FlankModification(root_relief=8e-6, root_relief_length=1e-3, root_relief_shape=shape)
     start, form = gear.roll_length(gear.form_radius + 1e-3), gear.form_roll_length
@@ -51,19 +52,19 @@ def test_root_relief_is_the_mirror_of_tip_relief(make_gear: Callable[..., Gear],
     assert removed == pytest.approx([8e-6, middle, 0.0, 0.0], rel=1e-12, abs=1e-18)
 
 
-def test_profile_crowning_is_a_parabola_with_zero_in_the_middle(make_gear: Callable[..., Gear]) -> None:
+def test_profile_crowning_is_a_parabola_with_zero_in_the_middle() -> None:
     gear = make_gear()
     removed = FlankModification(profile_crowning=6e-6).material_removed(gear, over_profile(gear, 5))
     assert removed == pytest.approx([6e-6, 1.5e-6, 0.0, 1.5e-6, 6e-6], abs=1e-18)
 
 
-def test_profile_slope_removes_at_the_tip_and_adds_at_the_form_point(make_gear: Callable[..., Gear]) -> None:
+def test_profile_slope_removes_at_the_tip_and_adds_at_the_form_point() -> None:
     gear = make_gear()
     removed = FlankModification(profile_slope=10e-6).material_removed(gear, over_profile(gear, 5))
     assert removed == pytest.approx([-5e-6, -2.5e-6, 0.0, 2.5e-6, 5e-6], abs=1e-18)
 
 
-def test_helix_crowning_and_slope_over_the_face(make_gear: Callable[..., Gear]) -> None:
+def test_helix_crowning_and_slope_over_the_face() -> None:
     gear, roll = make_gear(), 0.012
     face = np.array([-12.5e-3, -6.25e-3, 0.0, 6.25e-3, 12.5e-3])
     crowned = FlankModification(helix_crowning=8e-6).material_removed(gear, roll, face)
@@ -73,7 +74,7 @@ def test_helix_crowning_and_slope_over_the_face(make_gear: Callable[..., Gear]) 
 
 
 @pytest.mark.parametrize("shape", ["linear", "parabolic"])
-def test_end_relief_acts_at_both_ends_only(make_gear: Callable[..., Gear], shape: Any) -> None:
+def test_end_relief_acts_at_both_ends_only(shape: Any) -> None:
     relief = FlankModification(end_relief=12e-6, end_relief_length=2e-3, end_relief_shape=shape)
     face = np.array([-12.5e-3, -11.5e-3, -10.5e-3, 0.0, 10.5e-3, 11.5e-3, 12.5e-3])
     middle = 6e-6 if shape == "linear" else 3e-6
@@ -81,7 +82,7 @@ def test_end_relief_acts_at_both_ends_only(make_gear: Callable[..., Gear], shape
     assert removed == pytest.approx([12e-6, middle, 0.0, 0.0, 0.0, middle, 12e-6], rel=1e-9, abs=1e-18)
 
 
-def test_twist_is_a_profile_slope_that_grows_along_the_face(make_gear: Callable[..., Gear]) -> None:
+def test_twist_is_a_profile_slope_that_grows_along_the_face() -> None:
     gear = make_gear()
     twisted = FlankModification(flank_twist=4e-6)
     roll, face = over_profile(gear, 5)[:, None], np.linspace(-12.5e-3, 12.5e-3, 3)
@@ -94,7 +95,7 @@ def test_twist_is_a_profile_slope_that_grows_along_the_face(make_gear: Callable[
     assert beyond == pytest.approx([-4e-6, 4e-6], rel=1e-12, abs=0.0)
 
 
-def test_what_differs_over_the_face_and_what_does_not_add_up_to_all(make_gear: Callable[..., Gear]) -> None:
+def test_what_differs_over_the_face_and_what_does_not_add_up_to_all() -> None:
     gear = make_gear()
     whole = FlankModification(
         tip_relief=20e-6, tip_relief_length=1e-3, profile_slope=3e-6, helix_crowning=5e-6, flank_twist=4e-6
@@ -112,7 +113,7 @@ def test_what_differs_over_the_face_and_what_does_not_add_up_to_all(make_gear: C
     assert not twist.neutral
 
 
-def test_effects_add_and_broadcast(make_gear: Callable[..., Gear]) -> None:
+def test_effects_add_and_broadcast() -> None:
     gear = make_gear()
     tip = FlankModification(tip_relief=20e-6, tip_relief_length=1e-3)
     lead = FlankModification(helix_crowning=5e-6)
@@ -125,7 +126,7 @@ def test_effects_add_and_broadcast(make_gear: Callable[..., Gear]) -> None:
     assert not tip.varies_along_face
 
 
-def test_beyond_the_involute_the_end_value_holds(make_gear: Callable[..., Gear]) -> None:
+def test_beyond_the_involute_the_end_value_holds() -> None:
     gear = make_gear()
     relief = FlankModification(
         tip_relief=20e-6, tip_relief_length=1e-3, root_relief=5e-6, root_relief_length=1e-3
@@ -145,7 +146,7 @@ def alone(name: str) -> FlankModification:
 
 
 @pytest.mark.parametrize("name", fields_of(*DEPTHS, Kind.EDGE))
-def test_a_figure_acts_along_what_it_is_declared_to(make_gear: Callable[..., Gear], name: str) -> None:
+def test_a_figure_acts_along_what_it_is_declared_to(name: str) -> None:
     gear, modification, along = make_gear(helix_angle=0.2), alone(name), FLANK_FIELDS[name].along
     roll, face = over_profile(gear)[:, None], np.linspace(-12.5e-3, 12.5e-3, 5)
     removed = modification.material_removed(gear, roll, face)
@@ -156,7 +157,7 @@ def test_a_figure_acts_along_what_it_is_declared_to(make_gear: Callable[..., Gea
     assert modification.along_profile.neutral == (Direction.FACE in along)
 
 
-def test_the_whole_is_the_sum_of_its_parts_and_begins_where_they_do(make_gear: Callable[..., Gear]) -> None:
+def test_the_whole_is_the_sum_of_its_parts_and_begins_where_they_do() -> None:
     gear = make_gear(helix_angle=0.2)
     parts = [alone(name) for name in (*fields_of(*DEPTHS), "tip_rounding")]
     plain = FlankModification()
@@ -172,25 +173,169 @@ def test_the_whole_is_the_sum_of_its_parts_and_begins_where_they_do(make_gear: C
     assert whole.tip_form_roll_length(gear) == edge.roll_length < gear.tip_roll_length
 
 
+ROLL = (4e-3, 7e-3, 9e-3, 14e-3, 19e-3)
+
+FACE = (-12.5e-3, -9e-3, -2e-3, 4e-3, 12.5e-3)
+
+NODES = FlankGrid(ROLL, FACE, 1e-6 * np.random.default_rng(7).uniform(-5.0, 20.0, (5, 5)))
+
+
+def sampled(function: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> FlankGrid:
+    """Return the grid of a function of roll length and face position."""
+    return FlankGrid(ROLL, FACE, function(np.array(ROLL)[:, None], np.array(FACE)) + np.zeros((5, 5)))
+
+
+def inside(count: int = 41) -> tuple[np.ndarray, np.ndarray]:
+    roll, face = np.linspace(ROLL[0], ROLL[-1], count), np.linspace(FACE[0], FACE[-1], count)
+    return tuple(np.meshgrid(roll, face, indexing="ij"))
+
+
+def test_nodes_are_met_and_end_values_hold_beyond_them() -> None:
+    roll, face = np.meshgrid(ROLL, FACE, indexing="ij")
+    assert NODES.material_removed(roll, face) == pytest.approx(np.array(NODES.removed), rel=1e-12, abs=1e-20)
+    beyond = NODES.material_removed(np.array([0.0, 1.0]), np.array([-1.0, 4e-3]))
+    assert beyond == pytest.approx([NODES.removed[0][0], NODES.removed[-1][3]], rel=1e-12, abs=0.0)
+
+
 @pytest.mark.parametrize(
-    ("fields", "named"),
+    "shape",
     [
-        ({"tip_relief": 2e-5}, "tip_relief_length"),
-        ({"root_relief": 2e-5}, "root_relief_length"),
-        ({"end_relief": 2e-5}, "end_relief_length"),
-        ({"tip_relief": 20.0, "tip_relief_length": 1e-3}, "tip_relief"),
-        ({"tip_relief": -1e-6, "tip_relief_length": 1e-3}, "tip_relief"),
-        ({"tip_relief_length": -1e-3}, "tip_relief_length"),
-        ({"tip_relief_length": math.nan}, "tip_relief_length"),
-        ({"tip_relief_shape": "cubic"}, "tip_relief_shape"),
-        ({"profile_crowning": -1e-6}, "profile_crowning"),
-        ({"profile_slope": math.nan}, "profile_slope"),
-        ({"helix_crowning": 5.0}, "helix_crowning"),
-        ({"helix_slope": -5.0}, "helix_slope"),
-        ({"flank_twist": 5.0}, "flank_twist"),
+        lambda x, y: 3e-6 + 0.0 * x * y,
+        lambda x, y: 4e-2 * x * y,
+        lambda x, y: 1e-2 * (x - 12e-3) ** 2 + 3e-2 * y**2,
+        lambda x, y: 20.0 * (x - 9e-3) ** 2 * y * (1.0 + 50.0 * y),
     ],
+    ids=["constant", "twist", "crowning", "biquadratic"],
 )
-def test_unusable_modification_names_its_field(fields: dict[str, Any], named: str) -> None:
-    with pytest.raises(InputError) as caught:
-        FlankModification(**fields)
-    assert caught.value.field == named
+def test_what_is_quadratic_in_either_direction_is_reproduced(shape: Any) -> None:
+    roll, face = inside()
+    assert sampled(shape).material_removed(roll, face) == pytest.approx(
+        shape(roll, face), rel=1e-9, abs=1e-18
+    )
+
+
+def test_the_surface_and_its_slopes_are_continuous() -> None:
+    """Slopes from either side of every node line agree; a bilinear surface would have kinks there."""
+    step, jumps, slopes = 1e-8, [], []
+    for axis, others in ((0, FACE), (1, ROLL)):
+        between = np.linspace(others[0], others[-1], 23)
+        for node in (ROLL, FACE)[axis][1:-1]:
+            at = [np.full(23, node + shift) for shift in (-step, 0.0, step)]
+            places = [(a, between) if axis == 0 else (between, a) for a in at]
+            low, here, high = (NODES.material_removed(*place) for place in places)
+            jumps.append(np.abs((high - here) - (here - low)).max() / step)
+            slopes.append(np.abs(high - low).max() / (2 * step))
+    assert max(jumps) < 1e-4 * max(slopes)
+
+
+def test_a_smooth_flank_is_met_at_third_order() -> None:
+    def worst(count: int) -> float:
+        roll, face = np.linspace(4e-3, 19e-3, count), np.linspace(-12.5e-3, 12.5e-3, count)
+        nodes = FlankGrid(roll, face, 1e-5 * np.sin(300.0 * roll)[:, None] * np.cos(150.0 * face))
+        x, y = inside(83)
+        return float(
+            np.abs(nodes.material_removed(x, y) - 1e-5 * np.sin(300.0 * x) * np.cos(150.0 * y)).max()
+        )
+
+    assert np.log2(worst(21) / worst(41)) > 2.7
+
+
+@pytest.mark.parametrize(("first", "swing"), [(4, 2.0 / 27.0), (2, 1.0 / 8.0)], ids=["inside", "border"])
+def test_swings_beside_a_step_are_what_is_said(first: int, swing: float) -> None:
+    """Cubic with slopes 0 and D/2, or -D/2 and D/2 at the border: 2/27 or 1/8 of the step D h."""
+    roll = np.linspace(4e-3, 19e-3, 9)
+    step = FlankGrid(roll, (-1e-3, 1e-3), np.where(np.arange(9) >= first, 10e-6, 0.0)[:, None] + np.zeros(2))
+    at = np.linspace(4e-3, 19e-3, 4001)
+    removed = step.material_removed(at, np.zeros(4001))
+    assert -removed.min() == pytest.approx(10e-6 * swing, rel=1e-4, abs=0.0)
+
+
+def test_where_a_grid_belongs_depends_on_whether_it_differs_over_the_face() -> None:
+    even = FlankModification(flank_grid=sampled(lambda x, y: 1e-3 * (x - 4e-3)), helix_crowning=1e-6)
+    assert even.along_profile.flank_grid is even.flank_grid
+    assert even.along_face.flank_grid is None
+    free = FlankModification(flank_grid=NODES, profile_slope=1e-6)
+    assert free.along_face.flank_grid is NODES
+    assert free.along_profile == FlankModification(profile_slope=1e-6)
+    assert free.along_face.varies_along_profile
+    assert free.varies_along_face
+    assert FlankModification(flank_grid=sampled(lambda x, y: 0.0 * x * y)).neutral
+
+
+def test_a_grid_adds_to_the_other_amounts_and_tells_flanks_apart() -> None:
+    alone, slope = FlankModification(flank_grid=NODES), FlankModification(profile_slope=4e-6)
+    gear = make_gear(modification=FlankModification(flank_grid=NODES, profile_slope=4e-6))
+    roll, face = inside(9)
+    total = gear.modification.material_removed(gear, roll, face)
+    parts = alone.material_removed(gear, roll, face) + slope.material_removed(gear, roll, face)
+    assert total == pytest.approx(parts, rel=1e-12, abs=1e-20)
+    assert hash(gear) != hash(make_gear())
+    assert asdict(gear)["modification"]["flank_grid"]["roll_length"] == ROLL
+
+
+GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+
+# a chart of five teeth: F_pi 0, 3, 1, -4, -2 um
+CHART = PitchDeviation((0.0, 3e-6, 1e-6, -4e-6, -2e-6))
+
+
+def test_single_and_cumulative_deviations_of_a_chart():
+    assert CHART.individual == pytest.approx([2e-6, 3e-6, -2e-6, -5e-6, 2e-6], abs=1e-18)
+    assert CHART.single == pytest.approx(5e-6, abs=1e-18)
+    assert CHART.total == pytest.approx(7e-6, abs=1e-18)
+
+
+def test_single_deviations_close_the_circle_and_cumulate_to_the_index_deviations():
+    values = np.random.default_rng(3).normal(0.0, 5e-6, 37)
+    deviation = PitchDeviation(tuple(values))
+    assert deviation.individual.sum() == pytest.approx(0.0, abs=1e-19)
+    assert values[0] + np.cumsum(deviation.individual[1:]) == pytest.approx(values[1:], abs=1e-19)
+
+
+@pytest.mark.parametrize(
+    ("values", "period"),
+    [((), 1), ((5e-6,) * 12, 1), ((1e-6, 2e-6) * 6, 2), ((1e-6, 2e-6, 3e-6, 2e-6) * 3, 4), (range(12), 12)],
+)
+def test_the_period_is_the_shortest_run_that_repeats(values, period):
+    assert PitchDeviation(tuple(1e-6 * value for value in values)).period == period
+
+
+def test_turning_back_twice_changes_nothing_and_keeps_the_first_tooth():
+    assert CHART.reversed.cumulative == (0.0, -2e-6, -4e-6, 1e-6, 3e-6)
+    assert CHART.reversed.reversed == CHART
+    assert PitchDeviation().reversed == PitchDeviation()
+
+
+def test_along_the_line_of_action_an_arc_is_shorter_by_the_transverse_pressure_angle():
+    """The tooth turns by F_pi / r; the line of action sees r_b of it."""
+    helical = replace(GEAR, helix_angle=0.4, pitch_deviation=PitchDeviation((1e-6,) * 20))
+    turned = 1e-6 / helical.reference_radius
+    found = helical.pitch_deviation.on_line_of_action(helical.transverse_pressure_angle)
+    assert found == pytest.approx([turned * helical.base_radius] * 20, rel=1e-12, abs=0.0)
+    assert helical.base_radius / helical.reference_radius < math.cos(math.radians(20.0))
+
+
+def test_a_gear_with_deviations_keeps_its_macro_geometry():
+    """So the finite-element model of the perfect gear serves it."""
+    erring = replace(GEAR, pitch_deviation=PitchDeviation((0.0,) * 19 + (9e-6,)))
+    assert erring.macro_geometry() == GEAR.macro_geometry()
+
+
+def test_the_swapped_pair_has_the_same_teeth_in_the_other_order():
+    erring = replace(GEAR, pitch_deviation=PitchDeviation(tuple(1e-6 * k for k in range(20))))
+    pair = GearPair(erring, GEAR, 80e-3)
+    assert pair.swapped().wheel.pitch_deviation == erring.pitch_deviation.reversed
+    assert pair.swapped().swapped() == pair
+
+
+def test_the_list_has_one_value_per_tooth():
+    with pytest.raises(InputError, match="a list of 20") as refusal:
+        replace(GEAR, pitch_deviation=PitchDeviation((1e-6,) * 19))
+    assert refusal.value.field == "pitch_deviation"
+
+
+def test_ring_gears_have_them_too():
+    ring = RingGear(teeth=60, normal_module=4e-3, face_width=25e-3, rim_diameter=300e-3, cutter_teeth=25)
+    erring = replace(ring, pitch_deviation=PitchDeviation((1e-6,) * 60))
+    found = erring.pitch_deviation.on_line_of_action(erring.transverse_pressure_angle)
+    assert found == pytest.approx([1e-6 * math.cos(math.radians(20.0))] * 60, rel=1e-12, abs=0.0)

@@ -1,21 +1,24 @@
-"""The laws of reliefs: their ends, tangency, means, sides, corners."""
+"""The laws of reliefs and of rounded and chamfered tips: their ends, tangency, means, sides, corners."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, get_args
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from spur_gears import make_gear
 
 from bounds import at_most
-from fe_contact.errors import InputError
+from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.flank.relief import SHAPES, Shape
-from fe_contact.geometry import FlankModification, Gear, GearPair, InternalGearPair, RingGear
+from fe_contact.geometry import FlankModification, Gear, GearPair, InternalGearPair, RingGear, tooth_profile
+from fe_contact.geometry.toothing import Toothing
 
 BY_SHAPE = pytest.mark.parametrize("shape", SHAPES)
+
 MEAN = {  # of the depth over the length
     "linear": 1.0 / 2.0,
     "parabolic": 1.0 / 3.0,
@@ -64,7 +67,7 @@ def test_exponential_and_logarithmic_are_each_other_s_mirror_images_at_the_diago
     assert there_and_back == pytest.approx(u, abs=1e-15)
 
 
-def helical(make_gear: Callable[..., Gear], hand: int = 1, **modification: Any) -> Gear:
+def helical(hand: int = 1, **modification: Any) -> Gear:
     return make_gear(helix_angle=hand * 0.3, modification=FlankModification(**modification))
 
 
@@ -73,11 +76,9 @@ def removed(gear: Gear, roll: np.ndarray, face: np.ndarray) -> np.ndarray:
 
 
 @BY_SHAPE
-def test_a_relief_begins_with_the_slope_and_the_curvature_it_states(
-    make_gear: Callable[..., Gear], shape: Shape
-) -> None:
+def test_a_relief_begins_with_the_slope_and_the_curvature_it_states(shape: Shape) -> None:
     gear = helical(
-        make_gear,
+
         tip_relief=20e-6, tip_relief_length=1.5e-3, tip_relief_shape=shape,
         root_relief=9e-6, root_relief_length=0.8e-3, root_relief_shape=shape,
         triangular_tip_relief=12e-6, triangular_tip_relief_length=1.8e-3, triangular_tip_relief_shape=shape,
@@ -94,9 +95,7 @@ def test_a_relief_begins_with_the_slope_and_the_curvature_it_states(
 
 
 @BY_SHAPE
-def test_end_reliefs_of_both_faces_are_the_symmetric_one(
-    make_gear: Callable[..., Gear], shape: Shape
-) -> None:
+def test_end_reliefs_of_both_faces_are_the_symmetric_one(shape: Shape) -> None:
     gear, face = make_gear(), np.linspace(-12.5e-3, 12.5e-3, 51)
     one = {"end_relief": 12e-6, "end_relief_length": 4e-3, "end_relief_shape": shape}
     datum = {key.replace("relief", "relief_datum_face"): value for key, value in one.items()}
@@ -109,9 +108,7 @@ def test_end_reliefs_of_both_faces_are_the_symmetric_one(
     assert not np.any(first[face > 0.0]) and not np.any(second[face < 0.0])
 
 
-def test_crownings_of_both_sides_from_the_middle_are_the_symmetric_one(
-    make_gear: Callable[..., Gear],
-) -> None:
+def test_crownings_of_both_sides_from_the_middle_are_the_symmetric_one() -> None:
     gear = make_gear()
     middle = 0.5 * (gear.form_roll_length + gear.tip_roll_length)
     radius = math.hypot(gear.base_radius, middle)
@@ -134,9 +131,7 @@ def test_crownings_of_both_sides_from_the_middle_are_the_symmetric_one(
     assert helix.material_removed(gear, 0.012, face) == pytest.approx(expected, abs=1e-20)
 
 
-def test_crownings_of_unlike_sides_reach_their_amounts_from_one_highest_point(
-    make_gear: Callable[..., Gear],
-) -> None:
+def test_crownings_of_unlike_sides_reach_their_amounts_from_one_highest_point() -> None:
     gear = make_gear()
     lead = FlankModification(
         helix_crowning_datum_face=3e-6, helix_crowning_datum_face_length=20e-3,
@@ -154,9 +149,7 @@ SIDES = {
 }  # fmt: skip
 
 
-def test_a_flank_seen_in_a_mirror_has_its_faces_and_its_hand_exchanged(
-    make_gear: Callable[..., Gear],
-) -> None:
+def test_a_flank_seen_in_a_mirror_has_its_faces_and_its_hand_exchanged() -> None:
     """Mirrored at mid-face, datum and non-datum face change places, and right hand becomes left."""
     corners = {"triangular_tip_relief": 7e-6, "triangular_root_relief": 5e-6}
     corners |= {f"{name}_length": 1.2e-3 for name in corners}
@@ -166,7 +159,7 @@ def test_a_flank_seen_in_a_mirror_has_its_faces_and_its_hand_exchanged(
         for key, value in SIDES.items()
         for side in ["_non_datum_" if "_non_datum_" in key else "_datum_"]
     }
-    gear, image = helical(make_gear, 1, **SIDES, **corners), helical(make_gear, -1, **mirrored, **corners)
+    gear, image = helical(1, **SIDES, **corners), helical(-1, **mirrored, **corners)
     roll = np.linspace(gear.form_roll_length, gear.tip_roll_length, 31)[:, None]
     face = np.linspace(-12.5e-3, 12.5e-3, 21)
     assert removed(gear, roll, face) == pytest.approx(removed(image, roll, -face), abs=1e-20)
@@ -175,12 +168,10 @@ def test_a_flank_seen_in_a_mirror_has_its_faces_and_its_hand_exchanged(
 
 @BY_SHAPE
 @pytest.mark.parametrize("end", ["tip", "root"])
-def test_a_triangular_relief_is_a_relief_along_lines_of_contact(
-    make_gear: Callable[..., Gear], shape: Shape, end: str
-) -> None:
+def test_a_triangular_relief_is_a_relief_along_lines_of_contact(shape: Shape, end: str) -> None:
     """At its corner's end of the face it is the tip or root relief of the same figures."""
     facts = {"": 15e-6, "_length": 1.2e-3 if end == "tip" else 0.8e-3, "_shape": shape}
-    gear = helical(make_gear, **{f"triangular_{end}_relief{key}": value for key, value in facts.items()})
+    gear = helical(**{f"triangular_{end}_relief{key}": value for key, value in facts.items()})
     plain = FlankModification(**{f"{end}_relief{key}": value for key, value in facts.items()})
     corner = 12.5e-3 if end == "tip" else -12.5e-3  # of a right-hand gear
     roll = np.linspace(gear.form_roll_length, gear.tip_roll_length, 41)
@@ -228,21 +219,6 @@ def test_on_either_gear_a_line_of_contact_is_relieved_all_along(pair: GearPair |
             assert depth.size == 0 or np.ptp(depth) < 1e-18
 
 
-@pytest.mark.parametrize(
-    ("facts", "field"),
-    [
-        ({"end_relief_datum_face": 1e-6}, "end_relief_datum_face_length"),
-        ({"profile_crowning_tip": 1e-6}, "profile_crowning_tip_length"),
-        ({"triangular_root_relief": 1e-6}, "triangular_root_relief_length"),
-        ({"tip_relief_shape": "cubic"}, "tip_relief_shape"),
-    ],
-)
-def test_an_unusable_relief_names_its_field(facts: dict[str, Any], field: str) -> None:
-    with pytest.raises(InputError) as caught:
-        FlankModification(**facts)
-    assert caught.value.field == field
-
-
 def test_an_arc_is_at_most_as_deep_as_long() -> None:
     facts: dict[str, Any] = {"end_relief_length": 1e-5, "end_relief_shape": "circular"}
     FlankModification(end_relief=1e-5, **facts)
@@ -254,25 +230,144 @@ def test_an_arc_is_at_most_as_deep_as_long() -> None:
     )
 
 
-@pytest.mark.parametrize(
-    ("facts", "named"),
-    [
-        (
-            {"end_relief_datum_face": 1e-6, "end_relief_datum_face_length": 26e-3},
-            "end_relief_datum_face_length",
-        ),
-        ({"end_relief": 1e-6, "end_relief_length": 13e-3}, "end_relief_length"),
-        (
-            {"profile_crowning_root": 1e-6, "profile_crowning_root_length": 12e-3},
-            "profile_crowning_root_length",
-        ),
-        ({"triangular_tip_relief": 1e-6, "triangular_tip_relief_length": 1e-3}, "triangular_tip_relief"),
-    ],
-)
-def test_a_gear_refuses_a_relief_it_has_no_room_for(
-    make_gear: Callable[..., Gear], facts: dict[str, Any], named: str
-) -> None:
-    """A spur gear has no corner which lines of contact reach first."""
+RING = RingGear(60, 4e-3, 25e-3, rim_diameter=300e-3, addendum_coefficient=0.8)
+
+KINDS = ("spur", "helical", "ring")
+
+
+def gear_of(kind: str, **modification: float) -> Toothing:
+    shape = FlankModification(**modification)
+    if kind == "ring":
+        return replace(RING, modification=shape)
+    return make_gear(helix_angle=0.3 if kind == "helical" else 0.0, modification=shape)
+
+
+def flank_and_inwards(gear: Toothing, s: float) -> tuple[np.ndarray, np.ndarray]:
+    profile = tooth_profile(gear)
+    return profile.flank(np.array(s)), -profile.normal(np.array(s))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_rounding_touches_the_involute_and_the_tip_circle(kind: str) -> None:
+    """The circle about a center inside the tooth is tangent to both: its distances are the radius."""
+    radius = 0.3e-3
+    gear = gear_of(kind, tip_rounding=radius)
+    s_form = gear.sign * gear.tip_form_roll_length**2 / (2.0 * gear.base_radius)
+    point, inwards = flank_and_inwards(gear, s_form)
+    center = point + radius * inwards
+    assert abs(gear.tip_radius - np.linalg.norm(center)) == pytest.approx(radius, rel=1e-10)
+    assert np.linalg.norm(point) == pytest.approx(gear.tip_form_radius, rel=1e-13)
+    # the involute leaves the circle by what is removed, along the normal there
+    profile = tooth_profile(gear)
+    for fraction in (0.05, 0.1, 0.2):
+        s = s_form + fraction * radius
+        at, inside = profile.flank(np.array(s)), -profile.normal(np.array(s))
+        roll = math.sqrt(2.0 * gear.base_radius * abs(s))
+        removed = float(gear.modification.material_removed(gear, roll))
+        away = np.linalg.norm(at + removed * inside - center) - radius
+        assert abs(away) < 0.6 * fraction**2 * removed
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_chamfer_begins_at_its_height_and_runs_straight(kind: str) -> None:
+    height, angle = 0.3e-3, math.radians(20.0)
+    gear = gear_of(kind, tip_chamfer=height, tip_chamfer_angle=angle)
+    assert abs(gear.tip_form_radius - gear.tip_radius) == pytest.approx(height, rel=1e-10)
+    profile = tooth_profile(gear)
+    s_form = gear.sign * gear.tip_form_roll_length**2 / (2.0 * gear.base_radius)
+    start, inwards = flank_and_inwards(gear, s_form)
+    upwards = gear.sign * np.array([inwards[1], -inwards[0]])
+    for way in (0.02e-3, 0.1e-3):
+        roll = math.sqrt(2.0 * gear.base_radius * abs(s_form + way))
+        removed = float(gear.modification.material_removed(gear, roll))
+        at = profile.flank(np.array(s_form + way)) + removed * inwards - start
+        assert math.atan2(at @ inwards, at @ upwards) == pytest.approx(angle, abs=2e-4)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("edge", [{"tip_rounding": 0.2e-3}, {"tip_chamfer": 0.2e-3}])
+def test_what_is_removed_is_what_the_break_says(kind: str, edge: dict[str, float]) -> None:
+    """To the last digits, so that nothing is left over beside it in the gap."""
+    gear = gear_of(kind, **edge)
+    (start,) = gear.modification.relief_starts(gear)
+    assert start.towards_tip
+    assert start.ends_flank
+    assert start.roll_length == gear.tip_form_roll_length
+    roll = np.linspace(start.roll_length, gear.tip_roll_length, 9)
+    way = np.abs(roll**2 - start.roll_length**2) / (2.0 * gear.base_radius)
+    removed = gear.modification.material_removed(gear, roll)
+    assert removed == pytest.approx(way * (start.jump + 0.5 * start.bend * way), rel=1e-9, abs=1e-18)
+    assert removed[-1] > 25e-6
+    below = np.linspace(gear.form_roll_length, start.roll_length, 9)
+    assert not np.any(gear.modification.material_removed(gear, below))
+
+
+def test_no_edge_is_a_sharp_tip() -> None:
+    none = FlankModification(tip_rounding=0.0, tip_chamfer=0.0, tip_chamfer_angle=1.0)
+    gear = make_gear(modification=none)
+    assert none.neutral
+    assert none.relief_starts(gear) == ()
+    assert gear.tip_form_radius == gear.tip_radius
+    assert gear.tip_form_roll_length == gear.tip_roll_length
+    pair = GearPair(gear, gear, 80e-3)
+    assert pair.active_path == pair.path_of_contact
+    assert pair.active_contact_ratio == pair.transverse_contact_ratio
+
+
+def test_an_edge_is_along_the_profile_all_over_the_face() -> None:
+    shape = FlankModification(tip_chamfer=1e-4, helix_crowning=1e-6)
+    assert shape.along_profile == FlankModification(tip_chamfer=1e-4)
+    assert shape.along_face == FlankModification(helix_crowning=1e-6)
+    assert FlankModification(tip_rounding=1e-4).varies_along_profile
+    assert not FlankModification(tip_rounding=1e-4).varies_along_face
+
+
+def test_contact_ends_at_the_tip_form_circles() -> None:
+    """As with tips cut off there: d_Na = d_Fa."""
+    height = 0.3e-3
+    chamfered = make_gear(modification=FlankModification(tip_chamfer=height))
+    cut = make_gear(tip_diameter=2.0 * (chamfered.tip_radius - height))
+    found, wanted = (GearPair(gear, gear, 80e-3) for gear in (chamfered, cut))
+    assert found.active_contact_ratio == pytest.approx(wanted.transverse_contact_ratio, rel=1e-12)
+    assert found.active_path.points == pytest.approx(wanted.path_of_contact.points, rel=1e-12)
+    assert found.transverse_contact_ratio > found.active_contact_ratio + 0.09
+    ring = replace(RING, modification=FlankModification(tip_chamfer=height))
+    cut_ring = replace(RING, tip_diameter=2.0 * (RING.tip_radius + height))
+    found, wanted = (InternalGearPair(make_gear(), wheel, 80e-3) for wheel in (ring, cut_ring))
+    assert found.active_contact_ratio == pytest.approx(wanted.transverse_contact_ratio, rel=1e-12)
+
+
+def test_flanks_that_end_too_early_make_no_pair() -> None:
+    shape = FlankModification(tip_chamfer=1.8e-3, tip_chamfer_angle=math.radians(10.0))
+    gear = make_gear(modification=shape)
+    for pair, name in (((make_gear(), gear), "wheel"), ((gear, make_gear()), "pinion")):
+        assert GearPair(*pair, 80e-3).active_contact_ratio > 1.0
+        deeper = replace(shape, tip_chamfer=3.6e-3)
+        with pytest.raises(InfeasibleGeometry, match="contact ratio") as caught:
+            GearPair(*(replace(each, modification=deeper) if each is gear else each for each in pair), 80e-3)
+        assert caught.value.field == f"{name}.modification.tip_chamfer"
+    with pytest.raises(InfeasibleGeometry, match="between the tip form circles the contact ratio is"):
+        GearPair(gear, gear, 80e-3)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_largest_edge_that_is_named_is_accepted(kind: str) -> None:
+    for field in ("tip_rounding", "tip_chamfer"):
+        with pytest.raises(InputError) as caught:
+            gear_of(kind, **{field: 20e-3})
+        assert caught.value.field == f"modification.{field}"
+        largest = float(str(caught.value.bound).rpartition(" ")[2])
+        gear = gear_of(kind, **{field: largest})
+        assert abs(gear.tip_form_radius - gear.form_radius) > 0.0
+        with pytest.raises(InputError):
+            gear_of(kind, **{field: 1.001 * largest})
+
+
+@pytest.mark.parametrize("kind", ["spur", "helical"])
+def test_a_chamfer_that_turns_back_from_the_tip_is_refused_by_its_angle(kind: str) -> None:
     with pytest.raises(InputError) as caught:
-        make_gear(modification=FlankModification(**facts))
-    assert caught.value.field == f"modification.{named}"
+        gear_of(kind, tip_chamfer=0.1e-3, tip_chamfer_angle=math.radians(80.0))
+    assert caught.value.field == "modification.tip_chamfer_angle"
+    largest = float(str(caught.value.bound).rpartition(" ")[2])
+    assert math.radians(50.0) < largest < math.radians(80.0)
+    gear_of(kind, tip_chamfer=1e-6, tip_chamfer_angle=largest)

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fe_contact.errors import InputError
 from fe_contact.geometry import Gear
 from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe, swept_sector
 from fe_contact.mesh.sector_grid import SectorGrid
@@ -50,11 +49,6 @@ def test_half_a_face_slides_on_mid_face() -> None:
     assert np.array_equal(half.freedoms[middle] >= 0, free & [True, True, False])
     above = np.setdiff1d(np.arange(len(half.freedoms)), middle)
     assert np.array_equal(half.freedoms[above] >= 0, whole.freedoms[above] >= 0)
-
-
-def test_half_a_face_merges_no_layers() -> None:
-    with pytest.raises(InputError, match="merge_rows"):
-        replace(DRAFT, half_face=True)
 
 
 def test_nodes_are_where_serendipity_elements_have_them() -> None:
@@ -113,27 +107,6 @@ def test_supports_hold_what_they_say() -> None:
     assert clamped.size % 3 == 0
     assert strain.size == clamped.size // 3 * 2
     assert (strain.freedoms[:, 2] == -1).all()
-
-
-@pytest.mark.parametrize(
-    ("field", "change"),
-    [
-        ("flank_size", {"flank_size": 0.0}),
-        ("tip_size", {"tip_size": 2e-3}),
-        ("layers", {"layers": 7}),
-        ("layers", {"layers": 10, "merge_rows": (-1, -2)}),
-        ("merge_rows", {"merge_rows": (0,)}),
-        ("merge_rows", {"merge_rows": (-2, -2), "layers": 8}),
-        ("split", {"split": 1.0}),
-        ("layer_growth", {"layer_growth": 0.5}),
-        ("body_growth", {"body_growth": 0.0}),
-        ("land_elements", {"land_elements": 0}),
-    ],
-)
-def test_an_impossible_recipe_is_refused_by_name(field: str, change: dict[str, object]) -> None:
-    with pytest.raises(InputError) as refusal:
-        replace(DRAFT, **change)
-    assert refusal.value.field == field
 
 
 def test_recipes_follow_the_gear() -> None:

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any
-
 import numpy as np
-import pytest
 
-from fe_contact.errors import InputError
 from fe_contact.microgeometry.confirmation import DesignLoads, _misalignment_axis, _on_axis
 
 TORQUES = [100.0, 200.0, 200.0, 400.0]
@@ -38,24 +33,3 @@ def test_a_table_has_every_misalignment_once() -> None:
     np.testing.assert_allclose(axis, [-4.1e-6, 4.1e-6, 12.3e-6, 20.5e-6], rtol=1e-12)
     assert set(_on_axis(axis, skews + away[:, None]).ravel()) <= set(axis)
     assert _on_axis(axis, np.array([[5e-6]])) == 5e-6  # between two of them
-
-
-@pytest.mark.parametrize(
-    ("torques", "misalignment", "field"),
-    [
-        ([], 0.0, "torques"),
-        ([100.0, math.nan], 0.0, "torques[1]"),
-        ([200.0, 100.0], [0.0, 1e-6], "torques"),
-        ([100.0, 100.0], 0.0, "torques"),
-        ([100.0, 100.0], [1e-6, 1e-6], "torques"),
-        ([100.0, 200.0], [0.0, 1e-6, 2e-6], "misalignment"),
-        ([100.0, 200.0], [], "misalignment"),
-        ([100.0, 200.0], [0.0, 0.02], "misalignment[1]"),
-        ([100.0, 200.0], [0.0, "1"], "misalignment[1]"),
-        ([100.0, 200.0], 0.02, "misalignment"),
-    ],
-)
-def test_what_makes_no_loads_is_refused_by_name(torques: Any, misalignment: Any, field: str) -> None:
-    with pytest.raises(InputError) as caught:
-        DesignLoads.of(torques, misalignment)
-    assert caught.value.field == field, caught.value

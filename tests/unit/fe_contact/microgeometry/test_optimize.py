@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,6 @@ import pytest
 from analysis_requests import design_request
 
 from fe_contact import GearPair, analyze
-from fe_contact.errors import InputError
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Optimization, Outcome
@@ -276,47 +274,3 @@ def test_the_map_runs_over_all_torques(pair: GearPair, compliances: Path) -> Non
     assert harris.ste.shape == (harris.position.size, harris.torque.size)
     np.testing.assert_array_equal(np.ptp(harris.ste, axis=0), harris.nominal)
     assert np.all(np.diff(harris.ste.mean(axis=0)) > 0.0)
-
-
-@pytest.mark.parametrize(
-    ("further", "field"),
-    [
-        ({"variables": []}, "variables"),
-        ({"variables": [FREE[0]]}, "variables.pinion.tip_relief"),  # no length
-        ({"variables": [*FREE, FREE[0]]}, "variables"),
-        ({"variables": [DesignVariable(LENGTH, 1e-3, 0.1)]}, "variables (high)"),
-        (
-            {"variables": [DesignVariable("pinion.helix_crowning", 0.0, 1e-5)]},
-            "pinion.modification.helix_crowning",
-        ),
-        ({"effects": {"profile_modification": "off"}}, "effects.profile_modification"),
-        ({"scatter": Scatter(1e-5)}, "misalignments"),
-        ({"objective": WeightedMean((1.0, 2.0))}, "objective.weights"),
-        ({"torques": [200.0, 100.0]}, "torques"),
-        ({"misalignment": 30.0}, "misalignment"),
-    ],
-)
-def test_what_cannot_be_optimized_is_refused_by_name(
-    pair: GearPair, further: dict[str, Any], field: str
-) -> None:
-    asked: dict[str, Any] = {"torques": [TORQUE], "variables": FREE, **DRAFT, **further}
-    with pytest.raises(InputError) as caught:
-        optimize(design_request(pair, **asked))
-    assert caught.value.field == field, caught.value
-
-
-@pytest.mark.parametrize(
-    ("name", "low", "high", "field"),
-    [
-        ("pinion.color", 0.0, 1e-5, "variables.pinion.color"),
-        ("sun.tip_relief", 0.0, 1e-5, "variables.sun.tip_relief"),
-        (RELIEF, -1e-6, 1e-5, f"variables.{RELIEF}.low"),
-        (RELIEF, 1e-5, 1e-5, f"variables.{RELIEF}.high"),
-        (LENGTH, 0.0, 1e-3, f"variables.{LENGTH}.low"),
-        (RELIEF, 0.0, math.nan, f"variables.{RELIEF}.high"),
-    ],
-)
-def test_variables_have_names_and_bounds(name: str, low: float, high: float, field: str) -> None:
-    with pytest.raises(InputError) as caught:
-        DesignVariable(name, low, high)
-    assert caught.value.field == field

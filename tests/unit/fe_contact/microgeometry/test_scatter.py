@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from fe_contact import GearPair, analyze
-from fe_contact.errors import InputError
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
@@ -101,23 +100,3 @@ def test_a_symmetric_pair_is_as_loud_misaligned_either_way(pair: GearPair, compl
     crowned = assessed.evaluate({"pinion.helix_crowning": 10e-6}).face_load_factor[:, 0]
     assert crowned[0] < factor[0] and crowned[1] > factor[1]
     assert aligned > 0.0
-
-
-@pytest.mark.parametrize(
-    ("make", "field"),
-    [
-        (lambda: Scatter(-1e-6), "scatter.misalignment"),
-        (lambda: Scatter(0.0, {"pinion.depth": 1e-6}), "scatter.modification.pinion.depth"),
-        (lambda: Scatter(0.0, {SLOPE: 0.0}), f"scatter.modification.{SLOPE}"),
-        (lambda: GaussHermite(0), "scatter.rule.points"),
-        (
-            lambda: Scatter(1e-6, {SLOPE: 1e-6, CROWNING: 1e-6}, GaussHermite(33)).nodes(),
-            "scatter.rule.points",
-        ),
-        (lambda: SobolSample(11), "scatter.rule.log2_size"),
-    ],
-)
-def test_bad_scatter_is_refused_by_name(make: object, field: str) -> None:
-    with pytest.raises(InputError) as caught:
-        make()  # type: ignore[operator]
-    assert caught.value.field == field

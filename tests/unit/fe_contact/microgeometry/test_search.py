@@ -9,7 +9,6 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from fe_contact.errors import InputError
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
 from fe_contact.microgeometry.optimize import _search_all, _search_one
 from fe_contact.microgeometry.search import (
@@ -185,13 +184,3 @@ def test_cancelled_before_the_first_design_the_start_is_left(workers: Any) -> No
     )
     np.testing.assert_array_equal(run.place, START)
     assert run.ended is Ended.CANCELLED and run.evaluations == 1
-
-
-def test_exploration_needs_positions() -> None:
-    with pytest.raises(InputError) as caught:
-        Search(exploration=4)
-    assert caught.value.field == "search.exploration"
-
-
-def _ignore(stage: str, fraction: float) -> None:
-    """Take progress."""

@@ -125,24 +125,6 @@ def test_parts_lie_within_their_tolerances(distribution: Any) -> None:
     assert np.abs(np.corrcoef(drawn.T)[0, 1]) < 0.03
 
 
-@pytest.mark.parametrize(
-    ("given", "field"),
-    [
-        ({"samples": 1}, "samples"),
-        ({"confidence": 1.0}, "confidence"),
-        ({"fractions": [1.5]}, "fractions[0]"),
-        ({"tolerances": Tolerances(1e-5)}, "misalignments"),  # in the plane
-        ({"effects": {"profile_modification": "off"}}, "effects.profile_modification"),
-    ],
-)
-def test_what_cannot_be_drawn_is_refused_by_name(pair: GearPair, given: dict[str, Any], field: str) -> None:
-    asked = {"tolerances": SLOPES, **given}
-    with pytest.raises(InputError) as caught:
-        options = AnalysisOptions(**DRAFT, effects=asked.pop("effects", {}))
-        scatter(pair, TORQUES, asked.pop("tolerances"), Sampling(**asked), options)
-    assert caught.value.field == field, caught.value
-
-
 def test_no_tolerance_is_no_study() -> None:
     with pytest.raises(InputError, match="at least one width"):
         Tolerances()

@@ -9,7 +9,6 @@ from analysis_requests import point_request
 from numpy.typing import ArrayLike
 
 from fe_contact import FlankModification, Gear, GearPair, analyze, contact_pattern, flank_results
-from fe_contact.errors import InputError
 from fe_contact.hertz import contact_modulus, relative_radius
 from fe_contact.options import Run
 
@@ -188,19 +187,3 @@ def test_a_single_contact_has_a_pattern_of_one_cell(cache):
     found = solved(spur_pair(), cache, model="plane_strain", at=0.0)
     pattern = contact_pattern(found)
     assert pattern.pressure == pytest.approx(np.array([[found.pressure.max()]]))
-
-
-@pytest.mark.parametrize(
-    ("options", "field"),
-    [
-        ({"torque": 100.0}, "torques"),
-        ({"normal_force": -1.0}, "normal_forces[0]"),
-        ({"misalignment": 20.0}, "misalignments[0]"),
-        ({"at": []}, "at"),
-        ({"at": [0.0, math.nan]}, "at[1]"),
-    ],
-)
-def test_bad_options_are_refused_by_name(cache, options, field):
-    with pytest.raises(InputError) as caught:
-        solved(spur_pair(), cache, **options)
-    assert caught.value.field == field

@@ -17,10 +17,9 @@ from fe_contact.analysis.flanks.solved_operating_point import solve_operating_po
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance import unit_root_stress, unit_root_stress_3d
-from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, RingGear
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
+from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.stage_clock import StageClock
 
 FORCE = 2000.0
@@ -194,12 +193,3 @@ def test_a_root_under_the_patch_counts_for_no_peak(cache: Path) -> None:
     spoiled[:, :, 0, 0, :, 0] += 1e12 * near
     assert replace(history, stress=spoiled).peak("tension") == unchanged
     assert unchanged.flank_coordinate < lowest
-
-
-def test_what_cannot_be_asked(cache: Path) -> None:
-    with pytest.raises(InputError) as refusal:
-        root_stress(SPUR, OperatingPoint(), run=Run(cache=cache))
-    assert refusal.value.field in ("torques", "normal_forces")
-    with pytest.raises(InputError) as refusal:
-        root_stress(SPUR, OperatingPoint(torque=10.0), run=Run(cache=cache), at=[[0.1]])
-    assert refusal.value.field == "at"
