@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterable, Mapping
+from importlib.resources import files
 from types import MappingProxyType
 from typing import Any
 
@@ -11,21 +13,12 @@ from lineofaction.gearbox.rexs.model import Attribute, Component, Model, Referen
 
 PINION, WHEEL, STAGE = 11, 12, 20
 PINION_LEFT, PINION_RIGHT, WHEEL_LEFT, WHEEL_RIGHT = 31, 32, 33, 34
-_UNITS = {
-    "deg": ("helix_angle_reference_diameter", "normal_pressure_angle"),
-    "none": (
-        "number_of_teeth",
-        "addendum_modification_coefficient",
-        "addendum_coefficient_basic_profile",
-        "poisson_ratio",
-        "addendum_coefficient_reference_profile",
-        "tip_corner_radius_factor_reference_profile",
-    ),
-    "1 / min": ("rotational_speed",),
-    "MPa": ("elastic_modulus",),
-    "mum": ("upper_backlash_allowance_referenced_to_span", "lower_backlash_allowance_referenced_to_span"),
-}
-_DATE = "2026-01-01T00:00:00+00:00"
+_TABLE = tomllib.loads(
+    files("lineofaction.gearbox.rexs").joinpath("quantities.toml").read_text(encoding="utf-8")
+)
+UNITS = {name: unit for unit, names in _TABLE.items() for name in names}
+
+DATE = "2026-01-01T00:00:00+00:00"
 Values = Mapping[int, Mapping[str, Any]]
 
 GEARS: dict[int, dict[str, Any]] = {
@@ -75,15 +68,24 @@ _RELATIONS = (
 
 
 def attribute(name: str, value: Any) -> Attribute:
-    unit = next((unit for unit, names in _UNITS.items() if name in names), "mm")
+    unit = UNITS.get(name, "none")
     if isinstance(value, bool):
-        return Attribute(name, "boolean", value, "none")
+        return Attribute(name, "boolean", value, unit)
     if isinstance(value, str):
-        return Attribute(name, "enum", value, "none")
+        return Attribute(name, "enum", value, unit)
     if name == "reference_component_for_position":
         return Attribute(name, "reference_component", value, "none")
-    kind = "floating_point_array" if isinstance(value, tuple) else "floating_point"
-    return Attribute(name, kind, value, unit)
+    if isinstance(value, int):
+        return Attribute(name, "integer", value, unit)
+    if isinstance(value, tuple) and isinstance(value[0], tuple):
+        return Attribute(name, "floating_point_matrix", value, unit)
+    return Attribute(name, f"floating_point{'_array' * isinstance(value, tuple)}", value, unit)
+
+
+def component(number: int, kind: str, values: Mapping[str, Any]) -> Component:
+    """Return a component; None leaves an attribute out."""
+    kept = {name: value for name, value in values.items() if value is not None}
+    return Component(number, kind, tuple(attribute(n, v) for n, v in kept.items()), f"{kind} {number}")
 
 
 def stage_unit(
@@ -96,9 +98,8 @@ def stage_unit(
     `types` adds components or gives them another type; `relations` are further ones.
     """
     kinds = {**_TYPES, **types}
-    components = []
-    for number, kind in kinds.items():
-        values = {**GEARS.get(number, {}), **changes.get(number, {})}
-        attributes = tuple(attribute(name, value) for name, value in values.items() if value is not None)
-        components.append(Component(number, kind, attributes, f"{kind} {number}"))
-    return GearUnit(Model("2.0.0", "test", "1", _DATE, (*_RELATIONS, *relations), tuple(components)))
+    components = tuple(
+        component(number, kind, {**GEARS.get(number, {}), **changes.get(number, {})})
+        for number, kind in kinds.items()
+    )
+    return GearUnit(Model("2.0.0", "test", "1", DATE, (*_RELATIONS, *relations), components))

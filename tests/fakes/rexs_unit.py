@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Callable, Iterable, Mapping
-from importlib.resources import files
 from types import MappingProxyType
 from typing import Any
 
@@ -13,23 +11,15 @@ import numpy as np
 
 from bounds.types import FloatArray
 from lineofaction.gearbox.rexs.model import (
-    Attribute,
-    Component,
     Document,
     LoadCase,
     LoadSpectrum,
     Model,
     Relation,
 )
-from tests.fakes.rexs_stage import relation
+from tests.fakes.rexs_stage import DATE, component, relation
 
 Values = Mapping[int, Mapping[str, Any]]
-DATE = "2026-01-01T00:00:00+00:00"
-_TABLE = tomllib.loads(
-    files("lineofaction.gearbox.rexs").joinpath("quantities.toml").read_text(encoding="utf-8")
-)
-UNITS = {name: unit for unit, names in _TABLE.items() for name in names}
-
 ROOT, CASING, INPUT, MIDDLE, OUTPUT = 1, 2, 3, 4, 5
 GEARS = (11, 12, 13, 14)
 STAGES = (21, 22)
@@ -37,27 +27,6 @@ MOTOR, MACHINE, BELT = 41, 42, 44
 CENTER_DISTANCES = (80.0 / math.cos(math.radians(15.0)), 90.0 / math.cos(math.radians(10.0)))
 ANGLES = (30.0, 200.0)
 NORMAL_LOAD, NORMAL_SPEED = 100.0, 1500.0
-
-
-def attribute(name: str, value: Any) -> Attribute:
-    unit = UNITS.get(name, "none")
-    if isinstance(value, bool):
-        return Attribute(name, "boolean", value, unit)
-    if isinstance(value, str):
-        return Attribute(name, "enum", value, unit)
-    if name == "reference_component_for_position":
-        return Attribute(name, "reference_component", value, "none")
-    if isinstance(value, int):
-        return Attribute(name, "integer", value, unit)
-    if isinstance(value, tuple) and isinstance(value[0], tuple):
-        return Attribute(name, "floating_point_matrix", value, unit)
-    return Attribute(name, f"floating_point{'_array' * isinstance(value, tuple)}", value, unit)
-
-
-def component(number: int, kind: str, values: Mapping[str, Any]) -> Component:
-    """Return a component; None leaves an attribute out."""
-    kept = {name: value for name, value in values.items() if value is not None}
-    return Component(number, kind, tuple(attribute(n, v) for n, v in kept.items()), f"{kind} {number}")
 
 
 def place(*point: float, u: Iterable[float] = (1.0, 0.0, 0.0)) -> dict[str, Any]:

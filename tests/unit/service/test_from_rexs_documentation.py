@@ -1,4 +1,4 @@
-"""The page on gears of REXS files lists what the import reads, no more and no less of each component."""
+"""The pages on REXS files list what the import reads, no more and no less of each component."""
 
 from __future__ import annotations
 
@@ -6,24 +6,23 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from rexs_stage import (
-    PINION,
-    PINION_RIGHT,
-    STAGE,
-    WHEEL,
-    WHEEL_LEFT,
-    WHEEL_RIGHT,
-    relation,
-    stage_unit,
-)
+from rexs_bearing_units import BALL, ROW, inside, on_lines
+from rexs_stage import PINION, PINION_RIGHT, STAGE, WHEEL, WHEEL_LEFT, WHEEL_RIGHT, relation, stage_unit
 
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import stage_cases
 from lineofaction.gearbox.from_rexs.modifications import READERS, UNREAD
+from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.schemas.bearings import BallRowInput, RollerRowInput, RollingBearingInput
 from lineofaction.gearbox.schemas.case import WheelInput
 from lineofaction.gearbox.schemas.gear import GearInput
 
-PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "rexs-gears.md").read_text("utf-8")
+
+def page_of(parts: str) -> str:
+    return (Path(__file__).parents[3] / "docs" / "reference" / f"rexs-{parts}.md").read_text("utf-8")
+
+
+PAGE = page_of("gears")
 SECOND = {"tooth_tip_chamfer": 0.2, "addendum_modification_coefficient": None}
 UNIT_TOOL = {
     "addendum_coefficient_reference_profile": None,
@@ -198,3 +197,35 @@ def test_the_fields_of_the_page_are_fields_of_a_case() -> None:
     named = {name for row in rows for name in re.findall(r"`([a-z_]+_(?:um|mm|coefficient))`", row[3])}
     pair = {"center_distance_mm", "normal_module_mm"}
     assert named - pair <= set(GearInput.model_fields) | set(WheelInput.model_fields)
+
+
+ROLES = {"support_vector", "u_axis_vector", "w_axis_vector", "reference_component_for_position"}
+
+
+def read_of_bearings() -> set[str]:
+    """Return the attributes of bearings, rows and elements that units of every kind are read by."""
+    stages = ("operating_", "mounted_", "")
+    clearances = [{f"{stage}radial_bearing_clearance": 10.0} for stage in stages]
+    limits = {f"{end}_radial_bearing_clearance": 10.0 for end in ("minimum", "maximum")}
+    missing = {"operating_radial_bearing_clearance": None}
+    units = [on_lines(missing | own) for own in (*clearances, limits)]
+    sides = [{f"axial_force_absorption{of}": "positive" for of in ("", "_of_row")}] * 2
+    along = [{f"{stage}axial_bearing_clearance": 10.0} for stage in stages]
+    along += [{"preload_distance": 8.0}, {"preload_force": 100.0}]
+    units += [inside(*(side | own for side in sides)) for own in along]
+    lengths, grooves = ROW | {"significant_contact_length_inner_ring": 12.0}, dict(ROW)
+    grooves |= {f"raceway_radius_of_{ring}_ring": 4.7 for ring in ("inner", "outer")}
+    ball = {"bearing_type": "angular_contact_ball_bearing"}
+    units += [inside(*sides, row=lengths), inside(*(side | ball for side in sides), grooves, BALL)]
+    lines = [line for unit in units for line in opened(unit).lines if "rolling" in line.kind]
+    stated = {line.item for line in lines if line.item and line.fate in ("taken", "derived")}
+    return stated - ROLES - {"u_coordinate_on_shaft_inner_side"}
+
+
+def test_the_page_lists_the_attributes_of_bearings_that_are_read() -> None:
+    rows = [row.split("|") for row in page_of("bearings").splitlines() if row.startswith("| ")]
+    listed = {name for row in rows[1:] for name in re.findall(r"`([a-z_]+)`", row[2])}
+    assert listed == read_of_bearings()
+    fields = {name for row in rows[1:] for name in re.findall(r"`([a-z_]+)`", row[3])}
+    models = (RollingBearingInput, BallRowInput, RollerRowInput)
+    assert fields <= {name for model in models for name in model.model_fields}

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rexs_loaded_flank import loaded
 from rexs_stage import (
     PINION,
     PINION_LEFT,
@@ -27,11 +26,71 @@ from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import stage_cases
+from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, Meshing
 from lineofaction.gearbox.schemas import Case
+from tests.fakes.opened_unit import said
 
-MODIFICATION = 50
+
+def loaded(unit: GearUnit, gear: int, torque: float) -> LoadedFlank:
+    """Return the loaded flank of a gear under a torque on the driver."""
+    meshing = Meshing.of(unit.part(STAGE), torques=(torque,))
+    return LoadedFlank.of(meshing, unit.part(gear))
+
+
 SIGNS = (1, -1)
 DIRECTION = {1: "positive", -1: "negative"}
+
+
+def side_by_vectors(sense: float, *, drives: bool, datum: int, ring: bool = False) -> str:
+    """Return the loaded flank of a gear by where its tooth moves, seen from its datum face."""
+    u, outwards = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+    tip = -outwards if ring else outwards
+    moves = sense * np.cross(u, outwards)
+    right = np.cross(-datum * u, tip)  # of one who looks from the datum face, the tip upwards
+    leading_is_right = bool(moves @ right > 0.0)
+    return "right" if leading_is_right == drives else "left"
+
+
+@pytest.mark.parametrize(("sense", "datum"), list(itertools.product(SIGNS, SIGNS)))
+def test_a_driver_carries_on_its_leading_flank_a_driven_gear_on_its_trailing_one(
+    sense: int, datum: int
+) -> None:
+    orientation = {"datum_face_orientation": DIRECTION[datum]}
+    external = stage_unit({PINION: orientation, WHEEL: orientation})
+    driver = side_by_vectors(sense, drives=True, datum=datum)
+    driven = side_by_vectors(-sense, drives=False, datum=datum)
+    assert loaded(external, PINION, 10.0 * sense).side == driver
+    assert loaded(external, WHEEL, 10.0 * sense).side == driven
+
+
+@pytest.mark.parametrize(("sense", "datum"), list(itertools.product(SIGNS, SIGNS)))
+def test_a_ring_gear_carries_on_its_trailing_flank_its_tooth_turned_upwards(sense: int, datum: int) -> None:
+    unit = stage_unit({WHEEL: {"datum_face_orientation": DIRECTION[datum]}}, {WHEEL: "ring_gear"})
+    expected = side_by_vectors(sense, drives=False, datum=datum, ring=True)
+    assert loaded(unit, WHEEL, 10.0 * sense).side == expected
+    # If the ring gear drives, it carries on its leading flank, and the planet on its trailing one.
+    meshing = Meshing.of(unit.part(STAGE), driver=WHEEL, torques=(10.0 * sense,))
+    ring = LoadedFlank.of(meshing, unit.part(WHEEL))
+    planet = LoadedFlank.of(meshing, unit.part(PINION))
+    assert ring.side == side_by_vectors(sense, drives=True, datum=datum, ring=True)
+    assert planet.side == side_by_vectors(sense, drives=False, datum=-1)
+
+
+def test_a_gear_whose_axis_points_the_other_way_is_the_same_gear() -> None:
+    turned = {"u_axis_vector": (-1.0, 0.0, 0.0), "datum_face_orientation": "negative"}
+    straight = {"datum_face_orientation": "positive"}
+    for torque in (10.0, -10.0):
+        same = loaded(stage_unit({WHEEL: straight}), WHEEL, torque)
+        assert loaded(stage_unit({WHEEL: turned}), WHEEL, torque).side == same.side
+
+
+def test_the_chosen_torque_turns_the_pinion_so_that_right_flanks_carry() -> None:
+    # Datum faces default to negative u: seen from there a pinion that turns about +u leads with its right.
+    assert side_by_vectors(1, drives=True, datum=-1) == "right"
+    assert loaded(stage_unit(), PINION, 10.0).side == "right"
+
+
+MODIFICATION = 50
 
 
 def modified(
@@ -39,11 +98,10 @@ def modified(
     values: Mapping[str, Any],
     flank: int = PINION_RIGHT,
     changes: Mapping[int, Mapping[str, Any]] | None = None,
-    types: Mapping[int, str] | None = None,
 ) -> GearUnit:
     return stage_unit(
         {MODIFICATION: values, **(changes or {})},
-        {MODIFICATION: kind, **(types or {})},
+        {MODIFICATION: kind},
         [relation(120, "reference", origin=flank, referenced=MODIFICATION)],
     )
 
@@ -54,11 +112,6 @@ def only_case(unit: GearUnit, torque: float = 10.0) -> Case:
     return stage.case
 
 
-def account(unit: GearUnit, component: int, item: str) -> tuple[str, str]:
-    (line,) = [line for line in unit.account.lines() if (line.component, line.item) == (component, item)]
-    return line.fate, line.words
-
-
 def removed(gear: Toothing, roll: float | FloatArray, face: float | FloatArray = 0.0) -> FloatArray:
     """Return what is removed from a gear, um."""
     return gear.modification.material_removed(gear, roll, face) / 1e-6
@@ -66,8 +119,7 @@ def removed(gear: Toothing, roll: float | FloatArray, face: float | FloatArray =
 
 def test_only_the_loaded_flank_is_modified() -> None:
     values = {"tip_relief_depth": 0.02, "tip_relief_datum_diameter": 42.0}
-    unit = modified("tip_relief", values)
-    assert only_case(unit, 10.0).pair.pinion.tip_relief_um == 20.0
+    assert only_case(modified("tip_relief", values), 10.0).pair.pinion.tip_relief_um == 20.0
     assert only_case(modified("tip_relief", values), -10.0).pair.pinion.tip_relief_um == 0.0
     assert only_case(modified("tip_relief", values, PINION_LEFT), -10.0).pair.pinion.tip_relief_um == 20.0
 
@@ -148,7 +200,7 @@ def test_a_second_modification_of_a_kind_is_rasterized_with_its_difference() -> 
     gear = gear_pair(only_case(unit)).pinion
     found = removed(gear, 7e-3, 1e-3 * (10.0 - COORDINATES))
     measured = np.abs(found - 2.0 * uneven_crowning()).max()
-    fate, words = account(unit, PINION_RIGHT, "flank_grid")
+    fate, words = said(unit, PINION_RIGHT, "flank_grid")
     assert fate == "derived"
     assert measured / 1.2 <= float(words.rsplit(" ", 2)[1]) <= 0.05
 
@@ -245,7 +297,7 @@ def test_a_topography_passes_through_its_amounts() -> None:
     }
     unit = modified("topographical_modification", values)
     gear = gear_pair(only_case(unit)).pinion
-    stated = float(account(unit, PINION_RIGHT, "flank_grid")[1].rsplit(" ", 2)[1])
+    stated = float(said(unit, PINION_RIGHT, "flank_grid")[1].rsplit(" ", 2)[1])
     for (diameter, face), amount in zip(nodes, amounts, strict=True):
         found = removed(gear, gear.roll_length(0.5e-3 * diameter), 10e-3 - 1e-3 * face)
         assert found == pytest.approx(1e3 * amount, abs=stated + 1e-6)
@@ -270,7 +322,7 @@ def test_a_tangential_transition_is_smooth_and_keeps_the_amount() -> None:
 def test_what_has_no_extent_is_refused_and_leaves_the_case() -> None:
     unit = modified("triangular_tip_relief", {"triangular_tip_relief_depth": 0.01})
     assert only_case(unit).pair.pinion.flank_grid is None
-    assert account(unit, MODIFICATION, "")[0] == "refused"
+    assert said(unit, MODIFICATION, "")[0] == "refused"
 
 
 MIRRORED_FLANKS = {PINION_LEFT: PINION_RIGHT, PINION_RIGHT: PINION_LEFT, WHEEL_LEFT: WHEEL_RIGHT}

@@ -10,10 +10,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from fe_contact.ste import PairFacts
 from lineofaction.cli.commands import app
-from lineofaction.gearbox.convert.case import gear_pair
-from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.from_rexs.opened import LOAD_CASES_FILE, OpenedUnit, opened, unit_files, unit_json
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import serialized
@@ -22,7 +19,7 @@ from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.studies.deflect import Inputs
 from lineofaction.gearbox.studies.deflect.run import load_cases
 from service.schemas.answers import UnitBody
-from tests.fakes.deflected_unit import deflection_of_unit
+from tests.fakes.opened_unit import deflection_of_unit, scene_of
 from tests.fakes.rexs_stage import relation
 from tests.fakes.rexs_unit import (
     BELT,
@@ -56,11 +53,7 @@ Vectors = tuple[Any, Any]
 
 def forces_of(document: Document) -> dict[str, Vectors]:
     """Return force and moment of each force of the scene, which dynamics takes."""
-    unit = opened(document)
-    assert unit.scene is not None
-    facts = {f"{case.name}.toml": PairFacts.of(gear_pair(case.case)) for case in unit.cases}
-    check_scene(unit.scene, {mesh.name: facts[str(mesh.case_file)] for mesh in unit.scene.meshes})
-    return {force.name: (force.force_n, force.moment_n_m) for force in unit.scene.forces}
+    return {force.name: (force.force_n, force.moment_n_m) for force in scene_of(document).forces}
 
 
 def lines_of(unit: OpenedUnit, number: int) -> dict[str, list[tuple[str, str]]]:

@@ -23,6 +23,7 @@ from rexs_stage import (
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
+from tests.fakes.opened_unit import said
 
 
 def only(unit: GearUnit, **options: Any) -> StageCase:
@@ -30,14 +31,11 @@ def only(unit: GearUnit, **options: Any) -> StageCase:
     return case
 
 
-def said(unit: GearUnit, component: int, item: str) -> tuple[str, str]:
-    """Return fate and words of a line of the account."""
-    (line,) = [line for line in unit.account.lines() if (line.component, line.item) == (component, item)]
-    return line.fate, line.words
-
-
-def flanks(gear: tuple[int, int], **values: float | None) -> Values:
-    return dict.fromkeys(gear, values)
+SHIFTED: Values = {
+    STAGE: {"center_distance": 80.9},
+    **{flank: {"addendum_modification_coefficient": 0.3} for flank in (PINION_LEFT, PINION_RIGHT)},
+    **{flank: {"addendum_modification_coefficient": None} for flank in (WHEEL_LEFT, WHEEL_RIGHT)},
+}
 
 
 def test_the_macro_geometry_is_that_of_the_file() -> None:
@@ -58,12 +56,7 @@ def test_a_missing_shift_follows_from_the_center_distance_and_the_mate() -> None
     working = math.acos(80.0 * math.cos(math.radians(20.0)) / 80.9)
     involutes = [math.tan(angle) - angle for angle in (working, math.radians(20.0))]
     total = 80 * (involutes[0] - involutes[1]) / (2.0 * math.tan(math.radians(20.0)))
-    changes = {
-        STAGE: {"center_distance": 80.9},
-        **flanks((PINION_LEFT, PINION_RIGHT), addendum_modification_coefficient=0.3),
-        **flanks((WHEEL_LEFT, WHEEL_RIGHT), addendum_modification_coefficient=None),
-    }
-    unit = stage_unit(changes)
+    unit = stage_unit(SHIFTED)
     case = only(unit).case
     assert case.pair.wheel.profile_shift_coefficient == pytest.approx(total - 0.3, rel=1e-9)
     assert gear_pair(case).transverse_base_backlash == pytest.approx(0.0, abs=1e-12)
@@ -88,12 +81,7 @@ def test_a_tip_of_one_millimeter_is_none() -> None:
 
 
 def test_both_tips_are_cut_by_what_the_shifts_bring_the_gears_closer() -> None:
-    changes = {
-        STAGE: {"center_distance": 80.9},
-        **flanks((PINION_LEFT, PINION_RIGHT), addendum_modification_coefficient=0.3),
-        **flanks((WHEEL_LEFT, WHEEL_RIGHT), addendum_modification_coefficient=None),
-    }
-    pair = gear_pair(only(stage_unit(changes)).case)
+    pair = gear_pair(only(stage_unit(SHIFTED)).case)
     # With k = (a - a_d)/m_n - (x_1 + x_2) both clearances are that of the basic rack, 0.25 m_n.
     assert pair.tip_clearances == pytest.approx((0.5e-3, 0.5e-3), rel=1e-9)
 

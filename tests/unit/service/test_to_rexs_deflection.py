@@ -24,7 +24,7 @@ from lineofaction.gearbox.rexs.vocabulary import si_value
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection
 from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.to_rexs import deflected, left_out
-from tests.fakes.deflected_unit import deflection_of_unit, scene_in_si
+from tests.fakes.opened_unit import deflection_of_unit, scene_in_si
 from tests.fakes.rexs_unit import (
     CASING,
     GEARS,
