@@ -30,6 +30,8 @@ napoleon_google_docstring = False
 napoleon_use_ivar = True  # attributes are a list, not entries of the index
 
 html_theme = "furo"
+html_static_path = ["_static"]
+html_css_files = ["formulas.css"]
 html_title = "lineofaction"
 html_copy_source = False
 html_show_sourcelink = False

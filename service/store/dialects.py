@@ -223,7 +223,7 @@ class _SQLite:
 
 RESTORE = (
     "Stop the service. Restore the database from its backup; or move it aside, for SQLite with its -wal and "
-    "-shm, and rebuild the index of results with loa store reindex (docs/operations.md)."
+    "-shm, and rebuild the index of results with loa store reindex (docs/how-to/runbooks.md)."
 )
 _RIGHTS = "Give the service the right to write it, and for SQLite its folder."
 ROOM = "Make room on its disk."

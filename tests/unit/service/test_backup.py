@@ -1,4 +1,4 @@
-"""A backup taken while the service works, as docs/operations.md says: what was entered before is in it."""
+"""A backup while the service works (how-to/back-up-and-upgrade.md): what was entered before is in it."""
 
 from __future__ import annotations
 

@@ -281,7 +281,7 @@ def made(machine: Bench) -> Path:
 
 
 def test_results_newer_than_a_restored_database_are_kept_and_told(tmp_path: Path) -> None:
-    """As docs/operations.md says: they are unknown until the index is rebuilt."""
+    """As docs/how-to/back-up-and-upgrade.md says: they are unknown until the index is rebuilt."""
     machine = bench(tmp_path / "data", REGISTRY)
     put(machine, KEYS[0])
     shutil.copyfile(tmp_path / "data/service.sqlite3", tmp_path / "copy.sqlite3")  # nobody has it open

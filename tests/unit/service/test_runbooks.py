@@ -23,8 +23,8 @@ from service.store.maintenance import verify_store
 from service.store.results import results
 
 ROOT = Path(__file__).resolve().parents[3]
-PAGE = (ROOT / "docs" / "operations.md").read_text("utf-8").partition("\n## Runbooks\n")[2]
-SECTIONS = {part.partition("\n")[0]: part for part in PAGE.split("\n### ")[1:]}
+PAGE = (ROOT / "docs" / "how-to" / "runbooks.md").read_text("utf-8")
+SECTIONS = {part.partition("\n")[0]: part for part in PAGE.split("\n## ")[1:]}
 SOURCE = "\n".join(
     file.read_text("utf-8") for house in ("service", "lineofaction") for file in (ROOT / house).rglob("*.py")
 )
@@ -47,7 +47,7 @@ def anchor(title: str) -> str:
 def test_there_are_ten_with_the_anchors_of_alarms() -> None:
     assert len(SECTIONS) == 10
     for title in SECTIONS:
-        assert f"\n(runbook-{anchor(title)})=\n### {title}\n" in PAGE
+        assert f"\n(runbook-{anchor(title)})=\n## {title}\n" in PAGE
 
 
 @pytest.mark.parametrize("title", SECTIONS)
