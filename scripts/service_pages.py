@@ -1,4 +1,4 @@
-"""Write the tables of verbs, figures, routes, processes in docs/cli.md and docs/service.md from the program.
+"""Write the tables of verbs, routes, processes in docs/cli.md and docs/service.md from the program.
 
 Usage: service_pages.py PAGE...
 """
@@ -10,14 +10,12 @@ import sys
 import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from textwrap import fill
 from typing import Any
 
 from typer.main import get_command
 
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.schemas.result_kinds import figures_model
 from service.app import create_app
 from service.settings import Settings
 
@@ -27,7 +25,7 @@ EXECUTION = re.compile(r"/v1/processes/([a-z-]+)/execution")
 
 def page(text: str, api: dict[str, Any]) -> str:
     """Return the page with its tables anew."""
-    tables = {"verbs": verbs(text), "figures": names(), "routes": routes(api), "processes": processes(api)}
+    tables = {"verbs": verbs(text), "routes": routes(api), "processes": processes(api)}
     return TABLE.sub(lambda found: f"{found[1]}{tables[found[2]]}{found[4]}", text)
 
 
@@ -52,17 +50,6 @@ def commands(group: Any, name: str) -> Iterator[tuple[str, str]]:
             yield from commands(command, f"{name} {verb}")
         else:
             yield f"{name} {verb}", command.help.partition("\n")[0]
-
-
-def names() -> str:
-    """Return the names in the JSON of each study: not those of their parts, nor those that all have."""
-    fields = {
-        name: figures_model(study.kind).model_json_schema()["properties"] for name, study in STUDIES.items()
-    }
-    shared = set.intersection(*map(set, fields.values()))
-    own = {name: (f"`{field}`" for field in told if field not in shared) for name, told in fields.items()}
-    texts = (f"- `{name}`: {', '.join(told)}" for name, told in own.items())
-    return "\n".join(fill(text, 120, subsequent_indent="  ", break_on_hyphens=False) for text in texts)
 
 
 def routes(api: dict[str, Any]) -> str:
