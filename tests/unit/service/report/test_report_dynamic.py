@@ -1,14 +1,22 @@
 """Laws that the figures of a run obey."""
 
+from __future__ import annotations
+
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from geared_scenes import gear_pair_scene
 
 from dynamics.results import RunResult
+from dynamics.scene import Outputs
+from dynamics.simulation import simulate
 from dynamics.types import RunStatus
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.report.drawing.placing import envelope
 from lineofaction.report.run.page import (
+    _accuracy,
     dynamic_alarms,
     dynamic_headlines,
     dynamic_making,
@@ -22,7 +30,7 @@ from lineofaction.report.run.signals import (
     signal_spectrum,
     spectrum_window,
 )
-from lineofaction.report.run.view import RunView, shown_signal, travel
+from lineofaction.report.run.view import RunView, Travel, shown_signal, travel, window_speeds
 
 
 def test_position_is_unwrapped_and_speed_is_the_driver_s(run: RunResult) -> None:
@@ -154,3 +162,74 @@ def test_a_run_that_ended_early_says_so(run: RunResult) -> None:
     assert dynamic_alarms(run) == ()
     (alarm,) = dynamic_alarms(replace(run, status=RunStatus.STEP_FLOOR))
     assert "ended early at 2 s: step floor" in alarm
+
+
+def test_the_envelope_keeps_every_peak() -> None:
+    rng = np.random.default_rng(7)
+    time = np.linspace(0.0, 5.0, 100_001)
+    values = rng.normal(size=time.size)
+    values[[333, 77_777]] = [9.0, -9.0]
+    thin_time, thin = envelope(time, values, 500)
+    assert len(thin) <= 1002
+    assert np.all(np.diff(thin_time) > 0)
+    assert (thin.max(), thin.min()) == (9.0, -9.0)
+    stretches = np.linspace(0, time.size, 501).astype(int)
+    for first, last in pairwise(stretches):
+        inside = (thin_time >= time[first]) & (thin_time <= time[last - 1])
+        assert thin[inside].max() == values[first:last].max()
+
+
+def test_a_short_series_stays_whole() -> None:
+    time = np.arange(10.0)
+    np.testing.assert_array_equal(envelope(time, time**2)[1], time**2)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("target", [100.0, 400.0, 900.0])
+def test_a_window_holds_whole_pitches_around_the_speed(target: float, sign: float) -> None:
+    time = np.linspace(0.0, 5.0, 100_001)
+    speed = sign * 191.0 * time
+    position = sign * 20 * 191.0 / 60 * time**2 / 2
+    chosen = Travel(speed, position).window(target)
+    traveled = np.abs(position[chosen])
+    assert np.ptp(traveled) == pytest.approx(3.0, abs=0.02)
+    assert traveled[0] % 1.0 == pytest.approx(0.0, abs=0.02)
+    assert np.abs(speed[chosen]).min() <= target <= np.abs(speed[chosen]).max()
+
+
+def test_a_window_at_the_end_of_the_run_stays_inside() -> None:
+    time = np.linspace(0.0, 1.0, 1001)
+    chosen = Travel(np.ones_like(time), 10 * time).window(5.0)
+    assert chosen.stop <= time.size
+    assert np.ptp(10 * time[chosen]) >= 2.9
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_run_at_one_speed_is_shown_at_that_speed_at_its_end(sign: float) -> None:
+    time = np.linspace(0.0, 1.0, 1001)
+    speed = sign * (3000.0 + np.cos(400.0 * time))
+    (shown,) = window_speeds(speed)
+    assert shown == pytest.approx(3000.0, abs=1.0)
+    chosen = Travel(speed, sign * 50.0 * time).window(shown)
+    assert 50.0 * time[chosen][0] == pytest.approx(47.0) and chosen.stop == time.size
+
+
+def test_speeds_that_a_run_does_not_pass_are_not_shown() -> None:
+    assert window_speeds(np.array([500.0, 1000.0])) == (900.0,)
+    assert window_speeds(np.array([350.0, 1000.0])) == (400.0, 900.0)
+    assert window_speeds(np.array([940.0, 820.0])) == (820.0,)  # 846 is rounded to 800
+
+
+def test_speeds_are_round() -> None:
+    assert window_speeds(np.array([0.0, 955.0])) == (100.0, 400.0, 900.0)
+    assert window_speeds(np.array([-167.0, 0.0])) == (20.0, 70.0, 150.0)
+
+
+def test_every_source_has_its_row_and_unknown_ones_have_none() -> None:
+    scene = gear_pair_scene(duration=0.2, effects={"lateral": "off"})
+    full = dict(_accuracy(simulate(scene)).rows)
+    lean = dict(_accuracy(simulate(replace(scene, outputs=Outputs(receipt="minimal")))).rows)
+    for start in ("step error", "table error", "neglected effects"):
+        assert sum(title.startswith(start) for title in full) >= 1
+    assert not any(title.startswith("table error") for title in lean)
+    assert [value for title, value in lean.items() if title.startswith("step error")] == ["1.00"]

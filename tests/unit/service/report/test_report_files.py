@@ -1,17 +1,35 @@
-"""The report from files: what they are is read from them, and what is wrong is said."""
+"""The report from files, as a page and as JSON: what they are is read from them, what is wrong is said."""
 
+from __future__ import annotations
+
+import json
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import h5netcdf
+import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from dynamics.orders import highest_valid_order, order_frequency
 from dynamics.results import RunResult
+from fe_contact.analysis.studies.frontier import FidelityResult, Frontier
 from fe_contact.ste import SteDatabase
+from lineofaction.cli.commands import app
 from lineofaction.gearbox.problems import BadInput, DamagedFile
+from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.comparison.compare import stored_comparison
-from lineofaction.report.document import read_inputs, stored_figures, write_report
+from lineofaction.report.document import page_json, page_of, read_inputs, stored_figures, write_report
+from lineofaction.report.effects.frontier import _frontier_page
+from lineofaction.report.run.signals import (
+    _order_amplitudes,
+    signal_over_time,
+    signal_spectrum,
+    spectrum_window,
+)
+from lineofaction.report.run.view import RunView, shown_signal
 
 Work = Callable[[dict[str, Any]], Any]
 
@@ -119,3 +137,80 @@ def test_of_a_stored_file_nobody_learns_where_it_is(tmp_path: Path, work: Work) 
     with pytest.raises(DamagedFile, match="not a readable netCDF-4 file") as refused:
         work({"file": str(tmp_path / "a.nc"), "files": [str(tmp_path / "a.nc")] * 2})
     assert str(tmp_path) not in str(refused.value)
+
+
+def rung(name: str, error: float, seconds: float) -> FidelityResult:
+    ripple = np.array([1e-6, 2e-6])
+    return FidelityResult(
+        name, name, seconds, 4.0 * ripple, ripple, 0.01, {"contact": seconds}, 2**28, error, 2.0 * error
+    )
+
+
+LADDER = Frontier(
+    (rung("iso6336", 0.2, 0.01), rung("plane_strain", 0.04, 0.3), rung("3d_fine", float("nan"), 60.0)),
+    {"corrected": "not asked for"},
+    "plane_strain",
+    "plane_strain",
+    128,
+)
+
+
+def test_a_stored_table_has_the_figures_of_its_report(database: SteDatabase, tmp_path: Path) -> None:
+    file = tmp_path / "ste.nc"
+    database.to_netcdf(file)
+    found = stored_figures({"kind": "database", "file": str(file)})
+    page = page_of(read_inputs([file]))
+    assert json.loads(json.dumps(found, allow_nan=False)) == found
+    drawn = [figure for section in found["sections"] for figure in section["figures"]]
+    assert [f["key"] for f in drawn] == [f.key for section in page.sections for f in section.figures]
+    assert all(f["alternative"] and f["plot"]["data"] and f["plot"]["layout"] for f in drawn)
+    assert [h["value"] for h in found["headlines"]] == [h.value for h in page.headlines]
+
+
+def test_a_stored_ladder_is_drawn_as_a_fresh_one(tmp_path: Path) -> None:
+    file = tmp_path / "frontier.nc"
+    RUN.file.write(LADDER, file)
+    fresh = page_json(_frontier_page(LADDER))
+    assert stored_figures({"kind": "frontier", "file": str(file)}) == fresh
+    assert RUN.figures(RUN.file.read(file)) == RUN.figures(LADDER)
+
+
+ROTOR = Path(__file__).parents[4] / "examples" / "jeffcott_scene.toml"
+SPEED = 3843.5 / 60.0  # turns per second
+
+
+@pytest.fixture(scope="module")
+def rotor_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("rotor") / "run.nc"
+    told = CliRunner().invoke(app, ["simulate", str(ROTOR), "-o", str(file)])
+    assert told.exit_code == 0, told.output
+    return file
+
+
+def test_the_spectrum_of_a_run_has_order_1(rotor_run: Path, tmp_path: Path) -> None:
+    result = RunResult.from_netcdf(rotor_run)
+    assert order_frequency(result) == pytest.approx(np.full(result.time.size, SPEED))
+    assert highest_valid_order(result) == math.floor(1000.0 / 2.56 / SPEED)
+    figure = signal_spectrum(result, shown_signal(result, RunView(scale="peak")))
+    assert "shaft frequency" in figure.caption
+    (line,) = figure.content[0].lines
+    history = signal_over_time(result, shown_signal(result, RunView()))
+    assert history.content[1].title == "three turns at 3844 rpm"
+    window = order_frequency(result)[spectrum_window(result.time)]
+    first, second = _order_amplitudes(line.x, line.y, window)[:2]
+    assert first[1] > 1e3 * second[1]
+    written = write_report(rotor_run, tmp_path / "run.html", tmp_path / "images")
+    assert {file.stem for file in written} == {"run", "signal", "spectrum"}
+    assert "shaft order" in written[0].read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("verb", "says"),
+    [("modes", "71.18 Hz"), ("response", "force on bearing left"), ("steady", "rms bearing force of left")],
+)
+def test_studies_print_and_draw_bearings(verb: str, says: str, tmp_path: Path) -> None:
+    file = tmp_path / f"{verb}.nc"
+    told = CliRunner().invoke(app, [verb, str(ROTOR), "--speed-rpm", "3800,4000", "-o", str(file)])
+    assert told.exit_code == 0, told.output
+    assert says in told.output
+    assert write_report(file, tmp_path / "page.html")[0].exists()

@@ -1,18 +1,37 @@
-"""Laws that the figures of an STE database obey."""
+"""Laws that the figures of an STE database obey, and their captions."""
+
+from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
+from lineofaction.gearbox.convert.answers import curve_json, metadata_json
 from lineofaction.report.drawing.figure import Panel, number
+from lineofaction.report.flank.flank import line_load_figure
 from lineofaction.report.pair import iso_mesh_stiffness
-from lineofaction.report.ste.curves import shown_loads, ste_curves, ste_shown
-from lineofaction.report.ste.over_torque import ripple_over_torque
+from lineofaction.report.ste.curves import (
+    pitches_shown,
+    position_axis,
+    shown_loads,
+    shown_rows,
+    ste_curves,
+    ste_shown,
+)
+from lineofaction.report.ste.over_torque import (
+    deviation_curves,
+    face_load,
+    has_deviations,
+    has_face_load,
+    ripple_over_torque,
+)
 from lineofaction.report.ste.page import static_results
 from lineofaction.report.ste.stiffness import _pair_shares, _secant_stiffness, load_sharing, mesh_stiffness
 
@@ -163,3 +182,226 @@ def test_ripple_over_torque_is_that_of_the_curves(database: SteDatabase) -> None
                 else:
                     assert one.error >= one.value
     assert "ripple" in [f.key for s in static_results(database) for f in s.figures]
+
+
+SKEW = np.array([-20e-6, 0.0, 40e-6])
+CHANGE = np.array([0.0, 0.1e-3])
+RIPPLE = np.array([[1.5, 1.2], [1.0, 0.8], [3.0, 2.4]])
+"""Factor of the whole curve, and so of its peak-to-peak, at each misalignment and center distance."""
+
+
+@pytest.fixture
+def deviating(database: SteDatabase) -> SteDatabase:
+    grid = (64, 4, 3, 2)
+    arrays = {
+        name: np.broadcast_to(getattr(database, name), grid + getattr(database, name).shape[4:])
+        for name in ("tangent_compliance", "load_share", "pairs_in_contact", "status", "residuals")
+    }
+    ste = database.static_transmission_error * RIPPLE
+    centroid = np.broadcast_to(-100.0 * SKEW[:, None], grid) + 1e-3 * database.position[:, None, None, None]
+    return replace(
+        database,
+        misalignment=SKEW,
+        center_distance_change=CHANGE,
+        static_transmission_error=ste,
+        error_estimate=0.002 * ste,
+        no_load_transmission_error=np.zeros((64, 3, 2)),
+        face_centroid=centroid,
+        max_pressure=np.broadcast_to(7e8 + 1e13 * np.abs(SKEW[:, None]), grid),
+        **arrays,
+    )
+
+
+def test_peak_to_peak_over_either_deviation_alone(deviating: SteDatabase) -> None:
+    figure = deviation_curves(deviating)
+    over_skew, over_change = figure.content  # type: ignore[misc]
+    assert [line.name for line in over_skew.lines] == ["10 N m", "100 N m", "400 N m"]
+    assert over_skew.lines[0].x == pytest.approx([-20.0, 0.0, 40.0])
+    assert over_change.lines[0].x == pytest.approx([0.0, 0.1])
+    for k, line in enumerate(over_skew.lines, start=1):
+        nominal = 1e6 * np.ptp(deviating.static_transmission_error[:, k, 1, 0])
+        assert line.y == pytest.approx(nominal * RIPPLE[:, 0], rel=1e-3)
+        assert over_change.lines[k - 1].y == pytest.approx(nominal * RIPPLE[1], rel=1e-3)
+
+
+def test_an_axis_of_one_value_has_no_panel(deviating: SteDatabase) -> None:
+    names = ("static_transmission_error", "tangent_compliance", "load_share", "pairs_in_contact", "status",
+             "residuals", "error_estimate", "face_centroid", "max_pressure")  # fmt: skip
+    cut = {name: getattr(deviating, name)[:, :, :1] for name in names}
+    narrow = replace(
+        deviating,
+        misalignment=SKEW[1:2],
+        no_load_transmission_error=np.zeros((64, 1, 2)),
+        **cut,
+    )
+    (panel,) = deviation_curves(narrow).content  # type: ignore[misc]
+    assert panel.x.label == "change of the center distance, mm"
+
+
+def test_the_table_names_every_deviation_with_its_unit(deviating: SteDatabase) -> None:
+    table = deviation_curves(deviating).table
+    assert table is not None
+    assert [row[0] for row in table.rows] == [
+        "misalignment -20.0 µm", "misalignment 0 µm", "misalignment 40.0 µm",
+        "change of the center distance 0 mm", "change of the center distance 0.100 mm",
+    ]  # fmt: skip
+    assert table.head == ("deviation", "10 N m", "100 N m", "400 N m")
+
+
+def test_centroid_and_pressure_at_every_misalignment(deviating: SteDatabase) -> None:
+    figure = face_load(deviating)
+    centroid, pressure = figure.content  # type: ignore[misc]
+    assert [line.name for line in centroid.lines] == [
+        "misalignment -20.0 µm", "misalignment 0 µm", "misalignment 40.0 µm",
+    ]  # fmt: skip
+    assert centroid.lines[2].y[0] == pytest.approx(-4.0)
+    assert centroid.lines[2].y[64] == centroid.lines[2].y[0] == centroid.lines[2].y[128]
+    assert pressure.lines[0].y == pytest.approx(900.0)
+    assert "from -4.00 to 2.98 mm" in figure.alternative
+    assert "1100 MPa" in figure.alternative
+
+
+def test_they_are_on_the_page_only_where_there_is_something_to_show(
+    database: SteDatabase, deviating: SteDatabase
+) -> None:
+    def keys(table: SteDatabase) -> set[str]:
+        return {figure.key for section in static_results(table) for figure in section.figures}
+
+    assert not has_deviations(database) and not has_face_load(database)
+    assert has_deviations(deviating) and has_face_load(deviating)
+    assert keys(deviating) - keys(database) == {"deviations", "face_load"}
+
+
+def test_failed_points_leave_gaps_and_no_error(deviating: SteDatabase) -> None:
+    ste, status = deviating.static_transmission_error.copy(), np.array(deviating.status)
+    centroid = np.array(deviating.face_centroid)
+    ste[5, 2, 0, 0], centroid[5, 2, 0, 0], status[5, 2, 0, 0] = np.nan, np.nan, 1
+    failed = replace(deviating, static_transmission_error=ste, status=status, face_centroid=centroid)
+    assert has_face_load(failed)
+    panel, _ = face_load(failed).content  # type: ignore[misc]
+    assert np.isnan(panel.lines[0].y[5])
+    first, _ = deviation_curves(failed).content  # type: ignore[misc]
+    assert np.all(np.isfinite(first.lines[0].y))
+
+
+Tables = Callable[..., SteDatabase]
+
+
+def test_a_period_is_shown_whole_once(with_pitch_errors: Tables) -> None:
+    table = with_pitch_errors()
+    position, values = ste_shown(table)
+    assert (position[0], position[-1]) == (0.0, 3.0)
+    assert np.all(np.diff(position) > 0.0)
+    assert values[-1] == pytest.approx(values[0])
+    assert position_axis(table).limits == (0, 3)
+    at = np.searchsorted(position, table.position)
+    assert values[at] == pytest.approx(table.static_transmission_error[:, :, 0, 0], rel=1e-9)
+    assert "3 base pitches" in ste_curves(table).title
+    assert "after 3 base pitches" in ste_curves(table).caption
+
+
+def test_of_a_long_period_the_first_pitches_are_shown_and_go_on(with_pitch_errors: Tables) -> None:
+    table = with_pitch_errors(50)
+    position, values = ste_shown(table)
+    assert (pitches_shown(table), position[-1]) == (40, 40.0)
+    assert values[-1] == pytest.approx(table.static_transmission_error[40 * 64, :, 0, 0])
+    rows = shown_rows(table)[1]
+    assert (rows[-1], rows.size) == (40 * 64, 40 * 64 + 1)
+
+
+@pytest.mark.parametrize("period", [1, 3, 50])
+def test_every_pair_is_followed_and_the_shares_sum_to_one(
+    with_pitch_errors: Tables, database: SteDatabase, period: int
+) -> None:
+    table = database if period == 1 else with_pitch_errors(period)
+    position, followed = _pair_shares(table, 2)
+    assert np.sum(list(followed.values()), axis=0) == pytest.approx(np.ones(position.size))
+    assert len(followed) == pitches_shown(table) + 1
+    for share in followed.values():  # one stretch of mesh each
+        assert np.count_nonzero(np.diff((share > 0.0).astype(int)) == 1) <= 1
+
+
+def test_the_static_part_is_made_without_the_secant_stiffness(
+    with_pitch_errors: Tables, database: SteDatabase
+) -> None:
+    table = with_pitch_errors()
+    keys = [figure.key for section in static_results(table) for figure in section.figures]
+    assert "mesh_stiffness" not in keys
+    assert {"ste", "load_sharing", "ste_spectrum"} <= set(keys)
+    assert "mesh_stiffness" in [f.key for section in static_results(database) for f in section.figures]
+    assert len(load_sharing(table).content) == 3  # type: ignore[arg-type]
+    panel = face_load(table).content[0]  # type: ignore[index]
+    assert panel.lines[0].x[-1] == 3.0
+
+
+def test_answers_hold_the_period_and_its_orders(with_pitch_errors: Tables, database: SteDatabase) -> None:
+    answer = curve_json(with_pitch_errors(), torque_n_m=100.0)
+    assert answer["period"] == 3
+    assert answer["order"][:3] == pytest.approx([1 / 3, 2 / 3, 1.0])
+    assert answer["amplitude_um"][0] > 1.0
+    assert answer["amplitude_um"][2] == pytest.approx(answer["harmonics_um"][0])
+    plain = curve_json(database, torque_n_m=100.0)
+    assert plain["period"] == 1
+    assert "order" not in plain
+    assert metadata_json(with_pitch_errors())["period"] == 3
+
+
+def of_high_contact_ratio(database: SteDatabase, more: int = 1, helix: float = 0.0) -> SteDatabase:
+    """Return the table with as many more pairs in contact everywhere, sharing alike."""
+    counts = database.pairs_in_contact + more
+    pairs = np.arange(int(counts.max()))
+    share = (pairs < counts[..., None]) / counts[..., None]
+    facts = replace(database.facts, base_helix_angle=helix)
+    torque = database.torque * math.cos(helix)
+    return replace(
+        database, pairs_in_contact=counts, load_share=share, pair=pairs, facts=facts, torque=torque
+    )
+
+
+def words(database: SteDatabase) -> str:
+    figures = [plot(database) for plot in (ste_curves, load_sharing)]
+    return " ".join(f"{figure.caption} {figure.alternative}" for figure in figures)
+
+
+def test_a_pair_of_contact_ratio_one_and_a_half_is_told_by_its_numbers(database: SteDatabase) -> None:
+    text = words(database)
+    assert "1 or 2 tooth pairs carry the load" in text
+    assert "One pair carries the whole load in" in text
+    assert "low where more do, high where fewer" in text
+    assert "single" not in text
+
+
+def test_a_pair_of_high_contact_ratio_never_stands_on_one_pair(database: SteDatabase) -> None:
+    text = words(of_high_contact_ratio(database))
+    assert "2 or 3 tooth pairs carry the load" in text
+    assert "no pair is ever alone" in text
+    assert "One pair" not in text and "single" not in text
+
+
+def test_a_helical_pair_has_no_steps(database: SteDatabase) -> None:
+    text = words(of_high_contact_ratio(database, 2, helix=0.3))
+    assert "3 or 4 tooth pairs carry the load" in text
+    assert "low where" not in text
+
+
+def test_a_number_of_pairs_that_never_changes_is_said_so(database: SteDatabase) -> None:
+    same = replace(database, pairs_in_contact=np.full_like(database.pairs_in_contact, 2))
+    assert "2 tooth pairs carry the load at every position" in words(same)
+    assert "low where" not in words(same)
+
+
+def test_a_gap_plot_that_shows_nothing_is_left_out(flanks: LoadDistribution) -> None:
+    figure = line_load_figure(replace(flanks, gap=np.zeros_like(flanks.gap)))
+    assert [panel.y.label for panel in figure.content if isinstance(panel, Panel)] == [
+        "load per face width, N/mm"
+    ]
+    assert figure.title == "Load over the face"
+    assert "Below" not in figure.caption and "no gap" in figure.caption
+
+
+@pytest.mark.parametrize(("helix", "uneven"), [(0.0, False), (0.2, True)])
+def test_only_a_helical_pair_is_uneven_at_a_single_position(
+    flanks: LoadDistribution, helix: float, uneven: bool
+) -> None:
+    figure = line_load_figure(replace(flanks, base_helix_angle=helix))
+    assert ("A single position is uneven" in figure.caption) == uneven
