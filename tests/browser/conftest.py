@@ -11,7 +11,7 @@ from types import ModuleType
 
 import pytest
 from condensed_once import find_condensed
-from page_visit import computed, served
+from page_visit import Visit, computed, served, shown
 from playwright.sync_api import Browser, Playwright, sync_playwright
 
 CLOSED_FORMS = Path(__file__).parents[1] / "unit" / "service" / "report" / "conftest.py"
@@ -30,7 +30,6 @@ def chromium() -> str | None:
 
 @pytest.fixture(scope="session")
 def playwright() -> Iterator[Playwright]:
-    """Start what drives the browsers, once."""
     with sync_playwright() as started:
         yield started
 
@@ -47,7 +46,6 @@ def browser(playwright: Playwright) -> Iterator[Browser]:
 
 @pytest.fixture(scope="module", autouse=True)
 def _closed(browser: Browser) -> Iterator[None]:
-    """Close the pages of a file at its end."""
     yield
     for context in browser.contexts:
         context.close()
@@ -65,6 +63,13 @@ def address(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) ->
 def analyzed(address: str) -> str:
     """Hash of the small case's table in that service."""
     return computed(address)
+
+
+@pytest.fixture
+def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+    seen = shown(browser, address, analyzed)
+    yield seen
+    seen.page.close()
 
 
 @pytest.fixture(scope="session")

@@ -1,13 +1,15 @@
-"""The address is the state: menu, reload, back and forward show what it names; an unknown one is said."""
+"""The address is the state: menu, reload, back, forward and another browser show what it names."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
-from page_visit import CASE, Visit, choose_case, computed, opened, shown
+from page_visit import CASE, Visit, choose_case, computed, opened
 from playwright.sync_api import Browser, Page, Route, expect
 from running_service import until
 
@@ -18,15 +20,7 @@ NOWHERE = "11111111-1111-4111-8111-111111111111"
 EDITED = "Edited since: pinion tip relief 0 µm → 7 µm"
 
 
-@pytest.fixture
-def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
-    seen = shown(browser, address, analyzed)
-    yield seen
-    seen.page.close()
-
-
 def type_relief(page: Page) -> None:
-    """Edit the design of the result that is shown."""
     page.locator("#f-pair-pinion-tip_relief_um").fill("7")
     expect(page.locator("#results-design")).to_contain_text(EDITED)
 
@@ -179,3 +173,190 @@ def test_a_study_whose_answer_is_lost_is_asked_again(visit: Visit, address: str,
     assert page.locator("#studies [role=alert]").count() == 0
     page.reload()
     expect(page.locator("[data-figure=scatter] .plot")).to_have_attribute("data-drawn", "yes")
+
+
+TYPED = """() => Object.fromEntries(
+  [...document.querySelectorAll("#main :is(input, select, textarea)[id]")]
+    .filter((control) => !control.matches("[type=file], #jobs-search, #example"))
+    .map(({ id, value }) => [id, value]))"""
+
+
+@contextmanager
+def other_browser(browser: Browser, address: str) -> Iterator[Page]:
+    context = browser.new_context()
+    page = context.new_page()
+    page.goto(address)
+    page.wait_for_selector("html[data-ready=yes]")
+    yield page
+    context.close()
+
+
+def typed(page: Page) -> dict[str, str]:
+    fields: dict[str, str] = page.evaluate(TYPED)
+    return fields
+
+
+def shows_the_same(page: Page, sent: Page) -> None:
+    """Wait until all controls of two pages hold the same: what is typed live comes with its first answer."""
+    with suppress(AssertionError):
+        until(lambda: typed(page) == typed(sent))
+    assert typed(page) == typed(sent)
+
+
+def entered(address: str, process: str, **inputs: Any) -> str:
+    """Submit a job and wait for its end; returns its identifier."""
+    with LineOfActionClient(address) as client:
+        job = client.submit(process, inputs)
+        until(lambda: client.status(job.id).status in ("successful", "failed"))
+        return job.id
+
+
+def test_the_address_of_an_analysis_shows_its_design_and_its_result(
+    browser: Browser, address: str, analyzed: str, tmp_path: Path
+) -> None:
+    job = entered(address, "analyze", case=CASE)
+    sender = opened(browser, address).page
+    choose_case(sender, tmp_path)
+    sender.locator("#analyze").press("Enter")
+    expect(sender).to_have_url(re.compile(f"#database={analyzed}$"))
+    expect(sender.locator("#live-body")).to_have_attribute("data-answers", re.compile(r"\d"))
+    for name in (f"analyze={job}", f"job={job}", sender.url.partition("#")[2]):
+        with other_browser(browser, f"{address}/#{name}") as page:
+            expect(page).to_have_url(re.compile(f"#database={analyzed}$"))
+            expect(page.locator("#live-body")).to_have_attribute("data-answers", re.compile(r"\d"))
+            shows_the_same(page, sender)
+            assert page.locator(".design-note").count() == 0
+    sender.close()
+
+
+def test_the_design_of_a_job_under_way_stands_before_its_result(browser: Browser, address: str) -> None:
+    with LineOfActionClient(address) as client:
+        job = client.submit("analyze", {"case": LONG})
+        with other_browser(browser, f"{address}/#analyze={job.id}") as page:
+            expect(page.locator("#analyze-job .job")).to_be_visible()
+            assert page.locator("#f-pair-normal_module_mm").input_value() == "1"
+            assert page.locator("#f-accuracy-level").input_value() == "fine"
+            expect(page.locator("#example-note")).to_have_text("The pair of this address.")
+            page.get_by_role("button", name="Cancel analyze", exact=True).press("Enter")
+            expect(page.locator("#notice")).to_contain_text("analyze: The job was cancelled.")
+            assert page.locator("#f-pair-normal_module_mm").input_value() == "1"
+
+
+def test_a_study_is_sent_with_the_design_as_edited_and_what_was_typed_for_it(
+    visit: Visit, browser: Browser
+) -> None:
+    page = visit.page
+    page.locator("#f-pair-pinion-tip_relief_um").fill("7")
+    page.locator("#f-pair-pinion-tip_relief_length_mm").fill("0.3")
+    page.locator("#study-Flank-pressure-torque_n_m").fill("0.8")
+    page.get_by_role("button", name="Compute flank pressure").press("Enter")
+    expect(page.locator("[data-figure=contact_pattern] .plot")).to_have_attribute("data-drawn", "yes")
+    expect(page.locator("#results-design")).to_contain_text(EDITED)
+    with other_browser(browser, page.url) as other:
+        expect(other.locator("[data-figure=contact_pattern] .plot")).to_have_attribute("data-drawn", "yes")
+        expect(other.locator("#results-design")).to_contain_text(EDITED)
+        expect(other.locator("#live-body")).to_have_attribute("data-answers", re.compile(r"\d"))
+        shows_the_same(other, page)
+        assert other.locator("#study-list .design-note").count() == 0
+    assert visit.complaints == []
+
+
+@pytest.mark.nightly
+def test_a_run_up_is_sent_with_its_result_and_what_was_typed_for_it(visit: Visit, browser: Browser) -> None:
+    page = visit.page
+    page.locator("#study-Run-up-duration_s").fill("0.05")
+    page.locator("#study-Run-up-torque_n_m").fill("0.9")
+    page.get_by_role("button", name="Simulate the run-up").press("Enter")
+    drawn = "#dynamics-body [data-figure=dynamic_error] .plot"
+    expect(page.locator(drawn)).to_have_attribute("data-drawn", "yes")
+    with other_browser(browser, page.url) as other:
+        expect(other.locator(drawn)).to_have_attribute("data-drawn", "yes")
+        shows_the_same(other, page)
+        assert other.locator(".design-note").count() == 0
+    job = page.url.partition("simulate=")[2]
+    with other_browser(browser, f"{page.url.partition('#')[0]}#simulate={job}") as other:
+        expect(other.locator(drawn.replace("dynamics-body", "jobs-result"))).to_have_attribute(
+            "data-drawn", "yes"
+        )
+        expect(other.locator("#f-pair-normal_module_mm")).to_have_value("1")
+        expect(other.locator("#scene-text")).to_have_value(re.compile("duration_s = 0.05"))
+
+
+def test_a_scene_is_sent_with_its_text_and_its_speeds(visit: Visit, browser: Browser) -> None:
+    page = visit.page
+    page.get_by_role("button", name="Write the scene of the pair").press("Enter")
+    expect(page.locator("#scene-text")).to_have_value(re.compile("database_hash"))
+    page.get_by_label("Compute", exact=True).select_option("modes")
+    page.get_by_label("to, rpm", exact=True).fill("2000")
+    page.get_by_label("number", exact=True).fill("4")
+    page.get_by_role("button", name="Compute the scene").press("Enter")
+    drawn = "#scene-body [data-figure=modal_campbell] .plot"
+    expect(page.locator(drawn)).to_have_attribute("data-drawn", "yes")
+    with other_browser(browser, page.url) as other:
+        expect(other.locator(drawn)).to_have_attribute("data-drawn", "yes")
+        shows_the_same(other, page)
+
+
+def test_a_job_of_the_list_takes_the_page_with_its_design(
+    visit: Visit, browser: Browser, address: str
+) -> None:
+    page = visit.page
+    load = {"torque_n_m": [0.9, 1.1]}
+    entered(address, "flank", case=CASE | {"load": load})
+    page.reload()
+    expect(page.locator("#live-plots .plot").first).to_have_attribute("data-drawn", "yes")  # with its sliders
+    page.get_by_role("button", name=re.compile("^Open flank")).first.press("Enter")
+    expect(page.locator("#jobs-result .plot").first).to_have_attribute("data-drawn", "yes")
+    expect(page.locator("#f-load-torque_n_m")).to_have_value("0.9, 1.1")
+    assert page.locator(".design-note").count() == 0
+    with other_browser(browser, page.url) as other:
+        expect(other.locator("#jobs-result .plot").first).to_have_attribute("data-drawn", "yes")
+        shows_the_same(other, page)
+    page.go_back()
+    expect(page.locator("#f-load-torque_n_m")).to_have_value("0.5, 1")
+    expect(page.locator("#results [data-figure=ste] .plot")).to_have_attribute("data-drawn", "yes")
+
+
+def test_a_job_that_failed_says_so_beside_its_design(browser: Browser, address: str) -> None:
+    with LineOfActionClient(address) as client:
+        job = client.with_terms(max_cost_s=0.1).submit("frontier", {"case": LONG}).id
+        until(lambda: client.status(job).status == "failed")
+        message = client.status(job).message
+    with other_browser(browser, f"{address}/#frontier={job}") as page:
+        expect(page.locator("#notice li")).to_have_text(f"frontier: {message}")
+        expect(page.locator("#f-pair-normal_module_mm")).to_have_value("1")
+
+
+def test_four_openings_file_one_job(browser: Browser, address: str) -> None:
+    def jobs() -> list[str]:
+        with LineOfActionClient(address) as client:
+            return [job.id for job in client.jobs(process="analyze")]
+
+    before = len(jobs())
+    contexts = [browser.new_context() for _ in range(4)]
+    pages = [context.new_page() for context in contexts]
+    for page in pages:
+        page.goto(address)
+    for page in pages:
+        expect(page).to_have_url(re.compile("#database=[0-9a-f]{64}$"))
+    for context in contexts:
+        context.close()
+    after = len(jobs())
+    assert after - before <= 1
+    with other_browser(browser, address) as page:
+        expect(page).to_have_url(re.compile("#database=[0-9a-f]{64}$"))
+        expect(page.locator("#glance-plot")).to_have_attribute("data-drawn", "yes")
+        assert page.locator(".design-note").count() == 0
+    assert len(jobs()) == after
+
+
+def test_the_same_design_analyzed_again_is_the_same_job(visit: Visit) -> None:
+    page = visit.page
+
+    def job() -> str:
+        with page.expect_response("**/v1/processes/analyze/execution") as answer:
+            page.locator("#analyze").press("Enter")
+        expect(page.locator("#analyze")).to_be_enabled()
+        return str(answer.value.json()["jobID"])
+
+    assert job() == job()

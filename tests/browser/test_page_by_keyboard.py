@@ -28,7 +28,6 @@ def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
 
 
 def stops(page: Page, most: int) -> list[dict[str, object]]:
-    """Press Tab and say where that leads."""
     found = []
     for _ in range(most):
         page.keyboard.press("Tab")

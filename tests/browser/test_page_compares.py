@@ -1,4 +1,4 @@
-"""Two results on one pair of axes: one kept as reference while flanks or the whole pair change."""
+"""Live flanks follow the sliders; two results on one pair of axes, one kept as reference."""
 
 from __future__ import annotations
 
@@ -8,17 +8,7 @@ import re
 from pathlib import Path
 
 import pytest
-from page_visit import (
-    OVER_FACE,
-    Visit,
-    answers,
-    computed,
-    found_inaccessible,
-    moved,
-    opened,
-    shown,
-    unfold,
-)
+from page_visit import OVER_FACE, Visit, answers, computed, found_inaccessible, moved, opened, shown, unfold
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
@@ -31,13 +21,7 @@ def other(address: str) -> str:
     return computed(address, case=OVER_FACE)
 
 
-@pytest.fixture
-def visit(browser: Browser, address: str, analyzed: str) -> Visit:
-    return shown(browser, address, analyzed)
-
-
 def curves(page: Page, folder: Path) -> dict[str, list[float]]:
-    """Return what the plot of the transmission error holds, from its CSV."""
     with page.expect_download() as given:
         page.locator("[data-figure=live_ste] [data-tool=CSV]").press("Enter")
     given.value.save_as(folder / "live.csv")
@@ -155,3 +139,68 @@ def test_two_analyses_of_the_list_are_compared_with_their_errors(visit: Visit, o
     expect(shown.locator("[data-figure=ripples] .plot")).to_have_attribute("data-drawn", "yes")
     assert not (told := found_inaccessible(page, "#jobs")), json.dumps(told, indent=1)
     assert visit.complaints == []
+
+
+PLOTS = ("live_pressure", "live_face_load")
+
+
+@pytest.fixture(scope="module")
+def over_face(browser: Browser, address: str) -> Visit:
+    return shown(browser, address, computed(address, case=OVER_FACE))
+
+
+def figure(page: Page, name: str) -> float:
+    node = page.locator("#live-figures > div").filter(has=page.locator("dt", has_text=name)).locator("dd")
+    return float((node.text_content() or "nan").split()[0])
+
+
+def test_a_misaligned_pair_is_pressed_harder_and_carries_less_evenly(over_face: Visit) -> None:
+    page = over_face.page
+    for key in PLOTS:
+        expect(page.locator(f"[data-figure={key}] .plot")).to_have_attribute("data-drawn", "yes")
+    pressure, factor = figure(page, "largest pressure"), figure(page, "K_Hbeta")
+    before = page.locator("#live-figures").text_content() or ""
+    assert 1.0 <= factor < 1.2
+    moved(page, "#live-misalignment_um", "End")
+    assert figure(page, "largest pressure") > 1.2 * pressure
+    assert figure(page, "K_Hbeta") > 1.5 * factor
+    load = page.locator("[data-figure=live_face_load]")
+    assert load.locator(".scatterlayer .trace").count() == 3, "as analyzed, now, now at the worst position"
+    said = load.locator(".plot").get_attribute("aria-label") or ""
+    assert f"K_Hbeta {figure(page, 'K_Hbeta'):g}" in said
+    page.get_by_role("button", name="As analyzed").press("Enter")
+    expect(page.locator("#live-figures")).to_have_text(before)
+
+
+def test_in_the_plane_there_is_a_pressure_along_the_profile_and_no_face(
+    browser: Browser, address: str, analyzed: str
+) -> None:
+    page = shown(browser, address, analyzed).page
+    before = figure(page, "largest pressure")
+    expect(page.locator("[data-figure=live_face_load]")).to_be_hidden()
+    expect(page.locator("#live-figures")).not_to_contain_text("K_Hbeta")
+    moved(page, "#live-torque_n_m", "End")
+    assert figure(page, "largest pressure") > 1.1 * before
+    page.close()
+
+
+def test_the_length_of_a_relief_acts_where_there_is_a_relief(
+    browser: Browser, address: str, analyzed: str
+) -> None:
+    page = shown(browser, address, analyzed).page
+    plain = page.locator("#live-figures").text_content()
+    moved(page, "#live-pinion-tip_relief_length_mm", "End")
+    expect(page.locator("#live-figures")).to_have_text(plain or "")
+    moved(page, "#live-pinion-tip_relief_um", "End")
+    before = figure(page, "peak to peak")
+    moved(page, "#live-pinion-tip_relief_length_mm", "Home")
+    assert abs(figure(page, "peak to peak") / before - 1.0) > 0.05
+    page.get_by_role("button", name="Take these flanks").press("Enter")
+    expect(page.locator("#f-pair-pinion-tip_relief_length_mm")).to_have_value("0.01")
+    page.close()
+
+
+def test_they_are_accessible_and_nothing_is_complained_about(over_face: Visit) -> None:
+    unfold(over_face.page)
+    assert not (told := found_inaccessible(over_face.page)), json.dumps(told, indent=1)
+    assert over_face.complaints == []

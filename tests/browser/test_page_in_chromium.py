@@ -41,7 +41,6 @@ FIGURES = (
 
 
 def tab_to(page: Page, target: str, most: int = 120) -> None:
-    """Press Tab until the element has the focus."""
     for _ in range(most):
         page.keyboard.press("Tab")
         if page.evaluate("selector => document.activeElement?.matches(selector)", target):

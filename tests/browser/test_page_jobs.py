@@ -4,24 +4,16 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from page_visit import CASE, Visit, answers, choose_case, found_inaccessible, opened, shown
+from page_visit import CASE, Visit, answers, choose_case, found_inaccessible, opened
 from playwright.sync_api import Browser, expect
 from running_service import until
 
 from lineofaction.client import LineOfActionClient
 
 LONG = CASE | {"accuracy": {"level": "fine", "model": "3d", "positions": 512}}
-
-
-@pytest.fixture
-def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
-    seen = shown(browser, address, analyzed)
-    yield seen
-    seen.page.close()
 
 
 @pytest.mark.law

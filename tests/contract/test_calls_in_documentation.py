@@ -1,4 +1,4 @@
-"""What the documentation shows in Python can be called so."""
+"""Documentation: what it shows in Python can be called so, and its pages are readable as text too."""
 
 from __future__ import annotations
 
@@ -57,3 +57,19 @@ def test_every_call_fits_its_signature(page: Path) -> None:
 
 def test_pages_with_examples_are_found() -> None:
     assert {"README.md", "flank-results.md", "studies.md", "accuracy.md"} <= {page.name for page in PAGES}
+
+
+ALL_PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")]
+LINE, CELL = 120, 240
+
+
+@pytest.mark.parametrize("page", ALL_PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_lines_and_cells_are_short(page: Path) -> None:
+    lines = page.read_text("utf-8").splitlines()
+    rows = [line for line in lines if line.startswith("|")]
+    assert [line for line in lines if len(line) > LINE and line not in rows] == []
+    assert [cell for row in rows for cell in row.split("|") if len(cell) > CELL] == []
+
+
+def test_pages_are_found() -> None:
+    assert len(ALL_PAGES) > 80

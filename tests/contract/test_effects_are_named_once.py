@@ -1,17 +1,29 @@
-"""An effect is named in its file and in the registry: everything else asks what it adds or brings."""
+"""Effects are named once; what is neglected or off is said wherever there is a place for it."""
 
 from __future__ import annotations
 
 import ast
 import inspect
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+from geared_scenes import gear_pair_scene, spring_table, with_gear, with_mesh
 
+from dynamics.assembly import assemble
 from dynamics.effects import EFFECTS as OF_DYNAMICS
+from dynamics.influence import decide_effects, estimate_influences
+from dynamics.loads import TimeLaw
+from dynamics.meshes import CoastFlank
+from dynamics.scene import Scene
+from dynamics.simulation import simulate
+from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, Shaft, SteDatabase, analyze
+from fe_contact.analysis.request import request
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS as OF_CONTACT
+from fe_contact.types import Json
 
 ROOT = Path(__file__).parents[2]
 PRODUCT = ("dynamics", "fe_contact", "model_studies", "lineofaction", "service")
@@ -71,7 +83,6 @@ def excused(node: ast.AST, above: dict[ast.AST, ast.AST]) -> bool:
 
 
 def named_in(source: str, names: set[str], classes: set[str]) -> Iterator[tuple[int, str]]:
-    """Yield line and name wherever an effect is named."""
     tree = ast.parse(source)
     above = parents(tree)
     for node in ast.walk(tree):
@@ -130,3 +141,126 @@ def test_what_effects_of_the_contact_bring_is_brought_once() -> None:
 def test_what_effects_of_dynamics_add_is_added_once() -> None:
     added = [addition for effect in OF_DYNAMICS for addition in effect.adds]
     assert len(set(added)) == len(added)
+
+
+GEAR = Gear(teeth=20, normal_module=4e-3, face_width=20e-3, bore_diameter=40e-3)
+MODIFIED = FlankModification(
+    tip_relief=5e-6, tip_relief_length=1e-3, helix_crowning=5e-6, tip_rounding=0.1e-3
+)
+ERRING = PitchDeviation((4e-6, *([0.0] * 19)))
+SHAFT = Shaft(length=0.2, diameter=0.04, position=0.06)
+ALL_OVER_THE_FACE = GearPair(
+    replace(GEAR, modification=MODIFIED, pitch_deviation=ERRING), GEAR, shafts=(SHAFT, None)
+)
+IN_THE_PLANE = GearPair(replace(GEAR, modification=MODIFIED.along_profile), GEAR)
+SCENES: dict[str, tuple[GearPair, Json]] = {
+    "plane": (IN_THE_PLANE, {}),
+    "face": (ALL_OVER_THE_FACE, {"misalignments": [20e-6], "pitches": 2}),
+}
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("compliance")
+
+
+def table(scene: str, cache: Path, effects: dict[str, str]) -> SteDatabase:
+    pair, asked = SCENES[scene]
+    asked = {"normal_forces": [1000.0, 3000.0], "level": "draft", "positions": 8} | asked
+    return analyze(pair, **asked, effects=effects, receipt="minimal", cache=cache, on_violation="report")
+
+
+def arrays(found: SteDatabase) -> Iterator[tuple[str, np.ndarray]]:
+    for name, values in vars(found).items():
+        if isinstance(values, np.ndarray):
+            yield name, values
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("scene", list(SCENES))
+@pytest.mark.parametrize("name", [effect.name for effect in OF_CONTACT])
+def test_a_table_with_an_effect_off_is_that_of_a_build_without_it(
+    scene: str, name: str, cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if scene == "face" and name == "face_load_distribution":
+        pytest.skip("no plane holds what acts across the face")
+    off = table(scene, cache, {name: "off"})
+    remaining = tuple(effect for effect in OF_CONTACT if effect.name != name)
+    monkeypatch.setattr(request, "EFFECTS", remaining)
+    without = table(scene, cache, {})
+    assert name not in {entry["name"] for entry in without.metadata.effect_ledger}
+    compared = 0
+    for field, values in arrays(without):
+        np.testing.assert_array_equal(getattr(off, field), values, err_msg=field)
+        compared += values.size
+    assert compared > 100
+
+
+def test_the_registry_goes_with_the_request() -> None:
+    """A module that reads the registry by itself would escape the test above."""
+    folder = Path(request.__file__).parent
+    reading = {file.stem for file in folder.rglob("*.py") if "EFFECTS" in file.read_text()}
+    assert reading - {"ablation", "condensed_lookup", "sensitivity"} == {"request"}  # those read names
+
+
+RPM = np.pi / 30.0
+SERIES = ("dynamic_transmission_error", "mesh_force", "coast_force", "bearing_force", "drive_torque")
+
+
+def everything() -> Scene:
+    """A helical pair at speed with a coast flank: lateral, axial, tilting, spinning, parting."""
+    scene = gear_pair_scene(
+        spring_table(4e8, 20e-6), speed=TimeLaw.constant(30000.0 * RPM), torque=5.0, duration=0.004
+    )
+    scene = with_gear(with_gear(scene, 0, base_helix_angle=0.3), 1, base_helix_angle=-0.3)
+    bushings = tuple(replace(bushing, axial_stiffness=1e8) for bushing in scene.bushings)
+    scene = replace(scene, bushings=bushings, on_violation="report")
+    return with_mesh(scene, coast=CoastFlank(backlash=10e-6, thickness=0.48))
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("name", [effect.name for effect in OF_DYNAMICS])
+def test_a_run_with_an_effect_off_is_that_of_a_build_without_it(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = everything()
+    off = simulate(replace(scene, effects={name: "off"}))
+    remaining = tuple(effect for effect in OF_DYNAMICS if effect.name != name)
+    monkeypatch.setattr(assemble, "EFFECTS", remaining)
+    without = simulate(scene)
+    assert name not in {entry["effect"] for entry in without.effect_ledger["entries"]}
+    assert off.freedom == without.freedom
+    for series in (
+        "dynamic_transmission_error",
+        "mesh_force",
+        "coast_force",
+        "bearing_force",
+        "drive_torque",
+    ):
+        np.testing.assert_array_equal(getattr(off, series), getattr(without, series), err_msg=series)
+    assert off.statistics == without.statistics
+
+
+def test_a_run_with_an_effect_neglected_for_a_tolerance_is_that_of_a_build_without_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    whole = everything()
+    scene = replace(whole, drives=(replace(whole.drives[0], speed=TimeLaw.constant(40.0 * RPM)),))
+    decided = decide_effects(replace(scene, tolerance=0.05))
+    assert "gyroscopic" in estimate_influences(scene)
+    off = simulate(replace(scene, tolerance=0.05))
+    left = {entry["effect"] for entry in off.effect_ledger["entries"] if not entry["on"]}
+    assert set(decided.neglected) <= left
+    assert "gyroscopic" in left
+    remaining = tuple(effect for effect in OF_DYNAMICS if effect.name not in left)
+    monkeypatch.setattr(assemble, "EFFECTS", remaining)
+    without = simulate(scene)
+    for series in SERIES:
+        np.testing.assert_array_equal(getattr(off, series), getattr(without, series), err_msg=series)
+    assert off.statistics == without.statistics
+
+
+def test_the_scene_has_most_effects_on() -> None:
+    entries = simulate(everything()).effect_ledger["entries"]
+    on = {entry["effect"] for entry in entries if entry["on"]}
+    assert on >= {"lateral", "axial", "tilt", "gyroscopic", "backlash"}

@@ -53,7 +53,6 @@ def defined(module: str) -> set[str] | None:
 
 
 def of_module(body: list[ast.stmt]) -> Iterator[ast.stmt]:
-    """Yield the statements of a module, those under conditions too."""
     for node in body:
         yield from of_module([*node.body, *node.orelse]) if isinstance(node, ast.If) else [node]
 

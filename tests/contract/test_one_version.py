@@ -18,7 +18,6 @@ PROJECT: str = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["proj
 
 
 def changes(text: str) -> tuple[int, Version]:
-    """Return how many changes are not released, and the newest release."""
     unreleased, newest, _ = re.split(r"^## (\d\S*).*$", text, maxsplit=1, flags=re.MULTILINE)
     return len(re.findall(r"^- ", unreleased, re.MULTILINE)), Version(newest)
 

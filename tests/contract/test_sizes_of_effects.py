@@ -96,7 +96,6 @@ def invoked(*words: object) -> str:
 
 
 def told_lines(text: str) -> dict[str, str]:
-    """Words of every effect that has a line of its own on the command line."""
     return dict(
         re.findall(
             r"^effect (\w+): .*\n(?: +(?:neglected|on after).*\n)? +without it (.*?); cost", text, re.M
@@ -105,7 +104,6 @@ def told_lines(text: str) -> dict[str, str]:
 
 
 def table_words(tables: list[Json]) -> dict[str, str]:
-    """Words of every effect that a report tabulates."""
     (table,) = [one for one in tables if one["caption"] == "Effects"]
     column = table["head"].index("without it")
     return {row[0]: row[column] for row in table["rows"]}

@@ -37,9 +37,10 @@ class BadScene:
     python_field: str
     change: Callable[[Table], object]
     field: str
+    subject = "scene"
+    process = "simulate"
 
     def table(self) -> Table:
-        """Return the scene file's content."""
         table = copy.deepcopy(good_scene())
         self.change(table)
         return table

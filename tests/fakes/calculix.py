@@ -250,7 +250,6 @@ def _ended(child: subprocess.CompletedProcess[str], folder: Path, cpu_limit: flo
 
 
 def _complaint(child: subprocess.CompletedProcess[str]) -> str:
-    """Return the first error it printed, on one line."""
     error = re.search(r"\*ERROR(.*?)(?:\n\s*\n|\Z)", child.stdout, re.DOTALL)
     message = " ".join(error.group(1).split()).removeprefix(":").strip() if error else "no error printed"
     return f"exit code {child.returncode}: {message}"

@@ -69,7 +69,6 @@ def _reduced_housings(folder: Path, canary: Path) -> Iterator[Question]:
 
 
 def _matrices(canary: Path) -> Iterator[Question]:
-    """Yield matrices with objects, and other files in their place."""
     stream = io.BytesIO()
     np.savez(stream, stiffness=np.array([_Reads(canary)], dtype=object), allow_pickle=True)
     text = _text({"stiffness_file": "k.npz"})
@@ -82,7 +81,6 @@ def _matrices(canary: Path) -> Iterator[Question]:
 
 
 def _solids(folder: Path, canary: Path, table: str) -> Iterator[Question]:
-    """Yield solids that lead to other files, to the job that reads them."""
     scene = copy.deepcopy(housed_scene(folder))
     del scene["meshes"][0]["database_file"]
     scene["meshes"][0]["database_hash"] = table
@@ -96,7 +94,6 @@ def _solids(folder: Path, canary: Path, table: str) -> Iterator[Question]:
 
 
 def _modes(scene: Body, part: Body) -> tuple[str, Body]:
-    """Return the execution that reads the solid of a housing."""
     return "/v1/processes/modes/execution", {"inputs": {"scene": scene | {"housings": [part]}}}
 
 
@@ -119,7 +116,6 @@ _STEP = {"a document": "{canary}", "an address": "file://{canary}"}
 
 
 def _names(canary: Path) -> Iterator[Question]:
-    """Yield texts that name the file where one of theirs could be."""
     case = (_EXAMPLES / "palermo_spur_20_20.toml").read_text("utf-8")
     for name in (str(canary), f"../{canary.name}", canary.as_uri(), f"..\\{canary.name}"):
         grid = case.replace("[pair.pinion]", f"[pair.pinion]\nflank_grid_csv = {json.dumps(name)}")

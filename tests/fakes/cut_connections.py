@@ -45,7 +45,6 @@ class Relay:
         self.cut()
 
     def _accept(self) -> None:
-        """Join each caller with a connection to the target."""
         while True:
             try:
                 caller, _ = self._listener.accept()

@@ -19,7 +19,6 @@ def document(figures: Figures) -> dict[str, Any]:
 
 
 def check_declared(kind: str, answer: Mapping[str, Any]) -> None:
-    """Check that the figures of a kind declare all of a document, and nothing else of it."""
     said_by_verbs = ("written", "file")
     told = _OF_FILE | {name: value for name, value in answer.items() if name not in said_by_verbs}
     figures = figures_model(kind).model_validate_json(json.dumps(told))

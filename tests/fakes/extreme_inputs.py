@@ -76,7 +76,6 @@ def renamed(inputs: Json, draw: Random) -> Json:
 
 
 def _renamed(value: Any, names: dict[str, str], key: str = "") -> Any:
-    """Rename in a part of the inputs, in paths to parts too."""
     if isinstance(value, dict):
         return {name: _renamed(entry, names, name) for name, entry in value.items()}
     if isinstance(value, list):
@@ -143,7 +142,6 @@ CASE_EXTREMES: tuple[Callable[[Json, Random], None], ...] = (
 
 
 def _shortest(scene: Json, draw: Random) -> None:
-    """Shorten the run, to less than a sample."""
     scene["run"]["duration_s"] = draw.choice((1e-6, 5e-5, 1e-3, 0.01))
 
 
@@ -159,7 +157,6 @@ def _standing_to_fast(scene: Json, draw: Random) -> None:
 
 
 def _idle(scene: Json, draw: Random) -> None:
-    """Take the load away, or almost."""
     torque = draw.choice((0.0, 1e-9, -1.0, None))
     scene["loads"] = [load | {"torque_n_m": [torque]} for load in scene["loads"] if torque is not None]
 
@@ -197,7 +194,6 @@ def _no_bushings(scene: Json, _draw: Random) -> None:
 
 
 def _rotor(scene: Json, _draw: Random) -> None:
-    """Leave a shaft that turns alone."""
     if not scene.get("housings"):
         scene |= {"shafts": scene["shafts"][:1], "gears": [], "meshes": [], "loads": []}
         scene["bushings"] = [bushing for bushing in scene["bushings"] if bushing["shaft"] == "input"]

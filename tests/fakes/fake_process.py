@@ -29,7 +29,6 @@ DatabaseUnavailable = import_module(
 
 
 def serve(works: bool, descriptor: int) -> None:
-    """Answer on the socket until stopped."""
     http_server = import_module("service.cli.serve" if OLD else "lineofaction.cli.connections").http_server
     from service import app as application  # noqa: PLC0415 (start-up time: working needs no web framework)
 
@@ -41,7 +40,6 @@ def serve(works: bool, descriptor: int) -> None:
 
 
 def work() -> None:
-    """Run jobs until stopped."""
     settings, stopped = load_settings(), threading.Event()
     DirectoryLock(settings.data_directory).acquire()
     signal.signal(signal.SIGTERM, lambda _number, _frame: stopped.set())

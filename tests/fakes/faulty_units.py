@@ -19,7 +19,6 @@ BEHIND += ("external_load 42",)
 
 
 def value(number: int, name: str, text: str) -> Edit:
-    """Return what gives an attribute of a component another value."""
     return _once(rf'(<component id="{number}".*?<attribute id="{name}"[^>]*>)[^<]*(<)', rf"\g<1>{text}\g<2>")
 
 
@@ -32,7 +31,6 @@ def without(number: int, name: str) -> Edit:
 
 
 def unrelated(kind: str, number: int) -> Edit:
-    """Return what removes the relations of a type in which a component is."""
     return _once(
         rf'<relation id="\d+" type="{kind}"[^>]*>\s*(<ref [^>]*/>\s*)*<ref id="{number}" [^>]*/>\s*'
         r"(<ref [^>]*/>\s*)*</relation>",
@@ -41,7 +39,6 @@ def unrelated(kind: str, number: int) -> Edit:
 
 
 def retyped(number: int, kind: str) -> Edit:
-    """Return what gives a component another type."""
     return _once(rf'(<component id="{number}" type=")\w+', rf"\g<1>{kind}")
 
 

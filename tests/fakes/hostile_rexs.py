@@ -31,7 +31,6 @@ def damaged_files(count: int = 35) -> Iterator[tuple[str, bytes]]:
 
 
 def hostile_files() -> Iterator[tuple[str, bytes, str]]:
-    """Yield files that must be refused, with words of the refusal."""
     yield from _entities()
     yield from _texts()
     yield from _trees()

@@ -62,7 +62,6 @@ def write_housed_scene(folder: Path, **fields: Any) -> Path:
 
 
 def housed_scene(folder: Path, **fields: Any) -> dict[str, Any]:
-    """Return the scene on this housing and write the database of its mesh into a folder."""
     scene = copy.deepcopy(tomllib.loads(EXAMPLE.read_text(encoding="utf-8")))
     scene["bushings"] = [part for part in scene["bushings"] if part["name"].endswith("left")]
     for bushing in scene["bushings"]:

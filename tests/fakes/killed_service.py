@@ -1,14 +1,18 @@
-"""A service of several processes whose parts are killed at random moments, watched from outside."""
+"""A service whose parts are killed while it works: its processes, its victims, a witness of its results."""
 
 from __future__ import annotations
 
+import hashlib
 import os
 import random
 import signal
 import socket
+import subprocess
+import sys
 import threading
 import time
 import uuid
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -16,11 +20,119 @@ from pathlib import Path
 from typing import Any
 
 import httpx2
-from killed_part import Part
-from result_witness import LOST, Witness
-from running_service import PATIENCE_S, lives, until
+from running_service import PATIENCE_S, REFERENCES, lives, until
+from service_fake_work import is_slow_content
 
 from host import processes_in
+
+
+@dataclass
+class Part:
+    """A process that does a role on a socket; `revived` counts starts after it had ended by itself."""
+
+    role: str
+    environment: Mapping[str, str]
+    log: Path
+    descriptor: int | None = None
+    process: subprocess.Popen[bytes] | None = None
+    revived: int = 0
+
+    def start(self) -> None:
+        script = str(Path(__file__).with_name("fake_process.py"))
+        listener = [] if self.descriptor is None else [str(self.descriptor)]
+        fds = () if self.descriptor is None else (self.descriptor,)
+        with self.log.open("ab") as log:
+            self.process = subprocess.Popen(
+                [sys.executable, script, self.role, *listener],
+                env=self.environment,
+                stdout=log,
+                stderr=log,
+                pass_fds=fds,
+            )
+
+    def revive(self) -> None:
+        """Start it again if it has ended, as a supervisor does."""
+        if self.process is not None and self.process.poll() is not None:
+            self.revived += 1
+            self.start()
+
+    @property
+    def pid(self) -> int:
+        assert self.process is not None
+        return self.process.pid
+
+    def heeds_stops(self) -> bool:
+        """Whether it has come so far that it handles SIGTERM: one killed a moment ago may be starting."""
+        status = Path(f"/proc/{self.pid}/status").read_text()
+        caught = int(status.partition("SigCgt:")[2].split()[0], 16)
+        return bool(caught >> (signal.SIGTERM - 1) & 1)
+
+    def send(self, number: signal.Signals) -> None:
+        assert self.process is not None
+        self.process.send_signal(number)
+
+    def end(self, number: signal.Signals) -> int:
+        assert self.process is not None
+        self.process.send_signal(number)
+        return self.process.wait(timeout=PATIENCE_S)
+
+
+FILE = {"Accept": "application/x-netcdf"}
+LOST = (httpx2.TransportError, ConnectionError)
+_AT_ONCE = 10  # of those that were seen before
+
+
+class Witness:
+    """Looks at the results of jobs (the text of the wish by job; may grow meanwhile).
+
+    `served` are digests by text, one each if all is well; `faults` is what should not have been.
+    """
+
+    def __init__(self, address: str, jobs: Mapping[str, str], headers: Mapping[str, str]) -> None:
+        self._address, self._jobs, self._headers = address, jobs, headers
+        self.served: dict[str, set[str]] = {}
+        self.faults: list[str] = []
+        self.answers: Counter[int] = Counter()
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._look)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def stop(self) -> None:
+        self._stop.set()
+        self._thread.join()
+
+    def _look(self) -> None:
+        """Fetch what was not seen yet, and some of the rest."""
+        chance = random.Random(1)
+        with httpx2.Client(base_url=self._address, headers=self._headers, timeout=PATIENCE_S) as client:
+            while not self._stop.wait(0.2):
+                known = list(self._jobs.items())
+                unseen = [one for one in known if one[1] not in self.served]
+                for job, text in unseen + chance.sample(known, min(_AT_ONCE, len(known))):
+                    with suppress(*LOST):
+                        self._look_at(client, job, text)
+
+    def _get(self, client: httpx2.Client, path: str, **more: Mapping[str, str]) -> httpx2.Response:
+        answer = client.get(path, **more)  # type: ignore[arg-type]
+        self.answers[answer.status_code] += 1
+        return answer
+
+    def _look_at(self, client: httpx2.Client, job: str, text: str) -> None:
+        status = self._get(client, f"/v1/jobs/{job}/results", params=REFERENCES)
+        if status.status_code != 200:
+            if status.status_code not in (404, 503):
+                self.faults.append(f"job {job}: {status.status_code} {status.text}")
+            return
+        answer = self._get(client, status.json()["database"]["href"], headers=FILE)
+        if answer.status_code == 200:
+            self.served.setdefault(text, set()).add(hashlib.sha256(answer.content).hexdigest())
+            if not is_slow_content(answer.content, text):
+                self.faults.append(f"{text}: {len(answer.content)} bytes, not its result")
+        elif answer.status_code != 503:
+            self.faults.append(f"{text}: {answer.status_code} {answer.text}")
+
 
 EXECUTION = "/v1/processes/fake/execution"
 _MARK = "LOA_TEST_MARK"
@@ -90,7 +202,6 @@ class KilledService:
             time.sleep(0.05)
 
     def revive(self) -> None:
-        """Start what has ended by itself, as a supervisor does."""
         with self._turns:
             for part in self.parts:
                 part.revive()
@@ -154,7 +265,6 @@ class KilledService:
         return unfinished == 0 or (unfinished <= _BACKLOG and self._workers() != [])
 
     def _unfinished(self) -> int:
-        """Return how many computations wait or run."""
         self.revive()
         counts = self.request("GET", "/ready").json()["computations"]
         return int(counts.get("accepted", 0) + counts.get("running", 0))

@@ -31,7 +31,6 @@ class LocalIssuer:
         self.rotate("key-1")
 
     def rotate(self, kid: str) -> None:
-        """Sign with a new key, and publish that alone."""
         self._keys = {kid: rsa.generate_private_key(public_exponent=65537, key_size=2048)}
 
     @property
@@ -86,8 +85,6 @@ class LocalIssuer:
 
 @contextmanager
 def local_issuer() -> Iterator[LocalIssuer]:
-    """Run an issuer while the context lasts."""
-
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
             issuer.asked.append(self.path)

@@ -20,7 +20,6 @@ def link(document: dict[str, Any], relation: str) -> str:
 
 
 def executed(client: TestClient, **wish: Any) -> dict[str, Any]:
-    """Enter a job and wait for its end."""
     return ended(client, "fake", {"inputs": {"wish": wish}})
 
 

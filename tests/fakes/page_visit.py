@@ -117,14 +117,12 @@ def computed(address: str, process: str = "analyze", **inputs: Any) -> str:
 
 
 def shown(browser: Browser, address: str, key: str) -> Visit:
-    """Open the page on a stored table."""
     seen = opened(browser, f"{address}/#database={key}")
     seen.page.wait_for_selector("#live-body[data-answers]")
     return seen
 
 
 def answers(page: Page) -> int:
-    """Count the live answers so far."""
     return int(page.locator("#live-body").get_attribute("data-answers") or 0)
 
 

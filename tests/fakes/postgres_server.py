@@ -97,7 +97,6 @@ class PostgresServer:
 
     @contextmanager
     def administration(self) -> Iterator[psycopg.Connection[Any]]:
-        """Connect beside all databases of tests."""
         with psycopg.connect(
             f"host={self.directory} user=postgres dbname=postgres", autocommit=True
         ) as found:
@@ -178,7 +177,6 @@ def database_url(request: pytest.FixtureRequest) -> str | None:
 
 
 def migrated(url: str) -> str:
-    """Return the URL of a database after its tables were made."""
     from service.store.database import Schema, database_engine  # noqa: PLC0415 (skipped tests need none)
 
     engine = database_engine(url)

@@ -30,7 +30,6 @@ def is_quick(item: pytest.Item) -> bool:
 
 
 def imports_long(module: ModuleType) -> bool:
-    """Say whether a module has a name from a package that takes its time."""
     origins = {f"{_origin(value)}." for value in list(vars(module).values())}
     return any(origin.startswith(f"{name}.") for origin in origins for name in LONG)
 

@@ -70,11 +70,9 @@ class _Draw:
         return float(self.random.uniform(*(anywhere if self.random.random() < self.chance else usual)))
 
     def power(self, usual: tuple[float, float], anywhere: tuple[float, float]) -> float:
-        """Return a number whose decade is drawn so."""
         return float(10.0 ** self.between(usual, anywhere))
 
     def sometimes(self, part: float) -> bool:
-        """Whether something is there, in this part of the cases."""
         return bool(self.random.random() < part)
 
 

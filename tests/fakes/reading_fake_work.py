@@ -21,7 +21,6 @@ def _drafted(folder: Path) -> Path:
 
 
 def echo(inputs: Json, folder: Path) -> Json:
-    """Return what was sent, once a gate opens."""
     _drafted(folder)
     until = time.monotonic() + inputs.get("seconds", 0.0)
     while time.monotonic() < until:
@@ -48,7 +47,6 @@ def die(_inputs: Json, folder: Path) -> Json:
 
 
 def swell(_inputs: Json, _folder: Path) -> Json:
-    """Answer with more than may be answered."""
     return {"text": "x" * 110_000_000}
 
 

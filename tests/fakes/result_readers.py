@@ -99,7 +99,6 @@ def report(reading: Reading) -> None:
 
 
 def comparison(reading: Reading) -> None:
-    """Write the page that compares it with itself."""
     _verb("compare", reading.result.path, reading.result.path, "-o", reading.folder / "comparison.html")
 
 

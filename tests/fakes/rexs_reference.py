@@ -39,7 +39,6 @@ def parsed_schema(version: str) -> Element:
 
 @functools.cache
 def attributes_of(version: str) -> dict[str, tuple[str, str, list[str]]]:
-    """Return kind, unit and enum values of each attribute of a version."""
     root = parsed_schema(version)
     units = {unit.get("id"): unit.get("name") or "" for unit in root.iterfind("units/unit")}
     kinds = {kind.get("id"): kind.get("name") or "" for kind in root.iterfind("valueTypes/valueType")}
@@ -137,7 +136,6 @@ def _ids(root: Element, path: str, change: str) -> list[str]:
 
 
 def _edits(changes: list[Element], key: str) -> dict[str, list[str]]:
-    """Return old and new value of what is edited, by attribute."""
     pairs = {
         str(change.get("id")): [str(value.get("oldValue")), str(value.get("newValue"))]
         for change in changes

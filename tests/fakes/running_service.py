@@ -39,7 +39,6 @@ class Bench:
     engine: Engine
 
     def submit(self, **wish: Any) -> Job:
-        """Enter a wish as the execution route does."""
         inputs = {"wish": {"mode": "write", "text": "", "number": 0.0, **wish}}
         key = self._registry()["fake"].key(inputs)
         stored = self.store.find(key, "database") is not None
@@ -57,7 +56,6 @@ class Bench:
         self.engine.dispose()
 
     def starts(self, job: Job) -> list[str]:
-        """Return one line per time the work was started."""
         file = self.settings.data_directory / f"started_{job.key[:8]}"
         return file.read_text().splitlines() if file.exists() else []
 
@@ -93,7 +91,6 @@ def until(condition: Callable[[], bool]) -> None:
 
 
 def lives(pid: int) -> bool:
-    """Whether a process exists and is no zombie."""
     try:
         state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
     except (FileNotFoundError, ProcessLookupError):

@@ -44,7 +44,6 @@ class FakeInputs(BoundaryModel):
 
 
 def prepare(inputs: BoundaryModel, _store: ResultStore) -> dict[str, Any]:
-    """Refuse on request, as an infeasible pair is refused."""
     assert isinstance(inputs, FakeInputs)
     if inputs.wish.mode == "refuse":
         raise BadInput.of("mode", "refuse", "anything else", "Try write.")

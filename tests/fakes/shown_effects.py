@@ -8,7 +8,6 @@ from typing import Any
 
 
 def check_effects_shown(ledger: Mapping[str, Any], printed: str, report: str) -> None:
-    """Check that every decision stands in the report with its reason, and every effect in both."""
     assert len(ledger["entries"]) > 3
     for entry in ledger["entries"]:
         row = "".join(f"<td>{cell}</td>" for cell in (entry["part"], "yes" if entry["on"] else "no"))

@@ -67,7 +67,6 @@ def _small_scene(scene: Json) -> Json:
 
 
 def _around_two_bearings(scene: Json, housing: Json) -> None:
-    """Let a housing be a small block around the first bearing of each shaft."""
     held = [bushing for bushing in scene["bushings"] if bushing["position_mm"] == 0.0]
     for bushing in held:
         bushing["position_mm"] = 25.0

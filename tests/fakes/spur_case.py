@@ -4,7 +4,6 @@ from __future__ import annotations
 
 
 def spur_case(pinion: str = "", wheel: str = "") -> str:
-    """Return the text, with further lines of either gear."""
     return f"""
 [pair]
 normal_module_mm = 4.0

@@ -15,12 +15,10 @@ def gear(teeth: int = 20, **changes: Any) -> Gear:
 
 
 def make_gear(teeth: int = 20, **changes: Any) -> Gear:
-    """Return a gear whose bore is too small to matter."""
     return gear(teeth, **({"bore_diameter": 2e-3} | changes))
 
 
 def make_ring(teeth: int = 60, **changes: Any) -> RingGear:
-    """Return a ring gear with a thick rim."""
     return RingGear(teeth=teeth, **(SIZE | {"rim_diameter": 5e-3 * teeth} | changes))
 
 

@@ -122,7 +122,6 @@ class StudyRuns:
             return self.call(self.inputs, *further, subject=subject)
 
     def _noted(self, subject: Any, inputs: Any, means: Any) -> Any:
-        """Compute for Python, and note the very question."""
         self._asked = question_of(subject, inputs)
         return type(self.study.run).compute(self.study.run, subject, inputs, means)
 
@@ -150,7 +149,6 @@ class StudyRuns:
         return answer
 
     def written(self, ending: str) -> tuple[Path, str]:
-        """Return the file of an ending, and what the verb printed beside it."""
         if ending not in self._files:
             output = self.folder / ("out" if self.study.folder else f"result{ending}")
             done = self.verb("-o", output)
@@ -233,7 +231,6 @@ def verb_call(study: str, subject: Json, folder: Path, *arguments: object) -> Re
 
 
 def refused_call(study: str, subject: Json, inputs: Json, folder: Path) -> Result:
-    """Call the verb of a study with inputs, some of which there may be no option for."""
     return verb_call(study, subject, folder, *_spelled(STUDIES[study], inputs, folder))
 
 

@@ -49,7 +49,6 @@ class Served:
     data: Path
 
     def has_figures_and_file(self, output: str, told: Figures, job: str) -> None:
-        """Check that what a job left is what was told, in the form that is accepted, with its digest."""
         reference = self.http.get(f"/v1/jobs/{job}/results", params=REFERENCES).json()[output]
         assert reference["type"] == NETCDF
         for accept, kind in ((JSON, JSON), ("*/*", JSON), (NETCDF, NETCDF)):
@@ -65,7 +64,6 @@ class Served:
             assert (known.status_code, known.content) == (304, b"")
 
     def refuses(self, process: str, inputs: dict[str, Any], field: str) -> None:
-        """Check that inputs are refused by the name of a field before there is a job."""
         jobs = len(self.http.get("/v1/jobs").json()["jobs"])
         with pytest.raises(BadInput) as caught:
             self.client.submit(process, inputs)
@@ -115,7 +113,6 @@ def prepared(process: Process, **inputs: Any) -> dict[str, Any]:
 
 
 def without(names: tuple[str, ...], value: Any) -> Any:
-    """Leave out what differs from run to run."""
     if isinstance(value, dict):
         return {name: without(names, inner) for name, inner in value.items() if name not in names}
     return [without(names, item) for item in value] if isinstance(value, list) else value

@@ -140,7 +140,6 @@ def rests_on(file: Path) -> tuple[frozenset[Path], frozenset[str]]:
 
 
 def _conftests(file: Path) -> Iterator[Path]:
-    """Yield those of the folders of a test file, but for that of all tests."""
     folder = file.parent
     while folder not in (TESTS, folder.parent):
         if (path := folder / "conftest.py").exists():
@@ -150,7 +149,6 @@ def _conftests(file: Path) -> Iterator[Path]:
 
 @cache
 def _of_house(house: str) -> bytes:
-    """Return a hash of the files of a house, its pages and tables included."""
     sums = hashlib.sha256()
     for path in sorted((ROOT / house.replace(".", "/")).rglob("*")):
         if path.is_file() and "__pycache__" not in path.parts:

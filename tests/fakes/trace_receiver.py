@@ -59,7 +59,6 @@ def _facts(attributes: Any) -> dict[str, Any]:
 
 @contextmanager
 def trace_receiver() -> Iterator[TraceReceiver]:
-    """Receive while the context lasts."""
     received = TraceReceiver()
 
     class Handler(BaseHTTPRequestHandler):

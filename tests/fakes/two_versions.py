@@ -18,7 +18,7 @@ from typing import Any
 
 import httpx2
 import rfc8785
-from killed_part import Part
+from killed_service import Part
 from running_service import PATIENCE_S, REFERENCES, until
 
 _VERB = """
@@ -156,7 +156,6 @@ class RollingService:
         return states
 
     def result(self, job: str) -> tuple[str, str]:
-        """Return the name and the content of a job's result, as the last server has it."""
         server = self.servers[-1]
         references = server.request("GET", f"/v1/jobs/{job}/results", params=REFERENCES)
         assert references.status_code == 200, references.text

@@ -69,8 +69,6 @@ def warm_processes(tmp_path_factory: pytest.TempPathFactory) -> Iterator[_WarmPr
 
 @pytest.fixture(scope="module", autouse=True)
 def warm_once(warm_processes: _WarmProcesses, condensed_bodies: Path) -> Iterator[None]:
-    """Let the services of a file have their workers forked."""
-
     def launch(forks: Forks, ends: Ends, _warm_within: float = 0.0) -> ChildProcess:
         return warm_processes.launch(forks, ends)
 

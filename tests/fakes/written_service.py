@@ -35,7 +35,6 @@ class Service:
 
 @contextmanager
 def written_service(directory: Path) -> Iterator[Service]:
-    """Run the service while the context lasts."""
     offered = (replace(p, entry=f"written_work:{p.kind}") for p in default_registry().values())
     put_named_run(stored_results(directory))
     with running_service(directory, Registry(*offered)) as service:

@@ -50,7 +50,6 @@ def service(
 def _as_a_user(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, service: tuple[subprocess.Popen[str], str]
 ) -> None:
-    """In the folder of the project, with a cache of one's own."""
     monkeypatch.chdir(ROOT)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setenv("LOA_SERVICE", service[1])

@@ -126,7 +126,6 @@ def alone(cache: Path) -> SteDatabase:
 
 
 def assert_same(one: SteDatabase, other: SteDatabase) -> None:
-    """Every array, to the last bit."""
     for name in one.__dataclass_fields__:
         if isinstance(getattr(one, name), np.ndarray):
             np.testing.assert_array_equal(getattr(other, name), getattr(one, name), err_msg=name)

@@ -1,14 +1,18 @@
-"""Example scenes run, and their energy balances close at the tolerance they ask for."""
+"""Examples run: scenes whose energy balances close, and a ring gear from its case to its report."""
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from dynamics.simulation import simulate
 from fe_contact import ste_database
+from fe_contact.ste import SteDatabase
+from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.subjects import case_of_mesh, scene_of
@@ -45,3 +49,35 @@ def test_the_energy_balance_of_every_example_closes(file, record_figure):
     strict = abs(run.energy.residual) / (run.energy.turnover - run.energy.held)
     record_figure(f"energy balance, {file.stem}", 100 * strict, "below 0.1 %", "%", "own target")
     assert strict < LIMIT  # also beside what was lost, supplied and gained alone
+
+
+RING = Path(__file__).parents[2] / "examples" / "internal_gear.toml"
+
+
+def loa(*arguments: object) -> str:
+    done = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    assert done.exit_code == 0, done.output
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("ring") / "ring.nc"
+    loa("analyze", RING, "-o", file)
+    return file
+
+
+def test_the_example_becomes_a_table(table: Path) -> None:
+    found = SteDatabase.from_netcdf(table)
+    assert found.facts.internal
+    assert not found.status.any()
+    assert found.mean(torque=60.0).value == pytest.approx(3.54e-6, rel=5e-3)
+    assert found.load_share.sum(axis=-1) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_its_curve_and_its_report_can_be_read(table: Path, tmp_path: Path) -> None:
+    curve = json.loads(loa("ste", table, "--torque", 60, "--json"))
+    assert curve
+    page = tmp_path / "ring.html"
+    loa("report", table, "-o", page)
+    assert "Gear pair 36/96, internal" in page.read_text(encoding="utf-8")

@@ -19,7 +19,6 @@ SPEC.loader.exec_module(manual)
 
 @pytest.fixture(scope="module")
 def folder() -> Iterator[Path]:
-    """The folder in which the pages run one after the other."""
     with manual.folder() as made:
         yield made
 

@@ -24,7 +24,6 @@ NOMINAL = 2660.0
 
 
 def compliance(rng: np.random.Generator, kind: str, n: int) -> np.ndarray:
-    """Symmetric positive definite, of the size of teeth."""
     if kind == "smooth":  # neighbors along a face
         place = rng.uniform(size=n)
         matrix = 0.5 * np.exp(-np.abs(place[:, None] - place) * rng.uniform(1.0, 30.0)) + 0.1
@@ -73,7 +72,6 @@ def random_gaps(rng: np.random.Generator, n: int) -> GapAbout:
 
 
 def with_twins(problem: Problem) -> Problem:
-    """Make the second contact the same as the first."""
     index = np.arange(problem.gap.size)
     index[1] = 0
     return picked(problem, index)

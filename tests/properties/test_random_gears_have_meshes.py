@@ -1,6 +1,8 @@
-"""Random feasible gears are meshed within the quality limits, or refused by the geometry."""
+"""Random feasible gears and ring gears have good meshes and tooth sectors, or are refused by the geometry."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,52 +10,118 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from fe_contact.errors import InputError
-from fe_contact.geometry import Gear
-from fe_contact.mesh import mesh_gear, mesh_quality
+from fe_contact.geometry import Gear, RingGear
+from fe_contact.mesh import SectorRecipe, mesh_gear, mesh_quality, quad_sector, swept_sector
+from fe_contact.mesh.quality import quad_quality
+
+EXTERNAL = {
+    "teeth": st.integers(5, 120),
+    "profile_shift_coefficient": st.floats(-0.5, 0.8),
+    "root_radius_coefficient": st.floats(0.1, 0.45),
+}
+INTERNAL = {
+    "teeth": st.integers(30, 200),
+    "profile_shift_coefficient": st.floats(-0.8, 0.3),
+    "root_radius_coefficient": st.floats(0.0, 0.25),
+    "addendum_coefficient": st.floats(0.5, 1.0),
+    "cutter_teeth": st.integers(12, 30),
+}
+BORE = st.floats(0.05, 0.97)
+"""Of the root diameter."""
 
 
-@pytest.mark.law
-@settings(max_examples=15, suppress_health_check=[HealthCheck.filter_too_much])
-@given(
-    teeth=st.integers(5, 120),
-    module=st.floats(0.2e-3, 40e-3),
-    shift=st.floats(-0.5, 0.8),
-    pressure_angle=st.floats(14.5, 28.0),
-    helix=st.floats(0.0, 35.0),
-    bore=st.floats(0.05, 0.97),
-    addendum=st.floats(0.8, 1.3),
-    root_radius=st.floats(0.1, 0.45),
-)
-def test_mesh_of_a_random_gear_is_good(
-    teeth: int,
-    module: float,
-    shift: float,
-    pressure_angle: float,
-    helix: float,
-    bore: float,
-    addendum: float,
-    root_radius: float,
-) -> None:
-    numbers = {
-        "teeth": teeth,
-        "normal_module": module,
-        "face_width": 6.0 * module,
-        "normal_pressure_angle": np.radians(pressure_angle),
-        "helix_angle": np.radians(helix),
-        "profile_shift_coefficient": shift,
-        "addendum_coefficient": addendum,
-        "root_radius_coefficient": root_radius,
+def sizes(
+    fields: dict[str, st.SearchStrategy[Any]], helix: tuple[float, float], width: tuple[float, float]
+) -> st.SearchStrategy[dict[str, Any]]:
+    """Return fields of gears: the helix angle from and to degrees, the face width from and to modules."""
+
+    def in_si(numbers: dict[str, Any]) -> dict[str, Any]:
+        angles = {name: np.radians(numbers[name]) for name in ("normal_pressure_angle", "helix_angle")}
+        return numbers | angles | {"face_width": numbers["face_width"] * numbers["normal_module"]}
+
+    shared = {
+        "normal_module": st.floats(0.2e-3, 40e-3),
+        "normal_pressure_angle": st.floats(14.5, 28.0),
+        "helix_angle": st.floats(*helix),
+        "face_width": st.floats(*width),
     }
+    return st.fixed_dictionaries(shared | fields).map(in_si)
+
+
+def external(numbers: dict[str, Any], bore: float) -> Gear:
     try:
-        root = Gear(**numbers, bore_diameter=1e-3 * module).root_radius
-        gear = Gear(**numbers, bore_diameter=2.0 * bore * root)
+        root = Gear(**numbers, bore_diameter=1e-3 * numbers["normal_module"]).root_radius
+        return Gear(**numbers, bore_diameter=2.0 * bore * root)
     except InputError:
         assume(False)
+        raise
+
+
+def internal(numbers: dict[str, Any], rim: float) -> RingGear:
+    module = numbers["normal_module"]
+    try:
+        root = RingGear(**numbers, rim_diameter=3.0 * numbers["teeth"] * module).root_radius
+        return RingGear(**numbers, rim_diameter=2.0 * (root + rim * module))
+    except InputError:
+        assume(False)
+        raise
+
+
+def good_mesh(gear: Gear | RingGear, held_radius: float) -> Any:
     mesh = mesh_gear(gear)
     for part in (mesh.sector, mesh.hub):
         if part is not None:
             quality = mesh_quality(part.points, part.triangles)
             assert quality.scaled_jacobian.min() >= 0.2
             assert quality.angle.min() >= np.radians(12.0)
-    assert mesh.sector.s[0] <= mesh.sector.s[-1] - 0.5 * module
-    assert np.linalg.norm(mesh.points[mesh.bore_nodes], axis=1) == pytest.approx(0.5 * gear.bore_diameter)
+    assert np.linalg.norm(mesh.points[mesh.bore_nodes], axis=1) == pytest.approx(held_radius)
+    return mesh
+
+
+def good_section(gear: Gear | RingGear, recipe: SectorRecipe) -> Any:
+    section = quad_sector(gear, recipe)
+    quality = quad_quality(section.points, section.grid.quads)
+    assert quality.angle.min() >= np.radians(15.0)
+    assert quality.scaled_jacobian.min() >= 0.1
+    return section
+
+
+@pytest.mark.law
+@settings(max_examples=15, suppress_health_check=[HealthCheck.filter_too_much])
+@given(
+    sizes(EXTERNAL | {"addendum_coefficient": st.floats(0.8, 1.3)}, helix=(0.0, 35.0), width=(6.0, 6.0)), BORE
+)
+def test_mesh_of_a_random_gear_is_good(numbers: dict[str, Any], bore: float) -> None:
+    gear = external(numbers, bore)
+    mesh = good_mesh(gear, 0.5 * gear.bore_diameter)
+    assert mesh.sector.s[0] <= mesh.sector.s[-1] - 0.5 * gear.normal_module
+
+
+@pytest.mark.law
+@settings(max_examples=15, suppress_health_check=[HealthCheck.filter_too_much])
+@given(
+    sizes(EXTERNAL, helix=(-45.0, 45.0), width=(1.0, 30.0)),
+    BORE,
+    st.sampled_from(["draft", "standard", "fine", "even_load"]),
+)
+def test_sector_of_a_random_gear_is_good(numbers: dict[str, Any], bore: float, level: str) -> None:
+    gear = external(numbers, bore)
+    recipe = getattr(SectorRecipe, level)(gear)
+    section = good_section(gear, recipe)
+    assert section.s[-1] - section.s[0] > 0.5 * gear.normal_module
+    sector = swept_sector(section.grid, gear.face_width, recipe)
+    assert len(sector.left) == len(sector.right) > 0
+    assert sector.flank_index.max() + 1 == len(sector.flank)
+
+
+@pytest.mark.law
+@settings(max_examples=12, suppress_health_check=[HealthCheck.filter_too_much])
+@given(
+    sizes(INTERNAL, helix=(-35.0, 35.0), width=(6.0, 6.0)),
+    st.floats(0.3, 15.0),
+    st.sampled_from(["draft", "standard", "fine"]),
+)
+def test_mesh_of_a_random_ring_gear_is_good(numbers: dict[str, Any], rim: float, level: str) -> None:
+    gear = internal(numbers, rim)
+    good_mesh(gear, gear.held_radius)
+    good_section(gear, getattr(SectorRecipe, level)(gear))

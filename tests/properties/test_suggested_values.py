@@ -44,7 +44,6 @@ def same(after: Fault, before: Fault) -> bool:
 
 
 def refusal(table: Table) -> Fault | None:
-    """Return why a case is refused, None if it is accepted."""
     try:
         gear_pair(validated(Case, table))
     except BadInput as error:
@@ -53,7 +52,6 @@ def refusal(table: Table) -> Fault | None:
 
 
 def typed_suggestions(table: Table, fault: Fault) -> list[Table]:
-    """Return the case with each value that a fault suggests, typed as it is printed."""
     limit = LIMIT.match(fault.bound)
     ends = [float(end) for end in limit.groups()[1:] if end] if limit else []
     nudge = NUDGE.get(limit.group(1), 0.0) if limit else 0.0

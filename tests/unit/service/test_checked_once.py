@@ -54,7 +54,6 @@ class Calls:
 
 @pytest.fixture
 def calls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Calls]:
-    """Count from a process that knows no case yet."""
     calls = Calls()
     convert, check, validate = conversion.gear_pair, request_check.check_request, Case.model_validate_json
 
@@ -99,7 +98,6 @@ def invoked(*arguments: object) -> None:
 
 
 def _planned(_order: object) -> Future[bytes]:
-    """Answer as the live worker, a process of its own."""
     answer: Future[bytes] = Future()
     answer.set_result(json.dumps({"prediction": {"stages": {"contact": 1.0}}}).encode())
     return answer

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rexs_bearing_units import BALL, LEFT, LINE, RIGHT, ROLLER, ROW, Values, at, inside, on_lines
 from rexs_reference import needs_reference, reference
 
 from bounds.types import FloatArray
@@ -22,13 +21,28 @@ from lineofaction.gearbox.schemas.bearings import RollingBearingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from tests.fakes.opened_unit import deflection_of_unit, said, scene_of
 from tests.fakes.rexs_stage import relation
-from tests.fakes.rexs_unit import CASING, INPUT, NORMAL_LOAD, place, two_stages
+from tests.fakes.rexs_unit import (
+    BALL,
+    CASING,
+    INPUT,
+    LEFT,
+    LINE,
+    NORMAL_LOAD,
+    RIGHT,
+    ROLLER,
+    ROW,
+    Stated,
+    at,
+    inside,
+    on_lines,
+    place,
+    two_stages,
+)
 
 Parts = Mapping[int, tuple[str, dict[str, Any]]]
 
 
 def by_name(unit: OpenedUnit) -> dict[int, RollingBearingInput]:
-    """Return the rolling bearings of a unit's scene by component."""
     assert unit.scene is not None, [line for line in unit.lines if line.fate == "refused"]
     return {int(bearing.name.split()[-1]): bearing for bearing in unit.scene.rolling_bearings}
 
@@ -144,7 +158,7 @@ def test_rows_with_a_contact_angle_hold_the_side_that_the_file_states(
         ),
     ],
 )
-def test_a_contact_angle_without_a_side_is_a_bushing(left: Values, words: str) -> None:
+def test_a_contact_angle_without_a_side_is_a_bushing(left: Stated, words: str) -> None:
     unit = opened(inside(left, {"axial_force_absorption": "positive"}))
     assert words in why(unit, LEFT)
     assert list(by_name(unit)) == [RIGHT]
@@ -167,7 +181,7 @@ def test_a_contact_angle_without_a_side_is_a_bushing(left: Values, words: str) -
     ],
 )
 def test_the_clearance_nearest_to_operation_counts(
-    values: Values, clearance: float, fate: str | None
+    values: Stated, clearance: float, fate: str | None
 ) -> None:
     unit = opened(on_lines({"operating_radial_bearing_clearance": None} | dict(values)))
     catalog = by_name(unit)[LEFT].catalog
@@ -188,7 +202,7 @@ def test_the_clearance_nearest_to_operation_counts(
     ],
 )
 def test_clearance_and_preload_of_a_contact_angle_are_along_the_axis(
-    values: Values, clearance: float, preload: float
+    values: Stated, clearance: float, preload: float
 ) -> None:
     own = [dict(values) | {"axial_force_absorption": side} for side in ("negative", "positive")]
     found = by_name(opened(inside(*own)))
@@ -223,7 +237,7 @@ def test_cylindrical_rollers_hold_nothing_and_ribs_are_a_bushing() -> None:
         ({"bearing_type": None}, "without bearing_type"),
     ],
 )
-def test_a_bushing_says_why(values: Values, words: str) -> None:
+def test_a_bushing_says_why(values: Stated, words: str) -> None:
     unit = opened(on_lines(values, {}))
     assert words in why(unit, LEFT)
     assert list(by_name(unit)) == [RIGHT]

@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from rexs_bearing_units import BALL, ROW, inside, on_lines
 from rexs_stage import PINION, PINION_RIGHT, STAGE, WHEEL, WHEEL_LEFT, WHEEL_RIGHT, relation, stage_unit
 
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
@@ -16,6 +15,7 @@ from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.schemas.bearings import BallRowInput, RollerRowInput, RollingBearingInput
 from lineofaction.gearbox.schemas.case import WheelInput
 from lineofaction.gearbox.schemas.gear import GearInput
+from tests.fakes.rexs_unit import BALL, ROW, inside, on_lines
 
 
 def page_of(parts: str) -> str:

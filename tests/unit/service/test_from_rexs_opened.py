@@ -45,7 +45,6 @@ def test_axes_are_as_far_apart_as_the_center_distances() -> None:
 
 
 def rotation(axis: int, degrees: float) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Return a turn about u, v or w."""
     angle, others = math.radians(degrees), [index for index in range(3) if index != axis]
     matrix = np.eye(3)
     matrix[np.ix_(others, others)] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]

@@ -1,4 +1,4 @@
-"""Housings of a scene by the file of their solid: reduced as in Python, once, and refused by name."""
+"""Housings of a scene by the file of their solid: reduced as in Python, once, refused by name; their cost."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from typing import Any
 import meshlane
 import numpy as np
 import pytest
-from housing_solid import SEAT, housed_scene, housing, write_block
+from declared_figures import check_declared
+from housing_solid import SEAT, housed_scene, housing, write_block, write_housed_scene
+from typer.testing import CliRunner
 
 from dynamics.housings import (
     GRAY_CAST_IRON,
@@ -28,6 +30,8 @@ from dynamics.housings import (
     reduced_housing,
 )
 from dynamics.housings import reduction as kept
+from dynamics.work_cost import WorkCost
+from lineofaction.cli.commands import app
 from lineofaction.cli.simulate import tabled_scene
 from lineofaction.gearbox.convert import solid_housings
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene
@@ -36,6 +40,7 @@ from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of
 from lineofaction.gearbox.subjects import scene_of
+from lineofaction.report.drawing.tables import amount, cost_tables
 
 SOURCE = dict.fromkeys(("step_file", "material", "modes", "element_size_mm", "seats", "feet", "points"))
 LOSS = 0.02
@@ -301,3 +306,51 @@ def tabled_facts(folder: Path):
     from fe_contact.ste import SteDatabase  # noqa: PLC0415
 
     return SteDatabase.from_netcdf(folder / "mesh.nc").facts
+
+
+STUDIES: dict[str, tuple[str, ...]] = {
+    "modes": (),
+    "response": ("--speed-rpm", "1500:3000:750", "--orders", "2"),
+    "steady": ("--speed-rpm", "1500", "--no-branch"),
+    "noise": ("--speed-rpm", "1500:3000:750", "--orders", "2", "--no-band"),
+}
+COST = vars(WorkCost(24.6, 1.07e9, 25.1, None))
+
+
+@pytest.fixture(scope="module")
+def two_bores(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_housed_scene(tmp_path_factory.mktemp("costs"), modes=6)
+
+
+@pytest.mark.parametrize("study", list(STUDIES))
+def test_figures_and_report_state_the_cost_of_the_reduction(
+    two_bores: Path, study: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same from the cache: what was measured once."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(two_bores / "cache"))
+    report = two_bores / f"{study}.html"
+    costs = []
+    for more in (("--json",), ("--json", "-o", str(report))):
+        result = CliRunner().invoke(app, [study, str(two_bores / "scene.json"), *STUDIES[study], *more])
+        assert result.exit_code == 0, result.stderr
+        answer: dict[str, Any] = json.loads(result.stdout)
+        check_declared(study, answer)
+        costs.append(answer["reduction_cost"]["case"])
+    assert costs[0] == costs[1]
+    for name in ("predicted_cpu_seconds", "predicted_bytes", "cpu_seconds"):
+        assert costs[0][name] > 0.0
+    assert "case: reduction" in report.read_text("utf-8")
+
+
+def test_the_table_has_prediction_beside_measurement() -> None:
+    facts = {"seconds": {"response": 0.5, "sound": 0.25}, "reduction_cost": {"case": COST}}
+    (table,) = cost_tables(facts)
+    assert table.rows == (("case: reduction", "25", "25", "-", "1.1"),)
+    radiation = {"case": {"model_name": "monopoles", "cost": COST | {"seconds": 61.5, "bytes": 2e8}}}
+    (table,) = cost_tables(facts | {"radiation": radiation})
+    assert table.rows[1] == ("case: monopoles, all frequencies", "62", "25", "0.20", "1.1")
+    assert cost_tables({"seconds": {}}) == ()
+
+
+def test_less_than_a_thousandth_is_not_written_out() -> None:
+    assert (amount(1.2e-7), amount(None), amount(0.0123)) == ("< 0.001", "-", "0.012")

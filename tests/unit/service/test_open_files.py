@@ -41,7 +41,6 @@ def serving(directory: Path, files: int) -> Iterator[subprocess.Popen[str]]:
 
 
 def healthy(port: int, held: ExitStack) -> bool:
-    """Ask for the health on a connection that stays open."""
     connection = held.enter_context(socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S))
     connection.sendall(b"GET /health HTTP/1.1\r\nHost: localhost\r\n\r\n")
     answer = b""

@@ -28,7 +28,6 @@ HAND = LEFT_OUT["hand of a wheel"][1](TWO_STAGE)
 
 
 def opened(text: str, folder: Path, *options: str) -> Result:
-    """Return what the verb answers under --strict."""
     file = folder / "unit.rexs"
     file.write_text(text, encoding="utf-8")
     return CliRunner().invoke(loa, ["open", str(file), "--out", str(folder / "out"), "--strict", *options])

@@ -31,7 +31,6 @@ def read(*settings: str, file: Path = SPUR, model: Any = Case) -> Any:
 
 
 def changed(old: str, new: str, tmp_path: Path) -> Case:
-    """Return the example with other text in its file."""
     text = SPUR.read_text(encoding="utf-8")
     assert old in text
     file = tmp_path / "case.toml"

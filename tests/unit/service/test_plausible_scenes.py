@@ -161,7 +161,6 @@ def written_into(content: dict[str, Any], changes: dict[str, Any]) -> dict[str, 
 
 
 def scene_of(changes: dict[str, Any], case: dict[str, Any]) -> SceneInput:
-    """Return the example of two shafts with some fields of it and of its case changed."""
     content = tomllib.loads((EXAMPLES / "palermo_scene.toml").read_text(encoding="utf-8"))
     pair = tomllib.loads((EXAMPLES / "palermo_spur_20_20.toml").read_text(encoding="utf-8"))
     changes = dict(changes)

@@ -37,7 +37,6 @@ def _note(event: str, details: tuple[object, ...]) -> None:
 
 @pytest.fixture(scope="module")
 def watched() -> Callable[[], object]:
-    """Return a context in which nothing may be opened."""
     for data in (XML, JSON, ZIP):
         parsed(data)
     sys.addaudithook(_note)
@@ -108,7 +107,6 @@ def test_a_unit_with_a_wrong_number_is_opened_or_refused_with_one_error() -> Non
 
 
 def _end(data: bytes) -> OpenedUnit | str:
-    """Return the unit of a file, or the text of its one error."""
     try:
         return opened(parsed(data))
     except BadInput as error:

@@ -38,7 +38,6 @@ Change = Callable[[dict[str, Any]], object]
 
 
 def scene(change: Change) -> Scene:
-    """Return the paper's scene with a change, on the small table."""
     table = copy.deepcopy(EXAMPLE)
     change(table)
     return dynamic_scene(validated(SceneInput, table), {"mesh": small_table()})
@@ -83,8 +82,6 @@ LINE = {"bore_mm": 25.0, "outside_diameter_mm": 62.0, "static_rating_n": 11600.0
 
 
 def rolling(**row: Any) -> Change:
-    """Return a change that puts a rolling bearing in place of the first bushing."""
-
     def change(table: dict[str, Any]) -> None:
         bushing = table["bushings"].pop(0)
         place = {name: bushing[name] for name in ("name", "shaft", "position_mm")}

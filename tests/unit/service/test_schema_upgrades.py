@@ -125,7 +125,6 @@ def test_the_steps_make_the_tables_that_the_program_declares(fresh: Engine) -> N
 
 
 def number(engine: Engine, **numbers: str) -> None:
-    """Let the tables of the schema's numbers say so."""
     with writing(engine) as connection:
         for table, stated in numbers.items():
             connection.execute(text(f"UPDATE {table} SET version_num = '{stated}'"))

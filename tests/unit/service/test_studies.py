@@ -1,25 +1,38 @@
-"""What follows from a row of the registry: process, client method, verb, result kind, example of a study."""
+"""What follows from a row of the registry, what a study takes, and answers that are as declared."""
 
 from __future__ import annotations
 
 import json
 from inspect import signature
+from pathlib import Path
 from typing import Any
 
 import pytest
 from click import Context
 from typer.main import get_command
 
+from fe_contact import SteDatabase, analyze
 from lineofaction.cli.commands import app
 from lineofaction.client import LineOfActionClient
 from lineofaction.client.offers import offers
+from lineofaction.gearbox.convert.answers import metadata_json, summary_json
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.live import outline_json
+from lineofaction.gearbox.from_rexs.opened import opened, unit_files, unit_json
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES, Study, study_of
+from lineofaction.gearbox.rexs.files import read_rexs
+from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.plan import OutlineBody, PlanBody
 from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS
 from lineofaction.gearbox.studies.computation import Computation
+from lineofaction.gearbox.studies.deflect import Inputs
 from lineofaction.report.document import stored_study
 from lineofaction.report.presentation import Presentation, presentation_of
-from service.schemas.examples import INPUTS
+from service.live.work import live_plan
+from service.schemas.answers import UnitBody
+from service.schemas.examples import CASE, INPUTS
 from service.worker.process import default_registry
 
 LOA = get_command(app)
@@ -92,3 +105,64 @@ def test_its_files_are_known_from_those_of_others(study: Study) -> None:
     assert file.values
     assert all(stored_study({file.attribute: value, "title": "any"}) is study for value in file.values)
     assert stored_study({file.attribute: "something else"}) is None
+
+
+UNIT = Path(__file__).parents[3] / "examples" / "two_stage_gearbox.rexs"
+ROTOR = UNIT.with_name("jeffcott_scene.toml")
+
+
+def test_load_cases_of_an_opened_unit_are_those_of_their_file(tmp_path: Path) -> None:
+    unit = opened(read_rexs(UNIT))
+    body = UnitBody.model_validate(unit_json(unit))
+    file = tmp_path / "load_cases.toml"
+    file.write_text(unit_files(unit)["load_cases.toml"], encoding="utf-8")
+    deflect = offers()["deflect"]
+    by_model, by_file = (
+        deflect.inputs(body.scene, study) for study in ({"load_cases": body.load_cases}, file)
+    )
+    assert by_model == json.loads(json.dumps(by_model))
+    as_model, as_file = (
+        Inputs.model_validate_json(json.dumps({"load_cases": given["load_cases"]}))
+        for given in (by_model, by_file)
+    )
+    assert as_model == as_file
+    assert [case["torque_n_m"] for case in by_model["load_cases"]] == [50.0, 80.0, 30.0]
+
+
+def test_a_path_as_text_is_refused_with_what_to_do() -> None:
+    with pytest.raises(BadInput, match=r"pathlib\.Path"):
+        offers()["deflect"].inputs(ROTOR, "load_cases.toml")
+
+
+EXAMPLES = Path(__file__).parents[3] / "service" / "page" / "examples"
+
+
+def through_json(answer: dict[str, Any]) -> Any:
+    return json.loads(json.dumps(answer, allow_nan=False))
+
+
+@pytest.mark.parametrize("name", ["helical_ev_23_67", "industrial_spur_21_59"])
+def test_plans_and_drawings_are_as_declared(name: str, tmp_path: Path) -> None:
+    case = read_model(Case, EXAMPLES / f"{name}.toml")
+    plan = through_json(
+        live_plan({"case": case.model_dump(mode="json"), "time_budget_s": None, "cache": str(tmp_path)})
+    )
+    assert PlanBody.model_validate(plan).model_dump(mode="json", exclude_unset=True) == plan
+    drawing = through_json(outline_json(case))
+    assert OutlineBody.model_validate(drawing).model_dump(mode="json") == drawing
+
+
+TORQUES = [30.0, 60.0, 110.0, 230.0]
+
+
+@pytest.fixture(scope="module")
+def table() -> SteDatabase:
+    pair = gear_pair(Case.model_validate(CASE))
+    return analyze(pair, torques=TORQUES, level="draft", positions=8, model="plane_strain")
+
+
+def test_torques_come_back_as_they_were_typed(table: SteDatabase) -> None:
+    """The table holds forces: torque to force and back leaves a last digit."""
+    assert table.torque.tolist() != TORQUES
+    assert metadata_json(table)["torque_n_m"] == TORQUES
+    assert [load["torque_n_m"] for load in summary_json(table)["loads"]] == TORQUES

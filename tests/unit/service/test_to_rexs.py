@@ -32,7 +32,6 @@ def stages() -> tuple[StageCase, ...]:
 
 
 def table() -> SteDatabase:
-    """Return a table that claims to be of the stage's case."""
     (stage,) = stages()
     return replace(small_table(), metadata=Metadata(case=case_json(stage.case)))
 

@@ -66,7 +66,6 @@ def spectrum() -> Document:
 
 
 def with_sides_exchanged(document: Document, bearing: int) -> Document:
-    """Return the unit with the casing on the inner side of a bearing."""
     other = {"inner_part": "outer_part", "outer_part": "inner_part"}
     relations = tuple(
         replace(entry, refs=tuple(replace(ref, role=other.get(ref.role, ref.role)) for ref in entry.refs))
@@ -100,7 +99,6 @@ def results(document: Document, case: int | None = None) -> dict[int, Values]:
 
 
 def vector(values: Values, name: str) -> np.ndarray[Any, Any]:
-    """Return three values along u, v, w."""
     return np.array([values[name.format(axis)] for axis in "uvw"])
 
 

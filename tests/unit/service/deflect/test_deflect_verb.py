@@ -1,4 +1,4 @@
-"""``loa deflect``: what it prints and writes, its record, and the inputs of an optimization."""
+"""loa deflect: load cases, what it prints and writes, its record, the inputs of an optimization, a rotor."""
 
 from __future__ import annotations
 
@@ -19,9 +19,15 @@ from typer.testing import CliRunner, Result
 from dynamics.deflection import BearingLoad, ForceUnderCase, deflect
 from dynamics.settings.load_case import LoadCase
 from lineofaction.cli.commands import app
+from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import read_model, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.deflect import Inputs
 from lineofaction.gearbox.studies.deflect.figures import _optimization_inputs, write_spectrum
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, outline_of
-from lineofaction.gearbox.studies.deflect.run import RUN
+from lineofaction.gearbox.studies.deflect.run import RUN, load_cases
 from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
 from lineofaction.report.deflection.deflect import (
     _bearing_table,
@@ -35,16 +41,103 @@ from lineofaction.report.deflection.gearbox_drawing import _exaggeration
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import number
 
+
+def loa(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["deflect", *(str(argument) for argument in arguments)])
+
+
+def test_load_cases_come_from_their_file_in_its_units(tmp_path: Path) -> None:
+    file = tmp_path / "cases.toml"
+    file.write_text('[[load_cases]]\nname = "a"\nspeed_rpm = 600.0\ntorque_n_m = 20.0\ndirection = "coast"\n')
+    (case,) = load_cases(read_model(Inputs, file))
+    assert case.speed == pytest.approx(20.0 * np.pi) and (case.torque, case.direction) == (20.0, "coast")
+    answer = json.loads(loa(scene_file(tmp_path), file, "--json").stdout)["load_cases"][0]
+    assert (answer["torque_n_m"], answer["speed_rpm"]) == (pytest.approx(20.0), pytest.approx(600.0))
+
+
+@pytest.mark.parametrize(
+    ("line", "field"),
+    [
+        ("torque_n_m = -1.0", "load_cases[0].torque_n_m"),
+        ('direction = "up"', "load_cases[0].direction"),
+        ("torque_n_m = 1.0\nfactor = 2.0", "load_cases[0].factor"),
+        ('forces = [{name = "belt", factor = 2.0}]', "load_cases[0].forces[0].name"),
+        (
+            'forces = [{name = "a", factor = 2.0, moment_n_m = [0.0, 0.0, 1.0]}]',
+            "load_cases[0].forces[0].factor",
+        ),
+        ('forces = [{name = "a"}]', "load_cases[0].forces[0].force_n"),
+        ('forces = [{name = "a", force_n = [1.0, 2.0]}]', "load_cases[0].forces[0].force_n"),
+    ],
+)
+def test_a_case_that_cannot_be_is_refused_by_its_field(tmp_path: Path, line: str, field: str) -> None:
+    file = tmp_path / "cases.toml"
+    file.write_text(f'[[load_cases]]\nname = "a"\n{line}\n')
+    done = loa(scene_file(tmp_path), file)
+    assert done.exit_code == 2 and field in done.stderr
+
+
+BELT = '[[forces]]\nname = "belt"\nshaft = "input"\nposition_mm = 50.0\nforce_n = [0.0, 100.0, 0.0]\n'
+PULLED = """
+[[load_cases]]
+name = "as in the scene"
+[[load_cases]]
+name = "its own"
+forces = [{name = "belt", force_n = [0.0, -300.0, 50.0]}]
+[[load_cases]]
+name = "doubled"
+forces = [{name = "belt", factor = 2.0}]
+[[load_cases]]
+name = "coast"
+direction = "coast"
+forces = [{name = "belt", factor = 2.0}]
+[[load_cases]]
+name = "coast as in the scene"
+direction = "coast"
+"""
+
+
+def test_a_case_states_forces_of_the_scene(tmp_path: Path) -> None:
+    scene, file = scene_file(tmp_path), tmp_path / "cases.toml"
+    scene.write_text(scene.read_text("utf-8") + BELT, encoding="utf-8")
+    file.write_text(PULLED)
+    cases = json.loads(loa(scene, file, "--json").stdout)["load_cases"]
+    across = [np.array(case["bearings"][0]["force_n"][:2]) for case in cases]
+    assert cases[1]["forces"] == [
+        {"name": "belt", "shaft": "input", "force_n": [0.0, -300.0, 50.0], "moment_n_m": [0.0, 0.0, 0.0]}
+    ]
+    assert [case["forces"][0]["force_n"][1] for case in cases] == [100.0, -300.0, 200.0, 200.0, 100.0]
+    assert across[1] - across[0] == pytest.approx([0.0, -400.0], rel=1e-9, abs=1e-6)
+    assert across[2] - across[0] == pytest.approx([0.0, 100.0], rel=1e-9, abs=1e-6)
+    assert across[3] - across[4] == pytest.approx([0.0, 100.0], rel=1e-9, abs=1e-6)
+
+
+def test_forces_that_the_scene_has_not_are_refused_before_its_tables_are_computed(tmp_path: Path) -> None:
+    scene = read_model(SceneInput, scene_file(tmp_path))
+    cases = [{"name": "a", "forces": [{"name": "belt", "factor": 2.0}]}]
+    with pytest.raises(BadInput, match=r"load_cases\[0\]\.forces\[0\]\.name"):
+        RUN.check(scene, validated(Inputs, {"load_cases": cases}))
+
+
+def test_a_case_without_forces_keeps_the_address_of_its_result() -> None:
+    """Results are stored by what is written of their inputs."""
+    (case,) = validated(Inputs, {"load_cases": [{"name": "a"}]}).model_dump(mode="json")["load_cases"]
+    assert set(case) == {"name", "share", "factor", "torque_n_m", "speed_rpm", "direction"}
+
+
+def test_a_force_of_a_scene_says_what_acts(tmp_path: Path) -> None:
+    scene = scene_file(tmp_path)
+    scene.write_text(scene.read_text("utf-8") + BELT.rpartition("force_n")[0], encoding="utf-8")
+    done = loa(scene)
+    assert done.exit_code == 2 and "forces[0].force_n" in done.stderr
+
+
 CASES = (
     LoadCase("climb", share=1.0, factor=1.0),
     LoadCase("cruise", share=3.0, factor=0.5),
     LoadCase("again", share=2.0, factor=0.5),
     LoadCase("back", share=4.0, factor=0.3, direction="coast"),
 )
-
-
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["deflect", *(str(argument) for argument in arguments)])
 
 
 def flanks_of(case: Any, mesh: Any) -> MeshFlanks:
@@ -259,3 +352,42 @@ def test_a_long_life_has_three_digits(result: GearboxDeflection) -> None:
     hours = RUN.figures(long)["bearings"][0]["rating_life_hours"]
     assert hours > 1e5
     assert len(_life_table(long).rows[0][2].rstrip("0")) == 3
+
+
+ROTOR = Path(__file__).parents[4] / "examples" / "jeffcott_scene.toml"
+WEIGHT = 10.0 * 9.81
+
+
+def test_a_rotor_under_its_weight_hangs_in_its_bearings(tmp_path: Path) -> None:
+    files = [tmp_path / f"rotor.{ending}" for ending in ("json", "png", "html")]
+    for file in files:
+        options = ["--set", "gravity_m_per_s2=[0.0, -9.81, 0.0]", "-o", str(file)]
+        result = CliRunner().invoke(app, ["deflect", str(ROTOR), *options])
+        assert (result.exit_code, result.stderr) == (0, "")
+    (case,) = json.loads(files[0].read_text("utf-8"))["load_cases"]
+    assert [bearing["force_n"][1] for bearing in case["bearings"]] == pytest.approx([-0.5 * WEIGHT] * 2)
+    html = files[2].read_text("utf-8")
+    assert "The axes move by up to 49.1 µm." in html  # half of the weight on 1e6 N/m
+    assert '"y, mm"' in html and '"x, mm"' not in html  # seen as it bends
+
+
+def test_the_cost_of_a_verb_is_that_of_its_process_and_children(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lineofaction.cli.study.cpu_seconds", lambda: 117.0)
+    result = CliRunner().invoke(app, ["deflect", str(ROTOR)])
+    assert [line for line in result.stdout.splitlines() if "CPU" in line] == ["cost 117 CPU s"]
+
+
+def test_what_was_made_for_a_deflection_is_in_its_cost(tmp_path: Path) -> None:
+    scene = read_model(SceneInput, ROTOR)
+    tabled = TabledScene(scene, {}, dynamic_scene(scene, {}), {}, seconds=57.5)
+    inputs = Inputs.model_validate({"load_cases": [{"name": "own"}]})
+    assert RUN.compute(tabled, inputs, Means(tmp_path, lambda *_: None)).seconds >= 57.5
+
+
+def test_a_torque_in_a_scene_without_loads_is_refused_by_its_field() -> None:
+    scene = read_model(SceneInput, ROTOR)
+    inputs = Inputs.model_validate({"load_cases": [{"name": "own"}, {"name": "high", "torque_n_m": 5.0}]})
+    with pytest.raises(BadInput) as refused:
+        RUN.check(scene, inputs)
+    (fault,) = refused.value.faults
+    assert (fault.field, fault.value) == ("load_cases[1].torque_n_m", 5.0)

@@ -20,7 +20,6 @@ from lineofaction.report.drawing.interactive import plotly_figure
 
 @pytest.fixture(scope="module")
 def outline() -> Outline:
-    """The two stages, their gears with long names."""
     found = outline_of(two_stages())
     return replace(found, gears=("first pinion", "wheel of the first stage", "second pinion", "second wheel"))
 

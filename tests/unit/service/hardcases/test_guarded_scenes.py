@@ -1,4 +1,4 @@
-"""One scene that breaks does not end the suite, and nothing passes by having run."""
+"""One scene that breaks does not end the suite, nothing passes by having run; which ends are good."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ import multiprocessing
 
 import pytest
 import scenes_that_break as fake
+from random_cases import kind_of_end, random_request
 from typer.testing import CliRunner
 
 import lineofaction.cli.hardcases as verb
+from fe_contact.errors import InputError
 from lineofaction.cli.commands import app as loa
 from lineofaction.gearbox.problems import EXIT_BAD_INPUT, EXIT_FAILED
-from lineofaction.hardcases import HARD_SCENES, Measured, run_scenes
+from lineofaction.hardcases import HARD_SCENES, Measured, Outcome, run_scenes
 
 
 @pytest.fixture(autouse=True)
@@ -85,3 +87,44 @@ def test_unknown_scenes_are_refused() -> None:
     assert result.exit_code == EXIT_BAD_INPUT
     assert result.stderr.startswith("error: only = 'no_such_scene': must be a scene or a family")
     assert HARD_SCENES[0].name in result.stderr
+
+
+REFUSAL = str(InputError("teeth", 3, "at least 4", "Add teeth."))
+
+
+@pytest.mark.parametrize(
+    ("ended_by", "end"),
+    [
+        (f"InputError: {REFUSAL}", "refusal"),
+        ("InfeasibleGeometry: undercut: pinion.tip_diameter = 1.0: must be above 2 m", "refusal"),
+        ("InputError: something is wrong", "unclear"),
+        (f"InputError: {REFUSAL}\nand more", "unclear"),
+        (f"InputError: {REFUSAL}{'!' * 500}", "unclear"),
+        ("MeshError: poor", "mesh"),
+        ("SolveError: residual", "solve"),
+        ("ValueError: teeth are not all condensed", "exception"),
+        ("not done after its limit of 600 s", "hang"),
+        ("its process ended with code -9", "crash"),
+    ],
+)
+def test_only_a_clear_refusal_is_as_good_as_a_table(ended_by: str, end: str) -> None:
+    assert kind_of_end(Outcome(fake.GOOD, (), 1.0, ended_by)) == end
+
+
+def test_a_table_must_be_sound() -> None:
+    assert kind_of_end(fake.GOOD.run()) == "table"
+    assert kind_of_end(fake.OUT_OF_BOUNDS.run()) == "unsound"
+    assert kind_of_end(fake.NO_NUMBER.run()) == "unsound"
+
+
+@pytest.mark.parametrize("kind", ["plane", "face"])
+def test_a_seed_is_a_case_and_cases_are_both_feasible_and_not(kind) -> None:
+    ends = []
+    for seed in range(60):
+        try:
+            first, again = random_request(kind, seed), random_request(kind, seed)
+            assert first == again
+            ends.append(True)
+        except InputError:
+            ends.append(False)
+    assert 15 <= sum(ends) <= 50

@@ -223,7 +223,6 @@ def _scene(rate: float) -> dict[str, Any]:
 
 
 def _receipt(rate: float) -> dict[str, Any]:
-    """Return what a run says of its cost, its error and its sampling."""
     return {
         "seconds": {"integration": 0.5},
         "error": {"time_step": {"rms": 1e-9, "source": "step control"}},
@@ -246,5 +245,4 @@ def run() -> RunResult:
 
 @pytest.fixture(scope="session", name="with_pitch_errors")
 def _with_pitch_errors() -> Callable[..., SteDatabase]:
-    """Tables over several base pitches."""
     return with_pitch_errors

@@ -51,7 +51,6 @@ def compliance(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def studies(compliance: Path) -> dict[str, tuple[Study, Any]]:
-    """One result of every sort, and the study that made it."""
     only = ["tooth_coupling", "profile_modification", "misalignment"]
     of_case = ablate(
         PAIR,
