@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import copy
 import json
 import math
 import tomllib
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from changed_scenes import DROP, By, changed_scene, check_refused
 from small_table import small_table
 
 from dynamics.assembly.assemble import assemble
@@ -20,7 +19,6 @@ from dynamics.bearings.catalog import from_catalog
 from dynamics.housings import ReducedHousing, ReducedMatrices, Ring, SeatFrame, housing_of_matrices
 from dynamics.integrators import static_equilibrium
 from dynamics.mechanism.bodies import modal_housing
-from dynamics.scene import Scene
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.scene import _laws_of, dynamic_scene
 from lineofaction.gearbox.problems import BadInput
@@ -34,40 +32,30 @@ MATRIX = (1e8 * np.diag([1.0, 1.0, 0.5, 0.01, 0.01])).tolist()
 HOUSING = (1e9 * (np.eye(6) + 0.1)).tolist()
 MASS = (5.0 * np.eye(6) + 1.0).tolist()
 SEATS = [[0.0, 0.0, part["position_mm"]] for part in EXAMPLE["bushings"][:2]]
-Change = Callable[[dict[str, Any]], object]
-
-
-def scene(change: Change) -> Scene:
-    table = copy.deepcopy(EXAMPLE)
-    change(table)
-    return dynamic_scene(validated(SceneInput, table), {"mesh": small_table()})
 
 
 def test_matrices_and_preload_reach_the_bushing_as_they_are() -> None:
-    def change(table: dict[str, Any]) -> None:
-        del table["bushings"][0]["radial_stiffness_n_per_m"]
-        table["bushings"][0].update(
-            stiffness_matrix=MATRIX, damping_matrix=MATRIX, preload_force_n=[0.0, 0.0, 500.0]
-        )
-
-    bushing = scene(change).bushings[0]
+    own = {"stiffness_matrix": MATRIX, "damping_matrix": MATRIX, "preload_force_n": [0.0, 0.0, 500.0]}
+    own |= {"radial_stiffness_n_per_m": DROP}
+    changes = {f"bushings[0].{name}": value for name, value in own.items()}
+    bushing = changed_scene(EXAMPLE, changes).bushings[0]
     assert (bushing.radial_stiffness, bushing.preload) == (0.0, (0.0, 0.0, 500.0, 0.0, 0.0))
     np.testing.assert_array_equal(bushing.stiffness, MATRIX)
     np.testing.assert_array_equal(bushing.damping, MATRIX)
-    assert scene(lambda _table: None).bushings[0].stiffness is None
+    assert changed_scene(EXAMPLE).bushings[0].stiffness is None
 
 
 def test_rolling_contacts_and_curves_are_in_si() -> None:
-    def change(table: dict[str, Any]) -> None:
-        for bushing in table["bushings"][:2]:
-            del bushing["radial_stiffness_n_per_m"]
-        table["bushings"][0]["rolling_contact"] = {"stiffness_n_per_m_n": 5e8, "radial_clearance_um": 20.0}
-        table["bushings"][1]["spring_curves"] = [
-            {"direction": "x", "displacement_um": [-40.0, 0.0, 40.0], "force_n": [-6e3, 0.0, 5e3]},
-            {"direction": "tilt_y", "tilt_mrad": [-1.0, 1.0], "moment_n_m": [-50.0, 50.0]},
-        ]
-
-    found = scene(change)
+    curves = [
+        {"direction": "x", "displacement_um": [-40.0, 0.0, 40.0], "force_n": [-6e3, 0.0, 5e3]},
+        {"direction": "tilt_y", "tilt_mrad": [-1.0, 1.0], "moment_n_m": [-50.0, 50.0]},
+    ]
+    found = changed_scene(
+        EXAMPLE,
+        {f"bushings[{k}].radial_stiffness_n_per_m": DROP for k in (0, 1)}
+        | {"bushings[0].rolling_contact": {"stiffness_n_per_m_n": 5e8, "radial_clearance_um": 20.0}}
+        | {"bushings[1].spring_curves": curves},
+    )
     (contact,), (line, tilt) = found.rolling_contacts, found.spring_curves
     assert (contact.bushing, contact.stiffness, contact.exponent) == ("input left", 5e8, 10.0 / 9.0)
     assert contact.clearance == pytest.approx(20e-6, rel=1e-12, abs=0.0)
@@ -81,25 +69,30 @@ TAPERED = {"count": 17, "diameter_mm": 9.0, "length_mm": 13.6, "pitch_diameter_m
 LINE = {"bore_mm": 25.0, "outside_diameter_mm": 62.0, "static_rating_n": 11600.0, "clearance_um": 10.0}
 
 
-def rolling(**row: Any) -> Change:
-    def change(table: dict[str, Any]) -> None:
-        bushing = table["bushings"].pop(0)
-        place = {name: bushing[name] for name in ("name", "shaft", "position_mm")}
-        table["rolling_bearings"] = [place | row]
+def housing(**fields: Any) -> By:
+    names = [bushing["name"] for bushing in EXAMPLE["bushings"][:2]]
+    return By(housings=[{"name": "case", "bushings": names, "stiffness_matrix": HOUSING} | fields])
 
-    return change
+
+def rolling(**row: Any) -> By:
+    """Return changes that put a rolling bearing in place of the first bushing."""
+    bushing = EXAMPLE["bushings"][0]
+    place = {name: bushing[name] for name in ("name", "shaft", "position_mm")}
+    return By({"bushings[0]": DROP, "rolling_bearings": [place | row]})
 
 
 def test_rolling_bearings_are_in_si_by_geometry_or_by_their_line() -> None:
-    (balls,) = scene(rolling(ball=BALL)).rolling_bearings
+    (balls,) = changed_scene(EXAMPLE, rolling(ball=BALL)).rolling_bearings
     assert (balls.name, balls.shaft, balls.row.count) == ("input left", "input", 7)
     assert balls.row == BallBearing(7, 11.5 * 1e-3, 43.5 * 1e-3, clearance=10.0 * 1e-6)
     angle = {"contact_angle_deg": -15.0}
-    (taper,) = scene(rolling(roller=TAPERED | angle, axial_preload_n=-500.0)).rolling_bearings
+    (taper,) = changed_scene(
+        EXAMPLE, rolling(roller=TAPERED | angle, axial_preload_n=-500.0)
+    ).rolling_bearings
     assert isinstance(taper.row, RollerBearing)
     assert taper.row.contact_angle == pytest.approx(math.radians(-15.0), rel=1e-12)
     assert (taper.axial_preload, taper.row.length) == (-500.0, pytest.approx(13.6e-3, rel=1e-12))
-    (line,) = scene(rolling(catalog=LINE, damping_ratio=0.1)).rolling_bearings
+    (line,) = changed_scene(EXAMPLE, rolling(catalog=LINE, damping_ratio=0.1)).rolling_bearings
     assert line.row == from_catalog(25.0 * 1e-3, 62.0 * 1e-3, 11600.0, 10.0 * 1e-6)
     assert line.damping_ratio == 0.1
 
@@ -218,122 +211,86 @@ def test_a_reduced_housing_that_does_not_fit_is_named(
 
 
 def test_a_housing_has_its_mass_from_the_file() -> None:
-    found = scene(housing(mass_matrix=MASS, damping_ratio=0.01, seat_positions_mm=SEATS)).housings[0]
+    own = housing(mass_matrix=MASS, damping_ratio=0.01, seat_positions_mm=SEATS)
+    found = changed_scene(EXAMPLE, own).housings[0]
     np.testing.assert_array_equal(found.mass, MASS)
     assert found.damping_ratio == 0.01
-    bare = validated(SceneInput, copy.deepcopy(EXAMPLE) | {"housings": [housing_of(EXAMPLE)]})
+    bare = validated(SceneInput, EXAMPLE | housing())
     earlier = {"name", "bushings", "stiffness_matrix", "damping_matrix"}  # stored results keep their address
     assert set(bare.model_dump(mode="json")["housings"][0]) == earlier
 
 
-def housing_of(table: dict[str, Any], **fields: Any) -> dict[str, Any]:
-    names = [bushing["name"] for bushing in table["bushings"][:2]]
-    return {"name": "case", "bushings": names, "stiffness_matrix": HOUSING} | fields
-
-
-def housing(**fields: Any) -> Change:
-    def change(table: dict[str, Any]) -> None:
-        table["housings"] = [housing_of(table, **fields)]
-
-    return change
-
-
 def test_a_rolling_bearing_sits_in_a_housing_with_mass() -> None:
-    found = scene(lambda table: (housing(mass_matrix=MASS)(table), rolling(ball=BALL)(table)))
+    found = changed_scene(EXAMPLE, housing(mass_matrix=MASS) | rolling(ball=BALL))
     system = assemble(found)
     assert [part.bearings for part in system.rotors.housings] == [("input left", "input right")]
     assert static_equilibrium(system).status.usable
 
 
-WRONG: dict[str, tuple[Change, str]] = {
-    "no stiffness": (
-        lambda t: t["bushings"][0].pop("radial_stiffness_n_per_m"),
-        "bushings[0].radial_stiffness_n_per_m",
-    ),
-    "not symmetric": (
-        lambda t: t["bushings"][0].update(stiffness_matrix=(np.eye(5) + np.eye(5, k=1)).tolist()),
-        "bushings[0].stiffness_matrix",
-    ),
-    "holds the rotation": (
-        lambda t: t["bushings"][0].update(stiffness_matrix=np.eye(6).tolist()),
-        "bushings[0].stiffness_matrix",
-    ),
-    "negative damping": (
-        lambda t: t["bushings"][0].update(damping_matrix=(-np.eye(5)).tolist()),
-        "bushings[0].damping_matrix",
-    ),
+HEAP, RATING = BALL | {"count": 20}, LINE | {"static_rating_n": 11.6}
+X_CURVE = {"displacement_um": [0.0, 1.0], "force_n": [0.0, 1.0]}
+FREE = housing(stiffness_matrix=np.diag([1e8, 1e8, 0.0, 1e8, 1e8, 1e8]).tolist())
+WRONG: dict[str, tuple[str, Any]] = {
+    "no stiffness": ("bushings[0].radial_stiffness_n_per_m", DROP),
+    "not symmetric": ("bushings[0].stiffness_matrix", (np.eye(5) + np.eye(5, k=1)).tolist()),
+    "holds the rotation": ("bushings[0].stiffness_matrix", np.eye(6).tolist()),
+    "negative damping": ("bushings[0].damping_matrix", (-np.eye(5)).tolist()),
     "negative clearance": (
-        lambda t: t["bushings"][0].update(
-            rolling_contact={"stiffness_n_per_m_n": 5e8, "radial_clearance_um": -1.0}
-        ),
         "bushings[0].rolling_contact.radial_clearance_um",
+        By({"bushings[0].rolling_contact": {"stiffness_n_per_m_n": 5e8, "radial_clearance_um": -1.0}}),
     ),
     "falling curve": (
-        lambda t: t["bushings"][0].update(
-            spring_curves=[{"direction": "x", "displacement_um": [0.0, 1.0], "force_n": [1.0, 0.0]}]
-        ),
         "bushings[0].spring_curves[0].force_n",
+        By({"bushings[0].spring_curves": [X_CURVE | {"direction": "x", "force_n": [1.0, 0.0]}]}),
     ),
     "curve of another direction": (
-        lambda t: t["bushings"][0].update(
-            spring_curves=[{"direction": "tilt_x", "displacement_um": [0.0, 1.0], "force_n": [0.0, 1.0]}]
-        ),
         "bushings[0].spring_curves[0].displacement_um",
+        By({"bushings[0].spring_curves": [X_CURVE | {"direction": "tilt_x"}]}),
     ),
-    "two rows": (rolling(ball=BALL, catalog=LINE), "rolling_bearings[0].ball"),
-    "no row": (rolling(), "rolling_bearings[0].ball"),
-    "balls in a heap": (
-        rolling(ball=BALL | {"count": 20}),
-        "rolling_bearings[0].ball.pitch_diameter_mm",
-    ),
+    "two rows": ("rolling_bearings[0].ball", rolling(ball=BALL, catalog=LINE)),
+    "no row": ("rolling_bearings[0].ball", rolling()),
+    "balls in a heap": ("rolling_bearings[0].ball.pitch_diameter_mm", rolling(ball=HEAP)),
     "a rating of no such bearing": (
-        rolling(catalog=LINE | {"static_rating_n": 11.6}),
         "rolling_bearings[0].catalog.static_rating_n",
+        rolling(catalog=RATING),
     ),
     "preload the other way": (
-        rolling(roller=TAPERED | {"contact_angle_deg": 15.0}, axial_preload_n=-500.0),
         "rolling_bearings[0].axial_preload_n",
+        rolling(roller=TAPERED | {"contact_angle_deg": 15.0}, axial_preload_n=-500.0),
     ),
-    "a bearing twice": (
-        lambda t: t.update(rolling_bearings=[{**t["bushings"][0], "ball": BALL}]),
-        "rolling_bearings[0].radial_stiffness_n_per_m",
-    ),
-    "off its shaft": (
-        rolling(ball=BALL, position_mm=1e4),
-        "rolling_bearings[0].position_mm",
-    ),
-    "unknown bushing": (housing(bushings=["input left", "x"]), "housings[0].bushings[1]"),
-    "wrong size": (housing(stiffness_matrix=np.eye(7).tolist()), "housings[0].stiffness_matrix"),
-    "damping of another size": (housing(damping_matrix=np.eye(10).tolist()), "housings[0].damping_matrix"),
+    "off its shaft": ("rolling_bearings[0].position_mm", rolling(ball=BALL, position_mm=1e4)),
+    "unknown bushing": ("housings[0].bushings[1]", housing(bushings=["input left", "x"])),
+    "wrong size": ("housings[0].stiffness_matrix", housing(stiffness_matrix=np.eye(7).tolist())),
+    "damping of another size": ("housings[0].damping_matrix", housing(damping_matrix=np.eye(10).tolist())),
     "a motion without mass": (
-        housing(mass_matrix=np.diag([1.0, 1.0, 1.0, 1.0, 1.0, 0.0]).tolist()),
         "housings[0].mass_matrix",
+        housing(mass_matrix=np.diag([1.0, 1.0, 1.0, 1.0, 1.0, 0.0]).tolist()),
     ),
     "modes without mass": (
-        housing(stiffness_matrix=np.eye(7).tolist(), modal_coordinates=1),
         "housings[0].modal_coordinates",
+        housing(stiffness_matrix=np.eye(7).tolist(), modal_coordinates=1),
     ),
     "seats elsewhere": (
-        housing(seat_positions_mm=[SEATS[0], [0.0, 0.0, -50.0]]),
         "housings[0].seat_positions_mm[1]",
+        housing(seat_positions_mm=[SEATS[0], [0.0, 0.0, -50.0]]),
     ),
     "a law in a housing that a direction of a seat moves freely": (
-        lambda t: (
-            housing(stiffness_matrix=np.diag([1e8, 1e8, 0.0, 1e8, 1e8, 1e8]).tolist())(t),
-            rolling(ball=BALL)(t),
-        ),
         "housings[0].stiffness_matrix",
+        By(FREE | rolling(ball=BALL)),
     ),
-    "a file over HTTP": (housing(stiffness_file="case.csv"), "housings[0].stiffness_file"),
+    "a file over HTTP": ("housings[0].stiffness_file", housing(stiffness_file="case.csv")),
 }
 
 
 @pytest.mark.parametrize("name", WRONG)
 def test_bearings_that_cannot_be_are_one_fault_by_name(name: str) -> None:
-    change, field = WRONG[name]
+    check_refused(EXAMPLE, *WRONG[name])
+
+
+def test_a_bearing_twice_is_refused_by_the_fields_of_a_bushing() -> None:
     with pytest.raises(BadInput) as caught:
-        scene(change)
-    assert field in [fault.field for fault in caught.value.faults]
+        changed_scene(EXAMPLE, {"rolling_bearings": [{**EXAMPLE["bushings"][0], "ball": BALL}]})
+    assert "rolling_bearings[0].radial_stiffness_n_per_m" in [fault.field for fault in caught.value.faults]
 
 
 @pytest.mark.parametrize(("name", "text"), [("none.csv", None), ("x.csv", "1,2\n3"), ("x.txt", "1")])

@@ -1,0 +1,58 @@
+"""Example scenes with other values at dotted places, on the small table, and where they are refused."""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import pytest
+from small_table import small_table
+
+from dynamics.scene import Scene
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.schemas.scene import SceneInput
+
+Table = dict[str, Any]
+DROP = object()
+
+
+class By(dict[str, Any]):
+    """What stands at places where it is not that place that is refused."""
+
+
+def changed(example: Table, changes: Mapping[str, Any]) -> Table:
+    """Return the example with values at places like `bushings[0].name`; `DROP` takes one away."""
+    table = copy.deepcopy(example)
+    for path, value in changes.items():
+        *places, last = [int(part) if part.isdigit() else part for part in re.findall(r"\w+", path)]
+        inner: Any = table
+        for place in places:
+            inner = inner[place]
+        if value is DROP:
+            del inner[last]
+        elif isinstance(inner, list) and last == len(inner):
+            inner.append(value)
+        else:
+            inner[last] = value
+    return table
+
+
+def changed_scene(
+    example: Table, changes: Mapping[str, Any] = MappingProxyType({}), table: SteDatabase | None = None
+) -> Scene:
+    checked = validated(SceneInput, changed(example, changes))
+    return dynamic_scene(checked, {mesh.name: table or small_table() for _, mesh in checked.with_database})
+
+
+def check_refused(example: Table, field: str, value: Any) -> None:
+    """Check that a value at a field, or changes elsewhere, are one fault of that field."""
+    with pytest.raises(BadInput) as caught:
+        changed_scene(example, value if isinstance(value, By) else {field: value})
+    (fault,) = caught.value.faults
+    assert fault.field == field and fault.bound
