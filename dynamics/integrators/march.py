@@ -34,7 +34,7 @@ from dynamics.types import FloatArray, IntArray, Json, RunStatus
 
 
 @dataclass(frozen=True)
-class SampleFigures:
+class _SampleFigures:
     """Figures over the inner grid of a run: m meshes, c coast flanks, b supports, N.
 
     Attributes
@@ -88,7 +88,7 @@ class SampleFigures:
         }
 
 
-def _sample_figures(system: System, ring: SampleRing, points: int, samples: int) -> SampleFigures:
+def _sample_figures(system: System, ring: SampleRing, points: int, samples: int) -> _SampleFigures:
     """Read the figures off a ring after `points` of the inner grid and `samples` of the output."""
     rows, supports = ring.local.force.size, system.bearing_stiffness.shape[:2]
     largest, rms = ring.peaks.largest, np.sqrt(ring.peaks.square / max(points, 1))
@@ -98,7 +98,7 @@ def _sample_figures(system: System, ring: SampleRing, points: int, samples: int)
         row = system.arrays.elements.first[element]
         coast[:, mesh] = largest[row], rms[row]
     removed, folded = (np.sqrt(part[driving] / max(samples, 1)) for part in (ring.removed, ring.folded))
-    return SampleFigures(
+    return _SampleFigures(
         largest[driving],
         rms[driving],
         coast[0],
@@ -181,13 +181,10 @@ class March:
 
     Attributes
     ----------
-    system : System
     work : Workspace
         The state, changed in place.
     ring : SampleRing
         The points that the anti-alias filter sees, likewise.
-    control : Control
-    sampler : Sampler
     initial : (3,) array
         Kinetic, bushing and mesh energy at the start, J.
     samples : int
@@ -221,7 +218,6 @@ class Ending:
 
     Attributes
     ----------
-    status : RunStatus
     samples : int
         Of the output grid, as far as the run came.
     end : float
@@ -238,7 +234,7 @@ class Ending:
         Smallest and largest accepted step, s.
     seconds : float
         Wall time of the stepping, s; in a process's first run with reading or making the compiled code.
-    figures : SampleFigures
+    figures : _SampleFigures
         Peaks and rms over the run, and what the anti-alias filter took away.
     """
 
@@ -251,7 +247,7 @@ class Ending:
     count: IntArray
     step_range: FloatArray
     seconds: float
-    figures: SampleFigures
+    figures: _SampleFigures
 
 
 def start_march(

@@ -59,11 +59,11 @@ def with_planets(
     offsets = _offsets(scene, solve_kinematics(scene), shaft, turns)
     planet = scene.shaft(shaft)
     copied = {
-        part.name: [_numbered(part.name, index) for index in range(1, number)]
+        part.name: [numbered(part.name, index) for index in range(1, number)]
         for part in scene.planet_bearings
         if part.shaft == shaft
     }
-    of_pin = {_numbered(shaft, index): error for index, error in enumerate(pin_errors or ())}
+    of_pin = {numbered(shaft, index): error for index, error in enumerate(pin_errors or ())}
     laws: dict[str, Any] = {kind: _on_copies(getattr(scene, kind), copied) for kind in STATED}
     return replace(
         scene,
@@ -93,7 +93,7 @@ def _carrier(scene: Scene, shaft: str) -> Shaft:
 
 def _with_copies(parts: Sequence[Part], shaft: str, number: int) -> tuple[Part, ...]:
     copies = [
-        replace(part, name=_numbered(part.name, index), shaft=_numbered(part.shaft, index))
+        replace(part, name=numbered(part.name, index), shaft=numbered(part.shaft, index))
         for index in range(1, number)
         for part in parts
         if part.shaft == shaft
@@ -163,7 +163,8 @@ def _check_fit(mine: Sequence[Turn], other: Sequence[Turn]) -> None:
             raise InputError("number", value, bound, suggestion)
 
 
-def _numbered(name: str, index: int) -> str:
+def numbered(name: str, index: int) -> str:
+    """Return the name that a part has on a planet, by its number from 0."""
     return name if index == 0 else f"{name} {index + 1}"
 
 
@@ -171,14 +172,14 @@ def _turned_shaft(shaft: Shaft, axis: tuple[float, float, float], turn: Turn, in
     c, s = math.cos(2.0 * math.pi * float(turn)), math.sin(2.0 * math.pi * float(turn))
     x, y = shaft.origin[0] - axis[0], shaft.origin[1] - axis[1]
     origin = (axis[0] + c * x - s * y, axis[1] + s * x + c * y, shaft.origin[2])
-    return replace(shaft, name=_numbered(shaft.name, index), origin=origin)
+    return replace(shaft, name=numbered(shaft.name, index), origin=origin)
 
 
 def _copied_mesh(mesh: GearMesh, of_shaft: set[str], index: int, ahead: Turn) -> GearMesh:
-    driver, driven = (_numbered(g, index) if g in of_shaft else g for g in (mesh.driver, mesh.driven))
+    driver, driven = (numbered(g, index) if g in of_shaft else g for g in (mesh.driver, mesh.driven))
     offset = mesh.position_offset + float(ahead)
     return replace(
-        mesh, name=_numbered(mesh.name, index), driver=driver, driven=driven, position_offset=offset
+        mesh, name=numbered(mesh.name, index), driver=driver, driven=driven, position_offset=offset
     )
 
 

@@ -260,7 +260,8 @@ STUDIES: dict[str, Study] = {
             stages=(
                 ("analysis", 0.3),
                 ("response", 0.1),
-                ("radiation", 0.1),
+                ("radiation", 0.05),
+                ("models", 0.05),
                 ("boundary elements", 0.1),
                 ("band", 0.2),
                 ("sensitivities", 0.2),

@@ -151,6 +151,10 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
         (factor(0, levels=None, iso1328_class=6), "factors[0].iso1328_class"),
         (factor(0, levels=[-1e300, 1.0]), "factors[0].levels[0]"),
         (factor(1, path="bushings.*.radiant_stiffness_n_per_m"), "factors[1].path"),
+        (GRID | {"responses": [{"quantity": "bearing_force", "part": "x", "order": 1}]}, "responses[0].part"),
+        (GRID | {"responses": [{"quantity": "dte_rms", "part": "x"}]}, "responses[0].part"),
+        (GRID | {"responses": [{"quantity": "bearing_force", "order": 1, "mesh": "x"}]}, "responses[0].mesh"),
+        (GRID | {"responses": [{"quantity": "dte_order"}]}, "responses[0].order"),
     ],
 }
 """Inputs beside the small subject, and the field that is named."""

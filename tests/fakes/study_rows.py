@@ -37,7 +37,7 @@ class StudyRow:
     `witness` yields, of figures, result and the table of the small case, pairs of a figure in the units of
     the boundary and what it must be: from the result in SI, from another study or in closed form.
     `columns` are those of the CSV, `own` the figures that differ by who asks (the verb has the name of a
-    file), `undeclared` the stages beside those of its row in the registry and of tables and housings.
+    file).
     """
 
     study: str
@@ -46,7 +46,6 @@ class StudyRow:
     question: Json | None = None
     columns: Callable[[Json], dict[str, Sequence[Any]]] | None = None
     own: tuple[str, ...] = ()
-    undeclared: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return f"{self.study}-{self.subject}"
@@ -299,7 +298,7 @@ ROWS = (
     StudyRow("sweep", "case", _sweep, columns=_sweep_columns),
     StudyRow("modes", "scene", _modes),
     StudyRow("response", "scene", _response),
-    StudyRow("noise", "scene", _noise, FEW_ORDERS, undeclared=("models",)),
+    StudyRow("noise", "scene", _noise, FEW_ORDERS),
     StudyRow("vibration", "scene", _vibration, FEW_ORDERS, columns=_vibration_columns),
     StudyRow("listen", "scene", _recording, own=("run",)),
     StudyRow("steady", "scene", _steady, {"speed_rpm": [3000.0], "branch": False, "settling_periods": 1}),

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from bounds.types import Json
-from dynamics.scene import Scene
+from dynamics.mechanism.planet_copies import numbered
 from dynamics.study import (
     Design,
     Factor,
@@ -28,6 +30,7 @@ from dynamics.study import (
 from fe_contact.microgeometry.tolerance_study import PROCESS_SPREAD, iso1328_tolerances
 from fe_contact.workers.remembering import content_digest
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
+from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -50,20 +53,20 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
     resumed = True
 
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
-        """Refuse a path that names no number, a value that its field does not accept, too many points."""
+        """Refuse a path that names no number, a value that its field does not accept, too many points.
+
+        So are responses that cannot be, or name no part of the scene.
+        """
         _factor_places(scene, inputs)
+        _check_parts(scene, _responses(inputs))
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> Study:
         places = _factor_places(tabled.inputs, inputs)
         with boundary_errors():
             design = _design_of(tabled.inputs, inputs, places)
-            responses = tuple(
-                Response(r.quantity, r.part or "", r.order or 0, r.mesh or "") for r in inputs.responses
-            )
-            _check_parts(tabled.scene, responses)
             written = tabled.inputs.model_dump_json()
             scenes = VariedScene(written, tabled.databases, places, str(means.home))
-            task = StudyTask(scenes, design.names, responses, inputs.start_s, inputs.receipt)
+            task = StudyTask(scenes, design.names, _responses(inputs), inputs.start_s, inputs.receipt)
             result = study(
                 task,
                 design,
@@ -184,10 +187,21 @@ def _by_class(index: int, factor: FactorInput, scene: SceneInput, places: tuple[
     return Normal(design, half / PROCESS_SPREAD, design - half, design + half)
 
 
-def _check_parts(scene: Scene, responses: tuple[Response, ...]) -> None:
-    """Every response names a mesh or a bearing of the scene."""
-    meshes = [mesh.name for mesh in scene.meshes]
-    bearings = [part.name for part in (*scene.ground_bearings, *scene.planet_bearings)]
+# Checks of a study at the request: parts, paths, values, numbers of points.
+
+
+def _responses(inputs: Inputs) -> tuple[Response, ...]:
+    """Return what is taken from every run; raises `BadInput`."""
+    responses = []
+    for index, own in enumerate(inputs.responses):
+        with named(f"responses[{index}]"):
+            responses.append(Response(own.quantity, own.part or "", own.order or 0, own.mesh or ""))
+    return tuple(responses)
+
+
+def _check_parts(scene: SceneInput, responses: tuple[Response, ...]) -> None:
+    """Every response names a mesh or a bearing of the scene, or of one of its planets."""
+    meshes, bearings = _meshes_and_bearings(scene)
     for index, response in enumerate(responses):
         for field, name, known in (
             ("part", response.part, bearings if response.kind.of == "bearing" else meshes),
@@ -197,16 +211,26 @@ def _check_parts(scene: Scene, responses: tuple[Response, ...]) -> None:
                 raise BadInput.of(f"responses[{index}].{field}", name, f"one of {', '.join(known)}")
 
 
-# Checks of a study at the request: paths, values, numbers of points.
+def _meshes_and_bearings(scene: SceneInput) -> tuple[list[str], list[str]]:
+    """Return the names that the meshes and the bearings of a scene have with all its planets."""
+    meshes = [mesh.name for mesh in scene.meshes]
+    kinds: tuple[Sequence[Any], ...] = scene.bushings, scene.rolling_bearings, scene.planet_bearings
+    bearings: list[str] = [part.name for part in chain.from_iterable(kinds)]
+    for planets in scene.planets:
+        gears = {gear.name for gear in scene.gears if gear.shaft == planets.planet}
+        engaged = [mesh.name for mesh in scene.meshes if {mesh.driver, mesh.driven} & gears]
+        pins = [part.name for part in scene.planet_bearings if part.shaft == planets.planet]
+        for index in range(1, planets.number):
+            meshes += [numbered(name, index) for name in engaged]
+            bearings += [numbered(name, index) for name in pins]
+    return meshes, bearings
 
 
 def _factor_places(scene: SceneInput, inputs: Inputs) -> Mapping[str, tuple[Place, ...]]:
     """Return where every factor stands in the scene.
 
-    Raises
-    ------
-    BadInput
-        A path that names no number, a value that its field does not accept, or too many points.
+    Raises `BadInput`: a path that names no number, a value that its field does not accept, or too many
+    points.
     """
     places = {}
     for index, factor in enumerate(inputs.factors):

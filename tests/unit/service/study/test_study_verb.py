@@ -25,19 +25,22 @@ from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from dynamics.study import QUANTITIES, Design, Levels, Response, Study, StudyTask, responses_of, study
 from dynamics.study.run_study import run_batch
+from fe_contact.ste import PairFacts
 from lineofaction.cli.analyze import analyzed
 from lineofaction.cli.commands import app
-from lineofaction.gearbox.convert.case import CheckedCase
-from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox import workbench
+from lineofaction.gearbox.convert.case import CheckedCase, gear_pair
+from lineofaction.gearbox.convert.scene import check_scene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import read_model
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import Inputs, QuantityName
-from lineofaction.gearbox.studies.study.run import RUN, _design_of, _factor_places
+from lineofaction.gearbox.studies.study.run import RUN, _design_of, _factor_places, _meshes_and_bearings
 from lineofaction.gearbox.studies.study.scenes import VariedScene, _part_name, places_of, with_value
 from lineofaction.gearbox.subjects import _portable_scene, scene_of
 from lineofaction.report.document import write_report
 
+EXAMPLES = Path(__file__).parents[4] / "examples"
 STUDY = """
 samples = 3
 seed = 5
@@ -331,3 +334,14 @@ def test_deviations_of_a_case_with_axes_are_refused(written: SceneInput) -> None
     )
     with pytest.raises(BadInput, match="one misalignment"):
         _factor_places(several, inputs)
+
+
+def test_responses_may_name_what_a_scene_has_with_all_its_planets() -> None:
+    inputs = workbench.read(EXAMPLES / "planetary_scene.toml")
+    assert isinstance(inputs, SceneInput)
+    facts = {mesh.name: PairFacts.of(gear_pair(mesh.case)) for _, mesh in inputs.with_database if mesh.case}
+    whole = check_scene(inputs, facts)
+    parts = (*whole.ground_bearings, *whole.planet_bearings)
+    named = [mesh.name for mesh in whole.meshes], [part.name for part in parts]
+    assert _meshes_and_bearings(inputs) == named
+    assert any(name.endswith(" 2") for name in named[0]) and any(name.endswith(" 2") for name in named[1])
