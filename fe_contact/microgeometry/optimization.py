@@ -109,16 +109,13 @@ class OptimizationRequest:
 
     @cached_property
     def checked(self) -> Checked:
-        """The request of its torques: everything is checked, nothing computed.
+        """The request of all its torques: everything is checked, nothing computed.
 
-        Raises
-        ------
-        InputError
-            As `optimize`.
+        Raises `InputError` as `optimize`.
         """
         check_variables(self.pair, self.variables)
         self.objective.check(DesignLoads.of(self.torques, self.misalignment).torque.size)
-        return self.space.check(self.torques)
+        return self.space.check(self.torques, self.further_torques)
 
     def to_json(self, study: DesignStudy) -> Json:
         """Return plain JSON, with what the study decided."""

@@ -414,8 +414,7 @@ def optimize(
         No acceptable mesh, or the contact of one of both designs cannot be solved.
     """
     clock = StageClock(run.workers.cost)
-    _ = request.checked
-    study = design_study(request.space, request.torques, request.further_torques, clock, run)
+    study = design_study(request.space, request.torques, request.further_torques, clock, run, request.checked)
     with clock.stage("search"):
         problem = _posed(study, request, memory)
         runs = _search_all(problem, request.search, request.own, run, cancel)

@@ -165,6 +165,7 @@ STUDIES: dict[str, Study] = {
             "examples/sensitivity_wind_turbine.toml -o sensitivity",
             kind="sensitivity",
             stages=(("tables", 1.0),),
+            version="3",
             shared=True,
             folder="sensitivity",
             further=(".csv",),

@@ -13,7 +13,7 @@ from fe_contact.analysis.checks.effect_ledger import toggled
 from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked, estimated_influences
-from fe_contact.analysis.request.request_check import check_request, checked_request
+from fe_contact.analysis.request.request_check import as_checked, checked_request
 from fe_contact.effects import EFFECTS, LedgerEntry
 from fe_contact.effects.influence.estimate import Influence
 from fe_contact.errors import InputError, MeshError, SolveError, chosen
@@ -93,6 +93,12 @@ class Ablation(model_studies.Ablation[Figures, EffectAblation]):
     normal_force: FloatArray = field(metadata=in_unit("n", "curve"))
     misalignment: float = field(metadata=in_unit("m"))
 
+    @staticmethod
+    def request(pair: ParallelAxes | Checked, axes: TableAxes | None, options: AnalysisOptions) -> Checked:
+        """Check the request whose effects are toggled, once; what is checked stays as it is."""
+        nominal = None if axes is None else replace(axes, center_distance_changes=(0.0,))
+        return as_checked(pair, nominal, replace(options, receipt="minimal", on_violation="report"))
+
     def measured(self, entry: EffectAblation) -> Influence:
         """Return the change by neglecting an effect at the nominal load, from the two tables."""
         whole = entry.with_effect
@@ -103,8 +109,8 @@ class Ablation(model_studies.Ablation[Figures, EffectAblation]):
 
 
 def ablate(
-    pair: ParallelAxes,
-    axes: TableAxes,
+    pair: ParallelAxes | Checked,
+    axes: TableAxes | None = None,
     options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     run: Run = Run(),  # noqa: B008 (frozen)
     *,
@@ -114,8 +120,9 @@ def ablate(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
-    axes : TableAxes
+    pair : GearPair, InternalGearPair or Checked
+        What `Ablation.request` returns stands for pair, axes and options.
+    axes : TableAxes, optional
         The tables are at the nominal center distance.
     options : AnalysisOptions
         All tables have the mesh level that the accuracy requires and a minimal receipt; violated assumptions
@@ -137,16 +144,8 @@ def ablate(
     MeshError, SolveError
         The case itself cannot be computed.
     """
-    checked = check_request(
-        pair,
-        replace(axes, center_distance_changes=(0.0,)),
-        replace(options, receipt="minimal", on_violation="report"),
-    )
-    return _ablate_checked(checked, chosen("only", only, [effect.name for effect in EFFECTS]), run)
-
-
-def _ablate_checked(checked: Checked, names: Sequence[str], run: Run) -> Ablation:
-    """Toggle the named effects of a checked request; parameters of `ablate`."""
+    checked = Ablation.request(pair, axes, options)
+    names = chosen("only", only, [effect.name for effect in EFFECTS])
     checked = _on_one_mesh(checked, run.cache)
     nominal = _figures(checked, run)
     estimates = estimated_influences(checked, names)

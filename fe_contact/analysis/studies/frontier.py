@@ -22,7 +22,7 @@ from fe_contact.analysis.pairs.slice_springs import (
 )
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import check_request, checked_request
+from fe_contact.analysis.request.request_check import as_checked, checked_request
 from fe_contact.analysis.studies.measured_full_contact import (
     NAME,
     FullContactLevel,
@@ -363,10 +363,15 @@ class Frontier(model_studies.Frontier[FidelityResult]):
     full_contact: MeasuredFullContact | None = None
     known_full_contact: tuple[FullContactLevel, ...] = ()
 
+    @staticmethod
+    def request(pair: ParallelAxes | Checked, axes: TableAxes | None, options: AnalysisOptions) -> Checked:
+        """Check the request that every fidelity computes, once; what is checked stays as it is."""
+        return as_checked(pair, axes, replace(options, positions=options.positions or POSITIONS))
+
 
 def frontier(
-    pair: ParallelAxes,
-    axes: TableAxes,
+    pair: ParallelAxes | Checked,
+    axes: TableAxes | None = None,
     options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     *,
     fidelities: Sequence[str] | None = None,
@@ -379,8 +384,9 @@ def frontier(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
-    axes : TableAxes
+    pair : GearPair, InternalGearPair or Checked
+        What `Frontier.request` returns stands for pair, axes and options.
+    axes : TableAxes, optional
     options : AnalysisOptions
         The accuracy decides which fidelity is marked as chosen; `positions` is 64 by default.
     fidelities : sequence of str, optional
@@ -397,7 +403,7 @@ def frontier(
     SolveError
         Fewer than two fidelities gave a whole table.
     """
-    checked = check_request(pair, axes, replace(options, positions=options.positions or POSITIONS))
+    checked = Frontier.request(pair, axes, options)
     if full_contact is not None:
         integer("full_contact", full_contact, 1, MOST_FULL_CONTACT)
     names = chosen("fidelities", fidelities, [fidelity.name for fidelity in FIDELITIES])

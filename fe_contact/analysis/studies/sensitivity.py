@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from fe_contact.analysis.analyze import ste_database
+from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request_check import as_checked, checked_request
 from fe_contact.effects import EFFECTS, named
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
+from model_studies import in_unit
 
 
 @dataclass(frozen=True)
@@ -26,9 +29,9 @@ class RippleCurve:
         Peak-to-peak STE and the half-width of its error band, m.
     """
 
-    deviation: FloatArray
-    peak_to_peak: FloatArray
-    error: FloatArray
+    deviation: FloatArray = field(metadata=in_unit("m", "deviation"))
+    peak_to_peak: FloatArray = field(metadata=in_unit("m", "deviation"))
+    error: FloatArray = field(metadata=in_unit("m", "deviation"))
 
     @property
     def relative_change(self) -> FloatArray:
@@ -45,10 +48,17 @@ class Sensitivity:
     misalignment: RippleCurve
     center_distance_change: RippleCurve
 
+    @staticmethod
+    def request(pair: ParallelAxes | Checked, axes: TableAxes | None, options: AnalysisOptions) -> Checked:
+        """Check the request over both deviations, once; what is checked stays as it is."""
+        return as_checked(
+            pair, axes, replace(options, model="3d" if options.model == "auto" else options.model)
+        )
+
 
 def study_sensitivity(
-    pair: ParallelAxes,
-    axes: TableAxes,
+    pair: ParallelAxes | Checked,
+    axes: TableAxes | None = None,
     options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     run: Run = Run(),  # noqa: B008 (frozen)
 ) -> tuple[Sensitivity, Sensitivity]:
@@ -56,8 +66,9 @@ def study_sensitivity(
 
     Parameters
     ----------
-    pair : GearPair or InternalGearPair
-    axes : TableAxes
+    pair : GearPair, InternalGearPair or Checked
+        What `Sensitivity.request` returns stands for pair, axes and options.
+    axes : TableAxes, optional
         One load, and the deviations; zero is added to both.
     options : AnalysisOptions
         An automatic model is three-dimensional at every point, so the curves are comparable; `effects` apply
@@ -77,24 +88,22 @@ def study_sensitivity(
     MeshError, SolveError
         No acceptable mesh, or points without a solution.
     """
-    options = replace(options, model="3d" if options.model == "auto" else options.model)
-    effect = named(EFFECTS, "corner_contact")
-    without, with_corners = (
-        replace(options, effects={**options.effects, effect: choice}) for choice in ("off", "on")
-    )
-    return (
-        Sensitivity(False, *_curves(pair, axes, without, run)),
-        Sensitivity(True, *_curves(pair, axes, with_corners, run)),
-    )
+    checked = Sensitivity.request(pair, axes, options)
+    return Sensitivity(False, *_curves(checked, "off", run)), Sensitivity(True, *_curves(checked, "on", run))
 
 
-def _curves(
-    pair: ParallelAxes, axes: TableAxes, options: AnalysisOptions, run: Run
-) -> tuple[RippleCurve, RippleCurve]:
-    nominal = replace(axes, misalignments=(0.0,), center_distance_changes=(0.0,))
-    skews = replace(nominal, misalignments=np.union1d([0.0], axes.misalignments))
-    changes = replace(nominal, center_distance_changes=np.union1d([0.0], axes.center_distance_changes))
-    skewed, moved = (ste_database(pair, each, options, run) for each in (skews, changes))
+def _curves(checked: Checked, corner_contact: str, run: Run) -> tuple[RippleCurve, RippleCurve]:
+    """Return both curves; every table neglects what it does not need itself."""
+    whole, none = checked.request, np.zeros(1)
+    effects = {**whole.options.effects, named(EFFECTS, "corner_contact"): corner_contact}
+    request = replace(whole, options=replace(whole.options, effects=effects), neglected={})
+    skews, changes = (np.union1d(none, each) for each in (whole.misalignment, whole.center_distance_change))
+    skewed, moved = (
+        ste_database(
+            checked_request(replace(request, misalignment=skew, center_distance_change=change)), run=run
+        )
+        for skew, change in ((skews, none), (none, changes))
+    )
     return _ripple(skewed, "misalignment"), _ripple(moved, "center_distance_change")
 
 

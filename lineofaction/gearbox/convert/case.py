@@ -48,10 +48,7 @@ Requested = TypeVar("Requested")
 def gear_pair(case: Case) -> ParallelAxes:
     """Return the gear pair of a case, an `InternalGearPair` if its wheel is a ring gear.
 
-    Raises
-    ------
-    BadInput
-        No such pair exists; named by the case's fields, in its units.
+    Raises `BadInput`: no such pair exists; named by the case's fields, in its units.
     """
     with boundary_errors():
         pinion = _gear(Gear, "pinion", case)
@@ -226,10 +223,14 @@ class CheckedCase:
             return check_request(*converted, whole_table=whole_table, neglect=neglect)
 
     def request(self, make: Callable[[CheckedCase, Inputs], Requested], inputs: Inputs) -> Requested:
-        """Return what a study requests of the library: made once, for its check and for its work."""
+        """Return what a study requests of the library: made once, for its check and for its work.
+
+        Raises `BadInput`.
+        """
         known = self._requests.get(make)
         if known is None or known[0] != inputs:
-            known = self._requests[make] = inputs, make(self, inputs)
+            with boundary_errors():
+                known = self._requests[make] = inputs, make(self, inputs)
         made: Requested = known[1]
         return made
 
@@ -261,10 +262,7 @@ class CheckedCases:
 def check_case(case: Case) -> ParallelAxes:
     """Return the pair of a case that can be computed.
 
-    Raises
-    ------
-    BadInput
-        No such pair, or a request that no plan can meet.
+    Raises `BadInput`: no such pair, or a request that no plan can meet.
     """
     return CheckedCase(case).feasible.request.pair
 

@@ -8,6 +8,7 @@ from bounds.types import Json
 from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import ablate as ablate_scene
 from dynamics.effects import EFFECTS as SCENE_EFFECTS
+from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies.ablation import Ablation, ablate
 from fe_contact.effects import EFFECTS
 from fe_contact.errors import chosen
@@ -30,7 +31,7 @@ class _AblateStudy(
     def check(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> None:
         """Refuse a case that cannot be, and an effect that there is not."""
         if isinstance(subject, CheckedCase):
-            _ = subject.feasible
+            _ = subject.request(_table, inputs)
         _requested(inputs.only, of_scene=not isinstance(subject, CheckedCase))
 
     def normalized(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> Json:
@@ -44,7 +45,11 @@ class _AblateStudy(
             if isinstance(subject, TabledScene):
                 return ablate_scene(subject.scene, inputs.only, means.report)
             run = Run(cache=means.home / "compliance", progress=means.report)
-            return ablate(*subject.converted, run, only=inputs.only)
+            return ablate(subject.request(_table, inputs), run=run, only=inputs.only)
+
+
+def _table(case: CheckedCase, _inputs: Inputs) -> Checked:
+    return Ablation.request(*case.converted)
 
 
 def _requested(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:

@@ -8,6 +8,7 @@ from bounds.types import Json
 from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
 from dynamics.accuracy import Frontier as SceneFrontier
 from dynamics.accuracy import frontier as frontier_of_scene
+from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies.frontier import FIDELITIES, Frontier, frontier
 from fe_contact.analysis.studies.measured_full_contact import ORIGIN
 from fe_contact.errors import chosen
@@ -33,7 +34,7 @@ class _FrontierStudy(
     def check(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> None:
         """Refuse a case that cannot be, a fidelity that there is not, and full contact of a scene."""
         if isinstance(subject, CheckedCase):
-            _ = subject.feasible
+            _ = subject.request(_table, inputs)
         else:
             for name in ("full_contact", "up_to"):
                 if (value := getattr(inputs, name)) != Inputs.model_fields[name].default:
@@ -52,15 +53,8 @@ class _FrontierStudy(
         with boundary_errors():
             if isinstance(subject, TabledScene):
                 return frontier_of_scene(subject.scene, fidelities=names, progress=means.report)
-            axes = replace(subject.axes, pitches=None)
-            return frontier(
-                subject.pair,
-                axes,
-                study_options(subject.options),
-                fidelities=names,
-                full_contact=inputs.full_contact,
-                progress=means.report,
-            )
+            table, full_contact = subject.request(_table, inputs), inputs.full_contact
+            return frontier(table, fidelities=names, full_contact=full_contact, progress=means.report)
 
     def _derived(self, study: Frontier | SceneFrontier) -> Json:
         if isinstance(study, SceneFrontier):
@@ -71,6 +65,10 @@ class _FrontierStudy(
             "full_finite_element_contact_origin": ORIGIN,
             "full_contact": None if measured is None else in_um(measured.to_json(solves)),
         }
+
+
+def _table(case: CheckedCase, _inputs: Inputs) -> Checked:
+    return Frontier.request(case.pair, replace(case.axes, pitches=None), study_options(case.options))
 
 
 def _requested(inputs: Inputs, *, of_scene: bool) -> list[str]:
