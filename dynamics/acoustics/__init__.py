@@ -3,7 +3,6 @@
 from dynamics.acoustics.air import Air
 from dynamics.acoustics.boundary_elements import (
     BoundaryElements,
-    SurfacePressure,
     exterior_pressure,
     surface_pressure,
 )
@@ -19,7 +18,6 @@ from dynamics.acoustics.levels import (
 from dynamics.acoustics.model_comparison import (
     ElementalRadiators,
     ModelComparison,
-    ModelResult,
     compare_models,
 )
 from dynamics.acoustics.order_power import ModalResistance, OrderPower, modal_resistance, order_power
@@ -49,7 +47,6 @@ from dynamics.acoustics.recording import (
     write_wav,
 )
 from dynamics.acoustics.sound_quality import (
-    SoundQuality,
     loudness_over_time,
     sound_pressure_level,
     sound_quality,
@@ -64,15 +61,12 @@ __all__ = [
     "LevelBand",
     "ModalResistance",
     "ModelComparison",
-    "ModelResult",
     "OrderPower",
     "OuterHull",
     "PanelModel",
     "RadiationModel",
     "Range",
     "Recording",
-    "SoundQuality",
-    "SurfacePressure",
     "a_weighting",
     "audible",
     "common_full_scale",

@@ -1,7 +1,7 @@
 """Optional physics of the multibody model: one effect per file, a registry, a ledger."""
 
-from dynamics.effects.effect import Effect, MeshEffect, RotorEffect, Verdict
+from dynamics.effects.effect import Effect, MeshEffect, RotorEffect
 from dynamics.effects.ledger import EffectLedger
 from dynamics.effects.registry import EFFECTS, LEFT_OUT
 
-__all__ = ["EFFECTS", "LEFT_OUT", "Effect", "EffectLedger", "MeshEffect", "RotorEffect", "Verdict"]
+__all__ = ["EFFECTS", "LEFT_OUT", "Effect", "EffectLedger", "MeshEffect", "RotorEffect"]

@@ -7,7 +7,6 @@ import host.analysis  # noqa: F401 (says what to install)
 from dynamics.housings.mesh_files import mesh_step, read_mesh, write_surface
 from dynamics.housings.reduced_housing import ReducedHousing, receptance, scene_housing
 from dynamics.housings.reduced_matrices import (
-    USUAL_DAMPING,
     MaterialDamping,
     MeshedHousing,
     ModalDamping,
@@ -19,13 +18,11 @@ from dynamics.housings.reduced_matrices import (
 from dynamics.housings.reduction import CostLimit, meshed_step, reduced_housing, reduction_cost
 from dynamics.housings.supports import Foot, Mount, SeatBore, SeatFrame
 from dynamics.housings.tetrahedral_mesh import Bore, BoundedPlane, Box, Group, Plane, TetrahedralMesh
-from dynamics.solid_housing import CAST_ALUMINUM, GRAY_CAST_IRON, SPHEROIDAL_CAST_IRON, Material, Ring
+from dynamics.solid_housing import GRAY_CAST_IRON, SPHEROIDAL_CAST_IRON, Material, Ring
 
 __all__ = [
-    "CAST_ALUMINUM",
     "GRAY_CAST_IRON",
     "SPHEROIDAL_CAST_IRON",
-    "USUAL_DAMPING",
     "Bore",
     "BoundedPlane",
     "Box",

@@ -1,7 +1,7 @@
 """The system linearized about its static equilibrium: modes at rest and over speed, forced response."""
 
 from dynamics.linearize.campbell import whirl_modes
-from dynamics.linearize.forced_response import ForcedResponse, PowerBalance, forced_response, peaks
+from dynamics.linearize.forced_response import ForcedResponse, forced_response, peaks
 from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_response
 from dynamics.linearize.linear_system import Modes, linearize, natural_modes
 from dynamics.linearize.modal_analysis import ModalAnalysis, modal_analysis
@@ -12,7 +12,6 @@ __all__ = [
     "HarmonicResponse",
     "ModalAnalysis",
     "Modes",
-    "PowerBalance",
     "common_period",
     "forced_response",
     "harmonic_response",

@@ -8,7 +8,6 @@ from dynamics.orders.resampling import (
     resample_to_position,
 )
 from dynamics.orders.spectrum import (
-    Sideband,
     Spectrum,
     find_peaks,
     mesh_orders,
@@ -29,7 +28,6 @@ from dynamics.orders.third_octaves import (
 
 __all__ = [
     "BearingOrders",
-    "Sideband",
     "Spectrum",
     "ThirdOctaves",
     "Waterfall",

@@ -4,7 +4,7 @@ from dynamics.shafts.beam_section import BeamSection
 from dynamics.shafts.bodies import DiscBody, GearBody, Inertia, hollow_cylinder
 from dynamics.shafts.elastic_shaft import Disc, ElasticShaft, PointOfApplication, craig_bampton, elastic_shaft
 from dynamics.shafts.shaft import Shaft
-from dynamics.shafts.timoshenko_beam import TimoshenkoBeam, timoshenko_beam
+from dynamics.shafts.timoshenko_beam import timoshenko_beam
 
 __all__ = [
     "BeamSection",
@@ -15,7 +15,6 @@ __all__ = [
     "Inertia",
     "PointOfApplication",
     "Shaft",
-    "TimoshenkoBeam",
     "craig_bampton",
     "elastic_shaft",
     "hollow_cylinder",

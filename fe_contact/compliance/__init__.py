@@ -2,7 +2,6 @@
 
 import host.analysis  # noqa: F401 (says what to install)
 from fe_contact.compliance.cyclic_compliance import (
-    PredictedCost,
     flank_compliance_3d,
     flank_compliances_3d,
     predict_cost,
@@ -12,7 +11,7 @@ from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance, Flank
 from fe_contact.compliance.flank_compliance_2d import flank_compliance, flank_compliances
 from fe_contact.compliance.plane_elasticity import PlaneHypothesis
 from fe_contact.compliance.remote_condensation import free_ends_kept, section_kept, solid_kept
-from fe_contact.compliance.root_stress import RootStressChecks, UnitRootStress
+from fe_contact.compliance.root_stress import UnitRootStress
 from fe_contact.compliance.unit_root_stress import (
     unit_root_stress,
     unit_root_stress_3d,
@@ -27,8 +26,6 @@ __all__ = [
     "FlankCompliance",
     "FlankCompliance3D",
     "PlaneHypothesis",
-    "PredictedCost",
-    "RootStressChecks",
     "UnitRootStress",
     "default_cache_directory",
     "finite_width_compliances",

@@ -10,7 +10,7 @@ from fe_contact.contact.candidates import (
     with_gaps,
 )
 from fe_contact.contact.flank_forces import at_edges, contact_pressure, face_flank_forces, plane_flank_forces
-from fe_contact.contact.model import Break, ComplianceTerm, ContactModel, GapTerm, ToothGap
+from fe_contact.contact.model import Break, ContactModel
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices, Slices
 from fe_contact.contact.sweep import ContactSolution, Start, solve_contact
 from fe_contact.contact.touch import flank_coordinate
@@ -19,16 +19,13 @@ __all__ = [
     "Break",
     "Candidates",
     "CarryingStrips",
-    "ComplianceTerm",
     "ContactModel",
     "ContactProblem",
     "ContactSolution",
-    "GapTerm",
     "LoadedSlices",
     "PatchRule",
     "Slices",
     "Start",
-    "ToothGap",
     "adjoint",
     "at_edges",
     "contact_candidates",

@@ -8,8 +8,8 @@ from fe_contact.geometry.corner_contact import CornerContact, Side, corner_conta
 from fe_contact.geometry.flank_profile import ToothProfile, tooth_profile
 from fe_contact.geometry.gear import Gear, seat_compliance
 from fe_contact.geometry.gear_pair import GearPair, InternalGearPair
-from fe_contact.geometry.iso6336_stiffness import Iso6336Stiffness, blank_factor, iso6336_stiffness
-from fe_contact.geometry.parallel_axes import ParallelAxes, PathOfContact, sliding_factor, specific_sliding
+from fe_contact.geometry.iso6336_stiffness import blank_factor, iso6336_stiffness
+from fe_contact.geometry.parallel_axes import ParallelAxes, sliding_factor, specific_sliding
 from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.geometry.toothing import PitchDeviation, Toothing
 from fe_contact.geometry.web_compliance import web_compliance
@@ -25,10 +25,8 @@ __all__ = [
     "GearBlank",
     "GearPair",
     "InternalGearPair",
-    "Iso6336Stiffness",
     "Key",
     "ParallelAxes",
-    "PathOfContact",
     "PitchDeviation",
     "RingGear",
     "Shaft",

@@ -5,11 +5,10 @@ from fe_contact.mesh.gear_mesh import GearMesh, mesh_gear
 from fe_contact.mesh.quad_sector import QuadSector, quad_sector
 from fe_contact.mesh.quality import QualityLimits, mesh_quality
 from fe_contact.mesh.recipe import MeshRecipe, SectorRecipe
-from fe_contact.mesh.sector_grid import BoreSupport, ClampedBore, PlaneStrain, bore_support
+from fe_contact.mesh.sector_grid import ClampedBore, PlaneStrain, bore_support
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
 
 __all__ = [
-    "BoreSupport",
     "ClampedBore",
     "GearMesh",
     "MeshRecipe",

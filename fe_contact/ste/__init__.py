@@ -1,22 +1,18 @@
 """STE databases: storage, C1 interpolation, force extraction. Light: xarray is imported for files only."""
 
 from fe_contact.ste.curve import Curve
-from fe_contact.ste.curve_quantities import Spectrum
-from fe_contact.ste.database import Repair, SteDatabase
+from fe_contact.ste.database import SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.force_table import ForceTable
-from fe_contact.ste.mesh_force import ForceSample, MeshForce, Validity
+from fe_contact.ste.mesh_force import MeshForce, Validity
 
 __all__ = [
     "SCHEMA_VERSION",
     "Curve",
-    "ForceSample",
     "ForceTable",
     "MeshForce",
     "Metadata",
     "PairFacts",
-    "Repair",
-    "Spectrum",
     "SteDatabase",
     "Validity",
 ]
