@@ -73,7 +73,6 @@ class Declared:
 
     Attributes
     ----------
-    kind : Kind
     unit : str
         Symbol of its SI unit; empty for none.
     bound : Interval, Choice or None

@@ -67,7 +67,6 @@ def engineering(value: float, digits: int = 3, sign: str = "") -> str:
 
     Parameters
     ----------
-    value : float
     digits : int
         Significant digits; zeros at the end are left out.
     sign : str

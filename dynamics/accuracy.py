@@ -64,7 +64,6 @@ class Blocks:
         Of the meshes in the kinematic motion, unwrapped base pitches.
     bounds : (B, 2) int array
         First sample of each block, and the one behind its last.
-    orders : int
     """
 
     time: FloatArray
@@ -149,7 +148,6 @@ class TimeIntegration:
 
     Attributes
     ----------
-    name, title, family : str
     tolerance : float or None
         m; None: the scene's own.
     every : int
@@ -330,7 +328,6 @@ class FidelityResult(model_studies.FidelityResult):
     name, title : str
     cpu_seconds : float
         One thread, assembly included.
-    family : str
     rms_error : float
         Of the rms of the transmission errors, relative: over all blocks and meshes, root of the sum of
         squares over that of the reference. NaN: not known.

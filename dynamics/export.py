@@ -62,14 +62,12 @@ class _NodalFunction:
 
     Attributes
     ----------
-    kind : _FunctionType
     lines : tuple of str
         Up to five lines of text.
     entity : str
         Name of the response, at most 10 characters.
     node, direction : int
         Of the response: 1, 2, 3 for x, y, z; 4, 5, 6 for rotation about them; 0 scalar.
-    abscissa, ordinate : Quantity
     first, increment : float
         Of the abscissa; the file keeps six digits.
     values : (N,) array
@@ -177,7 +175,6 @@ def write_universal_file(
 
     Parameters
     ----------
-    result : RunResult
     path : str or Path
         Written whole or not at all.
     function : str

@@ -89,7 +89,6 @@ def check_mesh_content(name: str, content: bytes) -> None:
     ----------
     name : str
         Of the file; its suffix says the format.
-    content : bytes
 
     Raises
     ------

@@ -85,7 +85,6 @@ def measured(
     ----------
     kind, cost, cache
         As of `on_this_host`.
-    work : callable
     """
     from model_studies.host_speed import host_slowness  # noqa: PLC0415 (start-up time)
     from model_studies.run_log import record  # noqa: PLC0415

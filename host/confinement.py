@@ -94,7 +94,6 @@ def confine(folder: Path, limits: Limits = READING) -> None:
     ----------
     folder : Path
         Where the process reads its input and writes; everything beneath it is its own.
-    limits : Limits
 
     Raises
     ------
@@ -184,7 +183,6 @@ def _restrict(readable: Iterable[Path], folder: Path) -> None:
     ----------
     readable : iterable of Path
         Files and folders with all beneath them; those that do not exist are passed over.
-    folder : Path
 
     Raises
     ------
@@ -272,10 +270,7 @@ def _filters_calls() -> bool:
 def _refuse_sockets() -> None:
     """Let this thread, and what it starts, make no socket of any family.
 
-    Raises
-    ------
-    OSError
-        The system refuses.
+    Raises `OSError`: the system refuses.
     """
     instructions = _instructions(*_PROCESSORS[platform.machine()][:2])
     program = _Program(len(instructions) // 8, instructions)

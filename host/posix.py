@@ -54,10 +54,7 @@ def most_open_files() -> float:
 def lock(file: int, *, wait: bool = False) -> None:
     """Lock an open file or folder until its descriptor is closed; the system closes that of a dead process.
 
-    Raises
-    ------
-    BlockingIOError
-        Another process has the lock, and we do not `wait`.
+    Raises `BlockingIOError`: another process has the lock, and we do not `wait`.
     """
     fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
 

@@ -124,10 +124,7 @@ _PROC = Path("/proc")
 def processes_in(directory: Path, command: str = "", proc: Path = _PROC) -> list[int]:
     """Return the other processes that work in or below a directory and whose command holds `command`.
 
-    Raises
-    ------
-    Unavailable
-        The system has no /proc.
+    Raises `Unavailable`: the system has no /proc.
     """
     return [pid for pid in _numbered(proc) if _works_in(proc / str(pid), directory, command.encode())]
 

@@ -50,7 +50,6 @@ class EffectAblation(Generic[F, E]):
 
     Attributes
     ----------
-    name : str
     on : bool
         Whether the request has it on.
     reason : str

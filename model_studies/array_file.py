@@ -36,7 +36,6 @@ def write_arrays(
 
     Parameters
     ----------
-    path : Path
     schema : str
         What the file is: its attribute ``schema``.
     stored, arrays : mapping
@@ -65,10 +64,7 @@ def write_arrays(
 def read_arrays(path: Path, schemas: tuple[str, ...]) -> tuple[str, dict[str, Any], Json]:
     """Return the schema of a file, its arrays, bit by bit the same, and the rest.
 
-    Raises
-    ------
-    UnreadableFile
-        The file is missing, no netCDF-4, of none of the schemas, or damaged.
+    Raises `UnreadableFile`: the file is missing, no netCDF-4, of none of the schemas, or damaged.
     """
     with opened_netcdf(path) as file:
         attributes = dict(file.attrs)

@@ -191,7 +191,6 @@ class FidelityResult:
     ----------
     FIGURES : tuple of str
         The fields that are relative errors; NaN: not known.
-    name, title : str
     cpu_seconds : float
         Of the whole computation.
     """

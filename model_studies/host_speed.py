@@ -51,8 +51,6 @@ def kept_speed(
     cache : Path, optional
         Directory in which it is kept; a missing, damaged or foreign file is made anew. None: whoever measures
         remembers, for this process.
-    name : str
-    measure : callable
     bounds : (float, float)
         A kept value outside of them is measured anew.
     """

@@ -46,10 +46,8 @@ def opened(path: Path) -> Iterator[Any]:
     It holds variables of numbers and texts in one group, plain or packed by deflate, shuffle and fletcher32.
     From here on HDF5 loads no plug-ins in this process.
 
-    Raises
-    ------
-    UnreadableFile
-        The file is missing, no netCDF-4, damaged, holds something else, or unpacks to too much.
+    Raises `UnreadableFile`: the file is missing, no netCDF-4, damaged, holds something else, or unpacks to
+    too much.
     """
     import h5py  # noqa: PLC0415 - needed for files only
 

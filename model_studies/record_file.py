@@ -69,10 +69,8 @@ def read_record(path: Path, kinds: Mapping[str, type]) -> Any:
 
     A field that has a default may be missing, in files of versions that did not know it.
 
-    Raises
-    ------
-    UnreadableFile
-        The file is missing, no netCDF-4, of none of these schemas, damaged, or of other fields.
+    Raises `UnreadableFile`: the file is missing, no netCDF-4, of none of these schemas, damaged, or of other
+    fields.
     """
     schema, arrays, rest = read_arrays(path, tuple(kinds))
     columns: dict[str, Iterator[Any]] = {}

@@ -38,7 +38,6 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
 
     Parameters
     ----------
-    settings : Settings
     registry : Registry, optional
         The processes it offers; default: analyze and simulate.
 

@@ -104,10 +104,7 @@ class DirectoryLock:
     def acquire(self) -> None:
         """Take the lock, if it is not ours already.
 
-        Raises
-        ------
-        BadInput
-            The directory cannot be written, or another service works in it.
+        Raises `BadInput`: the directory cannot be written, or another service works in it.
         """
         if self._descriptor is not None:
             return

@@ -23,10 +23,8 @@ class Origin:
     def of(cls, uri: str) -> Self:
         """Return the origin of an address.
 
-        Raises
-        ------
-        ValueError
-            It is not http or https, names nobody, or holds a user, a fragment or odd characters.
+        Raises `ValueError`: it is not http or https, names nobody, or holds a user, a fragment or odd
+        characters.
         """
         parts = urlsplit(uri)
         plain = uri.isascii() and uri.isprintable() and " " not in uri and "\\" not in uri

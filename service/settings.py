@@ -51,10 +51,8 @@ class _SecretFiles(PydanticBaseSettingsSource):
     def get_field_value(self, field: FieldInfo, field_name: str) -> tuple[str | None, str, bool]:
         """Return the secret of a field, None if no file is named.
 
-        Raises
-        ------
-        BadInput
-            The secret itself is in the environment too; or the file cannot be read, is empty or no text.
+        Raises `BadInput`: the secret itself is in the environment too; or the file cannot be read, is empty
+        or no text.
         """
         name = self._prefix + field_name.upper()
         file = os.environ.get(f"{name}_FILE") if is_secret(field) else None
@@ -278,10 +276,7 @@ def secret_bytes(secret: str) -> bytes:
 def load_settings(**options: object) -> Settings:
     """Return the settings: `options` values that are not None, then the environment, then defaults.
 
-    Raises
-    ------
-    BadInput
-        A value is out of bounds.
+    Raises `BadInput`: a value is out of bounds.
     """
     chosen = {name: value for name, value in options.items() if value is not None}
     try:

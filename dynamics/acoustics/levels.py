@@ -161,7 +161,6 @@ def level_bands(
     ----------
     levels : callable
         From the values of all parameters by name to levels in dB, (L,).
-    ranges : mapping of str to Range
     steps : int
         Values of each range that are tried, at least its ends.
     joint : int

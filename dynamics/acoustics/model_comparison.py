@@ -175,8 +175,6 @@ class ModelComparison:
 
     Attributes
     ----------
-    results : mapping of str to ModelResult
-    left_out : mapping of str to str
     predicted : mapping of str to Cost
         Cost of every model at this frequency on this host, also of those that were not requested.
     error_band : mapping of str to (float, float)

@@ -153,10 +153,7 @@ def radiation_efficiency(
 ) -> float:
     """Return sigma = W / (rho c S <v_n^2>), 1.
 
-    Raises
-    ------
-    InputError
-        As `resistance` does, or if nothing moves.
+    Raises `InputError` as `resistance` does, or if nothing moves.
     """
     moving = positive("normal_velocity", mean_square_velocity(hull, normal_velocity), "Nothing moves.")
     power = sound_power(model, hull, frequency, normal_velocity, air)
@@ -182,10 +179,7 @@ def sphere_efficiency(order: int, ka: float) -> float:
 def monopoles_efficiency(order: int, ka: float) -> float:
     """Return the efficiency that monopoles on the sphere without scattering give, (ka j_n(ka))^2.
 
-    Raises
-    ------
-    InputError
-        As `sphere_efficiency` does.
+    Raises `InputError` as `sphere_efficiency` does.
     """
     integer("order", order, 0, 50)
     return float((positive("ka", ka) * spherical_jn(order, ka)) ** 2)

@@ -172,10 +172,7 @@ def principal_direction(values: FloatArray, sample_rate: float) -> tuple[FloatAr
     The unit eigenvector of the largest eigenvalue of the covariance; its largest component is positive. Of a
     single mesh it is close to the line of action, since the force of the teeth acts along it.
 
-    Raises
-    ------
-    InputError
-        As `audible`; or nothing varies.
+    Raises `InputError` as `audible`; or nothing varies.
     """
     heard = audible(values, sample_rate)
     variance, axes = np.linalg.eigh(heard @ heard.T)
@@ -193,10 +190,7 @@ def series_recording(
     What `audible` leaves, resampled, with cosine fades of 10 ms at both ends. Nothing is equalized or
     compressed. It holds no more than the run: nothing above the pass frequency of its output.
 
-    Raises
-    ------
-    InputError
-        As `audible` and `Recording`.
+    Raises `InputError` as `audible` and `Recording`.
     """
     lasting = (np.size(values) - 1) / sample_rate
     samples = _at_rate(audible(values, sample_rate), sample_rate, to_rate)[: int(lasting * to_rate) + 1]

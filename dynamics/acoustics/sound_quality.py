@@ -95,10 +95,7 @@ def sound_quality(recording: Recording) -> SoundQuality:
 def loudness_over_time(recording: Recording) -> tuple[FloatArray, FloatArray]:
     """Return times (B,) in s and the loudness (B,) in sone of a sound that changes, e.g. of a run-up.
 
-    Raises
-    ------
-    InputError, MissingExtra
-        As `sound_quality` does.
+    Raises `InputError` or `MissingExtra` as `sound_quality` does.
     """
     metrics = _metrics(recording)
     loudness, _, _, time = metrics.loudness_zwtv(recording.samples, recording.sample_rate)

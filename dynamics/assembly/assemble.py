@@ -246,11 +246,8 @@ class System:
 
     Attributes
     ----------
-    scene : Scene
     arrays : SystemArrays
         For the compiled loops.
-    freedoms : Freedoms
-    kinematics : Kinematics
     lines : tuple of LineOfAction
         One per mesh.
     flanks : Flanks
@@ -267,7 +264,6 @@ class System:
         Where the last elements act, those of bearings that are not linear.
     housed : tuple of BearingElement
         Where those before them act: linear bearings in housings that move.
-    couplings : CouplingRows
     bearing_stiffness, bearing_damping : (b, 3 or 6, n) arrays
         Force on the ground, or on the pin, at each support per freedom and its rate; where bearings may
         exert moments, these too.
@@ -275,7 +271,6 @@ class System:
         The whole force there.
     sampling : Sampling
         How the run is sampled.
-    ledger : EffectLedger
     corrected : dict
         Base radii of gears as given and as used, m, that were corrected to the base pitch of their train.
     """

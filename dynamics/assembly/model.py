@@ -20,12 +20,7 @@ from dynamics.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Model(LoadedTrain):
-    """A mechanism with its effects decided; its flanks have the force laws as resolved.
-
-    Attributes
-    ----------
-    ledger : EffectLedger
-    """
+    """A mechanism with its effects decided; its flanks have the force laws as resolved."""
 
     ledger: EffectLedger
 

@@ -67,7 +67,6 @@ class LoadedBearing:
 
     Parameters
     ----------
-    bearing : BallBearing or RollerBearing
     copies : int
         Each element as so many that share its stiffness, evenly spaced. 1: the elements as they are, whose
         force varies as the cage turns (element passing). More: its average over the passing of an element.

@@ -47,7 +47,6 @@ def rating_life(
 
     Parameters
     ----------
-    bearing : BallBearing or RollerBearing
     load : (Z, L) array
         Normal loads of the elements, N, see `Reaction`.
     rating : float

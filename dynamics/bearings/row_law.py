@@ -27,7 +27,6 @@ class _RowLaw:
 
     Parameters
     ----------
-    bearing : RollingBearing
     passing : bool
         Whether its elements pass one by one; False: their average over the passing. Preload, damping and
         typical stiffness are those of the average.

@@ -47,7 +47,6 @@ def _life_of(bearing: RollingBearing, displacement: FloatArray) -> float:
 
     Parameters
     ----------
-    bearing : RollingBearing
     displacement : (5,) array
         Of the inner ring against the outer, x, y, z, tilt_x, tilt_y, m and rad, without what makes the axial
         preload.
@@ -88,7 +87,6 @@ class BearingLoad:
 
     Attributes
     ----------
-    name, shaft : str
     speed : float
         Of the shaft against what holds the bearing, rad/s, >= 0.
     force : (5,) array
@@ -255,9 +253,6 @@ class CaseDeflection:
         "unbalanced". Only a converged case has figures to rely on.
     residual : float
         Largest unbalanced force over the largest mesh force.
-    meshes : tuple of MeshAlignment
-    bearings : tuple of BearingLoad
-    shafts : ShaftLines
     forces : tuple of ForceUnderCase
         Of the scene; none in files of versions that did not keep them.
     """
@@ -277,13 +272,7 @@ class CaseDeflection:
 
 @dataclass(frozen=True)
 class Deflection:
-    """The deflection of a scene under all its load cases.
-
-    Attributes
-    ----------
-    leading_shaft : str
-    cases : tuple of CaseDeflection
-    """
+    """The deflection of a scene under all its load cases."""
 
     leading_shaft: str
     cases: tuple[CaseDeflection, ...]

@@ -27,7 +27,6 @@ class ForceUnderCase:
 
     Attributes
     ----------
-    name, shaft : str
     force, moment : (3,) arrays
         Along and about x, y, z, N and N m.
     """

@@ -101,7 +101,6 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
 
     Parameters
     ----------
-    system : System
     motion : (N,) array
         All freedoms of all rotors.
     coordinate : (R,) array
@@ -318,7 +317,6 @@ class MeshAlignment:
 
     Attributes
     ----------
-    name : str
     force : float
         Transverse, N.
     misalignment : float

@@ -41,9 +41,7 @@ class Axial(RotorEffect):
         Idlers, planets between sun and ring and double helical gears balance themselves. Three choices hold a
         shaft rigidly: the effect "off", a drive at rest, and no bearing on the shaft at all.
 
-        Raises
-        ------
-        InputError
+        Raises `InputError`.
         """
         gears = mechanism.scene.gears
         for rotor, sense in zip(mechanism.rotors, mechanism.kinematics.sense, strict=True):

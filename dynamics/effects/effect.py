@@ -25,7 +25,6 @@ class Verdict:
 
     Attributes
     ----------
-    on : bool
     possible : bool
         False: the scene has no such freedom or data, and requesting it changes nothing.
     reason : str
@@ -67,9 +66,7 @@ class Effect:
     def check(self, mechanism: Mechanism) -> None:
         """Refuse a mechanism that the effect, if it is not switched off, cannot do with.
 
-        Raises
-        ------
-        InputError
+        Raises `InputError`.
         """
 
 

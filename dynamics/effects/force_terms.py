@@ -62,7 +62,6 @@ class FlankInSpace:
 
     Attributes
     ----------
-    mechanism : Mechanism
     index : int
         Its mesh.
     coast : bool

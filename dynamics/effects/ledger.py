@@ -23,7 +23,6 @@ class LedgerEntry:
 
     Attributes
     ----------
-    decided : Effect
     part : str
         The shaft or the mesh that it is decided for.
     choice : str

@@ -46,15 +46,7 @@ class _MeshOnRotor:
 
 @dataclass(frozen=True)
 class LoadedRotor:
-    """A rotor of a mechanism under the nominal mesh forces.
-
-    Attributes
-    ----------
-    mechanism : Mechanism
-    flanks : Flanks
-    index : int
-    meshes : tuple of MeshOnRotor
-    """
+    """A rotor of a mechanism under the nominal mesh forces."""
 
     mechanism: Mechanism
     flanks: Flanks
@@ -108,15 +100,7 @@ def loaded_rotors(mechanism: Mechanism, flanks: Flanks) -> tuple[LoadedRotor, ..
 
 @dataclass(frozen=True)
 class LoadedTrain:
-    """A mechanism with its freedoms under the nominal mesh forces.
-
-    Attributes
-    ----------
-    mechanism : Mechanism
-    freedoms : Freedoms
-    connections : Connections
-    flanks : Flanks
-    """
+    """A mechanism with its freedoms under the nominal mesh forces."""
 
     mechanism: Mechanism
     freedoms: Freedoms
@@ -149,13 +133,7 @@ class LoadedTrain:
 
 @dataclass(frozen=True)
 class LoadedMesh:
-    """A mesh of a train.
-
-    Attributes
-    ----------
-    train : LoadedTrain
-    index : int
-    """
+    """A mesh of a train."""
 
     train: LoadedTrain
     index: int

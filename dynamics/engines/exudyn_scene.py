@@ -80,8 +80,6 @@ def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Dri
 
     Parameters
     ----------
-    mbs : exudyn.MainSystem
-    mesh : PlanarMesh
     nodes : (node index, node index)
         Of the driver and the driven gear: `NodeRigidBody2D`. With a `drive` the driver's is a `NodePoint2D`.
     drive : callable or None

@@ -30,7 +30,6 @@ class Element:
 
     Attributes
     ----------
-    law : Law
     entry : int
         Its index in the arrays of its law.
     mesh : int
@@ -72,7 +71,6 @@ class Elements(NamedTuple):
     drift : (k, R) array
         0 for flanks, whose coordinates the kinematic motion does not change.
     speed : (k, E, 2) array
-    laws : ElementLaws
     """
 
     law: IntArray

@@ -107,11 +107,6 @@ BATCH = 2000
 def _mass_and_stiffness(mesh: TetrahedralMesh, material: Material) -> tuple[sp.csr_array, sp.csr_array]:
     """Return the consistent mass matrix per direction and the stiffness matrix.
 
-    Parameters
-    ----------
-    mesh : TetrahedralMesh
-    material : Material
-
     Returns
     -------
     mass : (n, n) sparse array
@@ -172,7 +167,6 @@ class AssembledHousing:
         Stiffness and damping of the mounts alone.
     seats : (s, f) sparse array
         B: motions q of the seats, one after the other.
-    frames : tuple of SeatFrame
     loose : (f, k) array
         Rigid motions that feet and mounts do not hold; six without any.
     body : RigidBody
@@ -356,7 +350,6 @@ class FreeModes:
         Hz, rising; of elastic modes alone.
     deflection : (f, s) array
         Under unit forces on the seats; where the housing is loose, in balance with its inertia.
-    status : ModeStatus
     eigen_residual : float
         Largest |K x - w^2 M x| / |K x|.
     solve_residual : float

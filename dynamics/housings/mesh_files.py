@@ -241,7 +241,6 @@ def write_surface(
 
     Parameters
     ----------
-    path : str or Path
     points : (p, 3) array
         m.
     triangles : (t, 3) or (t, 6) int array

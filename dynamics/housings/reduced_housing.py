@@ -146,7 +146,6 @@ class ReducedHousing:
         Of the mesh.
     checks : ReductionChecks or None
     surface : SurfaceMotion or None
-    points : tuple of PointMotion
     mount_damping : (r, r) array or None
         What of `damping` is that of the mounts; None: nothing, or not known apart.
     mount_stiffness : (r, r) array or None
@@ -236,7 +235,6 @@ def receptance(
 
     Parameters
     ----------
-    housing : ReducedHousing
     frequency : (n,) array
         Hz.
     residual : bool

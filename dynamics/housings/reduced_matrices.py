@@ -81,14 +81,10 @@ class MeshedHousing:
 
     Attributes
     ----------
-    mesh : TetrahedralMesh
-    material : Material
-    seats : tuple of SeatBore
     feet : tuple of Foot
         Without any the housing is free, and six rigid-body modes are kept besides `modes`.
     points : mapping of str to (x, y, z)
         m; the motion of the node next to each is recovered.
-    modes : int
     damping : Damping
         Default: `USUAL_DAMPING`.
     """
@@ -216,7 +212,6 @@ def housing_of_matrices(
 
     Parameters
     ----------
-    matrices : ReducedMatrices
     seats : tuple of SeatFrame
         In the order of the matrices' first rows.
     damping : Damping, optional

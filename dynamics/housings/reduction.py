@@ -239,7 +239,6 @@ def reduction_cost(freedoms: int, modes: int, motions: int) -> Cost:
     ----------
     freedoms : int
         Of the mesh.
-    modes : int
     motions : int
         Of all seats.
     """
@@ -311,7 +310,6 @@ def reduced_housing(
 
     Parameters
     ----------
-    housing : MeshedHousing
     cache : Path, optional
         Directory of kept results (see `host.default_cache_directory`) and of what is known of the host; None:
         neither read nor written.

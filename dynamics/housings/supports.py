@@ -27,9 +27,6 @@ class SeatBore:
 
     Attributes
     ----------
-    name : str
-    bore : Bore
-    ring : Ring
     motions : int
         3: displacements, 5: tilts too, as a bearing holds a shaft; 6: rotation about the axis too.
     """
@@ -60,7 +57,6 @@ class SeatFrame:
 
     Attributes
     ----------
-    name : str
     position : (3,) array
         m, in the mesh.
     axes : (3, 3) array
@@ -142,8 +138,6 @@ class Foot:
 
     Attributes
     ----------
-    name : str
-    face : Face
     mount : Mount or None
         None: fixed.
     """

@@ -108,7 +108,6 @@ def estimate_influences(
 
     Parameters
     ----------
-    scene : Scene
     settled : float
         Part of the run from which on it is looked at, 0..1.
     system : System, optional

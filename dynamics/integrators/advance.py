@@ -46,7 +46,6 @@ class Control(NamedTuple):
         Error allowed per step, m.
     force_tolerance : float
         Last update allowed in Newton's method, N.
-    step_limit : int
     """
 
     implicit: bool

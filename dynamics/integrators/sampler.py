@@ -119,7 +119,6 @@ class SampleRing(NamedTuple):
         Of the laws there.
     moved : (k,) int array
         Scratch: quanta of free trains before a step's end.
-    peaks : Peaks
     removed, folded : (R,) arrays
         Sums over the output samples of the squares of what the filter took away from the local forces, and
         of their content near half the inner rate.

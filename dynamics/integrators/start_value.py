@@ -105,7 +105,6 @@ class StartValue:
 
     Attributes
     ----------
-    at : SavedState
     rows_of : (R,) int array
         See `added_rows`.
     states : callable

@@ -33,14 +33,12 @@ class StaticSolution:
 
     Attributes
     ----------
-    status : StaticStatus
     displacement : (n,) array
         Deviations from the kinematic motion, m and rad.
     mesh_force : (m,) array
         Transverse, of the driving flanks, N.
     residual : float
         Largest unbalanced force (torques over the freedom's scale), N.
-    iterations : int
     """
 
     status: StaticStatus

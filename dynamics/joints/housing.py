@@ -212,7 +212,6 @@ def read_housing(path: str | Path, name: str, bushings: tuple[str, ...]) -> Hous
     path : str or Path
         ``.csv``: the rows of the stiffness matrix, numbers with commas between, ``#`` before remarks.
         ``.npz``: an array ``stiffness`` and, if given, ``damping`` and ``mass``.
-    name : str
     bushings : tuple of str
         In the order of the matrix.
 

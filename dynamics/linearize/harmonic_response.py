@@ -106,7 +106,6 @@ def harmonic_response(
 
     Parameters
     ----------
-    system : System
     speed : (S,) array
         Of the first drive that turns, rad/s, either sign.
     orders : int
@@ -254,7 +253,6 @@ def parametric_response(
 
     Parameters
     ----------
-    at : Excited
     speed, rate : (S,) arrays
         Of the leading law, rad/s, and how fast it changes, rad/s^2.
     orders : int
@@ -327,7 +325,6 @@ def _push(family: _Family, receptance: ComplexArray, made: ComplexArray) -> Comp
 
     Parameters
     ----------
-    family : Family
     receptance : (S, H + 1, f, f) complex array
         Of the meshes, harmonics 0 to H, m/N.
     made : (S, H, f) complex array

@@ -44,7 +44,6 @@ class LinearSystem:
         Strain of each spring per freedom, m or rad.
     spring_stiffness : (p,) array
         N/m or N m/rad.
-    equilibrium : StaticSolution
     """
 
     freedom: tuple[str, ...]

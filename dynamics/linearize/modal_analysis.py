@@ -61,7 +61,6 @@ class ModalAnalysis(ArrayFile):
 
     Attributes
     ----------
-    freedom, mesh, shaft : tuples of str
     spring, spring_part, spring_kind : tuples of str, (p)
         Name, the mesh, bearing, coupling or drive it belongs to, and which of these that is.
     facts : dict

@@ -146,13 +146,10 @@ class Excited:
 
     Attributes
     ----------
-    system : System
     time : float
         s.
-    period : CommonPeriod
     linear : LinearSystem
         With the mean tangents of the flanks.
-    cycles : tuple of FlankCycle
     turning : bool
         Whether rotating-frame elements act: gyroscopic and frame terms belong to the system.
     """

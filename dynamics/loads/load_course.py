@@ -113,7 +113,6 @@ class Orders:
         Whose angle: about +z, with the shaft's own vibration, 0 at t = 0.
     order, amplitude, phase : tuples of floats
         Events per turn, > 0; factors; rad.
-    mean : float
     """
 
     shaft: str

@@ -32,7 +32,6 @@ class Rotor:
 
     Attributes
     ----------
-    shaft : Shaft
     inertia : Inertia
         Of shaft, gears and discs about their common center of mass.
     center : (3,) array
@@ -189,7 +188,6 @@ class ModalHousing:
 
     Attributes
     ----------
-    name : str
     bearings : tuple of str
         That sit in it.
     stiffness : (m,) array
@@ -254,7 +252,6 @@ class Bodies(Sequence[Rotor]):
 
     Attributes
     ----------
-    rotors : tuple of Rotor
     housings : tuple of ModalHousing
         Other housings have no mass: they are condensed into their bearings.
     """

@@ -32,7 +32,6 @@ class CouplingRows:
 
     Attributes
     ----------
-    name : tuple of str
     motion : (c, 6, N) array
         Strain per freedom: motion of the second shaft at the coupling less that of the first, m and rad.
     stiffness, damping : (c, 6, 6) arrays
@@ -145,7 +144,6 @@ class Seats:
 
     Attributes
     ----------
-    name : tuple of str
     support : (s,) int array
         Of each among the supports.
     frame : tuple of int or None
@@ -279,7 +277,6 @@ class Connections:
         Bushings, then planet bearings.
     seats : Seats
         The bearings that are more than three springs to rigid ground or pin.
-    couplings : CouplingRows
     """
 
     supports: Supports

@@ -289,12 +289,7 @@ def check_motion(scene: Scene) -> Kinematics:
 
 
 def check_loads(scene: Scene, kinematics: Kinematics) -> None:
-    """Refuse a load on a shaft at rest in the kinematic motion.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a load on a shaft at rest in the kinematic motion; raises `InputError`."""
     for index, load in enumerate(scene.loads):
         if kinematics.sense[scene.shaft_index(load.shaft)] == 0:
             bound, suggestion = "a shaft that turns", "A held shaft needs no load."

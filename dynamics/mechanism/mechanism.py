@@ -222,8 +222,6 @@ class Mechanism:
 
     Attributes
     ----------
-    scene : Scene
-    kinematics : Kinematics
     rotors : Bodies
         A rotor per shaft.
     lines : tuple of LineOfAction

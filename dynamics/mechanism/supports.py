@@ -72,7 +72,6 @@ class Supports:
 
     Attributes
     ----------
-    name : tuple of str
     frame : tuple of int or None
         Rotor of the carrier whose rotating frame the ground is seen from; None: forces are in the fixed frame
         as they are, or, of a planet bearing, stay in the carrier's.

@@ -184,7 +184,6 @@ class HousingRadiation(ModalResistance, ArrayFile):
         rho c of the air, Pa s/m.
     model_name : str
         Of the radiation model.
-    facts : RadiationFacts
     """
 
     SCHEMA = "lineofaction housing radiation"
@@ -233,10 +232,8 @@ def housing_radiation(
     ----------
     housing : ReducedHousing
         With a surface.
-    model : RadiationModel
     frequencies : array
         Hz, above zero; the range grows outwards to the edges of third octaves.
-    air : Air, optional
     progress : callable, optional
         Called with the fraction done.
     expected : callable, optional

@@ -91,7 +91,6 @@ def sound_paths(
 
     Parameters
     ----------
-    hull : Hull
     shapes : (T, r) array
         Mean outward displacement of the panels per coordinate.
     microphone : (3,) array
@@ -150,7 +149,6 @@ def pressure_transfer(
         Hz; `sound_limit` says up to where the result is valid.
     model : ElementalRadiators
         Monopoles in free space, or in a rigid baffle.
-    air : Air, optional
 
     Returns
     -------
@@ -208,10 +206,7 @@ def pressure_signal(
 def sound_limit(housing: ReducedHousing, air: Air | None = None) -> float:
     """Return the frequency in Hz up to which modes carry the motion and panels resolve the sound.
 
-    Raises
-    ------
-    InputError
-        As `outer_hull` does.
+    Raises `InputError` as `outer_hull` does.
     """
     return min(housing.valid_frequency, resolved_frequency(outer_hull(housing), air or Air()))
 
@@ -305,8 +300,6 @@ def pressure_recording(
         In the frame of the housing's mesh, m.
     bearings : sequence of str, optional
         In the order of the seats; by default those with the names of the seats.
-    model : ElementalRadiators
-    air : Air, optional
 
     Raises
     ------

@@ -183,7 +183,6 @@ def regions(sound: PanelSound, points: Sequence[PointMotion] = ()) -> tuple[Regi
 
     Parameters
     ----------
-    sound : PanelSound
     points : sequence of PointMotion
         Named points; each belongs to the region of the panel with the nearest center.
     """

@@ -70,7 +70,6 @@ class RadiatedSound(ArrayFile):
 
     Attributes
     ----------
-    housing, bearing : tuples of str
     mode_housing : tuple of str
         The housing of each mode.
     efficiency : (S, H) array
@@ -253,7 +252,6 @@ class LoudPoint:
 
     Attributes
     ----------
-    speed_index, order_index : int
     order, speed, frequency : float
         Multiple of the frequency of the first mesh; rad/s; Hz.
     level, weighted_level : float
@@ -264,7 +262,6 @@ class LoudPoint:
         Number from 1 on, and frequency in Hz, of the mode of the housing with the largest share.
     mode_share : float
         Of it, of the power.
-    mode_housing : str
     bearing : str
         With the largest share.
     bearing_level, level_without_bearing : float

@@ -27,7 +27,6 @@ class DesignFigure:
 
     Attributes
     ----------
-    name, unit : str
     value, step : float
         In `unit`; the step is not zero.
     """
@@ -64,7 +63,6 @@ class Sensitivity:
 
         Parameters
         ----------
-        figure : DesignFigure
         level : callable
             From a value of the figure to the level, dB, all else as it is. It is called three times: smooth
             in the value, as `largest_level` is and a level at a fixed speed near a resonance is not.

@@ -78,11 +78,8 @@ def _radiated_power(model: SoundModel, response: BearingHarmonics) -> OrderPower
 def forced_power(model: SoundModel, speed: FloatArray, orders: int) -> tuple[FloatArray, OrderPower]:
     """Return orders (H,) and the sound power of the linear response at `speed` (S,), rad/s.
 
-    Raises
-    ------
-    InputError, SolveError
-        As `harmonic_response` does; or a bearing of a housing is not in the response, or a frequency is
-        beyond the radiation resistance.
+    Raises `InputError` or `SolveError` as `harmonic_response` does; or a bearing of a housing is not in the
+    response, or a frequency is beyond the radiation resistance.
     """
     response = harmonic_response(assemble(model.scene), speed, orders)
     return response.order, _radiated_power(model, response)
@@ -97,7 +94,6 @@ class Guess:
 
     Attributes
     ----------
-    name : str
     title : str
         In words.
     usual : Range
@@ -270,7 +266,6 @@ def sound_band(
 
     Parameters
     ----------
-    model : SoundModel
     speed : (S,) array
         Of the first drive that turns, rad/s, increasing.
     orders : int

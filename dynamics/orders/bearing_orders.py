@@ -142,7 +142,6 @@ class BearingOrders:
 
     Attributes
     ----------
-    bearing : tuple of str
     time : (S,) array
         Middle of each window, s.
     speed : (S,) array

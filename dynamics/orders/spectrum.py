@@ -28,10 +28,8 @@ class Spectrum:
     amplitude : (..., K) array
         Peak amplitude of a sinusoid at each frequency (corrected for the window), in `unit`; the mean at 0
         Hz.
-    unit : str
     resolution : float
         Distance of the lines, Hz.
-    window : str
     noise_bandwidth : float
         Of the window, in lines: the mean square of a signal is the sum of half the squared amplitudes over
         it (1 rectangular, 1.5 Hann, 3.77 flat top).

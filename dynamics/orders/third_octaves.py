@@ -31,7 +31,6 @@ class Waterfall:
         Peak amplitude under the window, in `unit`; the mean at line 0.
     rms : (..., B) array
         Of each block about its mean, of all that the signal holds, in `unit`.
-    unit : str
     noise_bandwidth : float
         Of the window, in lines.
     """
@@ -188,7 +187,6 @@ class ThirdOctaves:
         Hz.
     rms : (..., B, K) array
         In `unit`, of each block of the run.
-    unit : str
     """
 
     band: IntArray

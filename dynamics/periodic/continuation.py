@@ -64,14 +64,7 @@ class Bifurcation:
 
 @dataclass(frozen=True)
 class Branch:
-    """Periodic motions along a branch, in order.
-
-    Attributes
-    ----------
-    status : BranchStatus
-    orbits : tuple of Orbit
-    bifurcations : tuple of Bifurcation
-    """
+    """Periodic motions along a branch, in order."""
 
     status: BranchStatus
     orbits: tuple[Orbit, ...]
@@ -113,7 +106,6 @@ def follow_branch(
 
     Parameters
     ----------
-    problem : PeriodicProblem
     first, last : float
         rad/s, of the leading law.
     largest_step : float

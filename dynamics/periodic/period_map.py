@@ -270,8 +270,6 @@ class PeriodicProblem:
 
     Attributes
     ----------
-    system : System
-    period : CommonPeriod
     grid : PeriodGrid
         Steps of one period, the same at all speeds, so that the map depends smoothly on speed.
     repeat : int
@@ -367,7 +365,6 @@ class PeriodMap:
 
     Attributes
     ----------
-    problem : PeriodicProblem
     speed : float
         Of the leading law, rad/s.
     """

@@ -47,10 +47,8 @@ class Orbit:
 
     Attributes
     ----------
-    status : OrbitStatus
     residual : float
         Largest change of the state over the period, m.
-    iterations : int
     speed : float
         Of the leading law, rad/s.
     duration : float
@@ -118,7 +116,6 @@ def find_orbit(problem: PeriodicProblem, speed: float, guess: FloatArray | None 
 
     Parameters
     ----------
-    problem : PeriodicProblem
     speed : float
         rad/s, of the leading law.
     guess : (2n,) array, optional

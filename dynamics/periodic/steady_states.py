@@ -226,7 +226,6 @@ class SteadyStates(ArrayFile):
 
     Attributes
     ----------
-    mesh, bearing : tuples of str
     residual, step_error : (P,) arrays
         See `Orbit`.
     rms_bearing_force : (P, b) array

@@ -24,9 +24,6 @@ class Check:
     ----------
     effect : str
         That mends it; empty: none.
-    assumption, part : str
-    holds : bool
-    reason : str
     figures : mapping of str to float or None
         By how much it holds or not, SI.
     valid : bool or None

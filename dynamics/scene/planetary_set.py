@@ -274,7 +274,6 @@ def ring_phase(
 
     Parameters
     ----------
-    planet_teeth : int
     half_angles : tuple of two floats, optional
         Half the planet's tooth thickness angle on its working pitch circles with sun and ring, rad: with
         psi_b that on the base circle, psi_b - inv(working pressure angle). Left out: pi / (2 z) each,

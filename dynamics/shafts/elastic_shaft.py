@@ -410,10 +410,8 @@ def elastic_shaft(
     ----------
     sections : tuple of BeamSection
         From the left end.
-    discs, points : tuples
     highest : float
         Hz; modes of the free shaft up to it, and the first of each family anyway, are of interest.
-    damping_ratio : float
     held : float or None
         Where along the shaft its rotation is imposed, m: one of the points of application.
     """

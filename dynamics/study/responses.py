@@ -26,7 +26,6 @@ class _Window:
 
     Attributes
     ----------
-    run : RunResult
     part : slice
         Its samples.
     highest_order : int
@@ -102,7 +101,6 @@ class Quantity:
 
     Attributes
     ----------
-    title : str
     unit : str
         SI; empty for a ratio.
     of : "mesh", "bearing" or ""

@@ -207,10 +207,8 @@ class StudyTask:
 
     Attributes
     ----------
-    scenes : Scenes
     factors : tuple of str
         Their names.
-    responses : tuple of Response
     start : float
         Time from which on responses are taken, s.
     receipt : "minimal" or "full"

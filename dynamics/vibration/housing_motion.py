@@ -73,7 +73,6 @@ def seat_forces(
     ----------
     response : BearingHarmonics
         S speeds, H orders of a linear response or a run; in the frame of the housing's mesh.
-    housing : ReducedHousing
     bearings : sequence of str, optional
         Bearings in the order of the seats; by default those with the names of the seats.
 

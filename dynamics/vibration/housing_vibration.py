@@ -62,7 +62,6 @@ def vibration_level(rms: ArrayLike, quantity: MotionQuantity = MotionQuantity.VE
     ----------
     rms : array
         m, m/s or m/s^2, any shape; 1/sqrt(2) of a peak amplitude.
-    quantity : MotionQuantity
 
     Raises
     ------
@@ -131,7 +130,6 @@ class HousingVibration:
 
     Attributes
     ----------
-    point : tuple of str
     speed : (S,) array
         Of the leading drive, rad/s.
     order : (H,) array

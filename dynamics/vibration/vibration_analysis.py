@@ -50,7 +50,6 @@ class Parts:
 
         Parameters
         ----------
-        housing : ReducedHousing
         frequency : float
             Hz.
         force : (s,) complex array
@@ -121,7 +120,6 @@ def transfer_functions(
     response : (q, r) array
     excitation : (e, r) array, optional
         By default the motions of the seats.
-    quantity : MotionQuantity
 
     Returns
     -------
@@ -147,7 +145,6 @@ def mean_square_mobility(housing: ReducedHousing, frequency: FloatArray, weight:
 
     Parameters
     ----------
-    housing : ReducedHousing
     frequency : (n,) array
         Hz.
     weight : (r, r) array
@@ -249,7 +246,6 @@ class Shares:
 
     Attributes
     ----------
-    name : tuple of str
     frequency : (p,) array
         Natural frequencies, Hz; NaN of what is no mode.
     point : (k, p) array
@@ -270,12 +266,8 @@ class VibrationAnalysis:
 
     Attributes
     ----------
-    housing : str
-    vibration : HousingVibration
-    mobilities : Mobilities
     at_speed, at_order : int
         Indices of the speed and the order looked at.
-    bearings, modes : Shares
     deflection : SurfaceShape or None
         Velocity of the surface there; None without a surface.
     facts : dict

@@ -94,10 +94,7 @@ def condense_remotely(
     Nothing is done where this process is the worker, or would wait for a single one. `report` is called with
     the fraction done after each gear.
 
-    Raises
-    ------
-    MeshError, SolveError
-        As `flank_compliance_3d`.
+    Raises `MeshError` or `SolveError` as `flank_compliance_3d`.
     """
     workers = condensing(workers)
     if isinstance(workers, InProcess):

@@ -122,9 +122,6 @@ class ContactModel:
     parts : tuple of str
         Parts of the gears' bodies that are in their compliance (`Toothing.with_parts`); without any they are
         solid, their bores fixed all over.
-    gaps : tuple of GapTerm
-    tooth_gaps : tuple of ToothGap
-    compliances : tuple of ComplianceTerm
     """
 
     couple_teeth: bool = False

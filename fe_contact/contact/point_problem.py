@@ -256,7 +256,6 @@ class PointProblems(NamedTuple):
     gap, motion_arm, torque_arm, width : ndarray, shape (P, m)
     about : Gap
         Arrays (P, m) and (P, m, B).
-    length : float
     modulus : ndarray, shape (Q, m)
     """
 

@@ -117,12 +117,7 @@ class Effect:
         return None
 
     def refuse_plane(self, scene: ContactScene) -> None:
-        """Refuse what of it a plane model cannot hold, by field name.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse what of it a plane model cannot hold, by field name; raises `InputError`."""
 
     def without(self, scene: ContactScene) -> ContactScene | None:
         """Return the scene as if there were nothing for the effect.

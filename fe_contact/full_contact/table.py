@@ -25,10 +25,8 @@ class FullContactPoint:
         By the driving gear, base pitches; NaN without a solution.
     transmission_error : float
         r_b1 theta_1 - r_b2 theta_2 in m, >= 0 under load; NaN without a solution.
-    status : Status
     reason : str
         Empty if it converged.
-    iterations : int
     residual : float
         Largest relative breach of the laws that are checked: the moment of the bore's reactions is the torque
         and, for the condensed peer, u f = p C p, pressures and gaps are >= 0, and one of them is 0.

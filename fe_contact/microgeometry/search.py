@@ -43,12 +43,7 @@ class _Budget:
         self._cancel, self._report = cancel, report
 
     def take(self, most: int) -> None:
-        """Take one design, if fewer than `most` were taken.
-
-        Raises
-        ------
-        _BudgetUsed, Cancelled
-        """
+        """Take one design, if fewer than `most` were taken; raises `_BudgetUsed` or `Cancelled`."""
         if self._cancel():
             raise Cancelled
         if self.used >= min(most, self.total):

@@ -90,9 +90,7 @@ def effect_of(name: str, registry: Sequence[Effect]) -> str:
 def check_variables(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> None:
     """Refuse none, one twice, reliefs without a length, and bounds that the gears have no room for.
 
-    Raises
-    ------
-    InputError
+    Raises `InputError`.
     """
     names = [variable.name for variable in variables]
     if not names:

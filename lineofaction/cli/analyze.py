@@ -44,10 +44,7 @@ from lineofaction.report.ste.page import static_headlines
 def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCase:
     """Return the case in a file, at one load and alignment if requested; warn of what is implausible.
 
-    Raises
-    ------
-    BadInput
-        The file holds no case, or no such pair exists.
+    Raises `BadInput`: the file holds no case, or no such pair exists.
     """
     case = read_model(Case, file)
     if point is not None:
@@ -61,10 +58,7 @@ def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCa
 def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
     """Return the scene in a file and the folder its files are relative to; warn of what its import left out.
 
-    Raises
-    ------
-    BadInput
-        The file holds no scene.
+    Raises `BadInput`: the file holds no scene.
     """
     scene, folder = scene_of(file)
     warn(left_out_warnings(scene.left_out))

@@ -75,10 +75,7 @@ def keep_small() -> None:
 def _limit_bytes() -> int:
     """Return what the cache may hold: 2 GB, or what the environment says.
 
-    Raises
-    ------
-    BadInput
-        It says something else than a number of bytes.
+    Raises `BadInput`: it says something else than a number of bytes.
     """
     text = os.environ.get(LIMIT, str(DEFAULT_BYTES))
     if not text.isdigit():

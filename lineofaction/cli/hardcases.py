@@ -37,10 +37,7 @@ def run_hardcases(only: Sequence[str], output: Path | None, *, as_json: bool) ->
 def _chosen_scenes(only: Sequence[str]) -> list[HardScene]:
     """Return the scenes of these names or families, in their own order; all if none are named.
 
-    Raises
-    ------
-    BadInput
-        No such scene.
+    Raises `BadInput`: no such scene.
     """
     names = [part.strip() for name in only for part in name.split(",") if part.strip()]
     known = {scene.name for scene in HARD_SCENES} | {scene.family for scene in HARD_SCENES}

@@ -46,8 +46,6 @@ class _RunSound:
 
     Attributes
     ----------
-    name : str
-    recording : Recording
     facts : dict
         Plain JSON beside the recording's own.
     cells : dict of str to str
@@ -92,10 +90,8 @@ def _moment_cells(moment: Loudest | None, unit: str) -> dict[str, str]:
 def _receiver(scene: Path | None, point: str, microphone: str) -> Receiver | None:
     """Return where runs are heard by the options of the verb; None: as what the runs hold.
 
-    Raises
-    ------
-    BadInput
-        A scene without one of point and microphone, one of these without a scene, or no position.
+    Raises `BadInput`: a scene without one of point and microphone, one of these without a scene, or no
+    position.
     """
     if scene is None and not point and not microphone:
         return None
@@ -207,10 +203,8 @@ def run_listen(
 def _outputs(files: Sequence[Path], output: Path) -> list[Path]:
     """Return a file for every run.
 
-    Raises
-    ------
-    BadInput
-        Several runs would go to one file, to files of one name, or where nothing can be written.
+    Raises `BadInput`: several runs would go to one file, to files of one name, or where nothing can be
+    written.
     """
     if output.suffix == ".wav":
         if len(files) > 1:

@@ -369,10 +369,7 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
 def _new_text(kind: str, wanted: PairWishes) -> str:
     """Return the file of a kind; it is read once, so that what is written can be run.
 
-    Raises
-    ------
-    BadInput
-        No such pair exists.
+    Raises `BadInput`: no such pair exists.
     """
     with boundary_errors():
         text = KINDS[kind](wanted)

@@ -91,10 +91,7 @@ def progress_bar() -> Iterator[Report]:
 def check_writable(output: Path) -> None:
     """Refuse an output that cannot be written, before the work is done rather than after it.
 
-    Raises
-    ------
-    BadInput
-        Its folder does not exist, or it is a folder itself.
+    Raises `BadInput`: its folder does not exist, or it is a folder itself.
     """
     if not output.parent.is_dir():
         raise BadInput.of("output", str(output), "in a folder that exists", "Make the folder first.")
@@ -105,10 +102,7 @@ def check_writable(output: Path) -> None:
 def check_netcdf_output(output: Path) -> None:
     """Refuse an output that cannot be written, or whose name promises something else than netCDF.
 
-    Raises
-    ------
-    BadInput
-        Not writable, or another ending than those of netCDF.
+    Raises `BadInput`: not writable, or another ending than those of netCDF.
     """
     check_writable(output)
     if output.suffix not in ("", ".nc", ".nc4"):

@@ -134,10 +134,7 @@ def run_report(
 def _flanks(read: Inputs, report: Report) -> LoadDistribution:
     """Compute the flank results of the database's case, at the load and the alignment of the page's figures.
 
-    Raises
-    ------
-    BadInput
-        There is no database to take the case from, or flank results are there already.
+    Raises `BadInput`: there is no database to take the case from, or flank results are there already.
     """
     from lineofaction.gearbox.studies.flank.run import flanks_of  # noqa: PLC0415 (start-up time)
 

@@ -173,10 +173,7 @@ class StageSketch:
 def planetary_stage(wanted: PairWishes) -> StageSketch:
     """Return a stage of three planets; its ring has the teeth of the sun and twice those of a planet.
 
-    Raises
-    ------
-    BadInput
-        No planets fit a ratio that small.
+    Raises `BadInput`: no planets fit a ratio that small.
     """
     module, teeth, helix = wanted.module or 2.0, wanted.teeth or 24, wanted.helix or 0.0
     wished = 0.5 * teeth * ((wanted.ratio or 5.0) - 2.0)

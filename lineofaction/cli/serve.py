@@ -77,10 +77,7 @@ def _managed(
 ) -> Iterator[Callable[[], None]]:
     """Answer on the management port while the context lasts; yields what prints its URL, if there is one.
 
-    Raises
-    ------
-    BadInput
-        The port is taken.
+    Raises `BadInput`: the port is taken.
     """
     if settings.management_port is None:
         yield lambda: None

@@ -187,10 +187,7 @@ def _targets(study: Study, output: Path | None) -> list[Path]:
 def _output_files(output: Path, stem: str, endings: Sequence[str]) -> list[Path]:
     """Return the files to write: one by its ending, or `stem` with all endings in a folder, made if missing.
 
-    Raises
-    ------
-    BadInput
-        Neither, or not writable.
+    Raises `BadInput`: neither, or not writable.
     """
     bound = f"a folder, or a file ending in one of {', '.join(endings)}"
     if output.suffix and not output.is_dir():

@@ -33,10 +33,7 @@ class ResultCache:
     def incoming(self) -> Iterator[BinaryIO]:
         """Yield a file to write a result into; it is removed afterwards unless it was kept.
 
-        Raises
-        ------
-        BadInput
-            The directory cannot be written.
+        Raises `BadInput`: the directory cannot be written.
         """
         with self._part(self._directory) as stream:
             yield stream

@@ -123,7 +123,6 @@ class _LookupCalls(Surface):
 
         Parameters
         ----------
-        case : model, mapping or Path
         time_budget_s : float, optional
             CPU seconds that may be spent.
         """

@@ -141,7 +141,6 @@ class JobCalls(Surface):
 
         Parameters
         ----------
-        process : str
         inputs : dict
             As JSON.
         idempotency_key : str, optional
@@ -170,7 +169,6 @@ class JobCalls(Surface):
 
         Parameters
         ----------
-        process : str
         jobs : sequence of dict
             For each job its inputs, or their differences from what all share, as a JSON merge patch.
         inputs : dict, optional

@@ -25,7 +25,6 @@ class Offer:
     ----------
     name : str
         On the service.
-    description : str
     signature : inspect.Signature
         Of the client's calls.
     subject : str
@@ -73,10 +72,8 @@ _ADVICE = (
 def libraries() -> Iterator[None]:
     """Say what to install where the body imports what is not here.
 
-    Raises
-    ------
-    ModuleNotFoundError
-        With the package to install; `host.extras.MissingExtra`, which names its extra, as it is.
+    Raises `ModuleNotFoundError`: with the package to install; `host.extras.MissingExtra`, which names its
+    extra, as it is.
     """
     try:
         yield

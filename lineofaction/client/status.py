@@ -35,8 +35,6 @@ class JobState:
         Implausible inputs: check, field, value, unit, message; empty in lists of jobs.
     created, started, finished : str
         RFC 3339, UTC; empty before.
-    priority : int
-    title : str
     tags : tuple of str
         As given to the job.
     subject : str

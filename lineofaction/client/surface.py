@@ -258,8 +258,6 @@ class Session:
 
     Attributes
     ----------
-    exchange : Exchange
-    cache : ResultCache
     patience : float
         Seconds for which the service may be away while a job is waited for.
     progress : callable, optional

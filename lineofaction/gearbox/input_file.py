@@ -40,10 +40,7 @@ class Override:
     def of(cls, text: str) -> Override:
         """Return what ``PATH=VALUE`` says: a value as TOML has it, or else a text; none leaves the field out.
 
-        Raises
-        ------
-        BadInput
-            It has another form.
+        Raises `BadInput`: it has another form.
         """
         path, sign, typed = text.partition("=")
         names = path.strip().split(".")
@@ -81,10 +78,7 @@ class InputFile:
     def as_it_is(self) -> Path:
         """The file, of one whose values cannot be set.
 
-        Raises
-        ------
-        BadInput
-            Values are set.
+        Raises `BadInput`: values are set.
         """
         if self.overrides:
             first = self.overrides[0]
@@ -94,10 +88,7 @@ class InputFile:
     def applied(self, table: Json) -> Json:
         """Return the table of the file with the overrides in it.
 
-        Raises
-        ------
-        BadInput
-            A path runs through a value that is no table, or names no part of a list.
+        Raises `BadInput`: a path runs through a value that is no table, or names no part of a list.
         """
         if not self.overrides:
             return table
@@ -176,10 +167,7 @@ _ROUNDING = 1e-9  # of a step
 def number_list(option: str, text: str) -> list[float]:
     """Return the numbers of an option; a range holds its last value where a step ends there.
 
-    Raises
-    ------
-    BadInput
-        It is neither a range nor a list, or holds too many numbers.
+    Raises `BadInput`: it is neither a range nor a list, or holds too many numbers.
     """
     try:
         if ":" in text:

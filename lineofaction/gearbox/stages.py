@@ -48,7 +48,6 @@ class PacedFraction:
 
         Parameters
         ----------
-        stage : str
         fraction : float
             Of the stage, 0 to 1.
         elapsed_s : float

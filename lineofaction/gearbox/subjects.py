@@ -124,10 +124,8 @@ def _in_folder(part: Any, field: str, folder: Path) -> Any:
 def _portable_scene(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
     """Return the scene with its case files written out.
 
-    Raises
-    ------
-    BadInput
-        A case file cannot be used, or a mesh takes a database file, which a service does not read.
+    Raises `BadInput`: a case file cannot be used, or a mesh takes a database file, which a service does not
+    read.
     """
     meshes = []
     for index, mesh in enumerate(scene.meshes):

@@ -40,10 +40,7 @@ def database_of(
 ) -> SteDatabase:
     """Compute the STE database of a case; condensed gears are kept in `home`, the folder of caches.
 
-    Raises
-    ------
-    BadInput
-        No such pair exists, or not under these loads.
+    Raises `BadInput`: no such pair exists, or not under these loads.
     """
     run = Run(workers, home / "compliance", progress)
     return checked_table(checked, run, on_draft)
@@ -95,7 +92,6 @@ def tabled_scene(
 
     Parameters
     ----------
-    scene : SceneInput
     folder : Path
         What the files that the scene names are relative to.
     table_of : callable
@@ -157,10 +153,7 @@ class ExecutorChoice:
 def open_executor(choice: ExecutorChoice) -> Iterator[Workers]:
     """Provide the workers, and send those of this machine home at the end.
 
-    Raises
-    ------
-    BadInput
-        Both are given, or nobody answers at the address.
+    Raises `BadInput`: both are given, or nobody answers at the address.
     """
     if choice.dask is not None and choice.workers != 1:
         raise BadInput.of("--workers", choice.workers, "left out with --dask", "The cluster has its own.")

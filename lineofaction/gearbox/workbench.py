@@ -209,7 +209,6 @@ class _StudyCall(Generic[Result]):
 
         Parameters
         ----------
-        subject : Case, SceneInput, OpenedUnit, mapping or path
         inputs, fields
             What is varied, in the units of the names; `help` of the function lists it.
         run : RunResult, optional

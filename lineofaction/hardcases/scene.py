@@ -30,7 +30,6 @@ class Measured:
     ----------
     name : str
         What it is, with its unit unless it is a pure number.
-    value : float
     most, least : float, optional
         The figure passes within them, both included.
     """
@@ -125,7 +124,6 @@ class Outcome:
 
     Attributes
     ----------
-    scene : HardScene
     figures : tuple of Measured
         Empty where it did not end.
     seconds : float

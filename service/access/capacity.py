@@ -128,10 +128,7 @@ class Capacity:
 def capacity(workers: int) -> Capacity:
     """Return what this process bears beside so many workers of its own.
 
-    Raises
-    ------
-    BadInput
-        It may open too few files to serve at all.
+    Raises `BadInput`: it may open too few files to serve at all.
     """
     files = most_open_files()
     kept = _OTHER_FILES + _FILES_OF_A_WORKER * workers

@@ -307,7 +307,6 @@ class Identities:
 
     Parameters
     ----------
-    keyring : Keyring
     tokens : _Tokens, optional
         Of an issuer; without it there are keys only.
     """
@@ -334,11 +333,8 @@ class Identities:
 def open_identities(settings: Settings) -> Identities:
     """Return the callers of a service; refuse an address that others can reach as long as nobody is known.
 
-    Raises
-    ------
-    BadInput
-        The address is not loopback and there are neither keys nor an issuer of tokens, or their file or its
-        settings cannot be used.
+    Raises `BadInput`: the address is not loopback and there are neither keys nor an issuer of tokens, or
+    their file or its settings cannot be used.
     """
     try:
         oidc = _OidcSettings()

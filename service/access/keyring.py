@@ -86,7 +86,6 @@ class Holder:
         Stands in the log and beside jobs.
     project : str
         Whose jobs and results are seen.
-    scopes : tuple of Scope
     expires : str or None
         The instant from which the caller is refused, RFC 3339, UTC; None: none.
     requests_per_minute : int or None
@@ -193,10 +192,7 @@ class KeyFile:
     def read(self) -> tuple[AccessKey, ...]:
         """Return the keys; none if there is no file.
 
-        Raises
-        ------
-        BadInput
-            The file cannot be read, or is not one of keys.
+        Raises `BadInput`: the file cannot be read, or is not one of keys.
         """
         try:
             entries = json.loads(self.path.read_text("utf-8"))["keys"]
@@ -213,7 +209,6 @@ class KeyFile:
 
         Parameters
         ----------
-        name : str
         expires : str, optional
             Duration for which it is good, such as ``90d``.
         **rights
@@ -241,7 +236,6 @@ class KeyFile:
 
         Parameters
         ----------
-        name : str
         overlap : str
             Duration for which the old key is good beside the new one; ``0h``: not at all.
         expires : str, optional
@@ -271,10 +265,7 @@ class KeyFile:
     def remove(self, name: str) -> None:
         """Take a key back, and any that it took the place of.
 
-        Raises
-        ------
-        BadInput
-            There is none of this name.
+        Raises `BadInput`: there is none of this name.
         """
         known = self.read()
         left = tuple(key for key in known if key.name != name)

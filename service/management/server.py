@@ -59,8 +59,6 @@ class Vitals:
 
     Attributes
     ----------
-    scheduler : Scheduler or RemoteWork
-    writes : WriteCheck
     serving : callable
         Returns the fault of what else it does: of the loop that answers requests.
     """
@@ -107,7 +105,6 @@ class ManagementServer:
     ----------
     host, port : str, int
         Where it listens; port 0: a free one.
-    vitals : Vitals
     metrics : callable
         Returns the text exposition.
 

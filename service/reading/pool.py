@@ -77,10 +77,8 @@ class _Reader:
     def read(self, order: LiveOrder) -> bytes:
         """Return the JSON answer of a child that reads what the order holds.
 
-        Raises
-        ------
-        ServiceError
-            As the child found it; `TooLarge`: reading takes more than a reader may; `LiveUnavailable`.
+        Raises `ServiceError` as the child found it; `TooLarge`: reading takes more than a reader may;
+        `LiveUnavailable`.
         """
         with own_folder(self._home) as folder:
             child, pipes = self._started(folder)

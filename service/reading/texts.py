@@ -28,10 +28,8 @@ from lineofaction.gearbox.schemas.toml import toml_table
 def _sent_files(files: Sequence[FileContentInput], folder: Path) -> Find:
     """Write files into folders of their own; what is returned finds them by their own names, and no others.
 
-    Raises
-    ------
-    BadInput
-        Two files have one name, a name is none, a content is damaged, or together they are too large.
+    Raises `BadInput`: two files have one name, a name is none, a content is damaged, or together they are too
+    large.
     """
     places: dict[str, Path] = {}
     left = LARGEST
@@ -82,10 +80,8 @@ def scene_of_toml(inputs: Json, folder: Path) -> Json:
 
     The names of case files that are not among the files stay: a scene read elsewhere may have them.
 
-    Raises
-    ------
-    BadInput
-        With every fault of the text, or a file that it names is missing, damaged or holds something else.
+    Raises `BadInput`: with every fault of the text, or a file that it names is missing, damaged or holds
+    something else.
     """
     names = {own_name(file["name"]) for file in inputs["files"]}
     table = _table(inputs, folder, lambda table, find: _with_cases(table, find, names))

@@ -157,12 +157,9 @@ class Access:
 
     Parameters
     ----------
-    app : ASGIApp
-    identities : Identities
     always : bool
         Ask for a key even while there is none, so that taking back the last key opens nothing. Otherwise
         keys are requested as soon as there is one.
-    admission : Admission
     """
 
     def __init__(self, app: ASGIApp, identities: Identities, *, always: bool, admission: Admission) -> None:

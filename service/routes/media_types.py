@@ -167,10 +167,7 @@ def _href(path: str, parameters: Sequence[tuple[str, str]]) -> str:
 def mark_of(cursor: str | None) -> Mark | None:
     """Return the mark of a cursor, None without one.
 
-    Raises
-    ------
-    BadInput
-        It is no cursor of this service.
+    Raises `BadInput`: it is no cursor of this service.
     """
     if cursor is None:
         return None

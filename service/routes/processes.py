@@ -355,10 +355,8 @@ def submit_batch(
 def _checked_inputs(context: Context, process: Process, request: BatchRequest) -> list[Json]:
     """Return the normalized inputs of all jobs.
 
-    Raises
-    ------
-    BadInput
-        With the faults of all, by their index; if they are too many with the first of each job.
+    Raises `BadInput`: with the faults of all, by their index; if they are too many with the first of each
+    job.
     """
     inputs, faults = [], []
     for index in range(len(request.jobs)):

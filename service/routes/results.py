@@ -145,10 +145,7 @@ def result_file(key: Key, request: Request, context: Ctx) -> Response:
 def known_result(context: Context, key: str, kind: str | None = None) -> StoredResult:
     """Return a stored result of a kind, or of whichever it is.
 
-    Raises
-    ------
-    NotFound
-        There is none, or another version of this program made it.
+    Raises `NotFound`: there is none, or another version of this program made it.
     """
     stored = context.store.verified(key, kind)
     if stored.kind not in RESULT_KINDS:

@@ -97,10 +97,8 @@ class Schema:
     def check(self) -> None:
         """Look through the database, before it is worked on for long.
 
-        Raises
-        ------
-        DatabaseDamaged
-            Something in it is damaged; the notes of the error say where it is and what to do.
+        Raises `DatabaseDamaged`: something in it is damaged; the notes of the error say where it is and what
+        to do.
         """
         with self._engine.begin() as connection:
             fault = dialect_of(connection).check(connection)
@@ -113,10 +111,7 @@ class Schema:
 
         Programs of the version before may run meanwhile. A newer schema that this program can use stays.
 
-        Raises
-        ------
-        BadInput
-            The schema is newer, and this program cannot use it.
+        Raises `BadInput`: the schema is newer, and this program cannot use it.
         """
         with self._engine.execution_options(immediate=True).begin() as connection:
             dialect_of(connection).take_turn(connection)
@@ -131,10 +126,7 @@ class Schema:
 def _prepare_schema(engine: Engine) -> None:
     """See to it that this program can use the tables: upgraded if the database is ours alone, refused if not.
 
-    Raises
-    ------
-    BadInput
-        The schema is newer and has more than additions, or is older and not ours to change.
+    Raises `BadInput`: the schema is newer and has more than additions, or is older and not ours to change.
     """
     schema = Schema(engine)
     numbers = schema.numbers()

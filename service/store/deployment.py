@@ -83,7 +83,6 @@ class Deployment:
 
     Parameters
     ----------
-    engine : Engine
     store : ResultStore
         Its index, and the files.
     """
@@ -114,11 +113,8 @@ class Deployment:
     def open_place(self) -> None:
         """See to it that the files are those of the database; mark a new place, or one of older versions.
 
-        Raises
-        ------
-        BadInput
-            The files are another deployment's; or there are files and the index is empty, or names none of
-            them; or the index names files and the place is empty.
+        Raises `BadInput`: the files are another deployment's; or there are files and the index is empty, or
+        names none of them; or the index names files and the place is empty.
         """
         if self._owner() is None:
             self._compared().refuse_strangers(self._refusal)
@@ -128,10 +124,7 @@ class Deployment:
     def confirm(self) -> None:
         """See to it that the place is ours: at the start, and right before anything is removed.
 
-        Raises
-        ------
-        BadInput
-            The note beside the files names another deployment, or is gone.
+        Raises `BadInput`: the note beside the files names another deployment, or is gone.
         """
         owner = self._owner()
         if owner is None or owner.deployment != self._named():
@@ -142,11 +135,8 @@ class Deployment:
     def write_database(self) -> None:
         """Write to the database, in turn as those who enter jobs: to see that this is possible.
 
-        Raises
-        ------
-        DatabaseUnavailable
-            It does not answer, has to be mended, or others hold it for longer than a moment. `NoSpace`: its
-            disk has no room for a submission.
+        Raises `DatabaseUnavailable`: it does not answer, has to be mended, or others hold it for longer than
+        a moment. `NoSpace`: its disk has no room for a submission.
         """
         _refuse_without_space(dialect_of(self._engine).folder(self._engine.url))
         try:
@@ -174,10 +164,7 @@ class Deployment:
     def take_over(self) -> None:
         """Make the files ours, whoever had them: who did removes none of them any more.
 
-        Raises
-        ------
-        BadInput
-            They are another's, and the index names other files.
+        Raises `BadInput`: they are another's, and the index names other files.
         """
         if self._owner() is None or self._compared().may_be_ours:
             self._mark(replace=True)

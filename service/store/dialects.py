@@ -273,10 +273,7 @@ class _PostgreSQL:
     def engine(self, url: URL, *, pooled: bool) -> Engine:
         """Return an engine on the server; it is not spoken to yet.
 
-        Raises
-        ------
-        BadInput
-            The driver is not installed.
+        Raises `BadInput`: the driver is not installed.
         """
         arguments = {
             "connect_timeout": _CONNECT_TIMEOUT_S,

@@ -120,10 +120,7 @@ class ResultFiles(Protocol):
     def digest(self, name: str) -> str:
         """Return the SHA-256 of the bytes in the place itself, whatever is kept of them here.
 
-        Raises
-        ------
-        FileNotFoundError
-            There is no file of this name.
+        Raises `FileNotFoundError`: there is no file of this name.
         """
 
     def note(self, name: str) -> str | None:

@@ -25,7 +25,6 @@ class Quarantine:
 
     Parameters
     ----------
-    files : ResultFiles
     deployment : Deployment
         Asked before each step: what is another's stays.
     days : float
@@ -238,10 +237,7 @@ def reindex(store: ResultStore, deployment: Deployment) -> _Reindexed:
     A result is dated by its file for lists, and for retention by this instant: the former may be that of a
     copy.
 
-    Raises
-    ------
-    BadInput
-        The files are another deployment's, and the index has results of its own.
+    Raises `BadInput`: the files are another deployment's, and the index has results of its own.
     """
     deployment.take_over()
     lost = (line for line in store.lines() if not store.files.has(line.file))

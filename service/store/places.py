@@ -187,10 +187,7 @@ def object_files(url: str, cache: Path, cache_bytes: int, keys: Keys | None = No
 
     So are keys, where none are passed.
 
-    Raises
-    ------
-    BadInput
-        The library is not installed, or the URL or a variable is none that it knows.
+    Raises `BadInput`: the library is not installed, or the URL or a variable is none that it knows.
     """
     try:
         from obstore.exceptions import BaseError  # noqa: PLC0415 (an extra)
@@ -227,10 +224,7 @@ def result_files(
 
     `keys` are the credentials of the bucket; None: those of the AWS_ variables.
 
-    Raises
-    ------
-    BadInput
-        The URL is none of these.
+    Raises `BadInput`: the URL is none of these.
     """
     if results_url is None:
         return DirectoryFiles(data_directory / RESULTS_DIRECTORY)

@@ -39,10 +39,7 @@ class NotCalled(Exception):
 def send(uri: str, body: bytes, headers: Mapping[str, str]) -> int:
     """Post a body; return the status of the answer, whose body is not read.
 
-    Raises
-    ------
-    NotCalled
-        The name has no address that may be called, or no answer comes in time.
+    Raises `NotCalled`: the name has no address that may be called, or no answer comes in time.
     """
     origin = Origin.of(uri)
     try:
@@ -122,7 +119,6 @@ class Outbox:
 
     Attributes
     ----------
-    calls : Calls
     origins : frozenset of Origin
         Who may be called.
     key : bytes

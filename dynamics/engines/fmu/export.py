@@ -34,7 +34,6 @@ class _Variable:
 
     Attributes
     ----------
-    name, kind, causality, variability, unit, text : str
     start : float, int, bool or None
         None: an output, which follows from the others.
     """
@@ -371,7 +370,6 @@ def export_fmu(
 
     Parameters
     ----------
-    element : MeshElement
     path : path
         Ends in ``.fmu``; appears whole or not at all.
     name : str

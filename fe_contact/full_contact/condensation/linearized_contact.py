@@ -55,7 +55,6 @@ class ActiveSetSolution:
         m.
     gap : (h,) array
         Weak gaps, m^2.
-    iterations : int
     residual : float
         Largest breach of the laws: pressures below zero over the largest one, gaps below zero over the lag,
         and the torque's relative error.

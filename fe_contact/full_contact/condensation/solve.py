@@ -215,7 +215,6 @@ def solve_full_contact(
         On gear 1, N m, > 0.
     positions : sequence of float
         By the driving gear, base pitches.
-    resolution : Resolution, optional
     estimate_error : bool
         Solve every position on a coarser mesh too and state the difference as error, at about half the cost
         again.

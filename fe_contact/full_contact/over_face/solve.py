@@ -110,7 +110,6 @@ class _FaceGeometry:
     ----------
     pair : GearPair
         Of equal face widths.
-    sites : tuple of ContactSite
     misalignment : float
         Growth of the gap over the face in the plane of action, zero at mid-face, m.
     """
@@ -354,7 +353,6 @@ def solve_full_contact_over_face(
         By the driving gear, base pitches.
     misalignments : sequence of float
         Growth of the gap over the face in the plane of action, zero at mid-face, m.
-    resolution : Resolution, optional
     estimate_error : bool
         Solve on a mesh with fewer layers and larger elements too, and state the difference as error.
     report : callable, optional

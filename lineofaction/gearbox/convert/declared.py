@@ -20,10 +20,7 @@ Part = TypeVar("Part")
 def part_of(kind: type[Part], model: BaseModel | None, name: str, **further: Any) -> Part | None:
     """Return a part of the libraries' from the table that has its fields, None if it is left out.
 
-    Raises
-    ------
-    RefusedValue
-        A value out of its bounds, named within `name`.
+    Raises `RefusedValue`: a value out of its bounds, named within `name`.
     """
     if model is None:
         return None
@@ -37,10 +34,7 @@ def in_si(kind: type[Any], *models: BaseModel) -> dict[str, Any]:
     A table has a field by its name alone, or by its name and unit: ``position`` or ``position_mm``. Of tables
     in it those are converted that are declared as parts; left out ones are left out.
 
-    Raises
-    ------
-    RefusedValue
-        A value of a part out of its bounds.
+    Raises `RefusedValue`: a value of a part out of its bounds.
     """
     facts: dict[str, Any] = {}
     for model in reversed(models):

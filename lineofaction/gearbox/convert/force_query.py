@@ -38,10 +38,7 @@ def points_of_model(query: QueryInput) -> FloatArray:
 def points_of_columns(values: FloatArray, names: Sequence[str]) -> FloatArray:
     """Return points given as columns (k, n) in the units of their names, which `check_columns` has passed.
 
-    Raises
-    ------
-    BadInput
-        There are too many points; a value is not finite or out of bounds.
+    Raises `BadInput`: there are too many points; a value is not finite or out of bounds.
     """
     if values.shape[1] > MOST_POINTS:
         advice = "Ask in several requests."
@@ -73,10 +70,7 @@ def _points(columns: dict[str, FloatArray], size: int) -> FloatArray:
 def force_answer(law: CompiledForce, points: FloatArray) -> ForceAnswer:
     """Return force, tangent stiffness and validity at points (4, n).
 
-    Raises
-    ------
-    JobFailed
-        The table gives no number somewhere.
+    Raises `JobFailed`: the table gives no number somewhere.
     """
     forces = law.force_at(points)
     if not (np.isfinite(forces.force).all() and np.isfinite(forces.stiffness).all()):

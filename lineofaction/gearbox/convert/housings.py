@@ -29,10 +29,8 @@ STEP_BEGINS = b"ISO-10303-21"
 def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
     """Return the field that holds the file of a solid, how its name ends, and what is in it.
 
-    Raises
-    ------
-    BadInput
-        Another kind of file, damaged content, or a mesh that names further files, which are not here.
+    Raises `BadInput`: another kind of file, damaged content, or a mesh that names further files, which are
+    not here.
     """
     field, suffixes = ("step_file", STEP_SUFFIXES) if housing.step_file else ("mesh_file", MESH_SUFFIXES)
     content = housing.step_file or housing.mesh_file

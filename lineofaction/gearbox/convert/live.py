@@ -35,10 +35,7 @@ Json = dict[str, Any]
 def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) -> RunPlan:
     """Plan a case; `time_budget_s` stands beside a tolerance of the case.
 
-    Raises
-    ------
-    BadInput
-        No such pair, or a request that no plan can meet.
+    Raises `BadInput`: no such pair, or a request that no plan can meet.
     """
     checked = case.checked
     with boundary_errors():
@@ -228,10 +225,7 @@ _FLANK_POINTS, _ROOT_POINTS, _TIP_POINTS = 24, 24, 5
 def outline_json(case: Case) -> Json:
     """Return the drawing of the pair of a case, see `pair_outline`, with its main figures.
 
-    Raises
-    ------
-    BadInput
-        No such pair exists.
+    Raises `BadInput`: no such pair exists.
     """
     pair = gear_pair(case)
     with boundary_errors():

@@ -24,10 +24,7 @@ Json = dict[str, Any]
 def case_warnings(checked: CheckedCase) -> list[Json]:
     """Return what is implausible about a case, before anything is computed.
 
-    Raises
-    ------
-    BadInput
-        No such pair.
+    Raises `BadInput`: no such pair.
     """
     pair, axes = checked.pair, checked.axes
     alignments = axes.misalignment, axes.center_distance_change

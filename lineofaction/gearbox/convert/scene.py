@@ -362,7 +362,6 @@ def dynamic_scene(
 
     Parameters
     ----------
-    scene : SceneInput
     databases : mapping of str to SteDatabase
         By name of the mesh; of all meshes that do not state their stiffness.
     reduced : mapping of str to ReducedHousing
@@ -390,7 +389,6 @@ def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> Scene:
 
     Parameters
     ----------
-    scene : SceneInput
     facts : mapping of str to PairFacts
         By name of the mesh.
 

@@ -58,7 +58,6 @@ def reduced_housings(
 
     Parameters
     ----------
-    scene : SceneInput
     cache : Path or None
         Directory of kept meshes and reductions.
     progress : callable

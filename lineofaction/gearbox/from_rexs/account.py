@@ -46,10 +46,7 @@ class Assumption:
     def of(cls, text: str) -> Assumption:
         """Return what ``COMPONENT.ATTRIBUTE=VALUE`` says.
 
-        Raises
-        ------
-        BadInput
-            It has another form.
+        Raises `BadInput`: it has another form.
         """
         match = _FORM.fullmatch(text.strip())
         if match is None:
@@ -135,7 +132,6 @@ class Line:
         Type and name of the component.
     item : str
         The attribute; empty for the component itself.
-    fate : Fate
     words : str
         Its name here, the formula it follows from, or the reason.
     line : int or None

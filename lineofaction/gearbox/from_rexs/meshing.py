@@ -182,7 +182,6 @@ class LoadedFlank:
 
     Attributes
     ----------
-    gear : Part
     side : str
         ``"right"`` or ``"left"``, seen from the datum face.
     flank, other : Part or None

@@ -296,10 +296,7 @@ Json = dict[str, Any]
 def unit_of_rexs(inputs: Json, _folder: Path) -> Json:
     """Return a gear unit as JSON; its scene has the cases of its meshes written out.
 
-    Raises
-    ------
-    BadInput
-        No base64, no REXS, no assumption, or as `opened`.
+    Raises `BadInput`: no base64, no REXS, no assumption, or as `opened`.
     """
     try:
         data = base64.b64decode(inputs["rexs_base64"], validate=True)

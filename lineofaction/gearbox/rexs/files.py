@@ -99,10 +99,8 @@ ENDINGS = (".rexs", ".rexsj", ".rexsz", ".rexs.zip")
 def read_rexs(path: Path) -> Document:
     """Return what a REXS file holds: XML, JSON or ZIP by its content. No other file is opened.
 
-    Raises
-    ------
-    BadInput
-        It is missing, too large, damaged, or says what a model cannot be; the message names the place.
+    Raises `BadInput`: it is missing, too large, damaged, or says what a model cannot be; the message names
+    the place.
     """
     try:
         with path.open("rb") as stream:
@@ -126,10 +124,8 @@ def parsed(data: bytes) -> Document:
 def serialized(document: Document, name: str) -> bytes:
     """Return a document in the form that the ending of a file's name says.
 
-    Raises
-    ------
-    BadInput
-        The ending is none of REXS, the form has no place for something, or the model is unsound.
+    Raises `BadInput`: the ending is none of REXS, the form has no place for something, or the model is
+    unsound.
     """
     ending = next((end for end in reversed(ENDINGS) if name.lower().endswith(end)), None)
     if ending is None:

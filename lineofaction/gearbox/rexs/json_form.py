@@ -103,11 +103,8 @@ class _Table(Element):
 def read_json(data: bytes) -> Model:
     """Return the model of a JSON text in UTF-8, with or without byte-order mark.
 
-    Raises
-    ------
-    BadInput
-        It is no JSON, nested too deep, too large, has a field twice or a number that is not finite, or is no
-        REXS.
+    Raises `BadInput`: it is no JSON, nested too deep, too large, has a field twice or a number that is not
+    finite, or is no REXS.
     """
     root = _Table.of(_Table.of(_json(data), "file").fields.get("model"), "model")
     beside: dict[str, Any] = {

@@ -50,10 +50,7 @@ def upgrade(model: Model, version: str = NEWEST) -> tuple[Model, tuple[Change, .
     Names and spellings that the changelogs of REXS rename are renamed. What they remove, move to another
     component or give another quantity stays as it is and is reported.
 
-    Raises
-    ------
-    BadInput
-        The model's version is not known.
+    Raises `BadInput`: the model's version is not known.
     """
     start, end = _version_number(model.version), _version_number(version)
     changes: list[Change] = []

@@ -154,10 +154,8 @@ def read_xml(data: bytes) -> Model:
 
     No codec is looked up by a name of the file.
 
-    Raises
-    ------
-    BadInput
-        It is not well-formed, declares a document type or an entity, is too deep or too large, or is no REXS.
+    Raises `BadInput`: it is not well-formed, declares a document type or an entity, is too deep or too large,
+    or is no REXS.
     """
     root = _root(data)
     if root.name.rpartition(":")[2] != "model":

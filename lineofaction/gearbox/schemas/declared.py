@@ -25,7 +25,6 @@ class Figure:
     ----------
     name : str
         The field of the library.
-    what : Declared
     default : object
         In SI; `MISSING` where one has to be given, None where it may be left out.
     marked : bool

@@ -332,8 +332,6 @@ def written_out(table: dict[str, Any], find: Find, housings: Collection[str]) ->
 
     Parameters
     ----------
-    table : dict
-    find : callable
     housings : collection of str
         The fields of housings whose files are read, see `_with_housing_files`.
 

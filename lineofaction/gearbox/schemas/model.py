@@ -214,7 +214,6 @@ class Spelling:
 
     Attributes
     ----------
-    option : str
     value : str, optional
         What the option stands for if it takes none.
     file : bool

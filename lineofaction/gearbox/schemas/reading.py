@@ -25,10 +25,7 @@ M = TypeVar("M", bound=BaseModel)
 def validated(model: type[M], data: object) -> M:
     """Return `data` as `model`.
 
-    Raises
-    ------
-    BadInput
-        With every fault of the data.
+    Raises `BadInput`: with every fault of the data.
     """
     try:
         return model.model_validate(data)
@@ -39,10 +36,8 @@ def validated(model: type[M], data: object) -> M:
 def read_table(source: Path | InputFile) -> dict[str, Any]:
     """Return the table a TOML or JSON file holds, with the values set over it.
 
-    Raises
-    ------
-    BadInput
-        The file is missing, too large, no text, or not well formed, or it has no place for a value.
+    Raises `BadInput`: the file is missing, too large, no text, or not well formed, or it has no place for a
+    value.
     """
     file = InputFile.of(source)
     path, text = file.path, read_text(file.path, str(file.path))
@@ -80,11 +75,8 @@ def _check_kind(model: type[BaseModel], table: dict[str, Any], path: Path) -> No
 def read_model(model: type[M], source: Path | InputFile) -> M:
     """Return a file as `model`.
 
-    Raises
-    ------
-    BadInput
-        The file, or a flank grid or housing it names, cannot be read, it is a case instead of a scene (or the
-        other way round), or with every fault of its contents.
+    Raises `BadInput`: the file, or a flank grid or housing it names, cannot be read, it is a case instead of
+    a scene (or the other way round), or with every fault of its contents.
     """
     file = InputFile.of(source)
     table = read_table(file)

@@ -22,7 +22,6 @@ def toml_table(text: str, field: str) -> dict[str, Any]:
 
     Parameters
     ----------
-    text : str
     field : str
         What the text is called in an error.
 

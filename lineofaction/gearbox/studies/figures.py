@@ -50,7 +50,6 @@ def figures_of(model: type[Part], *sources: Any, **own: Any) -> Json:
 
     Parameters
     ----------
-    model : type of Part
     *sources : object or mapping
         Results, and documents of them.
     **own

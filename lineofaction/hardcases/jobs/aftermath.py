@@ -42,10 +42,6 @@ class JobService:
 
     Attributes
     ----------
-    directory : Path
-    submissions : Submissions
-    store : ResultStore
-    scheduler : Scheduler
     log : list of dict
         What it has logged.
     """
@@ -68,10 +64,7 @@ class JobService:
     def ended(self, job: Job, disturb: Disturb | None = None) -> Job:
         """Wait for a job; `disturb` is called at every look.
 
-        Raises
-        ------
-        TimeoutError
-            It has not ended within the time a scene may take.
+        Raises `TimeoutError`: it has not ended within the time a scene may take.
         """
         latest = time.monotonic() + TIME_LIMIT
         while not (state := self.submissions.find(job.id)).ended:

@@ -240,11 +240,8 @@ _ADVICE = "For example: loa compare before.nc after.nc, or loa compare ste.nc me
 def compare(files: Sequence[Path], view: RunView, torque: float | None = None) -> Page:
     """Compare one or two tables or runs, and what was measured where one of them is a measurement.
 
-    Raises
-    ------
-    BadInput
-        The files are not one or two of a kind with at most one measurement, are damaged, or do not hold what
-        is to be compared.
+    Raises `BadInput`: the files are not one or two of a kind with at most one measurement, are damaged, or do
+    not hold what is to be compared.
     """
     measured = [file for file in files if file.suffix.lower() in (".csv", *ENDINGS)]
     results = dict(named_files([file for file in files if file not in measured]))

@@ -110,7 +110,6 @@ def line_labels(panel: Panel, row: float) -> list[_LineLabel]:
 
     Parameters
     ----------
-    panel : Panel
     row : float
         Height of one row of text, as a part of the panel's.
     """

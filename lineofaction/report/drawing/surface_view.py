@@ -54,7 +54,6 @@ def _rendered(view: _View, corners: FloatArray, value: FloatArray) -> tuple[Floa
 
     Parameters
     ----------
-    view : _View
     corners : (n, 3, 3) array
         Of the facets, counter-clockwise as seen from outside; those turned away are not seen.
     value : (n,) array

@@ -126,10 +126,8 @@ def stored_sound(inputs: Json) -> Json:
 
     Files are those of runs, seen by the view, or of recordings: ``"kind"``.
 
-    Raises
-    ------
-    BadInput
-        The run does not hold what the view names, is silent or too long; a view of a recording.
+    Raises `BadInput`: the run does not hold what the view names, is silent or too long; a view of a
+    recording.
     """
     files = [Path(file) for file in inputs["files"]]
     recordings = (_recordings if inputs["kind"] == KIND else _of_runs)(files, inputs["view"])

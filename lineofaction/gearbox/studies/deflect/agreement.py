@@ -42,8 +42,6 @@ class MeshContact:
 
     Attributes
     ----------
-    pair : GearPair or InternalGearPair
-    bodies : CondensedPair
     torques : (F,) array
         On the case's pinion, N m: those of the load cases and one on either side.
     """
@@ -131,8 +129,6 @@ class Agreement:
 
     Attributes
     ----------
-    deflection : Deflection
-    passes : int
     change : float
         Largest change of a misalignment by the last pass, over its size or `SMALL`.
     """
@@ -161,9 +157,7 @@ def in_agreement(
 
     Parameters
     ----------
-    scene : Scene
     cases : sequence of LoadCase
-    positions : int
     contacts : mapping
         Of the meshes whose load may vary over the face, by name.
     first : Deflection

@@ -22,7 +22,6 @@ class MeshFlanks:
 
     Attributes
     ----------
-    mesh, case : str
     torque : float
         On the pinion, N m.
     mean, peak_to_peak : float
@@ -70,7 +69,6 @@ class Outline:
 
     Attributes
     ----------
-    shafts, gears, bearings : tuples of str
     origin : (s, 3) array
         Left ends of the axes.
     length : (s,) array
@@ -104,15 +102,12 @@ class GearboxDeflection:
 
     Attributes
     ----------
-    deflection : Deflection
     flanks : tuple of MeshFlanks
         By load case, then by mesh; meshes in closed form have none.
     passes : int
         Of tables and deflections until they agreed.
     change : float
         Of the misalignments by the last pass, relative.
-    agreed : bool
-    outline : Outline
     cases : dict
         The cases of the meshes as they were written, by mesh.
     seconds : float

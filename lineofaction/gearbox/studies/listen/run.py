@@ -111,11 +111,8 @@ class SceneHousings:
     def pressure(self, run: RunResult, microphone_mm: tuple[float, ...]) -> Recording:
         """Return the sound pressure at a microphone in the scene's frame, the sum over the housings.
 
-        Raises
-        ------
-        BadInput
-            The microphone is not in the air, the run has no forces on bearings of a housing, or no housing
-            has a surface.
+        Raises `BadInput`: the microphone is not in the air, the run has no forces on bearings of a housing,
+        or no housing has a surface.
         """
         position = np.array(microphone_mm) * MM
         with boundary_errors():
@@ -134,10 +131,7 @@ class SceneHousings:
     def velocity(self, run: RunResult, point: str, direction: str = "") -> Recording:
         """Return the velocity of a named point along one of `DIRECTIONS`, by default the principal one.
 
-        Raises
-        ------
-        BadInput
-            No housing or several have such a point, or there is no such direction.
+        Raises `BadInput`: no housing or several have such a point, or there is no such direction.
         """
         owners = [name for name, body in self.housings.items() for each in body.points if each.name == point]
         _require_point(point, [each.name for body in self.housings.values() for each in body.points])
@@ -177,7 +171,6 @@ class HeardRun:
     ----------
     run : str
         Its name, or its content hash.
-    recording : Recording
     figures : SoundFigures or None
         Of a sound pressure.
     other_housings : tuple of str
@@ -217,10 +210,7 @@ class HeardRun:
 def heard_run(name: str, run: RunResult, housings: SceneHousings, receiver: Receiver) -> HeardRun:
     """Return a run as a receiver hears it.
 
-    Raises
-    ------
-    BadInput
-        As `SceneHousings.pressure` and `velocity`.
+    Raises `BadInput` as `SceneHousings.pressure` and `velocity`.
     """
     time = np.linspace(float(run.time[0]), float(run.time[-1]), POINTS)
     speed = np.interp(time, run.time, np.abs(run.speed[run.shaft.index(driving_shaft(run, 0))]))

@@ -45,12 +45,10 @@ class Roots:
 
     Attributes
     ----------
-    pinion, wheel : _GearRoots
     torque, normal_force : float
         On the driving gear, N m; F_bn, N.
     misalignment, center_distance_change : float
         m.
-    receipt : dict
     warnings : list of dict
         In the fields and units of the case.
     """

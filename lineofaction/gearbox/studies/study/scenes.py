@@ -49,7 +49,6 @@ def places_of(scene: SceneInput, field: str, path: str) -> tuple[Place, ...]:
 
     Parameters
     ----------
-    scene : SceneInput
     field : str
         What the path is called in an error.
     path : str
@@ -119,10 +118,7 @@ def check_flank(field: str, path: str, place: Place) -> None:
 def with_value(table: Json, place: Place, value: float) -> None:
     """Put a value into the scene as JSON, in place; a list takes it in all its entries.
 
-    Raises
-    ------
-    BadInput
-        A list has no such entry.
+    Raises `BadInput`: a list has no such entry.
     """
     *way, last = place
     at: Any = table

@@ -54,7 +54,6 @@ class Swept:
         Of a `SweepAxis`.
     path : str
         As in the case file; ``*`` stands for both gears.
-    words : str
     what : Figure or None
         The declaration of a figure of the flanks.
     """
@@ -113,10 +112,7 @@ SWEEPABLE = {
 def _axis_of(case: CheckedCase, text: str) -> SweepAxis:
     """Return the axis that ``NAME`` or ``NAME=FIRST:LAST:STEP`` says.
 
-    Raises
-    ------
-    BadInput
-        There is no such name, or no such values.
+    Raises `BadInput`: there is no such name, or no such values.
     """
     typed, equals, values = text.partition("=")
     swept = _named(text, typed.strip())
@@ -210,7 +206,6 @@ class SweepResult:
 
     Attributes
     ----------
-    sweep : Sweep
     shown : tuple of str
         Of `QUANTITIES`, those that there are.
     """

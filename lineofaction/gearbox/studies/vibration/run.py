@@ -41,7 +41,6 @@ class HousingVibrationResult:
 
     Attributes
     ----------
-    analysis : VibrationAnalysis
     natural_frequency : (m,) array
         Of the housing with its seats free, Hz; those kept.
     mode : int
