@@ -33,7 +33,7 @@ def changed(example: Table, changes: Mapping[str, Any]) -> Table:
         *places, last = [int(part) if part.isdigit() else part for part in re.findall(r"\w+", path)]
         inner: Any = table
         for place in places:
-            inner = inner[place]
+            inner = inner[place] if isinstance(place, int) else inner.setdefault(place, {})
         if value is DROP:
             del inner[last]
         elif isinstance(inner, list) and last == len(inner):
