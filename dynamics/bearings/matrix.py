@@ -30,7 +30,6 @@ def check_matrix(
     ----------
     field : str
         Name for errors.
-    rows : sequence of rows
     sizes : tuple of int
         Allowed numbers of rows.
     precision : float

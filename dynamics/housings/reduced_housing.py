@@ -144,8 +144,6 @@ class ReducedHousing:
         Of these modes.
     body : RigidBody or None
         Of the mesh.
-    checks : ReductionChecks or None
-    surface : SurfaceMotion or None
     mount_damping : (r, r) array or None
         What of `damping` is that of the mounts; None: nothing, or not known apart.
     mount_stiffness : (r, r) array or None

@@ -116,7 +116,6 @@ def sound_sensitivities(
     ----------
     model, speed, orders
         As of `forced_power`; the level is the `largest_level`.
-    flanks : iterable of DesignFigure
     scenes : callable
         From one of them to the scene by its value.
     progress : callable

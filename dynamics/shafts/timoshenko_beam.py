@@ -195,7 +195,6 @@ def timoshenko_beam(
 
     Parameters
     ----------
-    sections : sequence of BeamSection
     stations : sequence of float
         Positions where forces act, m from the left end; each becomes a node.
     longest : float

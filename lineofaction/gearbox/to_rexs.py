@@ -155,7 +155,6 @@ def exported(
         As read, of any version.
     cases : sequence of StageCase
         Of the document; a database belongs to the stage whose pair its case has, and to those equal to it.
-    databases : sequence of SteDatabase
     torque : float, optional
         On gear 1, N m; each table's largest by default.
 

@@ -55,7 +55,6 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
 
     Parameters
     ----------
-    notes : sequence of Note
     x, y : Axis
         Of the panel; `x` with limits, and `y`, too, where the panel ends with `y_range`.
     y_range : (float, float)

@@ -157,7 +157,6 @@ def in_agreement(
 
     Parameters
     ----------
-    cases : sequence of LoadCase
     contacts : mapping
         Of the meshes whose load may vary over the face, by name.
     first : Deflection

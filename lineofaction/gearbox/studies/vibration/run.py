@@ -45,7 +45,6 @@ class HousingVibrationResult:
         Of the housing with its seats free, Hz; those kept.
     mode : int
         From 1; 0: none is drawn.
-    mode_shape : SurfaceShape or None
     """
 
     analysis: VibrationAnalysis
