@@ -15,7 +15,7 @@ from fe_contact.geometry import ParallelAxes, Shaft, tooth_profile
 from fe_contact.geometry.flank_profile import critical_section, tangent_angle
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.hertz import contact_modulus, peak_pressure
-from fe_contact.material import STEEL, Material
+from fe_contact.material import STEEL
 from fe_contact.plausibility.check import CHECKS, assessed
 from fe_contact.types import FloatArray
 
@@ -137,7 +137,9 @@ def _sizes(pair: ParallelAxes) -> Iterator[Finding]:
 
 
 def _gear(name: str, gear: Toothing) -> Iterator[Finding]:
-    yield from _material(name, gear.material)
+    material, field = gear.material, f"{name}.material"
+    yield from assessed("youngs_modulus", f"{field}.youngs_modulus", material.youngs_modulus, "Pa")
+    yield from assessed("density", f"{field}.density", material.density, "kg/m^3")
     module = gear.normal_module
     ratio = f"{gear.face_width / module:.3g} modules of face width are unusual"
     yield from assessed("face_width", f"{name}.face_width", gear.face_width, "m", scale=module, reason=ratio)
@@ -173,11 +175,6 @@ def _amount(field: str, amount: float, module: float) -> Iterator[Finding]:
         findings += assessed("relief_over_module", field, amount, "m", scale=module, reason=reason)
     for finding in findings:
         yield replace(finding, low=low, high=high * module)
-
-
-def _material(name: str, material: Material) -> Iterator[Finding]:
-    yield from assessed("youngs_modulus", f"{name}.material.youngs_modulus", material.youngs_modulus, "Pa")
-    yield from assessed("density", f"{name}.material.density", material.density, "kg/m^3")
 
 
 def _shafts(pair: ParallelAxes) -> Iterator[Finding]:

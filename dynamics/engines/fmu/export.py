@@ -47,11 +47,6 @@ class _Variable:
     start: float | None = None
 
 
-def _variables(element: MeshElement) -> tuple[_Variable, ...]:
-    """Return all variables, of each kind those that can be set first."""
-    return (*_inputs(element), *_parameters(element), *_REAL_OUTPUTS, *_INTEGER_OUTPUTS)
-
-
 def _of_kind(chosen: Sequence[_Variable], kind: str) -> list[_Variable]:
     """Return those of `kind` in the order of their value references."""
     return [variable for variable in chosen if variable.kind == kind]
@@ -408,7 +403,9 @@ def export_fmu(
 
 def _content(element: MeshElement, name: str) -> dict[str, bytes]:
     """Return everything but the binary, by its path in the file."""
-    chosen, table = _variables(element), _table_content(element.table)
+    # of each kind those that can be set first
+    chosen = (*_inputs(element), *_parameters(element), *_REAL_OUTPUTS, *_INTEGER_OUTPUTS)
+    table = _table_content(element.table)
     own = {item.name: item.read_bytes() for item in files(__package__).joinpath("sources").iterdir()}
     compiled = sorted(file for file in own if file.endswith(".c"))
 

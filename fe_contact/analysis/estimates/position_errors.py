@@ -200,14 +200,11 @@ def errors_by_halves(knots: FloatArray, values: FloatArray, period: int) -> Posi
         Bands (K, F) from what each position's neighbors miss of it; of the curves (22, F) the larger change
         of the two halves.
     """
-    change = np.maximum(*(_changed(knots, values, slice(first, None, 2), period) for first in (0, 1)))
+    halves = slice(0, None, 2), slice(1, None, 2)
+    changes = (quantity_changes(knots[half], values[half], values, period, knots) for half in halves)
+    change = np.maximum(*changes)
     curves = LEFT_BY_HALF * change
     curves[PEAK_TO_PEAK] = np.maximum(curves[PEAK_TO_PEAK], PASSED_BY * missed_peaks(knots, values, period))
     missed = NEXT_SPACING * _predicted_failure(Axis(knots, float(period)), values)
     beside = np.maximum(missed, np.maximum(np.roll(missed, 1, axis=0), np.roll(missed, -1, axis=0)))
     return PositionErrors(beside, curves)
-
-
-def _changed(knots: FloatArray, values: FloatArray, half: slice, period: int) -> FloatArray:
-    """Return what the other half of the positions changes, (22, F) in m."""
-    return quantity_changes(knots[half], values[half], values, period, knots)

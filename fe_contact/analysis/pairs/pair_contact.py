@@ -36,10 +36,9 @@ from fe_contact.contact import (
     with_gaps,
 )
 from fe_contact.effects import ContactScene, compose
-from fe_contact.geometry import ParallelAxes, Toothing
-from fe_contact.mesh import MeshRecipe
+from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import condensed_teeth
-from fe_contact.planning.plan import FaceDiscretization, Plan, PlaneDiscretization
+from fe_contact.planning.plan import FaceDiscretization, Plan
 from fe_contact.types import FloatArray, IntArray
 from fe_contact.workers import InProcess, Workers
 from model_studies.progress import Report, unreported
@@ -228,7 +227,9 @@ def pair_contact(
         # a ring's right flank is the loaded one as seen from the other side: its z runs against the pinion's
         return PairContact(pair, plan, face=(first, second.mirrored() if pair.internal else second))
     recipes = made.coarse_recipes if coarse else made.recipes
-    flat = _plane_flanks(gears, made, recipes, _teeth(pair, distance_changes), cache)
+    teeth = _teeth(pair, distance_changes)  # those that can touch at once
+    pinion, wheel = flank_compliances(gears, recipes, made.hypothesis, teeth=teeth, cache=cache)
+    flat = pinion, wheel
     if made.finite_width is None or coarse:
         return PairContact(pair, plan, plane=flat)
     ends = finite_width_compliances(gears, made.finite_width, flat[0].teeth.size, cache=cache)
@@ -260,18 +261,6 @@ def _teeth(pair: ParallelAxes, distance_changes: FloatArray | None) -> int:
     changes = () if distance_changes is None else distance_changes.tolist()
     others = [pair.at_center_distance(pair.center_distance + change) for change in changes if change]
     return max(condensed_teeth(each) for each in (pair, *others))
-
-
-def _plane_flanks(
-    gears: tuple[Toothing, Toothing],
-    made: PlaneDiscretization,
-    recipes: tuple[MeshRecipe, MeshRecipe],
-    teeth: int,
-    cache: Path | None,
-) -> PlaneFlanks:
-    """Condense the teeth that can touch at once."""
-    first, second = flank_compliances(gears, recipes, made.hypothesis, teeth=teeth, cache=cache)
-    return first, second
 
 
 # The sweep over misalignment and center distance: one contact problem per operating point of the table.

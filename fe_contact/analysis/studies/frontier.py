@@ -410,7 +410,7 @@ def frontier(
     outcomes, left_out = run_fidelities(
         [fidelity for fidelity in FIDELITIES if fidelity.name in names],
         checked,
-        _warm_up,
+        lambda valid: warm_up(across_face=any(fidelity.name.startswith("3d") for fidelity in valid)),
         lambda fidelity: _whole_table(fidelity, checked),
         (MeshError, SolveError),
         progress,
@@ -427,10 +427,6 @@ def frontier(
     )
     tables = {outcome.fidelity.name: outcome.result for outcome in outcomes}
     return study if full_contact is None else _beside(study, checked, full_contact, tables, progress)
-
-
-def _warm_up(fidelities: Sequence[_Fidelity]) -> None:
-    warm_up(across_face=any(fidelity.name.startswith("3d") for fidelity in fidelities))
 
 
 def _whole_table(fidelity: _Fidelity, checked: Checked) -> SteDatabase:

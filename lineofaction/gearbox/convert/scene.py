@@ -457,11 +457,7 @@ def _assembled(
             rolling_bearings=_all(scene, "rolling_bearings", rolling_bearing_of),
             **laws,
             loads=_all(scene, "loads", _load_torque),
-            forces=_all(
-                scene,
-                "forces",
-                _force,
-            ),
+            forces=_all(scene, "forces", _force),
             unbalances=_all(scene, "unbalances", _plain(Unbalance)),
             outputs=outputs,
             integration=integration,

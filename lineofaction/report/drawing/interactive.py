@@ -160,7 +160,10 @@ def plotly_figure(figure: Figure) -> Json:
         layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
         if repeats_below(panels, index):
             layout["xaxis" + suffix] |= {"title": {"text": ""}}
-        layout["yaxis" + suffix] = _axis(_upright(panel)) | frame
+        upright = panel.y
+        if any(line.label for line in panel.lines):  # with limits, so that the places of labels are known
+            upright = replace(panel.y, limits=vertical_limits(panel))
+        layout["yaxis" + suffix] = _axis(upright) | frame
         if panel.equal:
             layout["xaxis" + suffix] |= {"scaleanchor": "y" + suffix, "constrain": "domain"}
         layout["annotations"] += _panel_title(panel, suffix) + _notes(panel, suffix)
@@ -187,13 +190,6 @@ def _plain(text: str) -> str:
 def _margin(panels: tuple[Panel, ...]) -> int:
     rows = [row for panel in panels for line in panel.lines for row in line.label.split("\n")]
     return 24 + math.ceil(_LABEL_CHARACTER * max(map(len, rows), default=0))
-
-
-def _upright(panel: Panel) -> Axis:
-    """Return the vertical axis; beside labels at lines with limits, so that their places are known."""
-    if not any(line.label for line in panel.lines):
-        return panel.y
-    return replace(panel.y, limits=vertical_limits(panel))
 
 
 def _line_labels(panel: Panel, suffix: str) -> list[Json]:

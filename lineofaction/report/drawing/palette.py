@@ -46,9 +46,6 @@ def ordered(index: int, count: int) -> str:
 def cividis(fraction: float) -> str:
     """Return the color at a fraction, 0 to 1, of the ordered palette."""
     low = min(int(fraction * 10), 9)
-    return _blend(CIVIDIS[low], CIVIDIS[low + 1], fraction * 10 - low)
-
-
-def _blend(first: str, second: str, weight: float) -> str:
-    parts = ((int(first[i : i + 2], 16), int(second[i : i + 2], 16)) for i in (1, 3, 5))
+    weight = fraction * 10 - low
+    parts = ([int(color[i : i + 2], 16) for color in CIVIDIS[low : low + 2]] for i in (1, 3, 5))
     return "#" + "".join(f"{round(a + (b - a) * weight):02X}" for a, b in parts)

@@ -262,10 +262,6 @@ def _words(result: HousingVibrationResult) -> str:
     return text
 
 
-def _figure(result: HousingVibrationResult) -> Figure:
-    return _shape_figure(result) or _velocity_figure(result)
-
-
 def _page(result: HousingVibrationResult) -> Page:
     shape = _shape_figure(result)
     figures = (_velocity_figure(result), _contribution_figure(result), _transfer_figure(result))
@@ -315,4 +311,6 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
     yield from model_text(analysis.facts)
 
 
-PAGE = Presentation(_figure, _page, _text, series=_series)
+PAGE = Presentation(
+    lambda result: _shape_figure(result) or _velocity_figure(result), _page, _text, series=_series
+)

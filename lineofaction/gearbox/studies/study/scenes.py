@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from pydantic import BaseModel, ValidationError
@@ -29,9 +29,6 @@ from lineofaction.gearbox.schemas.declared import figures
 from lineofaction.gearbox.schemas.faults import faults_of, model_in
 from lineofaction.gearbox.schemas.scene import SceneInput
 from model_studies import LeftOut
-
-if TYPE_CHECKING:
-    pass
 
 Json = dict[str, Any]
 Place = tuple[str | int, ...]
