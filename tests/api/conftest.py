@@ -3,16 +3,19 @@
 from migrated_once import migrated_once
 from postgres_server import database_url, postgres
 from s3_server import s3_objects, s3_url
-from service_surroundings import quiet_log, unhurried_readiness, workers_find_fakes
+from service_surroundings import client, quiet_log, unhurried_readiness, workers_find_fakes
+from study_service import served
 from warm_once import warm_once, warm_processes
 
 __all__ = [
+    "client",
     "database_url",
     "migrated_once",
     "postgres",
     "quiet_log",
     "s3_objects",
     "s3_url",
+    "served",
     "unhurried_readiness",
     "warm_once",
     "warm_processes",

@@ -10,7 +10,7 @@ import structlog.contextvars
 import structlog.testing
 from fastapi.testclient import TestClient
 from httpx2 import Response
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY, bearing
 
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.problems import RateExceeded, Unauthorised
@@ -21,25 +21,18 @@ from service.settings import Settings
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    """Settings of a service on loopback."""
     return Settings(data_directory=tmp_path / "data")
 
 
 @pytest.fixture
 def secret(settings: Settings) -> str:
-    """A key, made before the service starts."""
     return KeyFile(settings.key_file).add("bench", requests_per_minute=50)
 
 
 @pytest.fixture
 def http(settings: Settings, secret: str) -> Iterator[TestClient]:
-    """A caller without a key of a service that has one."""
     with TestClient(create_app(settings, REGISTRY), raise_server_exceptions=False) as found:
         yield found
-
-
-def bearing(key: str) -> dict[str, str]:
-    return {"Authorization": f"Bearer {key}"}
 
 
 def test_every_path_but_health_readiness_and_the_page_asks_for_a_key(http: TestClient) -> None:
@@ -132,7 +125,7 @@ def test_a_key_has_as_many_unfinished_jobs_as_it_may_and_leaves_room_for_others(
 
     def enter(number: float, who: dict[str, str]) -> Response:
         wish = {"mode": "hang", "number": number}
-        return http.post("/v1/processes/fake/execution", json={"inputs": {"wish": wish}}, headers=who)
+        return http.post(EXECUTION, json={"inputs": {"wish": wish}}, headers=who)
 
     with TestClient(create_app(settings, REGISTRY), raise_server_exceptions=False) as http:
         first, second = enter(1.0, few), enter(2.0, few)

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 from running_service import until
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 
 from service.access.keyring import KeyFile
 from service.app import create_app
@@ -21,7 +21,6 @@ ENDED = ("successful", "failed", "dismissed")
 
 @pytest.fixture
 def http(tmp_path: Path) -> Iterator[TestClient]:
-    """A running app with the fake process."""
     settings = Settings(data_directory=tmp_path, workers=2, queue_limit=6)
     with TestClient(create_app(settings, REGISTRY)) as found:
         yield found
@@ -34,7 +33,6 @@ def idle(tmp_path: Path) -> TestClient:
 
 
 def submitted(http: TestClient, *wishes: dict[str, Any], name: str | None = None, **shared: Any) -> Any:
-    """Submit a batch and return the answer."""
     jobs = [{"wish": wish} for wish in wishes]
     headers = {} if name is None else {"Idempotency-Key": name}
     body = {"process": "fake", "inputs": {"wish": shared}, "jobs": jobs}
@@ -42,14 +40,12 @@ def submitted(http: TestClient, *wishes: dict[str, Any], name: str | None = None
 
 
 def ended(http: TestClient, batch: str) -> dict[str, Any]:
-    """Wait for a batch."""
     until(lambda: http.get(f"/v1/jobs/{batch}").json()["status"] in ENDED)
     status: dict[str, Any] = http.get(f"/v1/jobs/{batch}").json()
     return status
 
 
 def children(http: TestClient, batch: str) -> list[dict[str, Any]]:
-    """Return the jobs of a batch, in order."""
     found = http.get("/v1/jobs", params={"parent": batch}).json()["jobs"]
     return sorted(found, key=lambda job: job["place"])
 
@@ -119,7 +115,7 @@ def test_a_failed_job_is_said_and_the_rest_goes_on(http: TestClient) -> None:
 
 
 def test_equal_jobs_and_those_of_others_share_their_computation(http: TestClient, tmp_path: Path) -> None:
-    alone = http.post("/v1/processes/fake/execution", json={"inputs": {"wish": {"text": "x"}}}).json()
+    alone = http.post(EXECUTION, json={"inputs": {"wish": {"text": "x"}}}).json()
     batch = submitted(http, {"text": "x"}, {"text": "x"}, {"text": "y"}).json()["jobID"]
     assert ended(http, batch)["status"] == "successful"
     submissions = http.app.state.context.submissions  # type: ignore[attr-defined]
@@ -207,9 +203,7 @@ def test_the_same_request_is_the_same_batch(idle: TestClient) -> None:
 def test_dismissal_of_a_batch_is_that_of_its_jobs(http: TestClient) -> None:
     done = submitted(http, {"text": "kept"}).json()["jobID"]
     ended(http, done)
-    alone = http.post(
-        "/v1/processes/fake/execution", json={"inputs": {"wish": {"text": "o", "mode": "hang"}}}
-    )
+    alone = http.post(EXECUTION, json={"inputs": {"wish": {"text": "o", "mode": "hang"}}})
     wishes = [{"text": "kept"}, {"mode": "hang"}, {"mode": "hang", "text": "o"}]
     batch = submitted(http, *wishes).json()["jobID"]
     assert http.delete(f"/v1/jobs/{batch}").json()["status"] == "dismissed"

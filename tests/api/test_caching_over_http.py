@@ -33,7 +33,6 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClie
 
 
 def directives(answer: Response) -> set[str]:
-    """Return what an answer says to caches."""
     return {part.strip() for part in answer.headers.get("cache-control", "").split(",")}
 
 

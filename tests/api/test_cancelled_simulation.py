@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
+from own_process import children, command
 from running_service import lives, until
 from scene_files import scene_file
 
@@ -50,18 +51,10 @@ def client(tmp_path: Path, data: Path) -> Iterator[LineOfActionClient]:
 
 def workers() -> list[int]:
     """Children of this process that run a job."""
-    found = []
-    for entry in Path("/proc").iterdir():
-        if not entry.name.isdigit():
-            continue
-        try:
-            parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
-            command = (entry / "cmdline").read_bytes()
-        except (FileNotFoundError, ProcessLookupError, PermissionError):
-            continue
-        if parent == os.getpid() and b"service.worker.child\0" in command and b"fork_server" not in command:
-            found.append(int(entry.name))
-    return found
+    commands = {pid: command(pid) for pid in children(os.getpid())}
+    return [
+        pid for pid, own in commands.items() if b"service.worker.child\0" in own and b"fork_server" not in own
+    ]
 
 
 def resident_bytes(pid: int) -> int:

@@ -30,7 +30,7 @@ from shown_effects import check_effects_shown
 from small_inputs import small_inputs
 from study_rows import ROWS, StudyRow
 from study_runs import StudyRuns, unmeasured, without_file
-from study_service import Served, service_on_bodies
+from study_service import Served
 from typer.main import get_command
 from typer.testing import CliRunner
 
@@ -53,15 +53,7 @@ BEFORE = {"compliance", "contact", "housing"}
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Iterator[Served]:
-    """One running service with its real processes, on the bodies that all tests share."""
-    with service_on_bodies(tmp_path_factory.mktemp("service") / "data", condensed_bodies) as running:
-        yield running
-
-
-@pytest.fixture(scope="module")
 def table() -> SteDatabase:
-    """The table of the small case."""
     return workbench.analyze(small_inputs("analyze")["case"])
 
 
@@ -69,7 +61,6 @@ def table() -> SteDatabase:
 def runs(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, served: Served
 ) -> Iterator[StudyRuns]:
-    """A study, and its answers."""
     row: StudyRow = request.param
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(surface_view, "ACROSS", 90)  # pictures of surfaces are coarse
@@ -213,7 +204,6 @@ READERS: dict[str, Callable[[StudyRuns, Path, str], None]] = {
 
 
 def pictures(page: Page) -> list[str]:
-    """Return the keys of the figures of a page."""
     return [figure.key for section in page.sections for figure in section.figures]
 
 
@@ -250,6 +240,8 @@ def test_the_terminal_shows_tables_headlines_and_files(runs: StudyRuns) -> None:
     assert all(
         f"{headline.name}: {headline.value}" in line for headline, line in zip(headlines, last, strict=False)
     )
+    assert all(re.match(said, line) for said, line in zip(runs.row.ends, last, strict=False)), last
+    assert len(runs.row.ends) <= len(headlines)
     assert re.match(r"cost [\d.e+]+ CPU s", lines[-2 - len(headlines)])
 
 
@@ -428,6 +420,7 @@ def test_a_dismissed_job_has_no_result(runs: StudyRuns) -> None:
     assert http.delete(place).json()["status"] == "dismissed"
     gone = http.get(f"{place}/results")
     assert (gone.status_code, gone.headers["content-type"]) == (410, "application/problem+json")
+    assert gone.json()["type"].endswith("job-dismissed")
     counts = http.app.state.context.submissions.counts  # type: ignore[attr-defined]
     until(lambda: not {"accepted", "running"} & set(counts()))
     assert http.get(place).json()["status"] == "dismissed"

@@ -13,7 +13,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from httpx2 import Response
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 from small_table import small_table
 from walked_routes import WalkedRoute, walked_routes
 
@@ -66,7 +66,6 @@ class Two:
     keys: dict[str, str]
 
     def send(self, who: str, walked: WalkedRoute, job: str = "", key: str = "") -> Response:
-        """Send a request to a route."""
         names = {
             "job_id": job or self.job,
             "key": key or key_at(walked),
@@ -105,7 +104,6 @@ def two() -> Any:
 
 
 def _let_expire(name: str) -> None:
-    """Let the time of a key be over."""
     content = json.loads(_settings.key_file.read_text())
     for entry in content["keys"]:
         if entry["name"] == name:
@@ -184,7 +182,6 @@ def test_nothing_of_another_project_is_found(two: Two, walked: WalkedRoute, who:
 
 
 def _without(answer: Response, job: str, key: str) -> str:
-    """Return an answer without what its caller named."""
     return answer.text.replace(job, "JOB").replace(key, "KEY")
 
 
@@ -207,7 +204,6 @@ def test_a_report_compares_nothing_with_another_projects(two: Two) -> None:
 
 
 def _table(name: str) -> Path:
-    """Write a table."""
     file = _settings.data_directory / name
     small_table().to_netcdf(file)
     return file
@@ -236,9 +232,7 @@ def test_a_job_of_others_in_the_project_is_theirs_to_dismiss_or_the_operators(tw
     body = {"inputs": {"wish": {"mode": "hang"}}}
 
     def enter(who: str) -> str:
-        return str(
-            two.http.post("/v1/processes/fake/execution", json=body, headers=headers[who]).headers["location"]
-        )
+        return str(two.http.post(EXECUTION, json=body, headers=headers[who]).headers["location"])
 
     theirs, own = enter("owner"), enter("no operate")
     refused = two.http.delete(theirs, headers=headers["no operate"])

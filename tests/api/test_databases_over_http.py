@@ -1,4 +1,4 @@
-"""Databases as resources: metadata, file and force queries of a real table."""
+"""Databases as resources: metadata and file of a real table; force queries: test_queries_over_http.py."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import hashlib
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from small_table import small_table
@@ -24,7 +23,6 @@ NETCDF = {"Accept": "application/x-netcdf"}
 
 @pytest.fixture
 def client(tmp_path: Path) -> Iterator[TestClient]:
-    """A client of an app that holds one table."""
     app = create_app(Settings(data_directory=tmp_path))
     file = tmp_path / "table.nc"
     small_table().to_netcdf(file)
@@ -62,40 +60,6 @@ def test_metadata_is_the_default_and_in_boundary_units(client: TestClient) -> No
         client.get(f"/v1/results/{KEY}", headers={"Accept": "text/html, application/x-netcdf"}).content[1:4]
         == b"HDF"
     )
-
-
-def test_forces_are_those_of_the_table_in_boundary_units(client: TestClient) -> None:
-    position, deflection_um = [0.0, 0.3, 0.7], [3.0, -1.0, 1e4]
-    answer = client.post(
-        f"/v1/databases/{KEY}/query", json={"position": position, "deflection_um": deflection_um}
-    ).json()
-    sample = small_table().force_at(np.array(position), np.array(deflection_um) * 1e-6)
-    assert answer["force_n"] == pytest.approx(sample.force.tolist(), rel=1e-12)
-    assert answer["stiffness_n_per_um"] == pytest.approx((sample.stiffness * 1e-6).tolist(), rel=1e-12)
-    assert answer["validity"] == ["inside", "lifted_off", "above_table"]
-
-
-def test_one_position_serves_many_deflections(client: TestClient) -> None:
-    body = {"position": [0.1], "deflection_um": [1.0, 2.0, 3.0]}
-    force = client.post(f"/v1/databases/{KEY}/query", json=body).json()["force_n"]
-    assert force == sorted(force) and len(set(force)) == 3
-
-
-@pytest.mark.parametrize(
-    ("body", "field"),
-    [
-        ({"position": [0.0, 0.1], "deflection_um": [1.0, 2.0, 3.0]}, "deflection_um"),
-        ({"position": [], "deflection_um": [1.0]}, "position"),
-        ({"position": ["0"], "deflection_um": [1.0]}, "position[0]"),
-        ({"position": [0.0]}, "deflection_um"),
-    ],
-)
-def test_a_query_that_cannot_be_answered_names_the_field(
-    client: TestClient, body: object, field: str
-) -> None:
-    answer = client.post(f"/v1/databases/{KEY}/query", json=body)
-    assert answer.status_code == 422
-    assert [fault["field"] for fault in answer.json()["errors"]] == [field]
 
 
 def test_a_damaged_table_is_refused_not_served(client: TestClient) -> None:

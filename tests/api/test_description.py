@@ -98,7 +98,6 @@ def test_results_are_typed_by_process() -> None:
 
 
 def linted(tmp_path: Path, linter: str, *options: str) -> str:
-    """Return what a linter of npm complains about."""
     if not (LINTERS / linter).exists():
         pytest.skip(f"no {linter} on this machine: scripts/test installs it where npm is")
     (tmp_path / "openapi.json").write_text(json.dumps(DESCRIPTION))

@@ -30,7 +30,6 @@ def client(tmp_path: Path, database_url: str | None) -> Iterator[TestClient]:
 
 
 def entered(client: TestClient, process: str = "analyze", relief: float = 0.0, **headers: str) -> Json:
-    """Return the job of the example with some tip relief."""
     pinion = CASE["pair"]["pinion"] | {"tip_relief_um": relief, "tip_relief_length_mm": 1.5}
     body = {"inputs": {"case": CASE | {"pair": CASE["pair"] | {"pinion": pinion}}}}
     answer = client.post(f"/v1/processes/{process}/execution", json=body, headers=headers)
@@ -39,7 +38,6 @@ def entered(client: TestClient, process: str = "analyze", relief: float = 0.0, *
 
 
 def relieved(before: float, value: float) -> list[Json]:
-    """Return the difference in tip relief."""
     return [{"field": "case.pair.pinion.tip_relief_um", "before": before, "value": value}]
 
 

@@ -4,38 +4,26 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable, Coroutine, Iterator
+from collections.abc import Callable, Coroutine
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
 from running_service import until
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION
 
-from service.app import create_app
 from service.routes import events
-from service.settings import Settings
-
-
-@pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
-    """A client of a running app."""
-    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as found:
-        yield found
 
 
 def execute(client: TestClient, **wish: Any) -> str:
-    """Enter a job; return its path."""
-    answer = client.post("/v1/processes/fake/execution", json={"inputs": {"wish": wish}})
+    answer = client.post(EXECUTION, json={"inputs": {"wish": wish}})
     return str(answer.headers["location"])
 
 
 def documents(text: str) -> list[dict[str, Any]]:
-    """Return the status documents of a stream."""
     blocks = [block for block in text.split("\n\n") if block and not block.startswith(":")]
     assert all(block.startswith("event: status\nid: ") for block in blocks)
     return [json.loads(block.partition("data: ")[2]) for block in blocks]

@@ -36,7 +36,6 @@ DRAWS = 40
 
 @pytest.fixture(scope="module")
 def home(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Path:
-    """Where results are, and bodies condensed once."""
     folder = tmp_path_factory.mktemp("read")
     find_condensed(condensed_bodies, folder)
     return folder
@@ -44,7 +43,6 @@ def home(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Pa
 
 @pytest.fixture(scope="module")
 def http(home: Path) -> Iterator[TestClient]:
-    """The service that has them."""
     with TestClient(create_app(Settings(data_directory=home)), raise_server_exceptions=False) as client:
         yield client
 

@@ -42,7 +42,6 @@ CONFIG = {
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A running service whose work is written."""
     with written_service(tmp_path_factory.mktemp("foreign")) as running:
         yield running
 
@@ -67,7 +66,6 @@ def generated(service: Service, tmp_path_factory: pytest.TempPathFactory) -> Ite
 
 
 def part(name: str) -> ModuleType:
-    """Return a module of the generated client."""
     return importlib.import_module(f"{PACKAGE}.{name}")
 
 
@@ -127,7 +125,6 @@ def test_owslib_runs_a_process(service: Service, process: str) -> None:
 
 @pytest.fixture(scope="module")
 def working(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A running service that computes."""
     with running_service(tmp_path_factory.mktemp("working"), default_registry()) as running:
         yield running
 

@@ -67,7 +67,6 @@ def whole(tmp_path: Path) -> Iterator[Target]:
 
 
 def places(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
-    """Return the paths of all parts of a body."""
     inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
     return [path, *(deeper for key, part in inner for deeper in places(part, (*path, key)))]
 
@@ -88,7 +87,6 @@ def spoiled(chance: random.Random, body: Any) -> Any:
 
 
 def _spoil_table(chance: random.Random, table: dict[Any, Any], key: Any) -> None:
-    """Change one entry of a table."""
     deed = chance.choice(("odd", "odd", "near", "drop", "rename", "add"))
     if deed == "near" and isinstance(table.get(key), int | float):
         table[key] = table[key] * chance.choice((-1, 0, 0.5, 0.99, 1.01, 2, 10, 1000))
@@ -105,7 +103,6 @@ def _spoil_table(chance: random.Random, table: dict[Any, Any], key: Any) -> None
 
 
 def _spoil_list(chance: random.Random, values: list[Any], index: int) -> None:
-    """Change one entry of a list."""
     deed = chance.choice(("odd", "drop", "double", "turn", "many"))
     if deed == "odd":
         values[index] = copy.deepcopy(chance.choice(ODD))

@@ -14,7 +14,7 @@ import structlog.testing
 from fastapi.testclient import TestClient
 from running_service import until
 from served_app import served
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY, bearing
 
 from lineofaction.gearbox.problems import TooManyHeld, TooManyRequests
 from service.access.capacity import Held
@@ -22,17 +22,10 @@ from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings
 
-EXECUTION = "/v1/processes/fake/execution"
-
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    """Settings of a service on loopback."""
     return Settings(data_directory=tmp_path / "data")
-
-
-def bearing(key: str) -> dict[str, str]:
-    return {"Authorization": f"Bearer {key}"}
 
 
 def test_what_is_held_is_counted_by_name_and_given_back() -> None:
@@ -81,7 +74,6 @@ def test_a_key_holds_as_many_streams_as_it_may_and_leaves_others_theirs(at: str,
 
 
 def _taken(http: httpx2.Client, events: str, who: dict[str, str]) -> bool:
-    """Whether one more stream is taken."""
     with http.stream("GET", events, headers=who) as answer:
         return answer.status_code == 200
 

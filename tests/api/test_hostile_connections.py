@@ -24,7 +24,6 @@ WHOLE = b"GET /health HTTP/1.1\r\nHost: localhost\r\n\r\n"
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[uvicorn.Server]:
-    """A server that runs."""
     with socket.create_server(("127.0.0.1", 0)) as listener:
         app = create_app(
             Settings(data_directory=tmp_path_factory.mktemp("drip"), body_limit=100_000), REGISTRY

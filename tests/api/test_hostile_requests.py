@@ -40,7 +40,6 @@ def http() -> Iterator[TestClient]:
 
 
 def refused(answer: Response, *statuses: int) -> Any:
-    """Check that an answer is a problem and no defect."""
     assert answer.status_code in statuses, answer.text[:300]
     assert answer.headers["content-type"] == "application/problem+json"
     return answer.json()

@@ -39,7 +39,6 @@ class Moved:
     run: Path
 
     def printed(self, verb: str, *options: object) -> dict[str, Any]:
-        """Return what a verb on the scene prints as JSON."""
         done = CliRunner().invoke(app, [verb, str(self.here), *map(str, options), "--json"])
         assert done.exit_code == 0, done.stderr
         answer: dict[str, Any] = json.loads(done.stdout)
@@ -54,7 +53,6 @@ class Moved:
 
 @pytest.fixture(scope="module")
 def moved(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Moved]:
-    """A run at constant speed in a housing by its solid."""
     folder = tmp_path_factory.mktemp("moved")
     write_block(folder / "block.step")
     scene = housed_scene(folder)

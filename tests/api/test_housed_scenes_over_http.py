@@ -42,7 +42,6 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 
 def scene_file(folder: Path, **fields: Any) -> Path:
-    """Write a scene with its table by hash."""
     scene = copy.deepcopy(housed_scene(folder, **fields))
     del scene["meshes"][0]["database_file"]
     scene["meshes"][0]["database_hash"] = KEY

@@ -21,7 +21,6 @@ SETTINGS = {"LOA_WORKERS": "2", "LOA_ATTEMPTS": "10", "LOA_LEASE_S": "5"}
 
 
 def ended(service: KilledService, batch: str) -> dict[str, Any]:
-    """Wait for a batch; return its status."""
     found: dict[str, Any] = {}
 
     def over() -> bool:

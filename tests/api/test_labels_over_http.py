@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 from typer.testing import CliRunner
 
 from lineofaction.cli.commands import app as command
@@ -27,8 +27,7 @@ def client(tmp_path: Path, database_url: str | None) -> Iterator[TestClient]:
 
 
 def entered(client: TestClient, **terms: Any) -> Any:
-    """Return the answer to an execution with these terms."""
-    return client.post("/v1/processes/fake/execution", json={"inputs": {"wish": {}}, **terms})
+    return client.post(EXECUTION, json={"inputs": {"wish": {}}, **terms})
 
 
 def listed(client: TestClient, **wanted: Any) -> list[str]:
@@ -109,7 +108,7 @@ def test_a_repeated_request_keeps_the_first_label(client: TestClient) -> None:
     headers = {"Idempotency-Key": "once"}
     for title in ("first", "second"):
         body = {"inputs": {"wish": {}}, "title": title}
-        client.post("/v1/processes/fake/execution", json=body, headers=headers)
+        client.post(EXECUTION, json=body, headers=headers)
     assert listed(client) == ["first"]
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 from running_service import until
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 from small_table import small_table
 from sqlalchemy import delete, update
 
@@ -19,8 +18,6 @@ from service.app import create_app
 from service.queue.tables import computations, jobs
 from service.settings import Settings
 from service.store.database import writing
-
-EXECUTION = "/v1/processes/fake/execution"
 
 
 @pytest.fixture
@@ -42,12 +39,10 @@ def change(client: TestClient, statement: Any) -> None:
 
 
 def following(page: dict[str, Any]) -> str | None:
-    """Return the link to the next page."""
     return next((link["href"] for link in page["links"] if link["rel"] == "next"), None)
 
 
 def identifiers(page: dict[str, Any]) -> list[str]:
-    """Return the jobs of a page."""
     return [job["jobID"] for job in page["jobs"]]
 
 
@@ -172,14 +167,8 @@ def test_processes_come_in_pages_too(tmp_path: Path) -> None:
     assert all(len(names) == 3 for names in seen[:-1])
 
 
-@pytest.fixture
-def running(tmp_path: Path) -> Iterator[TestClient]:
-    """A client of an app that works."""
-    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as found:
-        yield found
-
-
-def test_ended_jobs_are_found_by_their_status(running: TestClient) -> None:
-    submit(running, 1)
-    until(lambda: len(running.get("/v1/jobs", params={"status": "successful"}).json()["jobs"]) == 1)
-    assert running.get("/v1/jobs", params={"status": ["accepted", "running"]}).json()["jobs"] == []
+def test_ended_jobs_are_found_by_their_status(client: TestClient) -> None:
+    submit(client, 1)
+    with client:
+        until(lambda: len(client.get("/v1/jobs", params={"status": "successful"}).json()["jobs"]) == 1)
+        assert client.get("/v1/jobs", params={"status": ["accepted", "running"]}).json()["jobs"] == []

@@ -30,7 +30,6 @@ RELIEF = {"tip_relief_um": 3.0, "tip_relief_length_mm": 0.4}
 
 
 def case(**pinion: Any) -> dict[str, Any]:
-    """Return a small plane case."""
     gears = {"pinion": GEAR | pinion, "wheel": GEAR}
     return {
         "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, **gears},

@@ -10,29 +10,24 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 from running_service import until
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 
 from lineofaction.cli.serve import log_to_standard_error
 from service.app import create_app
 from service.settings import Settings
 
-EXECUTION = "/v1/processes/fake/execution"
-
 
 def grep(log: Path, text: str) -> list[dict[str, Any]]:
-    """Return the lines of a log that hold a text."""
     return [json.loads(line) for line in log.read_text().splitlines() if text in line]
 
 
 def only(lines: list[dict[str, Any]], event: str) -> dict[str, Any]:
-    """Return the one line of an event."""
     (found,) = [line for line in lines if line["event"] == event]
     return found
 
 
 @pytest.fixture
 def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """The file that standard error goes to."""
     file = tmp_path / "service.log"
     with file.open("w", buffering=1) as stream:
         monkeypatch.setattr("sys.stderr", stream)

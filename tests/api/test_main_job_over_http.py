@@ -29,13 +29,11 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def table(name: str) -> dict[str, Any]:
-    """Return an example."""
     return tomllib.loads((EXAMPLES / name).read_text(encoding="utf-8"))
 
 
 @pytest.fixture(scope="module")
 def case() -> dict[str, Any]:
-    """The paper's pair, few points on the coarsest mesh."""
     found = table("palermo_spur_20_20.toml")
     found["load"] = {"torque_n_m": [50, 100, 200]}
     found["accuracy"] = {"level": "draft", "positions": 16}

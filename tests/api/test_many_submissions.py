@@ -21,13 +21,12 @@ from killed_service import KilledService
 from postgres_server import PostgresServer, migrated
 from prometheus_client.parser import text_string_to_metric_families
 from running_service import PATIENCE_S, REFERENCES, until
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 
 from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings
 
-EXECUTION = "/v1/processes/fake/execution"
 SUBMISSIONS_PER_CASE, QUEUE = 10, 4
 FILE = {"Accept": "application/x-netcdf"}
 Client = TestClient | httpx2.Client
@@ -72,7 +71,6 @@ def several_processes(tmp_path: Path, postgres: PostgresServer) -> Iterator[Aske
 
 @pytest.fixture(params=["one_process", "several_processes"])
 def asked(request: pytest.FixtureRequest) -> Asked:
-    """Return one after the other."""
     found: Asked = request.getfixturevalue(request.param)
     return found
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -13,21 +12,12 @@ from postgres_server import running_server
 from prometheus_client import Metric
 from prometheus_client.parser import text_string_to_metric_families
 from running_service import until
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 
 from fe_contact.solver_version import SOLVER_VERSION
 from service.app import create_app
 from service.settings import Settings
 from service.store.database import Schema, database_engine
-
-EXECUTION = "/v1/processes/fake/execution"
-
-
-@pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
-    """A client of a running app."""
-    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as found:
-        yield found
 
 
 def families(client: TestClient) -> dict[str, Metric]:
@@ -42,7 +32,6 @@ def families(client: TestClient) -> dict[str, Metric]:
 
 
 def value(family: Metric, suffix: str = "", **labels: str) -> float:
-    """Return the one sample of these labels."""
     (found,) = [
         one.value for one in family.samples if one.name == family.name + suffix and one.labels == labels
     ]
@@ -50,7 +39,6 @@ def value(family: Metric, suffix: str = "", **labels: str) -> float:
 
 
 def run(client: TestClient, mode: str, text: str) -> None:
-    """Run a job to its end."""
     wish = {"mode": mode, "text": text}
     location = client.post(EXECUTION, json={"inputs": {"wish": wish}}).headers["location"]
     until(lambda: client.get(location).json()["status"] in ("successful", "failed"))

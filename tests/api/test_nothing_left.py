@@ -51,7 +51,6 @@ class Place:
         assert answer.status_code == 422
 
     def reader_killed(self, number: int) -> None:
-        """Kill a reader that reads."""
         future = self._http.app.state.context.reader.ask(_order(number))  # type: ignore[attr-defined]
         readers: list[int] = []
         until(lambda: bool(readers.extend(processes_in(self.drafts[1])) or readers) or future.done())
@@ -60,7 +59,6 @@ class Place:
         assert future.exception(timeout=60.0) is not None
 
     def dismissed(self, number: int) -> None:
-        """Dismiss a job while its solid is meshed."""
         self._http.delete(self._meshing(number))
 
     def worker_killed(self, number: int) -> None:

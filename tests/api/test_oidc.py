@@ -9,7 +9,7 @@ import pytest
 from fastapi.testclient import TestClient
 from httpx2 import Response
 from local_issuer import AUDIENCE, LocalIssuer, local_issuer
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 
 from lineofaction.gearbox.problems import BadInput, IssuerUnavailable, KeyExpired, MissingScope, Unauthorised
 from service.access import identities as issuer_module
@@ -18,12 +18,9 @@ from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings
 
-EXECUTION = "/v1/processes/fake/execution"
-
 
 @pytest.fixture
 def issuer(monkeypatch: pytest.MonkeyPatch) -> Iterator[LocalIssuer]:
-    """An issuer on loopback, which the settings name."""
     with local_issuer() as found:
         monkeypatch.setenv("LOA_OIDC_ISSUER", found.url)
         monkeypatch.setenv("LOA_OIDC_AUDIENCE", AUDIENCE)
@@ -43,7 +40,6 @@ class Clock:
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    """The clock of the issuer's keys."""
     found = Clock()
     monkeypatch.setattr(issuer_module.Issuer.__init__, "__defaults__", (None, found))
     return found
@@ -51,7 +47,6 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 @pytest.fixture
 def http(issuer: LocalIssuer, clock: Clock, tmp_path: Path) -> Iterator[TestClient]:
-    """A caller of a service that takes tokens."""
     settings = Settings(data_directory=tmp_path / "data")
     with TestClient(create_app(settings, REGISTRY, works=False), raise_server_exceptions=False) as found:
         yield found

@@ -61,7 +61,6 @@ def schemas(part: Any) -> Iterator[dict[str, Any]]:
 
 
 def conforms(example: Any, schema: dict[str, Any]) -> None:
-    """Check an example against its schema."""
     jsonschema_rs.validate({"components": DESCRIPTION["components"], **schema}, example)
 
 

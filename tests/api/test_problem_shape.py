@@ -41,7 +41,6 @@ WRONG_BODIES: dict[str, tuple[bytes, dict[str, str]]] = {
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[TestClient]:
-    """A client of an app that is not started."""
     yield TestClient(_app, raise_server_exceptions=False)
 
 
@@ -53,7 +52,6 @@ def named(path: str, names: dict[str, str] = NAMES) -> str:
 
 
 def is_problem(answer: Any, *statuses: int) -> None:
-    """Check the one error shape."""
     assert answer.status_code in statuses, answer.text
     assert answer.headers["content-type"] == "application/problem+json"
     assert set(answer.json()) - {"reference"} == {"type", "title", "status", "detail", "errors"}

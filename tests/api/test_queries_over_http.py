@@ -30,13 +30,11 @@ COUNT = 400
 
 @pytest.fixture(scope="module")
 def table() -> SteDatabase:
-    """A table with all axes."""
     return sliced_database((-2e-5, 0.0, 1e-5), (-1e-4, 0.0, 1e-4), positions=6)
 
 
 @pytest.fixture(scope="module")
 def client(table: SteDatabase, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    """A client of an app that holds the table."""
     directory = tmp_path_factory.mktemp("data")
     app = create_app(Settings(data_directory=directory))
     table.to_netcdf(directory / "table.nc")
@@ -46,7 +44,6 @@ def client(table: SteDatabase, tmp_path_factory: pytest.TempPathFactory) -> Iter
 
 
 def columns() -> dict[str, list[float]]:
-    """Points inside and outside the table on every axis."""
     random = np.random.default_rng(3)
     return {
         "position": random.uniform(-2.0, 2.0, COUNT).tolist(),
@@ -57,17 +54,14 @@ def columns() -> dict[str, list[float]]:
 
 
 def raw(given: dict[str, list[float]]) -> bytes:
-    """Return columns as raw float64."""
     return np.array(list(given.values()), dtype="<f8").tobytes()
 
 
 def typed(given: dict[str, list[float]]) -> bytes:
-    """Return a CBOR map of typed arrays."""
     return cbor2.dumps({name: cbor2.CBORTag(86, raw({name: column})) for name, column in given.items()})
 
 
 def ask(client: TestClient, body: bytes, kind: str, accept: str | None = None, **params: str) -> Response:
-    """Post a query."""
     headers = {"Content-Type": kind} | ({} if accept is None else {"Accept": accept})
     return client.post(PATH, content=body, headers=headers, params=params)
 
@@ -157,7 +151,6 @@ def test_the_answer_is_of_the_type_preferred_else_that_of_the_body(
 
 
 def problem(answer: Response, status: int) -> dict[str, Any]:
-    """Check the one error shape and return it."""
     assert (answer.status_code, answer.headers["content-type"]) == (status, "application/problem+json")
     found: dict[str, Any] = answer.json()
     return found
@@ -216,6 +209,9 @@ def test_too_many_points_are_one_clear_error(client: TestClient, sent: str) -> N
         (b"{", JSON, "body"),
         (b"\xff\xfe", JSON, "body"),
         (b"[]", JSON, "body"),
+        (b'{"position": [0, 0.1], "deflection_um": [1, 2, 3]}', JSON, "deflection_um"),
+        (b'{"position": [], "deflection_um": [1]}', JSON, "position"),
+        (b'{"position": [0]}', JSON, "deflection_um"),
         (b'{"position": [0], "deflection_um": [0], "misalignment_um": [0, 1]}', JSON, ""),
         (
             b'{"position": [0, 1], "deflection_um": [0], "misalignment_um": [0, 1, 2]}',

@@ -27,7 +27,6 @@ def asked(process: str, case: dict[str, Any] = CASE, **further: Any) -> dict[str
 
 
 def key(process: str, case: dict[str, Any] = CASE, **further: Any) -> str:
-    """Return the hash of a question."""
     return default_registry()[process].key(asked(process, case, **further))
 
 

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from small_inputs import small_inputs
 from study_runs import refused_call, verb_call
-from study_service import Served, service_on_bodies
+from study_service import Served
 
 from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
 from lineofaction.gearbox import workbench
@@ -163,15 +162,7 @@ EVERY = pytest.mark.parametrize("study", STUDIES)
 QUESTIONS = [(name, inputs, field) for name, refused in REFUSED.items() for inputs, field in refused]
 
 
-@pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Iterator[Served]:
-    """A running service with its real processes."""
-    with service_on_bodies(tmp_path_factory.mktemp("service") / "data", condensed_bodies) as running:
-        yield running
-
-
 def subject_of(study: str) -> tuple[str, Json]:
-    """Return the name of a study's small subject, and it."""
     name = "scene" if STUDIES[study].subject == "scene" else "case"
     return name, small_inputs(study)[name]
 
@@ -255,6 +246,7 @@ SAID: dict[str, list[tuple[list[str], str]]] = {
         (["--misalignment-um", "0,nan"], "misalignment_um[1] = nan"),
         (["--misalignment-um", "30,15"], "misalignment_um = [30.0, 15.0]: must be strictly increasing"),
         (["--misalignment-um", "0,20000"], "misalignment_um[1] = 20000"),
+        (["--center-distance-change-percent", "-5"], "jam"),
     ],
     "modes": [(["--speed-rpm", text], "--speed-rpm") for text in ("x", "0:1", "10:1:1", "0:1:-1", "0:1e6:1")],
     "response": [(["--speed-rpm", "0:100:50"], "speed_rpm[0]"), (["--speed-rpm", "1:x"], "--speed-rpm")],

@@ -46,7 +46,6 @@ EXAMPLES = {LIVE[1]: {"torque_n_m": [0.5], "pinion": {"tip_relief_um": 3.0, "tip
 
 @schemathesis.serializer("application/cbor")
 def cbor(_context: schemathesis.SerializationContext, value: object) -> bytes:
-    """Write a generated body as CBOR."""
     return cbor2.dumps(value)
 
 
@@ -54,7 +53,6 @@ _directory = tempfile.TemporaryDirectory(prefix="loa-api-")
 
 
 def _service() -> WholeService:
-    """Return the service that is asked."""
     if BODIES:
         return whole_service(Path(_directory.name))
     app = create_app(Settings(data_directory=Path(_directory.name), queue_limit=100_000), works=False)
@@ -113,7 +111,6 @@ def as_long_as(examples: int) -> settings:
 
 @pytest.fixture(scope="module", autouse=True)
 def _ended() -> Iterator[None]:
-    """End the live worker."""
     yield
     service.app.state.context.live.stop()
 

@@ -27,7 +27,6 @@ FOLLOWED = ("status", "events", "results", "dismiss")
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A running service whose work is written."""
     with written_service(tmp_path_factory.mktemp("links")) as running:
         yield running
 
@@ -59,7 +58,6 @@ def test_every_link_leads_to_what_it_says(service: Service) -> None:
                 until(lambda: self.ended(job.Case(path_parameters=where)))
 
         def ended(self, status: schemathesis.Case) -> bool:
-            """Whether a job has ended."""
             return status.call(**self.get_call_kwargs(status)).json()["finished"] is not None
 
         def step(self, taken: Any) -> Any:

@@ -9,7 +9,6 @@ import re
 import signal
 import socket
 import subprocess
-import sys
 import threading
 import time
 import urllib.request
@@ -20,30 +19,22 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from own_process import children, command, python
 from running_service import PATIENCE_S, lives, until
 from whole_service import _CASE
 
 from lineofaction.cli import serve as serving_processes
 from lineofaction.cli.serve import ServingProcesses
 
-ROOT = Path(__file__).parents[2]
 NUMBER, CALLERS = 3, 6
 
 
 @contextmanager
 def serving(folder: Path, **settings: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """Serve with several processes on a free port; gives the supervising process and the address."""
-    command = [sys.executable, "-m", "lineofaction.cli", "serve", "--port", "0", "--processes", str(NUMBER)]
-    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
-    environment = {**os.environ, **settings, "PYTHONPATH": path}
+    serve = ("-m", "lineofaction.cli", "serve", "--port", 0, "--processes", NUMBER)
     with (folder / "log").open("w") as log:
-        process = subprocess.Popen(
-            [*command, "--data-directory", str(folder / "data")],
-            env=environment,
-            text=True,
-            stdout=subprocess.PIPE,
-            stderr=log,
-        )
+        process = python(*serve, "--data-directory", folder / "data", settings=settings, stderr=log)
     assert process.stdout is not None
     address = process.stdout.readline().rpartition(" ")[2].strip()
     assert address, (folder / "log").read_text()
@@ -58,31 +49,19 @@ def serving(folder: Path, **settings: str) -> Iterator[tuple[subprocess.Popen[st
 
 @pytest.fixture
 def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """A service that a test may end."""
     with serving(tmp_path) as found:
         yield found
 
 
 def get(address: str, path: str) -> bytes:
-    """Ask once, on a connection of its own."""
     with urllib.request.urlopen(f"{address}{path}", timeout=PATIENCE_S) as answer:
         return bytes(answer.read())
 
 
-def children(pid: int) -> list[int]:
-    """Return the children of all threads of a process."""
-    tasks = Path(f"/proc/{pid}/task").iterdir()
-    return [int(child) for task in tasks for child in (task / "children").read_text().split()]
-
-
 def serving_pids(supervisor: int) -> list[int]:
     """Return the serving processes: children of the process that forks them."""
-    forking = [pid for pid in children(supervisor) if b"forkserver import" in _command(pid)]
+    forking = [pid for pid in children(supervisor) if b"forkserver import" in command(pid)]
     return [pid for fork in forking for pid in children(fork) if lives(pid)]
-
-
-def _command(pid: int) -> bytes:
-    return Path(f"/proc/{pid}/cmdline").read_bytes()
 
 
 class Caller(threading.Thread):
@@ -95,7 +74,6 @@ class Caller(threading.Thread):
         self.broken = 0
 
     def run(self) -> None:
-        """Ask until ended."""
         connection = http.client.HTTPConnection(self._address, timeout=PATIENCE_S)
         while not self._ended.is_set():
             try:
@@ -142,7 +120,6 @@ def test_a_killed_process_is_replaced_and_loses_only_what_it_answers(
 
 
 def _submitted(address: str) -> str:
-    """Enter a job; return its path."""
     body = json.dumps({"inputs": {"case": _CASE}}).encode()
     request = urllib.request.Request(
         f"{address}/v1/processes/analyze/execution", body, {"Content-Type": "application/json"}

@@ -29,7 +29,6 @@ class Stored:
     folder: Path
 
     def heard(self, key: str, **query: str) -> Recording:
-        """Return the sound of a run."""
         answer = self.http.get(f"/v1/results/{key}/sound", params=query)
         assert answer.status_code == 200, answer.text
         assert answer.headers["content-type"] == "audio/wav"

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
 import socket
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -19,6 +16,7 @@ from typing import Any
 
 import httpx2
 import pytest
+from own_process import children, command, cpu_seconds, python
 from running_service import PATIENCE_S
 
 from host import family_cpu_seconds
@@ -38,7 +36,6 @@ class Process:
 
     @property
     def place(self) -> tuple[str, int]:
-        """Host and port."""
         host, _, port = self.address.removeprefix("http://").partition(":")
         return host, int(port)
 
@@ -47,15 +44,11 @@ class Process:
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Process]:
     """A service that has loaded what it needs to read bodies."""
     directory = tmp_path_factory.mktemp("stall")
-    command = [sys.executable, "-m", "lineofaction.cli", "serve", "--port", "0"]
-    environment = os.environ | {"LOA_DATA_DIRECTORY": str(directory / "data")}
-    log = directory / "log"
-    with (
-        log.open("wb") as stream,
-        subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=stream) as process,
-    ):
+    settings, log = {"LOA_DATA_DIRECTORY": str(directory / "data")}, directory / "log"
+    serve = ("-m", "lineofaction.cli", "serve", "--port", 0)
+    with log.open("wb") as stream, python(*serve, settings=settings, stderr=stream) as process:
         assert process.stdout is not None
-        address = process.stdout.readline().decode().rpartition(" ")[2].strip()
+        address = process.stdout.readline().rpartition(" ")[2].strip()
         try:
             answer = httpx2.post(f"{address}/v1/cases/from-toml", json={"toml": ""}, timeout=PATIENCE_S)
             assert answer.status_code == 422, answer.text
@@ -70,12 +63,10 @@ def repeated(text: str) -> str:
 
 
 def toml(text: str) -> tuple[str, bytes]:
-    """Return path and body of a case file."""
     return "/v1/cases/from-toml", json.dumps({"toml": text}).encode()
 
 
 def execution(process: str, inputs: str) -> tuple[str, bytes]:
-    """Return path and body of an execution."""
     return f"/v1/processes/{process}/execution", f'{{"inputs": {inputs}}}'.encode()
 
 
@@ -123,7 +114,6 @@ class Watch:
             thread.join()
 
     def _look(self, path: str) -> None:
-        """Ask for one path, on a new connection each time."""
         while not self._stop.is_set():
             cpu = cpu_seconds(self._service.pid)
             with closing(HTTPConnection(*self._service.place, timeout=PATIENCE_S)) as connection:
@@ -138,14 +128,7 @@ class Watch:
         assert 0.0 <= self.longest_cpu_s < WITHIN_S
 
 
-def cpu_seconds(pid: int) -> float:
-    """Return the CPU time of a process, without that of its children."""
-    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
 def log_lines(service: Process) -> list[dict[str, Any]]:
-    """Return what the service has logged."""
     return [json.loads(line) for line in service.log.read_text().splitlines() if line.startswith("{")]
 
 
@@ -169,9 +152,7 @@ def test_four_bodies_that_cost_much_hold_nobody_up(service: Process, kind: str) 
 
 def test_texts_are_read_by_other_processes(service: Process) -> None:
     """The cause of what is seen above: the service has a lock that reading holds."""
-    tasks = Path(f"/proc/{service.pid}/task").glob("*/children")
-    children = [int(pid) for task in tasks for pid in task.read_text().split()]
-    (warm,) = [pid for pid in children if b"reading.child" in Path(f"/proc/{pid}/cmdline").read_bytes()]
+    (warm,) = [pid for pid in children(service.pid) if b"reading.child" in command(pid)]
     spent = family_cpu_seconds(warm)
     assert spent is not None and spent - cpu_seconds(warm) > 1.0
 

@@ -13,14 +13,13 @@ import httpx2
 import pytest
 from running_service import PATIENCE_S
 from served_app import served
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 
 from service.access.capacity import Capacity
 from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings
 
-EXECUTION = "/v1/processes/fake/execution"
 BODY = {"inputs": {"wish": {"text": "small"}}}
 ATTACKERS = 420
 """More than the requests that one server process answers at once."""
@@ -28,7 +27,6 @@ ATTACKERS = 420
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    """Settings of a service on loopback."""
     return Settings(data_directory=tmp_path / "data")
 
 
@@ -42,7 +40,6 @@ def begun(port: int, key: str, *fields: str) -> socket.socket:
 
 
 def client(port: int) -> httpx2.Client:
-    """Return a client that is in no hurry."""
     return httpx2.Client(base_url=f"http://127.0.0.1:{port}", timeout=PATIENCE_S)
 
 

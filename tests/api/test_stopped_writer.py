@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
-import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -17,8 +15,9 @@ import structlog
 from anyio import CapacityLimiter
 from anyio.to_thread import current_default_thread_limiter
 from fastapi.testclient import TestClient
+from own_process import python
 from running_service import PATIENCE_S, until
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 from sqlalchemy import update
 from sqlalchemy.exc import DBAPIError
 from structlog.testing import LogCapture
@@ -29,7 +28,6 @@ from service.settings import Settings
 from service.store.database import BRIEF_MS, database_engine, reading, writing
 from service.store.results import results
 
-EXECUTION = "/v1/processes/fake/execution"
 HOLD = """
 import sys
 from service.store.database import writing
@@ -38,7 +36,6 @@ with writing(database_engine(sys.argv[1]), in_turn=True):
     print("held", flush=True)
     sys.stdin.readline()
 """
-ROOT = Path(__file__).parents[2]
 LONG_AGO = "2020-01-01T00:00:00.000000Z"
 
 
@@ -55,11 +52,7 @@ def address(tmp_path: Path, database_url: str | None, monkeypatch: pytest.Monkey
 
 @contextmanager
 def stopped_writer(address: str) -> Iterator[subprocess.Popen[str]]:
-    """Run a process that is stopped in mid-transaction."""
-    command = [sys.executable, "-c", HOLD, address]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ["PYTHONPATH"]])}
-    pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-    with subprocess.Popen(command, env=environment, **pipes) as process:
+    with python("-c", HOLD, address, stdin=subprocess.PIPE) as process:
         assert process.stdout is not None and process.stdout.readline() == "held\n"
         process.send_signal(signal.SIGSTOP)
         try:
@@ -70,14 +63,12 @@ def stopped_writer(address: str) -> Iterator[subprocess.Popen[str]]:
 
 @pytest.fixture
 def client(tmp_path: Path, address: str) -> Iterator[TestClient]:
-    """A client of a running app."""
     settings: dict[str, Any] = {"data_directory": tmp_path, "database_url": address}
     with TestClient(create_app(Settings(**settings), REGISTRY), raise_server_exceptions=False) as found:
         yield found
 
 
 def body(text: str) -> dict[str, Any]:
-    """Return what is submitted."""
     return {"inputs": {"wish": {"text": text}}}
 
 

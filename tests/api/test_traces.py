@@ -15,7 +15,7 @@ from fastapi.testclient import TestClient
 from opentelemetry.sdk.trace import TracerProvider
 from running_service import until
 from served_app import served
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 from trace_receiver import TraceReceiver, trace_receiver
 
 from lineofaction.cli.serve import log_to_standard_error
@@ -25,14 +25,12 @@ from service.queue.attempt import WorkerFigures
 from service.settings import Settings
 from service.tracing.tracer import tracer
 
-EXECUTION = "/v1/processes/fake/execution"
 TRACE, PARENT = "4bf92f3577b34da6a3ce929d0e0e4736", "00f067aa0ba902b7"
 TRACEPARENT = f"00-{TRACE}-{PARENT}-01"
 
 
 @pytest.fixture
 def receiver(monkeypatch: pytest.MonkeyPatch) -> Iterator[TraceReceiver]:
-    """A receiver, and an environment that names it."""
     with trace_receiver() as found:
         monkeypatch.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", found.address)
         monkeypatch.setenv("OTEL_BSP_SCHEDULE_DELAY", "100")
@@ -44,7 +42,6 @@ def receiver(monkeypatch: pytest.MonkeyPatch) -> Iterator[TraceReceiver]:
 
 @pytest.fixture
 def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """The file that standard error goes to."""
     file = tmp_path / "service.log"
     with file.open("w", buffering=1) as stream:
         monkeypatch.setattr("sys.stderr", stream)
@@ -53,7 +50,6 @@ def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 def lines(log: Path, text: str) -> list[dict[str, object]]:
-    """Return the lines of a log that hold a text."""
     return [json.loads(line) for line in log.read_text().splitlines() if text in line]
 
 
@@ -90,13 +86,12 @@ def test_one_trace_leads_from_the_client_to_the_stages_of_the_worker(
 
 
 def test_an_attempt_that_died_keeps_its_stages_and_another_follows(
-    receiver: TraceReceiver, tmp_path: Path
+    receiver: TraceReceiver, client: TestClient
 ) -> None:
-    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as client:
-        body = {"inputs": {"wish": {"mode": "die_once"}}}
-        location = client.post(EXECUTION, json=body).headers["location"]
-        until(lambda: client.get(location).json()["status"] == "successful")
-        until(lambda: len(receiver.named("attempt fake")) == 2)
+    body = {"inputs": {"wish": {"mode": "die_once"}}}
+    location = client.post(EXECUTION, json=body).headers["location"]
+    until(lambda: client.get(location).json()["status"] == "successful")
+    until(lambda: len(receiver.named("attempt fake")) == 2)
     first, second = sorted(receiver.named("attempt fake"), key=lambda span: span.begun)
     assert (first.facts["loa.outcome"], first.failed) == ("died", True)
     assert (second.facts["loa.outcome"], second.failed) == ("done", False)
@@ -105,11 +100,10 @@ def test_an_attempt_that_died_keeps_its_stages_and_another_follows(
     assert len({span.trace for span in receiver.named("queue")}) == 1
 
 
-def test_probes_leave_no_spans(receiver: TraceReceiver, tmp_path: Path) -> None:
-    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as client:
-        for path in ("/health", "/ready", "/metrics"):
-            assert client.get(path).status_code == 200
-        client.get("/v1/jobs")
+def test_probes_leave_no_spans(receiver: TraceReceiver, client: TestClient) -> None:
+    for path in ("/health", "/ready", "/metrics"):
+        assert client.get(path).status_code == 200
+    client.get("/v1/jobs")
     until(lambda: bool(receiver.spans))
     assert {span.name for span in receiver.spans} == {"GET /v1/jobs"}
 
@@ -129,9 +123,8 @@ def test_without_a_receiver_the_callers_identifiers_are_kept_all_the_same(log: P
 @pytest.mark.parametrize(
     "identifier", ["", "a" * 65, 'x", "event": "forged', "<script>", "a b", "../../etc", "ä"]
 )
-def test_an_identifier_that_could_harm_a_log_is_replaced(identifier: str, tmp_path: Path) -> None:
-    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as client:
-        answer = client.get("/health", headers={"X-Request-ID": identifier.encode()})
+def test_an_identifier_that_could_harm_a_log_is_replaced(identifier: str, client: TestClient) -> None:
+    answer = client.get("/health", headers={"X-Request-ID": identifier.encode()})
     assert answer.headers["x-request-id"] not in ("", identifier)
     assert len(answer.headers["x-request-id"]) == 12
 
@@ -149,16 +142,14 @@ def test_an_identifier_that_could_harm_a_log_is_replaced(identifier: str, tmp_pa
         f"{TRACEPARENT}-more",
     ],
 )
-def test_what_is_no_traceparent_is_left_out(sent: str, tmp_path: Path) -> None:
-    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as client:
-        answer = client.get("/health", headers={"traceparent": sent.encode()})
+def test_what_is_no_traceparent_is_left_out(sent: str, client: TestClient) -> None:
+    answer = client.get("/health", headers={"traceparent": sent.encode()})
     assert answer.status_code == 200
     assert "traceparent" not in answer.headers
 
 
-def test_no_span_no_header(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as client:
-        assert "traceparent" not in client.get("/v1/jobs").headers
+def test_no_span_no_header(client: TestClient) -> None:
+    assert "traceparent" not in client.get("/v1/jobs").headers
 
 
 def test_nothing_of_opentelemetry_is_loaded_by_the_client_and_its_sdk_by_nobody_unasked() -> None:

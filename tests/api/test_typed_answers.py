@@ -21,7 +21,6 @@ WORDS = {"title", "description", "examples", "default"}
 
 
 def is_open(schema: dict[str, Any]) -> bool:
-    """Whether a schema says nothing of what it allows."""
     if schema.get("type") != "object":
         return not set(schema) - WORDS
     others = schema.get("additionalProperties", not {"properties", "patternProperties"} & set(schema))

@@ -11,19 +11,16 @@ import pytest
 from fastapi.testclient import TestClient
 from killed_service import KilledService
 from running_service import until
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 from webhook_receiver import SECRET, Receiver, receiver
 
 from service.app import create_app
 from service.settings import Settings
 from service.webhooks import calls, deliverer
 
-EXECUTION = "/v1/processes/fake/execution"
-
 
 @pytest.fixture(autouse=True)
 def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let pauses and patience be short."""
     monkeypatch.setattr(calls, "FIRST_PAUSE_S", 0.05)
     monkeypatch.setattr(calls, "MOST_ATTEMPTS", 3)
     monkeypatch.setattr(deliverer, "LOOK_S", 0.1)
@@ -32,7 +29,6 @@ def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def listener() -> Iterator[Receiver]:
-    """A receiver on loopback."""
     with receiver() as found:
         yield found
 
@@ -47,7 +43,6 @@ def http(tmp_path: Path, listener: Receiver) -> Iterator[TestClient]:
 
 
 def submitted(http: TestClient, wish: dict[str, Any], **subscriber: str) -> str:
-    """Submit a job; return its address."""
     body = {"inputs": {"wish": wish}, "subscriber": {f"{name}Uri": uri for name, uri in subscriber.items()}}
     answer = http.post(EXECUTION, json=body)
     assert answer.status_code == 201, answer.text

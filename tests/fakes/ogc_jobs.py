@@ -9,7 +9,6 @@ from running_service import until
 
 REL = "http://www.opengis.net/def/rel/ogc/1.0/"
 EXCEPTIONS = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
-EXECUTION = "/v1/processes/fake/execution"
 
 
 def link(document: dict[str, Any], relation: str) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 from sqlalchemy import Engine
 
 from service.folders import identity_of
-from service.queue.claims import Claims
+from service.queue.claims import Claim, Claims
 from service.queue.job import Job
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
@@ -49,6 +49,12 @@ class Bench:
     def ended(self, job: Job) -> Job:
         until(lambda: self.submissions.find(job.id).ended)
         return self.submissions.find(job.id)
+
+    def claimed(self) -> Claim:
+        """Claim the computation whose turn it is."""
+        claim = self.claims.claim()
+        assert claim is not None
+        return claim
 
     def close(self) -> None:
         if self.scheduler.alive:

@@ -63,3 +63,9 @@ FAKE = Process(
     stages=(Stage("first", 0.25), Stage("second", 0.75)),
 )
 REGISTRY = Registry(FAKE)
+EXECUTION = "/v1/processes/fake/execution"
+
+
+def bearing(key: str) -> dict[str, str]:
+    """Return the header with an access key."""
+    return {"Authorization": f"Bearer {key}"}

@@ -8,6 +8,12 @@ from pathlib import Path
 
 import pytest
 import structlog.testing
+from fastapi.testclient import TestClient
+from running_service import Bench, bench
+from service_fakes import REGISTRY
+
+from service.app import create_app
+from service.settings import Settings
 
 FAKES = str(Path(__file__).resolve().parent)
 
@@ -33,3 +39,18 @@ def quiet_log() -> Iterator[None]:
     structlog.configure(processors=[structlog.testing.LogCapture()])
     yield
     structlog.reset_defaults()
+
+
+@pytest.fixture
+def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
+    """The machinery of jobs without a running scheduler, on each database."""
+    made = bench(tmp_path, REGISTRY, database_url=database_url)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def client(tmp_path: Path) -> Iterator[TestClient]:
+    """A caller of a running service of the fake process."""
+    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as caller:
+        yield caller

@@ -5,11 +5,20 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import time
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import httpx2
+import pytest
+
+from lineofaction.client import AsyncLineOfActionClient, LineOfActionClient
+
+ADDRESS = "http://127.0.0.1:1"
+_GEAR = {"face_width_mm": 25.0, "bore_diameter_mm": 40.0}
 
 
 @dataclass
@@ -61,6 +70,36 @@ class StoredJobs:
         digest = base64.b64encode(hashlib.sha256(content).digest()).decode()
         headers = {"Content-Digest": f"sha-256=:{digest}:", "Result-Kind": "database"}
         return httpx2.Response(200, content=content, headers=headers)
+
+
+def against(
+    network: Callable[[httpx2.Request], httpx2.Response], cache: Path, **options: Any
+) -> LineOfActionClient:
+    """Return a client of a network in memory."""
+    return LineOfActionClient(ADDRESS, cache_dir=cache, transport=httpx2.MockTransport(network), **options)
+
+
+def awaited_against(
+    network: Callable[[httpx2.Request], httpx2.Response], cache: Path
+) -> AsyncLineOfActionClient:
+    """Return an awaited client of a network in memory."""
+    return AsyncLineOfActionClient(ADDRESS, cache_dir=cache, transport=httpx2.MockTransport(network))
+
+
+def case(teeth: int = 20) -> dict[str, Any]:
+    """Return a case that its teeth name."""
+    pair = {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": {"teeth": teeth, **_GEAR}}
+    return {"pair": pair | {"wheel": {"teeth": 20, **_GEAR}}, "load": {"torque_n_m": [10.0, 100.0]}}
+
+
+@pytest.fixture
+def slept(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Record what would be slept, on a clock that goes on by it."""
+    pauses: list[float] = []
+    begin = time.monotonic()
+    monkeypatch.setattr(time, "sleep", pauses.append)
+    monkeypatch.setattr(time, "monotonic", lambda: begin + sum(pauses))
+    return pauses
 
 
 def state(job: str, status: str) -> dict[str, Any]:

@@ -37,7 +37,7 @@ class StudyRow:
     `witness` yields, of figures, result and the table of the small case, pairs of a figure in the units of
     the boundary and what it must be: from the result in SI, from another study or in closed form.
     `columns` are those of the CSV, `own` the figures that differ by who asks (the verb has the name of a
-    file).
+    file), `ends` how the lines begin in which the verb says its main results.
     """
 
     study: str
@@ -46,6 +46,7 @@ class StudyRow:
     question: Json | None = None
     columns: Callable[[Json], dict[str, Sequence[Any]]] | None = None
     own: tuple[str, ...] = ()
+    ends: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return f"{self.study}-{self.subject}"
@@ -128,6 +129,9 @@ def _sensitivity(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
         yield skew["peak_to_peak_um"], (1e6 * curves.misalignment.peak_to_peak).tolist()
         yield skew["peak_to_peak_error_um"], (1e6 * curves.misalignment.error).tolist()
         yield skew["change_percent"], [0.0, 100.0 * (last / first - 1.0)]
+        distance, change = told["center_distance"], curves.center_distance_change
+        yield distance["center_distance_change_percent"], (100.0 * change.deviation / 20e-3).tolist()
+        yield distance["peak_to_peak_um"], (1e6 * change.peak_to_peak).tolist()
 
 
 def _root_stress(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
@@ -283,25 +287,45 @@ def _vibration_columns(figures: Json) -> dict[str, Sequence[Any]]:
     }
 
 
+NUMBER = r"-?[\d.]+"
 FEW_ORDERS: Json = {"speed_rpm": [300.0], "orders": 3}
 
 ROWS = (
-    StudyRow("flank", "case", _flank),
+    StudyRow("flank", "case", _flank, ends=(r"\S.*: [\d.]+ MPa",)),
     StudyRow("ablate", "case", _ablated_case),
     StudyRow("ablate", "scene", _ablated_scene, {"only": ["lateral"]}),
     StudyRow("frontier", "case", _case_ladder),
     StudyRow("frontier", "scene", _scene_ladder, {"rungs": ["quasi_static", "100_nm", "10_nm"]}),
     StudyRow("sensitivity", "case", _sensitivity, columns=_sensitivity_columns, own=("name",)),
-    StudyRow("root-stress", "case", _root_stress, columns=_root_columns),
+    StudyRow("root-stress", "case", _root_stress, columns=_root_columns, ends=(r"\S.*: [\d.]+ MPa",)),
     StudyRow("optimize", "case", _optimum),
     StudyRow("scatter", "case", _scatter),
     StudyRow("sweep", "case", _sweep, columns=_sweep_columns),
-    StudyRow("modes", "scene", _modes),
-    StudyRow("response", "scene", _response),
+    StudyRow(
+        "modes",
+        "scene",
+        _modes,
+        ends=(rf"lowest natural frequency: {NUMBER} Hz \(", "critical speeds: none"),
+    ),
+    StudyRow(
+        "response",
+        "scene",
+        _response,
+        ends=(rf"largest mesh force of .+: {NUMBER} N \(order {NUMBER} at", "largest force on bearing"),
+    ),
     StudyRow("noise", "scene", _noise, FEW_ORDERS),
     StudyRow("vibration", "scene", _vibration, FEW_ORDERS, columns=_vibration_columns),
     StudyRow("listen", "scene", _recording, own=("run",)),
-    StudyRow("steady", "scene", _steady, {"speed_rpm": [3000.0], "branch": False, "settling_periods": 1}),
+    StudyRow(
+        "steady",
+        "scene",
+        _steady,
+        {"speed_rpm": [3000.0], "branch": False, "settling_periods": 1},
+        ends=(
+            rf"largest rms transmission error of .+: {NUMBER} µm",
+            rf"largest mesh force of .+: {NUMBER} N",
+        ),
+    ),
     StudyRow("deflect", "scene", _deflection),
     StudyRow("study", "scene", _many_scenes),
 )

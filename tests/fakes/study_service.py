@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 from condensed_once import find_condensed
-from declared_figures import check_declared, document, undeclared
+from declared_figures import check_declared, document
 from fastapi.testclient import TestClient
 from running_service import REFERENCES
 from scene_files import scene_file
@@ -83,10 +83,11 @@ def empty_service(data: Path) -> Iterator[tuple[LineOfActionClient, TestClient]]
         yield found, service
 
 
-@contextmanager
-def service_on_bodies(data: Path, bodies: Path) -> Iterator[Served]:
-    """Run a service without a table on bodies that other tests condensed."""
-    find_condensed(bodies, data)
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Iterator[Served]:
+    """A running service with its real processes, without a table, on bodies that all tests share."""
+    data = tmp_path_factory.mktemp("service") / "data"
+    find_condensed(condensed_bodies, data)
     with empty_service(data) as (client, http):
         yield Served(client, http, data)
 
@@ -116,10 +117,3 @@ def without(names: tuple[str, ...], value: Any) -> Any:
     if isinstance(value, dict):
         return {name: without(names, inner) for name, inner in value.items() if name not in names}
     return [without(names, item) for item in value] if isinstance(value, list) else value
-
-
-def figures_alone(figures: Figures) -> dict[str, Any]:
-    """Return the figures of a result without what the service adds about its file."""
-    answer = document(figures)
-    assert list(undeclared(figures)) == []
-    return {name: value for name, value in answer.items() if name not in ("hash", "sha256", "size")}

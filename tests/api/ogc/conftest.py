@@ -19,7 +19,6 @@ from service.settings import Settings
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    """A client of a running service."""
     settings = Settings(data_directory=tmp_path_factory.mktemp("ogc"))
     with TestClient(create_app(settings, REGISTRY)) as found:
         yield found

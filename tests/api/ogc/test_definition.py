@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 from fastapi.testclient import TestClient
-from ogc_jobs import EXECUTION, REL, link
+from ogc_jobs import REL, link
+from service_fakes import EXECUTION
 
 BASE = "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/"
 

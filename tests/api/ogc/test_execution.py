@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
-from ogc_jobs import EXECUTION, REL, ended, link
+from ogc_jobs import REL, ended, link
+from service_fakes import EXECUTION
 
 
 @pytest.mark.requirement(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 from fastapi.testclient import TestClient
-from ogc_jobs import EXCEPTIONS, EXECUTION, executed, link
+from ogc_jobs import EXCEPTIONS, executed, link
+from service_fakes import EXECUTION
 
 
 @pytest.mark.requirement("/req/core/job", "/req/core/job-success")
@@ -15,6 +16,7 @@ def test_a_job_tells_its_status(client: TestClient) -> None:
     )
     assert status["status"] in ("accepted", "running", "successful", "failed", "dismissed")
     assert status["type"] == "process" and 0 <= status["progress"] <= 100
+    assert all(client.get(entry["href"]).status_code == 200 for entry in status["links"])
 
 
 @pytest.mark.requirement("/req/core/job-exception-no-such-job", "/req/core/job-results-exception/no-such-job")

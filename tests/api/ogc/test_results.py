@@ -7,11 +7,12 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 from httpx2 import Response
-from ogc_jobs import EXCEPTIONS, EXECUTION, REL, ended, executed, link
+from ogc_jobs import EXCEPTIONS, REL, ended, executed, link
+from service_fake_work import SECRET
+from service_fakes import EXECUTION
 
 
 def delivered(client: TestClient, process: str, text: str, **form: Any) -> Response:
-    """Execute with a form and get the results."""
     status = ended(client, process, {"inputs": {"wish": {"text": text}}, **form})
     return client.get(link(status, f"{REL}results"))
 
@@ -60,11 +61,26 @@ def test_a_result_that_is_not_ready_is_said_to_be(client: TestClient) -> None:
 
 
 @pytest.mark.requirement("/req/core/job-results-failed")
-def test_a_failed_job_answers_a_problem(client: TestClient) -> None:
-    status = executed(client, mode="mesh")
-    answer = client.get(f"/v1/jobs/{status['jobID']}/results")
-    assert answer.status_code == 500
-    assert {"type", "title", "status", "detail"} <= set(answer.json())
+@pytest.mark.parametrize(
+    ("mode", "detail", "faults"),
+    [
+        ("mesh", "element 7 has a negative Jacobian", []),
+        ("input", None, [("pair.pinion.bore_diameter_mm", 95.0)]),
+        ("defect", None, []),
+    ],
+)
+def test_a_failed_job_answers_a_problem(
+    client: TestClient, mode: str, detail: str | None, faults: list[tuple[str, float]]
+) -> None:
+    """With the fields at fault; the text of a defect never leaves."""
+    location = f"/v1/jobs/{executed(client, mode=mode)['jobID']}"
+    answer = client.get(f"{location}/results")
+    problem = answer.json()
+    assert (answer.status_code, answer.headers["content-type"]) == (500, "application/problem+json")
+    assert {"type", "title", "status", "detail"} <= set(problem)
+    assert detail in (None, problem["detail"])
+    assert [(fault["field"], fault["value"]) for fault in problem["errors"]] == faults
+    assert SECRET not in answer.text + client.get(location).text
 
 
 def test_a_request_for_results_may_ask_for_another_form(client: TestClient) -> None:

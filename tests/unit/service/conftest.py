@@ -4,17 +4,20 @@ from drawn_once import drawn_once
 from migrated_once import migrated_once
 from postgres_server import database_url, postgres
 from s3_server import s3_objects, s3_url
-from service_surroundings import quiet_log, unhurried_readiness, workers_find_fakes
+from service_surroundings import machine, quiet_log, unhurried_readiness, workers_find_fakes
+from stored_jobs import slept
 from warm_once import warm_once, warm_processes
 
 __all__ = [
     "database_url",
     "drawn_once",
+    "machine",
     "migrated_once",
     "postgres",
     "quiet_log",
     "s3_objects",
     "s3_url",
+    "slept",
     "unhurried_readiness",
     "warm_once",
     "warm_processes",

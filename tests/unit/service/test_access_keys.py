@@ -10,9 +10,8 @@ from typing import Any
 
 import pytest
 import structlog.testing
-from typer.testing import CliRunner
+from command_line import loa
 
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.problems import BadInput
 from service.access.capacity import RateLimits
 from service.access.identities import open_identities
@@ -164,7 +163,6 @@ def test_an_address_that_others_reach_needs_a_key(tmp_path: Path, host: str) -> 
 
 
 def rewritten(file: KeyFile, name: str, **changes: object) -> None:
-    """Change the record of a key, as time would."""
     content = json.loads(file.path.read_text())
     for entry in content["keys"]:
         entry.update(changes if entry["name"] == name else {})
@@ -280,7 +278,7 @@ def test_the_verbs_show_rights_and_never_a_hash(tmp_path: Path) -> None:
     path = tmp_path / "keys.json"
 
     def verb(*arguments: str) -> str:
-        shown = CliRunner().invoke(app, ["keys", *arguments, "--file", str(path), "--json"])
+        shown = loa("keys", *arguments, "--file", path, "--json")
         assert shown.exit_code == 0, shown.output
         return shown.stdout
 

@@ -15,7 +15,7 @@ import yaml
 from prometheus_client.parser import text_string_to_metric_families
 from running_service import until
 from served_app import served
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 
 from service.app import create_app
 from service.settings import Settings
@@ -158,13 +158,11 @@ CASES = {
 
 
 def alerts() -> dict[str, dict[str, Any]]:
-    """Return the rules by name."""
     (group,) = yaml.safe_load(RULES.read_text())["groups"]
     return {rule["alert"]: rule for rule in group["rules"]}
 
 
 def dashboard_expressions() -> list[str]:
-    """Return the expressions of all panels."""
     panels = json.loads((DEPLOY / "grafana" / "dashboard.json").read_text())["panels"]
     return [target["expr"] for panel in panels for target in panel["targets"]]
 
@@ -177,7 +175,7 @@ def told(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[dict[str, s
 
         def submit(mode: str, text: str) -> str:
             body = {"inputs": {"wish": {"mode": mode, "text": text}}}
-            return str(client.post("/v1/processes/fake/execution", json=body).headers["location"])
+            return str(client.post(EXECUTION, json=body).headers["location"])
 
         hanging = [submit("hang", "runs"), submit("hang", "waits")]
         until(lambda: client.get(hanging[0]).json()["status"] == "running")
@@ -233,14 +231,12 @@ def series(changed: Series) -> list[dict[str, str]]:
 
 
 def expected(name: str) -> dict[str, Any]:
-    """Return what an alert says on its case."""
     rule, case = alerts()[name], CASES[name]
     annotations = {"summary": case.summary, "runbook": rule["annotations"]["runbook"]}
     return {"exp_labels": rule["labels"] | case.labels, "exp_annotations": annotations}
 
 
 def promtool(*arguments: object) -> str:
-    """Run it; return what it says."""
     program = shutil.which("promtool")
     if program is None:
         pytest.skip("promtool is not installed (Debian: prometheus)")

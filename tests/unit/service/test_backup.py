@@ -38,7 +38,6 @@ def dumped(url: str, server: PostgresServer, folder: Path) -> str:
 
 @contextmanager
 def submitting(machine: Bench) -> Iterator[None]:
-    """Submit all the time."""
     stop = threading.Event()
 
     def submit() -> None:
@@ -84,7 +83,7 @@ def test_a_backup_holds_what_was_entered_before_and_goes_on(
 def test_what_ran_at_the_time_of_a_backup_is_done_after_its_restoration(tmp_path: Path) -> None:
     machine = bench(tmp_path / "old", REGISTRY, lease_s=1.0)
     jobs = [machine.submit(text=text) for text in ("runs", "waits")]
-    assert machine.claims.claim() is not None
+    machine.claimed()
     copy = copied(tmp_path / "old/service.sqlite3", tmp_path / "copy.sqlite3")
     machine.close()
     restored = bench(tmp_path / "new", REGISTRY, database_url=copy, lease_s=1.0)

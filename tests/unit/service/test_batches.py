@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import pytest
-from running_service import Bench, bench
-from service_fakes import REGISTRY
+from running_service import Bench
 from sqlalchemy import select, update
 
 from service.project import COMMON
-from service.queue.claims import Claim
 from service.queue.entry import BatchCase, Entry
 from service.queue.job import Job, JobFilter
 from service.queue.retention import Retention
@@ -22,29 +18,12 @@ from service.store.database import now, reading, writing
 LONG_AGO = "2026-01-01T00:00:00.000000Z"
 
 
-@pytest.fixture
-def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
-    """The table without a running scheduler, on each database."""
-    found = bench(tmp_path, REGISTRY, queue_limit=50, database_url=database_url)
-    yield found
-    found.close()
-
-
 def entered(machine: Bench, costs: dict[str, float], name: str | None = None) -> str:
-    """Enter a batch of jobs of these keys and costs."""
     cases = [BatchCase(key, {"wish": {"text": key}}, cost=cost) for key, cost in costs.items()]
     return Entry(machine.engine, 50, COMMON).batch("fake", cases, now(), name)
 
 
-def claimed(machine: Bench) -> Claim:
-    """Claim a computation."""
-    claim = machine.claims.claim()
-    assert claim is not None
-    return claim
-
-
 def seen(machine: Bench, batch: str) -> Job:
-    """Return a batch after a scheduler looked at it."""
     machine.claims.advance_batches()
     return machine.submissions.find(batch)
 
@@ -52,14 +31,14 @@ def seen(machine: Bench, batch: str) -> Job:
 def test_progress_is_the_share_of_the_cost_that_is_done(machine: Bench) -> None:
     batch = entered(machine, {"a": 9.0, "b": 3.0})
     assert (seen(machine, batch).fraction, seen(machine, batch).status) == (0.0, "running")
-    first = claimed(machine)
+    first = machine.claimed()
     machine.claims.progress(first, "first", 1.0, 0.5)
     share = {"a": 9.0, "b": 3.0}[first.key] / 12.0
     assert seen(machine, batch).fraction == pytest.approx(0.5 * share)
     machine.claims.put_back(first, "again", counted=True)
     assert seen(machine, batch).fraction == pytest.approx(0.5 * share)  # it never falls
     for _ in range(2):
-        machine.claims.succeed(claimed(machine))
+        machine.claims.succeed(machine.claimed())
     end = seen(machine, batch)
     assert (end.fraction, end.status, end.stage_fraction) == (1.0, "successful", 1.0)
     assert end.finished is not None
@@ -68,7 +47,7 @@ def test_progress_is_the_share_of_the_cost_that_is_done(machine: Bench) -> None:
 def test_no_scheduler_takes_a_batch_for_work(machine: Bench) -> None:
     """Nor one of a version that knows no batches: it claims what waits and takes up what leases have left."""
     batch = entered(machine, {"a": 1.0})
-    assert claimed(machine).key == "a"
+    assert machine.claimed().key == "a"
     assert machine.claims.claim() is None
     assert machine.claims.take_up() == []
     assert [claim.key for claim in machine.claims.left()] == ["a"]
@@ -100,7 +79,7 @@ def test_a_batch_is_no_computation_of_the_figures(machine: Bench) -> None:
     machine.submissions.dismiss(batch)
     assert seen(machine, batch).status == "dismissed"
     other = entered(machine, {"b": 1.0})
-    machine.claims.succeed(claimed(machine))
+    machine.claims.succeed(machine.claimed())
     assert seen(machine, other).status == "successful"
     assert machine.submissions.counts() == {"dismissed": 1, "successful": 1}
     with reading(machine.engine) as connection:

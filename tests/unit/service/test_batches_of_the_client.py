@@ -22,7 +22,6 @@ WISHES: list[dict[str, Any]] = [{"text": "b"}, {"text": "a"}, {"mode": "mesh"}]
 
 @pytest.fixture
 def address(tmp_path: Path) -> Iterator[str]:
-    """A running service with the fake process."""
     with served(create_app(Settings(data_directory=tmp_path / "service", workers=2), REGISTRY)) as port:
         yield f"http://127.0.0.1:{port}"
 

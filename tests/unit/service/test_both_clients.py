@@ -14,7 +14,7 @@ from typing import Any
 import httpx2
 import pytest
 from awaited import outcome
-from stored_jobs import StoredJobs, state
+from stored_jobs import StoredJobs, against, awaited_against, case, state
 
 from lineofaction.client import (
     AsyncBatch,
@@ -29,25 +29,8 @@ from lineofaction.client.job_calls import EventReader
 from lineofaction.gearbox.problems import BadInput, JobFailed, NotFound, Unreachable
 from lineofaction.gearbox.schemas.live import LiveInput
 
-ADDRESS = "http://127.0.0.1:1"
-
-
-def case(teeth: int) -> dict[str, Any]:
-    """Return a case that its teeth name."""
-    gear = {"face_width_mm": 25.0, "bore_diameter_mm": 40.0}
-    return {
-        "pair": {
-            "normal_module_mm": 4.0,
-            "center_distance_mm": 80.0,
-            "pinion": {"teeth": teeth, **gear},
-            "wheel": {"teeth": 20, **gear},
-        },
-        "load": {"torque_n_m": [10.0, 100.0]},
-    }
-
 
 def public(surface: type) -> dict[str, str]:
-    """Return the signatures of what a surface offers."""
     names = [name for name in dir(surface) if not name.startswith("_")]
     calls = {name: getattr(surface, name) for name in names}
     return {
@@ -75,11 +58,7 @@ def test_a_live_question_has_the_options_of_its_schema_and_no_others(tmp_path: P
         return httpx2.Response(404, json=NotFound("no table").as_json())
 
     relief = MappingProxyType({"tip_relief_um": 10.0})
-    transport = httpx2.MockTransport(answer)
-    with (
-        LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=transport) as client,
-        pytest.raises(NotFound),
-    ):
+    with against(answer, tmp_path) as client, pytest.raises(NotFound):
         client.ste("ab" * 32, (100.0,), pinion=relief, derivatives=True)
     (question,) = asked
     sent = LiveInput.model_validate(question)
@@ -89,14 +68,12 @@ def test_a_live_question_has_the_options_of_its_schema_and_no_others(tmp_path: P
 
 def test_both_answer_alike(tmp_path: Path) -> None:
     def blocking() -> list[Any]:
-        transport = httpx2.MockTransport(StoredJobs())
-        with LineOfActionClient(ADDRESS, cache_dir=tmp_path / "a", transport=transport) as client:
+        with against(StoredJobs(), tmp_path / "a") as client:
             job = client.analyze.submit(case(20))
             return [job.file().read_text(), job.state.status, job.wait(), client.status(job.id)]
 
     async def awaited() -> list[Any]:
-        transport = httpx2.MockTransport(StoredJobs())
-        async with AsyncLineOfActionClient(ADDRESS, cache_dir=tmp_path / "b", transport=transport) as client:
+        async with awaited_against(StoredJobs(), tmp_path / "b") as client:
             job = await client.analyze.submit(case(20))
             file = await job.file()
             return [file.read_text(), job.state.status, await job.wait(), await client.status(job.id)]
@@ -110,14 +87,12 @@ def test_a_map_keeps_the_order_and_the_bound(tmp_path: Path, concurrency: int) -
     teeth = range(12, 40)
 
     def blocking(network: StoredJobs) -> list[str]:
-        transport = httpx2.MockTransport(network)
-        with LineOfActionClient(ADDRESS, cache_dir=tmp_path / "a", transport=transport) as client:
+        with against(network, tmp_path / "a") as client:
             jobs = client.analyze.map(map(case, teeth), concurrency=concurrency)
             return [job.file().read_text() for job in jobs]
 
     async def awaited(network: StoredJobs) -> list[str]:
-        transport = httpx2.MockTransport(network)
-        async with AsyncLineOfActionClient(ADDRESS, cache_dir=tmp_path / "b", transport=transport) as client:
+        async with awaited_against(network, tmp_path / "b") as client:
             jobs = client.analyze.map(map(case, teeth), concurrency=concurrency)
             return [(await job.file()).read_text() async for job in jobs]
 
@@ -136,9 +111,7 @@ def test_a_map_takes_its_subjects_as_it_needs_them(tmp_path: Path) -> None:
             taken.append(teeth)
             yield case(teeth)
 
-    with LineOfActionClient(
-        ADDRESS, cache_dir=tmp_path, transport=httpx2.MockTransport(StoredJobs())
-    ) as client:
+    with against(StoredJobs(), tmp_path) as client:
         jobs = client.analyze.map(cases(), concurrency=4)
         for _ in range(5):
             next(jobs)
@@ -155,7 +128,7 @@ def test_a_job_that_fails_does_not_end_the_map(tmp_path: Path) -> None:
             return httpx2.Response(200, json=state("analyze-13", "failed"))
         return stored(request)
 
-    with LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=httpx2.MockTransport(answer)) as client:
+    with against(answer, tmp_path) as client:
         first, second, third = client.analyze.map(map(case, (12, 13, 14)))
         assert (first.file().read_text(), third.file().read_text()) == ("analyze-12", "analyze-14")
         with pytest.raises(JobFailed, match="no mesh"):
@@ -168,9 +141,7 @@ def test_a_map_asks_nothing_of_what_this_version_gave_before(tmp_path: Path) -> 
     network = StoredJobs()
 
     def mapped() -> list[str]:
-        with LineOfActionClient(
-            ADDRESS, cache_dir=tmp_path, transport=httpx2.MockTransport(network)
-        ) as client:
+        with against(network, tmp_path) as client:
             jobs = list(client.analyze.map(map(case, (12, 13))))
             assert (
                 {job.state.status for job in jobs} == {job.status().status for job in jobs} == {"successful"}
@@ -199,7 +170,7 @@ def test_a_submission_that_is_sent_again_is_the_same_request(tmp_path: Path) -> 
                 raise httpx2.ReadError("the line broke")
         return reply
 
-    with LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=httpx2.MockTransport(answer)) as client:
+    with against(answer, tmp_path) as client:
         client.analyze.submit(case(20))
         client.analyze.submit(case(20))
     first, again, second, again_too = stored.keys
@@ -208,7 +179,6 @@ def test_a_submission_that_is_sent_again_is_the_same_request(tmp_path: Path) -> 
 
 
 def event(progress: int, status: str = "running") -> bytes:
-    """Return an event as the service sends it."""
     document = httpx2.Response(200, json=state("j", status) | {"progress": progress}).content
     return b"event: status\ndata: " + document + b"\n\n"
 
@@ -236,7 +206,7 @@ def test_a_stream_that_breaks_is_taken_up_again(tmp_path: Path, monkeypatch: pyt
         opened.append(request.url.path)
         return httpx2.Response(200, content=pieces(), headers={"Content-Type": "text/event-stream"})
 
-    with LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=httpx2.MockTransport(answer)) as client:
+    with against(answer, tmp_path) as client:
         seen = [found.progress for found in client.events("j")]
     assert seen == [1, 3, 100]  # what did not change is not told twice
     assert opened == ["/v1/jobs/j/events"] * 2
@@ -247,9 +217,9 @@ def test_events_of_what_is_no_stream_are_refused(tmp_path: Path) -> None:
         httpx2.Response(200, text="<html>"),
         httpx2.Response(200, headers={"Content-Type": "text/event-stream"}),
     ):
-        transport = httpx2.MockTransport(lambda _request, reply=reply: reply)  # type: ignore[misc]
+        network: Any = lambda _request, reply=reply: reply  # noqa: E731
         with (
-            LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=transport) as client,
+            against(network, tmp_path) as client,
             pytest.raises(Unreachable, match="not an answer of this service"),
         ):
             list(client.events("j"))
@@ -271,7 +241,7 @@ def test_lists_come_page_by_page_as_far_as_they_are_wanted(
             200, json={"jobs": [state(str(n), "running") for n in numbers], "links": links}
         )
 
-    with LineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=httpx2.MockTransport(answer)) as client:
+    with against(answer, tmp_path) as client:
         found = [
             job.id for job in client.jobs(process=["analyze"], status=["running", "failed"], limit=limit)
         ]

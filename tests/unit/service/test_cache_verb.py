@@ -9,19 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner, Result
+from command_line import loa
 
 from fe_contact.compliance.cache import read_compliance
 from fe_contact.compliance.flank import FlankCompliance
-from lineofaction.cli.commands import app
 from service.folders import evict, files_in
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 HOUR = 3600.0
-
-
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
 @pytest.fixture

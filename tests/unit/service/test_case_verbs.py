@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from command_line import loa, printed
 from geared_scenes import gear_pair_scene
 from spur_case import SPUR, spur_case
-from typer.testing import CliRunner
 
 from dynamics.ablation import ablate
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.studies.ablate.run import RUN
 from lineofaction.gearbox.studies.root_stress.run import RUN as ROOT_STRESS
 from lineofaction.report.drawing.image import png
@@ -31,9 +29,7 @@ PLAIN = SPUR + '\n[load]\ntorque_n_m = [50, 100]\n[accuracy]\nlevel = "draft"\n'
 def told(folder: Path, case: str, verb: str, *arguments: object) -> Any:
     file = folder / "case.toml"
     file.write_text(case, encoding="utf-8")
-    done = CliRunner().invoke(app, [verb, str(file), *map(str, arguments), "--json"])
-    assert (done.exit_code, done.stderr) == (0, ""), done.output
-    return json.loads(done.stdout)
+    return printed(verb, file, *arguments)
 
 
 @pytest.fixture(autouse=True)
@@ -59,7 +55,7 @@ def test_effects_of_a_case_change_what_the_documentation_says(tmp_path: Path) ->
         assert 1.0 < whole < 20.0
         assert entry["mean_change_um"][1] == pytest.approx(entry["without"]["mean_um"][1] - whole, rel=1e-9)
         assert 0.5 < entry["estimate"]["mean_um"] / entry["mean_change_um"][1] < 2.0
-    text = CliRunner().invoke(app, ["ablate", str(tmp_path / "case.toml"), "--only", only])
+    text = loa("ablate", tmp_path / "case.toml", "--only", only)
     assert "not toggled: misalignment: the gears are aligned" in text.stdout
 
 
@@ -86,7 +82,7 @@ def test_roots_are_stressed_by_the_load_and_drawn_with_their_peaks(tmp_path: Pat
     assert found["torque_n_m"] == pytest.approx(100.0)  # the highest load of the case
     half = told(tmp_path, PLAIN, "root-stress", "--torque", "50", "--image", picture)
     assert picture.read_bytes().startswith(b"\x89PNG")
-    shown = CliRunner().invoke(app, ["root-stress", str(tmp_path / "case.toml")]).stdout
+    shown = loa("root-stress", tmp_path / "case.toml").stdout
     figure = _root_stress_figure(ROOT_STRESS.figures(ROOT_STRESS.file.read(file)))
     for gear, panel in zip(("pinion", "wheel"), figure.content, strict=True):
         tension = found[gear]["tension"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -17,8 +17,8 @@ from running_service import until
 from service_fakes import REGISTRY
 from small_table import small_table
 from starlette.testclient import TestClient
+from stored_jobs import against, case, state
 
-from fe_contact.ste import SteDatabase
 from lineofaction.client import JobState, LineOfActionClient, OfflineWarning
 from lineofaction.gearbox.problems import (
     BadInput,
@@ -34,15 +34,6 @@ from service.app import create_app
 from service.settings import Settings
 
 KEY = "ab" * 32
-CASE: dict[str, Any] = {
-    "pair": {
-        "normal_module_mm": 4.0,
-        "center_distance_mm": 80.0,
-        "pinion": {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0},
-        "wheel": {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0},
-    },
-    "load": {"torque_n_m": [10.0, 100.0]},
-}
 
 
 @pytest.fixture
@@ -58,25 +49,12 @@ def service(tmp_path: Path) -> Iterator[TestClient]:
 
 @pytest.fixture
 def client(service: TestClient, tmp_path: Path) -> Iterator[LineOfActionClient]:
-    """A client whose network is the app."""
     transport = service._transport
     with LineOfActionClient("http://testserver", cache_dir=tmp_path / "tables", transport=transport) as found:
         yield found
 
 
-Answer = Callable[[httpx2.Request], httpx2.Response]
-
-
-def against(answer: Answer, tmp_path: Path, attempts: int = 4) -> LineOfActionClient:
-    """Return a client of a network that answers as told."""
-    transport = httpx2.MockTransport(answer)
-    return LineOfActionClient(
-        "http://127.0.0.1:1", cache_dir=tmp_path / "tables", transport=transport, attempts=attempts
-    )
-
-
 def wish(**facts: Any) -> dict[str, Any]:
-    """Return inputs of the fake."""
     return {"wish": facts}
 
 
@@ -98,7 +76,7 @@ def test_a_cached_table_needs_no_service(client: LineOfActionClient, tmp_path: P
     def silent(_request: httpx2.Request) -> httpx2.Response:
         raise AssertionError("the cache was not used")
 
-    assert against(silent, tmp_path).fetch(KEY).identical(small_table())
+    assert against(silent, tmp_path / "tables").fetch(KEY).identical(small_table())
 
 
 def test_a_damaged_cache_is_not_used(client: LineOfActionClient) -> None:
@@ -112,14 +90,8 @@ def test_a_file_damaged_on_its_way_is_refused_and_not_kept(tmp_path: Path) -> No
         return httpx2.Response(200, content=b"half of", headers={"Content-Digest": "sha-256=:AAAA:"})
 
     with pytest.raises(DamagedFile):
-        against(damaged, tmp_path).fetch_file(KEY)
+        against(damaged, tmp_path / "tables").fetch_file(KEY)
     assert list((tmp_path / "tables").rglob("*.nc")) == []
-
-
-def test_forces_are_asked_in_batches(client: LineOfActionClient) -> None:
-    answer = client.query(KEY, [0.0, 0.5], [3.0, 3.0])
-    expected = small_table().force_at([0.0, 0.5], 3e-6).force
-    assert answer.force_n == pytest.approx(expected.tolist())
 
 
 @pytest.mark.parametrize(("mode", "error"), [("mesh", JobFailed), ("input", BadInput), ("die", JobFailed)])
@@ -150,9 +122,9 @@ def test_a_bad_case_is_refused_before_anything_is_sent(tmp_path: Path) -> None:
     def silent(_request: httpx2.Request) -> httpx2.Response:
         raise AssertionError("something was sent")
 
-    wrong = CASE | {"load": {"torque_n_m": [float("nan")]}}
+    wrong = case() | {"load": {"torque_n_m": [float("nan")]}}
     with pytest.raises(BadInput, match=r"load\.torque_n_m\[0\] = nan"):
-        against(silent, tmp_path).analyze.submit(wrong)
+        against(silent, tmp_path / "tables").analyze.submit(wrong)
 
 
 @pytest.mark.parametrize("text", ["case.toml", "[pair]", b"case.toml", None, 3])
@@ -170,27 +142,6 @@ def test_unknown_results_and_jobs_are_not_found(client: LineOfActionClient) -> N
         client.status("nothing")
 
 
-def test_a_network_that_recovers_is_not_noticed(tmp_path: Path) -> None:
-    asked: list[str] = []
-
-    def recovers(request: httpx2.Request) -> httpx2.Response:
-        asked.append(request.method)
-        if len(asked) == 1:
-            raise httpx2.ConnectError("refused")
-        if len(asked) == 2:
-            return httpx2.Response(503, headers={"Retry-After": "0"})
-        return httpx2.Response(200, json=_status("running"))
-
-    assert against(recovers, tmp_path).status("j").status == "running"
-    assert len(asked) == 3
-
-
-def _status(status: str) -> dict[str, Any]:
-    """Return a status document."""
-    numbers = {"progress": 10, "stage_progress": 20}
-    return {"jobID": "j", "processID": "analyze", "status": status, "message": "", "stage": "mesh"} | numbers
-
-
 def test_no_service_is_said_with_its_address_after_all_attempts(tmp_path: Path) -> None:
     asked: list[str] = []
 
@@ -199,7 +150,7 @@ def test_no_service_is_said_with_its_address_after_all_attempts(tmp_path: Path) 
         raise httpx2.ConnectError("refused")
 
     with pytest.raises(Unreachable, match=r"http://127\.0\.0\.1:1 .*loa serve"):
-        against(refuses, tmp_path, attempts=2).status("j")
+        against(refuses, tmp_path / "tables", attempts=2).status("j")
     assert len(asked) == 2
 
 
@@ -217,15 +168,15 @@ def test_a_case_known_from_before_is_served_offline(tmp_path: Path) -> None:
             return httpx2.Response(200, json={"database": reference})
         if "/v1/results/" in request.url.path:
             return httpx2.Response(200, content=content, headers=_digest(content))
-        return httpx2.Response(201 if request.method == "POST" else 200, json=_status("successful"))
+        return httpx2.Response(201 if request.method == "POST" else 200, json=state("j", "successful"))
 
-    client = against(answer, tmp_path, attempts=1)
-    assert client.analyze(CASE).identical(small_table())
+    client = against(answer, tmp_path / "tables", attempts=1)
+    assert client.analyze(case()).identical(small_table())
     online[0] = False
     with pytest.warns(OfflineWarning, match=r"http://127\.0\.0\.1:1: the database .* from the cache"):
-        assert client.analyze(CASE).identical(small_table())
+        assert client.analyze(case()).identical(small_table())
     with pytest.raises(Unreachable):
-        client.analyze(CASE | {"load": {"torque_n_m": [1.0]}})
+        client.analyze(case() | {"load": {"torque_n_m": [1.0]}})
 
 
 def _digest(content: bytes) -> dict[str, str]:
@@ -253,10 +204,6 @@ def test_the_import_is_light() -> None:
     # what declares the fields of cases and scenes is loaded when the first one is sent
     packages = {name.partition(".")[0] for name in loaded}
     assert not {"fe_contact", "dynamics", "bounds", "numpy"} & packages
-
-
-def test_a_table_fetched_is_an_ste_database(client: LineOfActionClient) -> None:
-    assert isinstance(client.fetch(KEY), SteDatabase)
 
 
 def test_a_table_fetched_as_a_dataset_is_the_same_table(client: LineOfActionClient) -> None:

@@ -5,16 +5,15 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from email.utils import format_datetime
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import httpx2
 import pytest
+from stored_jobs import against, state
 
 from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.client.exchange import problem_of
@@ -30,36 +29,16 @@ from lineofaction.gearbox.problems import (
 )
 from service.version import solver_version
 
-Answer = Callable[[httpx2.Request], httpx2.Response]
 KEY = "ab" * 32
 
 
-def against(answer: Answer, tmp_path: Path, **options: Any) -> LineOfActionClient:
-    """Return a client of a network that answers as told."""
-    transport = httpx2.MockTransport(answer)
-    return LineOfActionClient("http://127.0.0.1:1", cache_dir=tmp_path, transport=transport, **options)
-
-
-def state(status: str) -> httpx2.Response:
-    """Return a status document."""
-    facts = {"jobID": "j", "processID": "analyze", "status": status, "message": "", "stage": "mesh"}
-    return httpx2.Response(200, json=facts | {"progress": 10, "stage_progress": 20})
+def seen(status: str) -> httpx2.Response:
+    return httpx2.Response(200, json=state("j", status))
 
 
 def results() -> httpx2.Response:
-    """Return where the result of the job is."""
     reference = {"href": f"/v1/results/{KEY}", "type": "", "hash": KEY}
     return httpx2.Response(200, json={"database": reference})
-
-
-@pytest.fixture
-def slept(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """Record what would be slept, on a clock that goes on by it."""
-    pauses: list[float] = []
-    begin = time.monotonic()
-    monkeypatch.setattr(time, "sleep", pauses.append)
-    monkeypatch.setattr(time, "monotonic", lambda: begin + sum(pauses))
-    return pauses
 
 
 @pytest.mark.parametrize("method", ["status", "submit", "dismiss"])
@@ -91,7 +70,7 @@ def test_the_service_says_when_in_seconds_or_as_a_date(tmp_path: Path, slept: li
 
     def answer(_request: httpx2.Request) -> httpx2.Response:
         when = next(asked)
-        return state("running") if when is None else httpx2.Response(503, headers={"Retry-After": when})
+        return seen("running") if when is None else httpx2.Response(503, headers={"Retry-After": when})
 
     assert against(answer, tmp_path, attempts=6).status("j").status == "running"
     first, second, third, fourth, fifth = slept
@@ -145,16 +124,16 @@ def test_an_address_that_is_none_is_refused_at_once(tmp_path: Path, address: str
 def test_address_and_key_come_from_the_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LOA_SERVICE", "http://gears.example:99/behind/")
     monkeypatch.setenv("LOA_KEY", "secret")
-    seen: list[httpx2.Request] = []
+    sent: list[httpx2.Request] = []
 
     def answer(request: httpx2.Request) -> httpx2.Response:
-        seen.append(request)
-        return state("running")
+        sent.append(request)
+        return seen("running")
 
     LineOfActionClient(cache_dir=tmp_path, transport=httpx2.MockTransport(answer)).status("j")
-    assert str(seen[0].url) == "http://gears.example:99/behind/v1/jobs/j"
-    assert seen[0].headers["authorization"] == "Bearer secret"
-    assert seen[0].headers["user-agent"] == f"lineofaction/{solver_version()}"
+    assert str(sent[0].url) == "http://gears.example:99/behind/v1/jobs/j"
+    assert sent[0].headers["authorization"] == "Bearer secret"
+    assert sent[0].headers["user-agent"] == f"lineofaction/{solver_version()}"
 
 
 MADE_OF_TEXT = [
@@ -204,7 +183,7 @@ def test_waiting_looks_often_at_first_and_never_more_than_a_tenth_of_the_time_la
         if request.url.path.endswith("/results"):
             return results()
         looks.append(sum(slept))
-        return state("running" if sum(slept) < 600.0 else "successful")
+        return seen("running" if sum(slept) < 600.0 else "successful")
 
     against(answer, tmp_path).wait("j", interval=0.05)
     pauses = [after - before for before, after in pairwise(looks)]
@@ -224,7 +203,7 @@ def test_a_restart_of_the_service_is_waited_out(tmp_path: Path, slept: list[floa
         return (
             results()
             if request.url.path.endswith("/results")
-            else state("successful" if sum(slept) > 21.0 else "running")
+            else seen("successful" if sum(slept) > 21.0 else "running")
         )
 
     assert against(answer, tmp_path).wait("j").key == KEY
@@ -235,7 +214,7 @@ def test_patience_has_an_end(tmp_path: Path, slept: list[float]) -> None:
     def answer(_request: httpx2.Request) -> httpx2.Response:
         if sum(slept) > 1.0:
             raise httpx2.ConnectError("refused")
-        return state("running")
+        return seen("running")
 
     with pytest.raises(Unreachable, match="loa serve"):
         against(answer, tmp_path, patience=30.0).wait("j")
@@ -253,7 +232,7 @@ def test_a_service_that_never_answered_is_told_at_once(tmp_path: Path, slept: li
 
 def test_the_time_to_wait_is_kept_and_is_a_timeout(tmp_path: Path, slept: list[float]) -> None:
     with pytest.raises(StillRunning, match=r"Job j did not end within 5 s\. It continues") as caught:
-        against(lambda _request: state("running"), tmp_path).wait("j", timeout=5.0)
+        against(lambda _request: seen("running"), tmp_path).wait("j", timeout=5.0)
     assert isinstance(caught.value, TimeoutError)
     assert sum(slept) == pytest.approx(5.0)
 
@@ -263,7 +242,7 @@ def test_ctrl_c_leaves_the_job_and_says_so(tmp_path: Path) -> None:
 
     def answer(request: httpx2.Request) -> httpx2.Response:
         methods.append(request.method)
-        return state("running")
+        return seen("running")
 
     def interrupted(_state: JobState) -> None:
         raise KeyboardInterrupt

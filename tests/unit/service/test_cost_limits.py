@@ -24,7 +24,6 @@ from service.settings import Settings
 
 @pytest.fixture
 def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
-    """A running scheduler, on each database."""
     found = bench(tmp_path, REGISTRY, database_url=database_url)
     found.scheduler.start()
     yield found
@@ -91,7 +90,6 @@ def client(tmp_path: Path) -> Iterator[TestClient]:
 
 
 def analyzed(client: TestClient, **terms: Any) -> Any:
-    """Return the answer to an execution of analyze."""
     return client.post("/v1/processes/analyze/execution", json={"inputs": {"case": CASE}, **terms})
 
 
@@ -124,5 +122,4 @@ def test_what_is_stored_costs_nothing(tmp_path: Path) -> None:
 
 
 def _inputs(app: Any) -> Any:
-    """Return the example as the process takes it."""
     return app.state.context.registry["analyze"].inputs.model_validate({"case": CASE})

@@ -10,15 +10,14 @@ from pathlib import Path
 
 import pytest
 import structlog
+from command_line import loa
 from fastapi.testclient import TestClient
 from running_service import until
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 from sqlalchemy import event
 from sqlalchemy.exc import OperationalError
 from structlog.testing import LogCapture
-from typer.testing import CliRunner
 
-from lineofaction.cli.commands import app as loa
 from lineofaction.gearbox.problems import EXIT_FAILED, DatabaseDamaged, NoSpace, OutOfFiles, ServiceError
 from service.app import create_app
 from service.settings import Settings
@@ -26,13 +25,11 @@ from service.store.database import database_engine
 from service.store.deployment import NOTE
 from service.store.dialects import out_of_files, outage_of
 
-EXECUTION = "/v1/processes/fake/execution"
 PAGE = 4096
 
 
 @pytest.fixture(scope="module")
 def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A data directory with some jobs."""
     directory = tmp_path_factory.mktemp("sound")
     with TestClient(create_app(Settings(data_directory=directory), REGISTRY, works=False)) as client:
         for number in range(8):
@@ -43,7 +40,6 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def directory(tmp_path: Path, sound: Path) -> Path:
-    """A copy of it."""
     return shutil.copytree(sound, tmp_path / "data")
 
 
@@ -56,7 +52,6 @@ def client(directory: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestCli
 
 
 def damage(file: Path, kind: str) -> None:
-    """Harm the file of a database."""
     content = file.read_bytes()
     harmed = {
         "garbage": b"garbage!" * (len(content) // 8),
@@ -68,7 +63,6 @@ def damage(file: Path, kind: str) -> None:
 
 
 def writable(client: TestClient) -> dict[str, float]:
-    """Return the figures of what can be written."""
     lines = client.get("/metrics").text.splitlines()
     return {line.split('"')[1]: float(line.split()[-1]) for line in lines if line.startswith("loa_writable{")}
 
@@ -101,7 +95,7 @@ def test_the_start_names_the_damage_and_the_way_to_restore(directory: Path, kind
 
 def test_the_verb_says_so_and_fails(directory: Path) -> None:
     damage(directory / "service.sqlite3", "garbage")
-    done = CliRunner().invoke(loa, ["serve", "--port", "0", "--data-directory", str(directory)])
+    done = loa("serve", "--port", "0", "--data-directory", directory)
     assert done.exit_code == EXIT_FAILED
     assert "file is not a database" in done.stderr and "loa store reindex" in done.stderr
     assert done.stderr.count("error: ") == 1

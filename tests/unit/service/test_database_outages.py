@@ -28,7 +28,6 @@ KEEPALIVE = (socket.TCP_KEEPIDLE, socket.TCP_KEEPINTVL, socket.TCP_KEEPCNT)
 
 @pytest.fixture
 def server_url(postgres: PostgresServer) -> str:
-    """A database of this program's schema on the server."""
     url = postgres.new_database()
     engine = database_engine(url)
     Schema(engine).upgrade()
@@ -38,7 +37,6 @@ def server_url(postgres: PostgresServer) -> str:
 
 @pytest.fixture
 def machine(tmp_path: Path, server_url: str) -> Iterator[Bench]:
-    """The job machinery on the server."""
     found = bench(tmp_path, REGISTRY, database_url=server_url)
     yield found
     found.close()

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from command_line import loa
 from postgres_server import PostgresServer
 from typer.testing import CliRunner
 
@@ -33,7 +34,7 @@ def test_a_new_database_is_made_and_then_up_to_date(
 
 def test_a_server_that_does_not_answer_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LOA_DATABASE_URL", f"postgresql://loa:geheim@/loa?host={tmp_path}")
-    answer = CliRunner().invoke(app, ["database", "status"])
+    answer = loa("database", "status")
     assert answer.exit_code == 4
     assert "The database cannot be reached" in answer.stderr
     assert "geheim" not in answer.output

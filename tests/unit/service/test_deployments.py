@@ -45,7 +45,6 @@ def on_servers(request: pytest.FixtureRequest) -> bool:
 
 @pytest.fixture
 def new_database(tmp_path: Path, on_servers: bool, request: pytest.FixtureRequest) -> NewDatabase:
-    """Return the URL of another database at each call."""
     if on_servers:
         server: PostgresServer = request.getfixturevalue("postgres")
         return lambda: migrated(server.new_database())
@@ -55,7 +54,6 @@ def new_database(tmp_path: Path, on_servers: bool, request: pytest.FixtureReques
 
 @pytest.fixture
 def place(tmp_path: Path, on_servers: bool, request: pytest.FixtureRequest) -> str:
-    """Where the files are."""
     return str(request.getfixturevalue("s3_url")) if on_servers else (tmp_path / "results").as_uri()
 
 
@@ -78,7 +76,6 @@ def put(machine: Bench, key: str) -> str:
 
 
 def read(store: ResultStore, key: str) -> object:
-    """Return what a result holds."""
     with h5py.File(store.verified(key, "ablation").path, "r") as content:
         return content.attrs["key"]
 
@@ -88,7 +85,6 @@ def retention(machine: Bench, days: float = 7.0) -> Retention:
 
 
 def held(machine: Bench) -> set[str]:
-    """Return the names of all files but the note."""
     return {file.name for file in machine.store.files.files()} - {NOTE}
 
 
@@ -274,7 +270,6 @@ def test_quarantine_ends_by_its_own_date(first: Bench) -> None:
 
 
 def made(machine: Bench) -> Path:
-    """Return a file to put."""
     file = machine.settings.data_directory / "some"
     file.write_bytes(b"{}")
     return file

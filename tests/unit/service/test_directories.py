@@ -7,11 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from command_line import loa
 from spur_case import SPUR
-from typer.testing import CliRunner
 
 from host.directories import cache_home
-from lineofaction.cli.commands import app
 
 CASE = f"""{SPUR}
 [load]
@@ -31,7 +30,7 @@ def test_verbs_keep_where_the_environment_says(
     monkeypatch.setenv("LINEOFACTION_CACHE", "kept")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "other"))
     Path("case.toml").write_text(CASE)
-    result = CliRunner().invoke(app, [verb[0], "case.toml", *verb[1:]])
+    result = loa(verb[0], "case.toml", *verb[1:])
     assert result.exit_code == 0, result.output
     assert list((tmp_path / "kept" / "compliance").iterdir())
     assert not (tmp_path / "other").exists()

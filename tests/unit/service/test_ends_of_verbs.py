@@ -6,11 +6,9 @@ import re
 from pathlib import Path
 
 import pytest
-from scene_files import scene_file
+from command_line import loa
 from small_table import small_table
-from typer.testing import CliRunner
 
-from lineofaction.cli.commands import app
 from lineofaction.client import LineOfActionClient
 
 SPUR = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
@@ -18,7 +16,7 @@ COARSE = ("--level", "draft", "--set", "accuracy.positions=16")
 
 
 def last_lines(*arguments: object, count: int = 3) -> list[str]:
-    done = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    done = loa(*arguments)
     assert done.exit_code == 0, done.output
     return done.stdout.strip().splitlines()[-count:]
 
@@ -31,48 +29,11 @@ def test_a_table_ends_with_mean_and_ripple_and_its_file(tmp_path: Path) -> None:
     assert written == f"written to {file}"
 
 
-@pytest.mark.parametrize("verb", ["flank", "root-stress"])
-def test_a_study_ends_with_its_headlines_and_its_file(verb: str, tmp_path: Path) -> None:
-    file = tmp_path / "result.json"
-    *results, written = last_lines(verb, SPUR, "-o", file, *COARSE, count=2)
-    assert re.match(r"\S.*: [\d.]+ MPa", results[-1])
-    assert written == f"written to {file}"
-
-
 def test_a_plan_ends_with_what_it_chose() -> None:
     assert "mesh standard" in last_lines("plan", SPUR, count=1)[0]
 
 
-@pytest.fixture(scope="module")
-def gears(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A scene with its table beside it."""
-    return scene_file(tmp_path_factory.mktemp("scene"))
-
-
 NUMBER = r"-?[\d.]+"
-
-
-@pytest.mark.parametrize(
-    ("verb", "speeds", "first", "second"),
-    [
-        ("modes", "0:6000:1000", r"lowest natural frequency: N Hz \(", r"least damped critical speed: N rpm"),
-        (
-            "response",
-            "1000:3000:500",
-            r"largest mesh force of .+: N N \(order N at",
-            "largest force on bearing",
-        ),
-        ("steady", "2000", r"largest rms transmission error of .+: N µm", "largest mesh force of .+: N N"),
-    ],
-)
-def test_a_study_of_a_scene_ends_with_what_is_largest(
-    verb: str, speeds: str, first: str, second: str, gears: Path, tmp_path: Path
-) -> None:
-    file = tmp_path / "result.nc"
-    *results, written = last_lines(verb, gears, "--speed-rpm", speeds, "-o", file)
-    for line, pattern in zip(results, (first, second), strict=True):
-        assert re.match(pattern.replace(" N ", f" {NUMBER} ").replace(": N", f": {NUMBER}"), line), line
-    assert written == f"written to {file}"
 
 
 def test_a_curve_ends_with_its_harmonics_mean_and_ripple(tmp_path: Path) -> None:

@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import re
 import zipfile
 from pathlib import Path
 
 import pytest
+from command_line import loa, printed
 from small_table import BASE_RADIUS, small_table
-from typer.testing import CliRunner, Result
-
-from lineofaction.cli.commands import app
-
-
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["export", *(str(argument) for argument in arguments)])
 
 
 @pytest.fixture
@@ -26,21 +19,20 @@ def database(tmp_path: Path) -> Path:
 
 
 def test_it_holds_the_whole_table_and_says_so(database: Path, tmp_path: Path) -> None:
-    result = loa(database, "-o", tmp_path / "m.fmu", "--torque", 100, "--damping-n-s-per-m", 1500, "--json")
-    assert (result.exit_code, result.stderr) == (0, "")
-    answer = json.loads(result.stdout)
+    options = ("--torque", 100, "--damping-n-s-per-m", 1500)
+    answer = printed("export", database, "-o", tmp_path / "m.fmu", *options)
     table = small_table().force_table()
     assert (answer["positions"], answer["levels"]) == (table.position.size, table.level.size)
     assert answer["damping_reach_n"] == pytest.approx(0.05 * 100.0 / BASE_RADIUS)
     with zipfile.ZipFile(answer["file"]) as archive:
         assert 'start="1500.0"' in archive.read("modelDescription.xml").decode()
-    again = loa(database, "-o", tmp_path / "m.fmu")
+    again = loa("export", database, "-o", tmp_path / "m.fmu")
     assert again.exit_code == 0
     assert "1 misalignments x 1 center distances" in again.stdout
 
 
 def test_backlash_gives_it_a_coast_flank(database: Path, tmp_path: Path) -> None:
-    assert loa(database, "-o", tmp_path / "m.fmu", "--backlash-um", 80).exit_code == 0
+    assert loa("export", database, "-o", tmp_path / "m.fmu", "--backlash-um", 80).exit_code == 0
     with zipfile.ZipFile(tmp_path / "m.fmu") as archive:
         text = archive.read("modelDescription.xml").decode()
     for name, start in (("backlash", f'"{80 * 1e-6!r}"'), ("coast_flank", '"true"')):
@@ -59,16 +51,16 @@ def test_backlash_gives_it_a_coast_flank(database: Path, tmp_path: Path) -> None
     ],
 )
 def test_arguments_it_cannot_use(database: Path, tmp_path: Path, arguments: list[object], text: str) -> None:
-    result = loa(database, "-o", tmp_path / "m.fmu", *arguments)
+    result = loa("export", database, "-o", tmp_path / "m.fmu", *arguments)
     assert result.exit_code == 2
     assert text in result.stderr
     assert not (tmp_path / "m.fmu").exists()
 
 
 def test_no_database_and_no_compiler(database: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert "an STE database" in loa(tmp_path / "no.nc", "-o", tmp_path / "m.fmu").stderr
+    assert "an STE database" in loa("export", tmp_path / "no.nc", "-o", tmp_path / "m.fmu").stderr
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("CC", raising=False)
-    result = loa(database, "-o", tmp_path / "m.fmu")
+    result = loa("export", database, "-o", tmp_path / "m.fmu")
     assert result.exit_code == 2
     assert "a C compiler on the path" in result.stderr

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import meshlane
 import pytest
+from command_line import loa, printed
 from geared_scenes import gear_pair_scene
 from spur_case import SPUR
-from typer.testing import CliRunner, Result
 
 from dynamics.simulation import simulate
-from lineofaction.cli.commands import app
 
 SMALL = (
     SPUR
@@ -26,25 +24,22 @@ model = "plane_strain"
 )
 
 
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["export", *(str(argument) for argument in arguments)])
-
-
 def test_a_run_becomes_a_universal_file_or_a_table(tmp_path: Path) -> None:
     simulate(gear_pair_scene(duration=0.02)).to_netcdf(tmp_path / "run.nc")
-    done = loa(tmp_path / "run.nc", "-o", tmp_path / "run.unv", "--function", "spectrum", "--json")
-    assert done.exit_code == 0
-    assert json.loads(done.stdout) == {
+    unv = (tmp_path / "run.nc", "-o", tmp_path / "run.unv")
+    assert printed("export", *unv, "--function", "spectrum") == {
         "written": [str(tmp_path / "run.unv")],
         "functions": 14,
         "warnings": [],
     }
     assert (tmp_path / "run.unv").read_text().count("\n    58\n") == 14
-    assert loa(tmp_path / "run.nc", "-o", tmp_path / "run.csv").exit_code == 0
+    assert loa("export", tmp_path / "run.nc", "-o", tmp_path / "run.csv").exit_code == 0
     assert (tmp_path / "run.csv").read_text().startswith("time (s),")
     for arguments in (("run.csv", "--function", "orders"), ("run.unv", "--function", "rms")):
-        assert loa(tmp_path / "run.nc", "-o", tmp_path / arguments[0], *arguments[1:]).exit_code == 2
-    assert loa(tmp_path / "run.nc", "-o", tmp_path / "x.unv", "--from", "0.03").exit_code == 2
+        assert (
+            loa("export", tmp_path / "run.nc", "-o", tmp_path / arguments[0], *arguments[1:]).exit_code == 2
+        )
+    assert loa("export", tmp_path / "run.nc", "-o", tmp_path / "x.unv", "--from", "0.03").exit_code == 2
 
 
 @pytest.fixture
@@ -55,11 +50,9 @@ def small(tmp_path: Path) -> Path:
 
 
 def test_one_position_is_two_files_and_several_are_numbered(small: Path, tmp_path: Path) -> None:
-    assert loa(small, "-o", tmp_path / "one").exit_code == 0
+    assert loa("export", small, "-o", tmp_path / "one").exit_code == 0
     assert sorted(file.name for file in (tmp_path / "one").iterdir()) == ["pinion.vtu", "wheel.vtu"]
-    result = loa(small, "--torque", 50, "--at", "0,0.5", "-o", tmp_path / "two", "--json")
-    assert (result.exit_code, result.stderr) == (0, "")
-    answer = json.loads(result.stdout)
+    answer = printed("export", small, "--torque", 50, "--at", "0,0.5", "-o", tmp_path / "two")
     names = ["pinion_000.vtu", "wheel_000.vtu", "pinion_001.vtu", "wheel_001.vtu"]
     assert [Path(file).name for file in answer["written"]] == names
     assert [row["position"] for row in answer["positions"]] == [0.0, 0.5]
@@ -85,7 +78,7 @@ def test_bad_arguments_are_one_line_before_the_work(
     small: Path, tmp_path: Path, arguments: list[str], said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("lineofaction.cli.export.deformed_pairs", None)  # called: code 5
-    result = loa(small, "-o", tmp_path / "out", *arguments)
+    result = loa("export", small, "-o", tmp_path / "out", *arguments)
     assert (result.exit_code, result.stdout) == (2, "")
     assert said in result.stderr
     assert not (tmp_path / "out").exists()
@@ -93,6 +86,6 @@ def test_bad_arguments_are_one_line_before_the_work(
 
 @pytest.mark.parametrize("output", ["small.toml", "out.vtu", "no/such"])
 def test_a_folder_that_cannot_be_one_is_refused(small: Path, tmp_path: Path, output: str) -> None:
-    result = loa(small, "-o", tmp_path / output)
+    result = loa("export", small, "-o", tmp_path / output)
     assert result.exit_code == 2
     assert "output = " in result.stderr

@@ -6,12 +6,11 @@ import json
 from pathlib import Path
 from typing import Any, get_type_hints
 
-import httpx2
 import pytest
 from declared_figures import check_declared, document
 from pydantic import ValidationError
 from small_table import small_table
-from stored_jobs import StoredJobs
+from stored_jobs import StoredJobs, against, case
 
 from lineofaction.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfActionClient
 from lineofaction.client.surface import Listing, Operation
@@ -93,15 +92,8 @@ def test_no_call_returns_a_bare_dictionary() -> None:
 def test_a_job_reads_the_figures_of_its_kind(tmp_path: Path) -> None:
     network = StoredJobs()
     table: dict[str, Any] = OF_FILE | json.loads(json.dumps(metadata_json(small_table())))
-    gear = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
-    case = {
-        "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": gear, "wheel": gear},
-        "load": {"torque_n_m": [10.0]},
-    }
-    with LineOfActionClient(
-        "http://127.0.0.1:1", cache_dir=tmp_path, transport=httpx2.MockTransport(network)
-    ) as client:
-        job = client.analyze.submit(case)
+    with against(network, tmp_path) as client:
+        job = client.analyze.submit(case())
         network._content[job.wait().key] = json.dumps(table).encode()
         figures = job.figures()
     assert isinstance(figures, TableFigures) and document(figures) == table

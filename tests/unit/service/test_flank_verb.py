@@ -6,11 +6,10 @@ import json
 from pathlib import Path
 
 import pytest
+from command_line import loa, printed
 from spur_case import SPUR
-from typer.testing import CliRunner, Result
 
 from fe_contact import LoadDistribution
-from lineofaction.cli.commands import app
 from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.gearbox.convert.case import case_at
 from lineofaction.gearbox.schemas import Case, validated
@@ -29,10 +28,6 @@ model = "plane_strain"
 )
 
 
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
 @pytest.fixture
 def small(tmp_path: Path) -> Path:
     file = tmp_path / "small.toml"
@@ -41,9 +36,7 @@ def small(tmp_path: Path) -> Path:
 
 
 def test_the_highest_load_of_the_case_is_the_default(small: Path, tmp_path: Path) -> None:
-    result = loa("flank", small, "-o", tmp_path / "f.nc", "--json")
-    assert (result.exit_code, result.stderr) == (0, "")
-    answer = json.loads(result.stdout)
+    answer = printed("flank", small, "-o", tmp_path / "f.nc")
     found = LoadDistribution.from_netcdf(tmp_path / "f.nc")
     assert answer["torque_n_m"] == pytest.approx(200.0) == found.scene.torque
     assert (answer["positions"], answer["slices"]) == (64, 1)
@@ -141,7 +134,7 @@ def test_a_submission_names_its_process_and_inputs(small: Path, monkeypatch: pyt
 
 def test_the_largest_pressure_is_that_of_the_flank_and_an_edge_is_named_apart(small: Path) -> None:
     told = loa("flank", small, "--set", "effects.corner_contact=on")
-    answer = json.loads(loa("flank", small, "--set", "effects.corner_contact=on", "--json").stdout)
+    answer = printed("flank", small, "--set", "effects.corner_contact=on")
     flank, edge = answer["largest_pressure_mpa"], answer["edge_pressure_mpa"]
     assert min(edge, flank) > 0.0
     (line,) = (line for line in told.stdout.splitlines() if line.startswith("largest flank pressure"))

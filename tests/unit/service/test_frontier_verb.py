@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
+from command_line import loa
 
 from dynamics.accuracy import FidelityResult as SceneResult
 from dynamics.accuracy import Frontier as SceneFrontier
@@ -21,7 +21,6 @@ from fe_contact.analysis.studies.measured_full_contact import (
 from fe_contact.full_contact import FullContactPoint, FullContactTable
 from fe_contact.geometry import FlankModification, GearPair
 from fe_contact.types import Status
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.interactive import plotly_figure
@@ -110,7 +109,7 @@ def test_full_contact_of_the_case_stands_beside_the_known_cost(found: Frontier) 
 
 def test_full_contact_is_for_cases(tmp_path: Path) -> None:
     scene = EXAMPLE.with_name("palermo_scene.toml")
-    done = CliRunner().invoke(app, ["frontier", str(scene), "--full-contact", "2"])
+    done = loa("frontier", scene, "--full-contact", "2")
     assert done.exit_code == 2
     assert "full_contact = 2: must be left out for a scene" in done.stderr
 
@@ -167,7 +166,7 @@ def test_the_verb_chooses_the_rung_of_a_run_up(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(short)
     (tmp_path / "palermo_spur_20_20.toml").write_text(case.replace("tolerance = 0.01", 'level = "draft"'))
     rungs = "quasi_static,10_nm,1_nm,0.1_nm"
-    done = CliRunner().invoke(app, ["frontier", str(tmp_path / "scene.toml"), "--rungs", rungs, "--json"])
+    done = loa("frontier", tmp_path / "scene.toml", "--rungs", rungs, "--json")
     assert done.exit_code == 0, done.output
     printed = json.loads(done.stdout)
     assert (printed["chosen"], printed["reference"]) == ("1_nm", "0.1_nm")
@@ -175,6 +174,6 @@ def test_the_verb_chooses_the_rung_of_a_run_up(tmp_path: Path) -> None:
 
 def test_unknown_rungs_of_a_scene_are_said_by_name() -> None:
     scene = EXAMPLE.with_name("palermo_scene.toml")
-    done = CliRunner().invoke(app, ["frontier", str(scene), "--rungs", "2_nm"])
+    done = loa("frontier", scene, "--rungs", "2_nm")
     assert done.exit_code == 2
     assert "rungs" in done.stderr

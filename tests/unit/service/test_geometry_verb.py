@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import loa
 from matplotlib.path import Path as Polygon
-from typer.testing import CliRunner, Result
+from typer.testing import Result
 
 from fe_contact.plausibility import CHECKS
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.report.drawing.figure import Figure, Panel
@@ -25,7 +25,7 @@ SPUR, HELICAL, INTERNAL = (
 
 
 def geometry(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["geometry", *map(str, arguments)])
+    return loa("geometry", *arguments)
 
 
 def sheet(file: Path) -> dict[str, dict[str, float]]:
@@ -129,7 +129,6 @@ def test_a_pointed_tooth_and_a_short_path_of_contact_are_rows_of_the_checks() ->
 
 
 def overrides(values: dict[str, float]) -> list[str]:
-    """Return the arguments that set fields of the pair."""
     return [part for name, value in values.items() for part in ("--set", f"pair.{name}={value}")]
 
 

@@ -26,7 +26,6 @@ def drawn(*arguments: str) -> str:
     @app.command()
     @grouped
     def draw(*, name: str, size: Size, bold: bool = False) -> None:
-        """Draw it."""
         typer.echo(f"{name} {size.length} {size.width} {bold}")
 
     return CliRunner().invoke(app, arguments).output

@@ -12,24 +12,14 @@ from email.utils import format_datetime
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from threading import Thread
-from typing import Any
 
 import httpx2
 import pytest
 from awaited import outcome
-from stored_jobs import StoredJobs, state
+from stored_jobs import StoredJobs, against, awaited_against, case, state
 
-from lineofaction.client import AsyncLineOfActionClient, LineOfActionClient
+from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.problems import BadInput, QueueFull, Unreachable
-
-ADDRESS = "http://127.0.0.1:1"
-GEAR = {"face_width_mm": 25.0, "bore_diameter_mm": 40.0}
-
-
-def case(teeth: int) -> dict[str, Any]:
-    """Return a case that its teeth name."""
-    pair = {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": {"teeth": teeth, **GEAR}}
-    return {"pair": pair | {"wheel": {"teeth": 20, **GEAR}}, "load": {"torque_n_m": [10.0, 100.0]}}
 
 
 class Restarting(StoredJobs):
@@ -52,21 +42,6 @@ class Restarting(StoredJobs):
             self.until, self.outages = sum(self.clock) + self.seconds, self.outages + 1
             raise httpx2.ReadError("the line broke")
         return answer
-
-
-@pytest.fixture
-def slept(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """Record what would be slept, on a clock that goes on by it."""
-    pauses: list[float] = []
-    begin = time.monotonic()
-    monkeypatch.setattr(time, "sleep", pauses.append)
-    monkeypatch.setattr(time, "monotonic", lambda: begin + sum(pauses))
-    return pauses
-
-
-def against(network: Any, cache: Path, **options: Any) -> LineOfActionClient:
-    """Return a client of a network in memory."""
-    return LineOfActionClient(ADDRESS, cache_dir=cache, transport=httpx2.MockTransport(network), **options)
 
 
 @pytest.mark.parametrize("period", [4, 5, 7, 11])
@@ -151,8 +126,7 @@ def test_an_awaited_loop_left_early_dismisses_what_is_under_way(tmp_path: Path) 
     network = Endless()
 
     async def left() -> None:
-        transport = httpx2.MockTransport(network)
-        async with AsyncLineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=transport) as client:
+        async with awaited_against(network, tmp_path) as client:
             async with aclosing(client.analyze.map(map(case, range(13, 40)), concurrency=4)) as jobs:
                 async for job in jobs:
                     assert job.id == "analyze-13"
@@ -192,8 +166,7 @@ def test_what_is_cancelled_says_which_jobs_continue(tmp_path: Path) -> None:
     network = Endless()
 
     async def cancelled() -> tuple[BaseException, BaseException]:
-        transport = httpx2.MockTransport(network)
-        async with AsyncLineOfActionClient(ADDRESS, cache_dir=tmp_path, transport=transport) as client:
+        async with awaited_against(network, tmp_path) as client:
 
             async def mapped() -> None:
                 async for _ in client.analyze.map(map(case, range(14, 40)), concurrency=3):

@@ -41,7 +41,6 @@ def grandchild(machine: Bench, key: str) -> int:
 
 
 def worker(machine: Bench, job_key: str) -> int:
-    """Return the process id of the last worker of a key."""
     file = machine.settings.data_directory / f"started_{job_key[:8]}"
     return int(file.read_text().splitlines()[-1].split()[0])
 
@@ -243,7 +242,7 @@ def test_a_stop_kills_the_workers_and_loses_no_job(machine: Bench) -> None:
 def test_what_a_dead_service_left_running_is_taken_up_again(tmp_path: Path) -> None:
     dead = bench(tmp_path, REGISTRY)
     job = dead.submit(text="found again")
-    assert dead.claims.claim() is not None  # it died right after this
+    dead.claimed()  # it died right after this
     assert dead.submissions.find(job.id).status == "running"
     alive = dead.again()
     alive.scheduler.start()
@@ -256,8 +255,7 @@ def test_what_a_dead_service_left_running_is_taken_up_again(tmp_path: Path) -> N
 def test_a_service_that_dies_with_its_job_again_and_again_gives_it_up(tmp_path: Path) -> None:
     dead = bench(tmp_path, REGISTRY)
     job = dead.submit()
-    claim = dead.claims.claim()
-    assert claim is not None
+    claim = dead.claimed()
     dead.claims.put_back(claim, "died", counted=True)
     dead.claims.claim()
     alive = dead.again()

@@ -16,7 +16,6 @@ from service.worker.preparations import name_database, prepare_analyze
 
 
 def inputs(torque_n_m: float) -> AnalyzeInputs:
-    """Return a case that differs by its largest torque."""
     case: dict[str, Any] = {**examples()[0].content, "load": {"torque_n_m": [50.0, torque_n_m]}}
     return AnalyzeInputs.model_validate({"case": case})
 

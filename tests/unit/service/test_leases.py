@@ -7,7 +7,6 @@ import os
 import signal
 import sqlite3
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -16,8 +15,9 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from own_process import python
 from running_service import REFERENCES, Bench, bench, lives, until
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 from sqlalchemy import select, update
 
 from service.app import create_app
@@ -52,7 +52,6 @@ def let_leases_end(machine: Bench) -> None:
 
 
 def lease_end(machine: Bench, job: Job) -> float:
-    """Return when the lease of a job's computation ends."""
     with reading(machine.engine) as connection:
         which = select(computations.c.leased_until).where(computations.c.key == job.key)
         return float(connection.execute(which).scalar_one())
@@ -61,8 +60,8 @@ def lease_end(machine: Bench, job: Job) -> float:
 def test_a_claim_without_a_sign_of_life_is_taken_up_and_its_holder_is_refused(schedulers: Schedulers) -> None:
     dead, alive = schedulers("dead"), schedulers("alive")
     job = dead.submit(text="taken up")
-    claim = dead.claims.claim()
-    assert claim is not None and dead.claims.renew([claim]) == {claim.id}
+    claim = dead.claimed()
+    assert dead.claims.renew([claim]) == {claim.id}
     assert alive.claims.take_up() == []
     let_leases_end(dead)
     (taken,) = alive.claims.take_up()
@@ -78,7 +77,7 @@ def test_a_claim_without_a_sign_of_life_is_taken_up_and_its_holder_is_refused(sc
 def test_work_of_a_scheduler_that_died_is_done_by_another(schedulers: Schedulers) -> None:
     dead, alive = schedulers("dead"), schedulers("alive")
     job = dead.submit(text="done elsewhere")
-    assert dead.claims.claim() is not None
+    dead.claimed()
     let_leases_end(dead)
     alive.scheduler.start()
     ended = alive.ended(job)
@@ -108,8 +107,9 @@ def test_schedulers_that_live_share_the_work_and_take_none_from_each_other(sched
 SCHEDULER = """
 import sys
 from pathlib import Path
+from own_process import python
 from running_service import bench
-from service_fakes import REGISTRY
+from service_fakes import EXECUTION, REGISTRY
 from sqlalchemy import select, update
 directory, database, results = sys.argv[1:]
 machine = bench(Path(directory), REGISTRY, results=Path(results), database_url=database, lease_s=20.0)
@@ -145,11 +145,7 @@ def test_the_worker_of_a_stalled_scheduler_ends_before_another_takes_up_its_work
     job = alive.submit(mode="hang")
     place = tmp_path / "stalled"
     arguments = [place, alive.settings.database_address, tmp_path / "results"]
-    root = str(Path(__file__).parents[3])
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([root, os.environ["PYTHONPATH"]])}
-    stalled = subprocess.Popen(
-        [sys.executable, "-c", SCHEDULER, *map(str, arguments)], env=environment, stdout=subprocess.DEVNULL
-    )
+    stalled = python("-c", SCHEDULER, *arguments, stdout=subprocess.DEVNULL)
     try:
         grandchild = place / f"grandchild_{job.key[:8]}"
         until(lambda: grandchild.exists() and grandchild.read_text() != "")
@@ -169,7 +165,7 @@ def test_a_process_that_only_serves_leaves_the_work_to_another(
     elsewhere = schedulers("elsewhere")
     settings = Settings(data_directory=tmp_path, database_url=elsewhere.settings.database_url)
     with TestClient(create_app(settings, REGISTRY, works=False)) as client:
-        execution = "/v1/processes/fake/execution"
+        execution = EXECUTION
         location = client.post(execution, json={"inputs": {"wish": {"text": "far"}}}).headers["location"]
         assert client.get("/ready").json()["computations"] == {"accepted": 1}
         elsewhere.scheduler.start()

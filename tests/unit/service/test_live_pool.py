@@ -5,17 +5,15 @@ from __future__ import annotations
 import json
 import os
 import signal
-import subprocess
-import sys
 import threading
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import httpx2
 import pytest
+from own_process import children, command, python
 from running_service import PATIENCE_S, lives, until
 from structlog.testing import capture_logs
 
@@ -145,34 +143,24 @@ run_serve(data_directory=Path(sys.argv[1]), port=0)
 """
 
 
+def _workers_of(service: int) -> list[int]:
+    return [pid for pid in children(service) if b"live.child" in command(pid)]
+
+
 def test_sigterm_in_the_middle_of_an_answer_ends_service_and_worker(tmp_path: Path) -> None:
     """Long before the minute that an answer may take; whoever waits for it is told why there is none."""
-    root = Path(__file__).parents[3]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(root), os.environ["PYTHONPATH"]])}
-    command = [sys.executable, "-c", SERVE, str(tmp_path)]
-    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as service:
+    with python("-c", SERVE, tmp_path) as service:
         assert service.stdout is not None
         address = service.stdout.readline().split()[-1]
         with ThreadPoolExecutor(1) as pool, httpx2.Client(base_url=address, timeout=PATIENCE_S) as http:
             asked = pool.submit(http.post, "/v1/plans", json={"inputs": {"case": CASE}})
-            until(lambda: bool(_workers_of(service.pid)))
-            workers = _workers_of(service.pid)
+            workers: list[int] = []
+            until(lambda: bool(workers.extend(_workers_of(service.pid)) or workers))
             service.send_signal(signal.SIGTERM)
             assert service.wait(timeout=PATIENCE_S) == 0
             refused = asked.result(timeout=PATIENCE_S)
             assert (refused.status_code, refused.json()["detail"]) == (503, "The service stops.")
     until(lambda: not any(lives(pid) for pid in workers))
-
-
-def _workers_of(service: int) -> list[int]:
-    """Return the live workers that a process has started."""
-    found = []
-    for place in Path("/proc").glob("[0-9]*"):
-        with suppress(OSError):
-            parent = int((place / "stat").read_text().rpartition(")")[2].split()[1])
-            if parent == service and b"live.child" in (place / "cmdline").read_bytes():
-                found.append(int(place.name))
-    return found
 
 
 def test_one_killed_between_two_questions_is_not_noticed(pool: LivePool) -> None:
@@ -245,10 +233,7 @@ pool.ask(LiveOrder("live_fake_work:hang", {})).result()
 
 
 def test_kill_minus_nine_of_the_service_leaves_no_orphan(tmp_path: Path) -> None:
-    root = Path(__file__).parents[3]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(root), os.environ["PYTHONPATH"]])}
-    command = [sys.executable, "-c", SERVICE, str(tmp_path)]
-    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as service:
+    with python("-c", SERVICE, tmp_path) as service:
         assert service.stdout is not None
         line = next(line for line in service.stdout if line.startswith("worker "))
         worker = int(line.split()[1])

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
 import signal
 import socket
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -17,6 +15,7 @@ from pathlib import Path
 
 import httpx2
 import pytest
+from own_process import python
 from prometheus_client.parser import text_string_to_metric_families
 from running_service import PATIENCE_S, bench, until
 from service_fakes import REGISTRY
@@ -27,21 +26,12 @@ from service.management import server
 from service.management.server import EventLoop, ManagementServer, Vitals
 from service.store.deployment import Deployment, WriteCheck
 
-ROOT = Path(__file__).parents[3]
-
 
 @contextmanager
 def program(verb: str, folder: Path) -> Iterator[tuple[subprocess.Popen[str], list[str]]]:
     """Run `loa serve` or `loa work` with a management port; gives the process and its two lines."""
-    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     settings = {"LOA_DATA_DIRECTORY": str(folder), "LOA_MANAGEMENT_PORT": "0", "LOA_PORT": "0"}
-    process = subprocess.Popen(
-        [sys.executable, "-m", "lineofaction.cli", verb],
-        env={**os.environ, **settings, "PYTHONPATH": path},
-        text=True,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
+    process = python("-m", "lineofaction.cli", verb, settings=settings, stderr=subprocess.PIPE)
     assert process.stdout is not None
     try:
         lines = [process.stdout.readline(), process.stdout.readline()]
@@ -52,7 +42,6 @@ def program(verb: str, folder: Path) -> Iterator[tuple[subprocess.Popen[str], li
 
 
 def names(address: str) -> set[str]:
-    """Return the names of the metrics at an address."""
     answer = httpx2.get(f"{address}/metrics", timeout=PATIENCE_S)
     assert answer.headers["content-type"] == "text/plain; version=0.0.4; charset=utf-8"
     return {family.name for family in text_string_to_metric_families(answer.text)}
@@ -65,7 +54,6 @@ def connections(address: str) -> float:
 
 
 def status(address: str, path: str) -> int:
-    """Return the status of an answer, 0 without one."""
     with suppress(httpx2.TransportError):
         return httpx2.get(f"{address}{path}", timeout=PATIENCE_S).status_code
     return 0

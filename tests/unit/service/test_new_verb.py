@@ -8,11 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner, Result
+from command_line import loa
 
 from fe_contact.geometry import specific_sliding
 from fe_contact.ste import SteDatabase
-from lineofaction.cli.commands import app
 from lineofaction.cli.new import KINDS, _new_text
 from lineofaction.cli.options import PairWishes
 from lineofaction.gearbox.convert.case import gear_pair
@@ -23,10 +22,6 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 COARSE = ("--set", "accuracy.receipt=minimal", "--set", "accuracy.positions=8", "--level", "draft")
 NARROW = ("--width", 8)  # few layers over the face
 CASES = ("spur", "helical", "internal")
-
-
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
 def written(kind: str, folder: Path, *options: object) -> Path:

@@ -13,7 +13,6 @@ from lineofaction.report.housing.noise import DEPTH, _cells, row_axis
 
 
 def quiet_above() -> RadiatedSound:
-    """The scene's sound, its highest order 120 dB quieter."""
     power = np.array(sound().power)
     power[-1] *= 1e-12
     return replace(sound(), power=power, facts=sound().facts | {"leading_shaft": "input"})

@@ -59,13 +59,11 @@ def made_from(folder: Path, **pair: Any) -> TabledScene:
 
 @pytest.fixture(scope="module")
 def subject(tmp_path_factory: pytest.TempPathFactory) -> TabledScene:
-    """The scene as it stands."""
     return made_from(tmp_path_factory.mktemp("scene"))
 
 
 @pytest.fixture(scope="module")
 def model(subject: TabledScene) -> SoundModel:
-    """The scene with the plane waves of its housing."""
     (housing,) = subject.housings.values()
     radiation = housing_radiation(housing, EquivalentRadiatedPower(), (50.0, 10e3))
     return SoundModel(subject.scene, subject.housings, {"case": radiation})

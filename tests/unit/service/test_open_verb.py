@@ -9,10 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from command_line import loa
 from fastapi.testclient import TestClient
-from typer.testing import CliRunner
 
-from lineofaction.cli.commands import app as loa
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.app import create_app
@@ -24,7 +23,7 @@ STAGES = ("cylindrical_stage_21", "cylindrical_stage_22")
 
 
 def opened(file: Path, folder: Path, *options: str) -> str:
-    result = CliRunner().invoke(loa, ["open", str(file), "--out", str(folder), *options])
+    result = loa("open", file, "--out", folder, *options)
     assert result.exit_code == 0, result.output
     return result.output
 
@@ -52,7 +51,7 @@ def test_as_json_the_report_is_an_object(tmp_path: Path) -> None:
 def test_a_file_that_is_none_is_refused_in_one_line(tmp_path: Path) -> None:
     file = tmp_path / "gearbox.rexs"
     file.write_text("<model", encoding="utf-8")
-    result = CliRunner().invoke(loa, ["open", str(file), "--out", str(tmp_path / "out")])
+    result = loa("open", file, "--out", tmp_path / "out")
     assert result.exit_code == 2
     assert not (tmp_path / "out").exists()
 
@@ -96,7 +95,7 @@ def test_the_service_refuses_what_is_no_file(client: TestClient, text: str, boun
 @needs_reference
 @pytest.mark.parametrize("file", examples(), ids=lambda file: file.name)
 def test_the_reference_files_open(file: Path, tmp_path: Path) -> None:
-    answer = CliRunner().invoke(loa, ["open", str(file), "--out", str(tmp_path), "--strict", "--json"])
+    answer = loa("open", file, "--out", tmp_path, "--strict", "--json")
     facts = json.loads(answer.stdout)
     assert facts["cases"]
     # the planetary set accounts for gravity, which its scene cannot have

@@ -8,10 +8,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from command_line import loa
 from spur_case import spur_case
-from typer.testing import CliRunner
 
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.schemas import Case, read_model
 
 CASE = (
@@ -51,7 +50,7 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Path]:
 
 def test_all_files_say_the_same(files: tuple[Path, Path], tmp_path: Path) -> None:
     folder = tmp_path / "optimum"
-    ran = CliRunner().invoke(app, ["optimize", *map(str, files), "-o", str(folder)])
+    ran = loa("optimize", *files, "-o", folder)
     assert ran.exit_code == 0, ran.output
     told = json.loads((folder / "optimum.json").read_text(encoding="utf-8"))
     assert told["outcome"] == "improved"
@@ -77,16 +76,16 @@ def test_the_design_in_the_case_file_has_the_ripple_that_was_told(
     case, study = files
     study.write_text(STUDY.replace("profile_slope_um = 2.0", ""), encoding="utf-8")
     best = tmp_path / "best.toml"
-    ran = CliRunner().invoke(app, ["optimize", str(case), str(study), "-o", str(best), "--json"])
+    ran = loa("optimize", case, study, "-o", best, "--json")
     assert ran.exit_code == 0, ran.output
     told = json.loads(ran.output)
     table = tmp_path / "ste.nc"
-    analyzed = CliRunner().invoke(app, ["analyze", str(best), "-o", str(table), "--json"])
+    analyzed = loa("analyze", best, "-o", table, "--json")
     assert analyzed.exit_code == 0, analyzed.output
     harris = told["optimum"]["harris_map"]
     for torque in (100.0, 200.0):
         asked = ["ste", str(table), "--torque", str(torque), "--json"]
-        curve = json.loads(CliRunner().invoke(app, asked).output)
+        curve = json.loads(loa(*asked).output)
         index = harris["torque_n_m"].index(torque)
         allowed = curve["peak_to_peak_error_um"]
         assert abs(harris["expected_peak_to_peak_um"][index] - curve["peak_to_peak_um"]) <= allowed
@@ -106,7 +105,7 @@ def test_an_interrupted_search_writes_its_best_and_says_so(
         yield cancel
 
     monkeypatch.setattr("lineofaction.cli.study.until_interrupted", interrupted_after_twelve)
-    ran = CliRunner().invoke(app, ["optimize", *map(str, files), "-o", str(tmp_path / "best.json")])
+    ran = loa("optimize", *files, "-o", tmp_path / "best.json")
     assert ran.exit_code == 130, ran.output
     told = json.loads((tmp_path / "best.json").read_text(encoding="utf-8"))
     assert told["evaluations"] == 12 and told["runs"][0]["ended"] == "interrupted"

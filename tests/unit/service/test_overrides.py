@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import pytest
 import typer
-from typer.testing import CliRunner, Result
+from command_line import loa, printed
 
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.input_file import InputFile, Override
@@ -20,10 +19,6 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
 TAKES_FILES = ("analyze", "geometry", "export", "plan", "simulate", "submit", *STUDIES.keys() - {"listen"})
-
-
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
 def read(*settings: str, file: Path = SPUR, model: Any = Case) -> Any:
@@ -116,10 +111,8 @@ def test_what_is_no_toml_value_is_a_text(value: str) -> None:
 
 
 def test_shorthands_take_the_place_of_what_they_exclude() -> None:
-    def planned(*options: object) -> dict[str, Any]:
-        done = loa("plan", SPUR, *options, "--json")
-        assert done.exit_code == 0, done.stderr
-        return dict(json.loads(done.stdout))
+    def planned(*options: object) -> Any:
+        return printed("plan", SPUR, *options)
 
     assert planned("--level", "fine")["choice"]["level"] == "fine"
     by_tolerance = planned("--tolerance", 0.2)

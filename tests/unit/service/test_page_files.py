@@ -140,11 +140,22 @@ def test_no_other_file_is_served(client: TestClient, name: str) -> None:
     assert client.get(f"/page/{name}").status_code == 404
 
 
-def test_text_that_is_no_case_is_refused_by_field(client: TestClient) -> None:
-    broken = client.post("/v1/cases/from-toml", json={"toml": "[pair"}).json()
-    assert [fault["field"] for fault in broken["errors"]] == ["toml"]
-    incomplete = client.post("/v1/cases/from-toml", json={"toml": "[pair]\nnormal_module_mm = 4.0\n"}).json()
-    assert "pair.center_distance_mm" in [fault["field"] for fault in incomplete["errors"]]
+@pytest.mark.parametrize(
+    ("kind", "text", "field"),
+    [
+        ("cases", "[pair", "toml"),
+        ("cases", "[pair]\nnormal_module_mm = 4.0\n", "pair.center_distance_mm"),
+        ("scenes", "[run", "toml"),
+        ("scenes", "[run]\nduration_s = 1.0\nend_s = 2.0\n", "run.end_s"),
+    ],
+)
+def test_text_that_is_no_case_or_scene_is_refused_by_field(
+    client: TestClient, kind: str, text: str, field: str
+) -> None:
+    answer = client.post(f"/v1/{kind}/from-toml", json={"toml": text})
+    fields = [fault["field"] for fault in answer.json()["errors"]]
+    assert answer.status_code == 422 and field in fields
+    assert field != "toml" or fields == ["toml"]
 
 
 SCENES = ("palermo_scene", "planetary_scene", "flexible_shafts_scene", "wind_turbine_scene")
@@ -164,10 +175,3 @@ def test_the_files_that_a_scene_names_are_read_with_it(client: TestClient) -> No
     files = [FileContentInput.of(case).model_dump(mode="json")]
     read = client.post("/v1/scenes/from-toml", json={"toml": scene.read_text("utf-8"), "files": files})
     assert read.json()["scene"]["meshes"][0]["case"]["pair"]["pinion"]["teeth"] == 20
-
-
-def test_a_scene_that_is_none_is_refused_by_field(client: TestClient) -> None:
-    broken = client.post("/v1/scenes/from-toml", json={"toml": "[run"})
-    assert (broken.status_code, broken.json()["errors"][0]["field"]) == (422, "toml")
-    misspelt = client.post("/v1/scenes/from-toml", json={"toml": "[run]\nduration_s = 1.0\nend_s = 2.0\n"})
-    assert "run.end_s" in [fault["field"] for fault in misspelt.json()["errors"]]

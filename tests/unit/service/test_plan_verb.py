@@ -3,15 +3,13 @@
 import json
 from pathlib import Path
 
-from typer.testing import CliRunner
-
-from lineofaction.cli.commands import app
+from command_line import loa
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "sensitivity_automotive.toml"
 
 
 def plan(*arguments: str) -> str:
-    done = CliRunner().invoke(app, ["plan", str(EXAMPLE), *arguments])
+    done = loa("plan", EXAMPLE, *arguments)
     assert done.exit_code == 0, done.output
     return done.stdout
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from running_service import Bench, bench
-from service_fakes import REGISTRY
+from running_service import Bench
 
 from lineofaction.gearbox.problems import BadInput
 from service.access.keyring import Holder, KeyFile
@@ -15,22 +13,12 @@ from service.queue.job import Job
 from service.queue.terms import ANYBODY, Terms, check_priority
 
 
-@pytest.fixture
-def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
-    """The table without a running scheduler, on each database."""
-    found = bench(tmp_path, REGISTRY, database_url=database_url)
-    yield found
-    found.close()
-
-
 def entered(machine: Bench, text: str, priority: int = 0) -> Job:
-    """Enter a job of this priority."""
     inputs = {"wish": {"text": text}}
     return machine.submissions.submit("fake", text, inputs, stored=False, terms=Terms(priority=priority))
 
 
 def turns(machine: Bench) -> str:
-    """Claim all that wait; return their texts in order."""
     claims = iter(machine.claims.claim, None)
     return "".join(claim.key for claim in claims if claim is not None)
 
@@ -52,8 +40,7 @@ def test_shared_work_has_the_highest_priority_of_its_jobs(machine: Bench) -> Non
 def test_work_that_is_put_back_keeps_its_turn(machine: Bench) -> None:
     entered(machine, "a")
     entered(machine, "b", 3)
-    claim = machine.claims.claim()
-    assert claim is not None
+    claim = machine.claimed()
     machine.claims.put_back(claim, "Waits.", counted=False)
     assert turns(machine) == "ba"
 

@@ -14,7 +14,6 @@ class Terminal(io.StringIO):
     """A terminal's standard error."""
 
     def isatty(self) -> bool:
-        """Whether this is a terminal."""
         return True
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -30,14 +29,6 @@ KEY = "ab" * 32
 PROJECTS = (COMMON, "axle", "drum")
 
 
-@pytest.fixture
-def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
-    """The machinery without a running scheduler, on each database."""
-    found = bench(tmp_path, REGISTRY, database_url=database_url)
-    yield found
-    found.close()
-
-
 def enter(machine: Bench, project: str, name: str | None = None, wish: str = "same") -> Job:
     """Enter work for a project, as the execution route does."""
     inputs = {"wish": {"mode": "write", "text": wish, "number": 0.0}}
@@ -48,7 +39,6 @@ def enter(machine: Bench, project: str, name: str | None = None, wish: str = "sa
 
 
 def file_with(machine: Bench, content: str) -> Path:
-    """Write a file that the store may take."""
     file = machine.settings.data_directory / "product.nc"
     file.write_text(content)
     return file
@@ -91,7 +81,6 @@ def test_a_result_of_another_project_answers_nobody_at_once(machine: Bench) -> N
 
 
 def _ended(machine: Bench, project: str, job: Job) -> Job:
-    """Wait for a job of a project."""
     jobs = SimpleNamespace(submissions=machine.submissions.within(project))
     return Bench.ended(jobs, job)  # type: ignore[arg-type]
 
@@ -134,7 +123,6 @@ def test_results_are_listed_page_by_page_in_their_project(machine: Bench) -> Non
 
 
 def _text(store: ResultStore, key: str) -> str:
-    """Return what is in the file of a result."""
     return store.verified(key, "database").path.read_text()
 
 

@@ -23,18 +23,15 @@ KEY = "ab" * 32
 
 
 def loa(*arguments: object) -> Result:
-    """Run the command line in this process."""
     return CliRunner().invoke(app, [*map(str, arguments), "--service", ADDRESS])
 
 
 def job(identifier: str, status: str, **facts: Any) -> JobState:
-    """Return a job."""
     return JobState.from_json(state(identifier, status) | facts)
 
 
 @pytest.fixture
 def listed(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
-    """A service with two jobs; what is asked of it."""
     asked: list[dict[str, Any]] = []
 
     def jobs(_client: LineOfActionClient, **wanted: Any) -> list[JobState]:

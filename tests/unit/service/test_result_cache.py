@@ -17,7 +17,6 @@ ADDRESS = "http://127.0.0.1:8321"
 
 
 def keep(cache: ResultCache, content: bytes, key: str = KEY) -> Path:
-    """Put a result into the cache as the client does."""
     with cache.incoming() as file:
         file.write(content)
         return cache.keep("database", key, file, hashlib.sha256(content).hexdigest())
@@ -32,19 +31,14 @@ def test_what_was_kept_is_given(tmp_path: Path) -> None:
     assert cache.get("run", KEY) is None
 
 
-def test_a_damaged_file_is_set_aside_for_a_person_to_look_at(tmp_path: Path) -> None:
+@pytest.mark.parametrize("damaged", [b"tabel", b""], ids=["changed", "cut short"])
+def test_a_damaged_file_is_set_aside_for_a_person_to_look_at(tmp_path: Path, damaged: bytes) -> None:
     cache = ResultCache(tmp_path)
     file = keep(cache, b"table")
-    file.write_bytes(b"tabel")
+    file.write_bytes(damaged)
     assert cache.get("database", KEY) is None
-    assert [(f.name, f.read_bytes()) for f in file.parent.iterdir()] == [(f"{file.name}.damaged", b"tabel")]
+    assert [(f.name, f.read_bytes()) for f in file.parent.iterdir()] == [(f"{file.name}.damaged", damaged)]
     assert keep(cache, b"table") == cache.get("database", KEY)
-
-
-def test_a_file_cut_short_is_not_given(tmp_path: Path) -> None:
-    cache = ResultCache(tmp_path)
-    keep(cache, b"table").write_bytes(b"")
-    assert cache.get("database", KEY) is None
 
 
 def test_what_is_not_kept_leaves_nothing(tmp_path: Path) -> None:

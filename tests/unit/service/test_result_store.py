@@ -28,7 +28,6 @@ OTHER = hashlib.sha256(b"other").hexdigest()
 
 @pytest.fixture(params=["directory", "s3"])
 def place(request: pytest.FixtureRequest) -> str | None:
-    """Where the files are."""
     return None if request.param == "directory" else str(request.getfixturevalue("s3_url"))
 
 
@@ -41,7 +40,6 @@ def store(tmp_path: Path, database_url: str | None, place: str | None) -> Iterat
 
 
 def put(store: ResultStore, tmp_path: Path, content: bytes, key: str = KEY) -> None:
-    """Put some bytes into the store."""
     file = tmp_path / "made"
     file.write_bytes(content)
     store.put(key, "database", file)

@@ -40,7 +40,6 @@ KINDS = kinds(ServiceError)
 
 
 def anchor(title: str) -> str:
-    """Return the anchor of a heading."""
     return title.lower().replace(" ", "-")
 
 
@@ -81,7 +80,6 @@ def test_a_command_is_one_of_the_program(command: str) -> None:
 
 
 def commands(title: str) -> str:
-    """Return the commands of a runbook that are run here."""
     (block,) = re.findall(r"```bash\n(.*?)```", SECTIONS[title], re.DOTALL)
     return block
 
@@ -102,7 +100,6 @@ def follow(title: str, tmp_path: Path) -> subprocess.CompletedProcess[str]:
 
 
 def with_results(directory: Path, *texts: str) -> Bench:
-    """Return a service that has results."""
     machine = bench(directory, REGISTRY)
     for text in texts:
         made = directory / "made.nc"

@@ -3,32 +3,21 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from command_line import loa, printed
 from scene_files import scene_file
-from typer.testing import CliRunner, Result
 
 from dynamics.linearize import ForcedResponse, peaks
 from dynamics.periodic import find_orbit
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.input_file import number_list
 from lineofaction.gearbox.problems import EXIT_FAILED, BadInput
 from lineofaction.gearbox.studies.steady.run import RUN as STEADY
 from lineofaction.report.document import write_report
-
-
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
-def told(*arguments: object) -> Any:
-    result = loa(*arguments, "--json")
-    assert (result.exit_code, result.stderr) == (0, "")
-    return json.loads(result.stdout)
 
 
 @pytest.fixture
@@ -40,7 +29,7 @@ def scene(tmp_path: Path) -> Path:
 
 
 def test_modes_cross_the_orders_of_the_mesh_at_critical_speeds(scene: Path) -> None:
-    answer = told("modes", scene, "--speed-rpm", "0:9000:1500", "--orders", 3)
+    answer = printed("modes", scene, "--speed-rpm", "0:9000:1500", "--orders", 3)
     assert answer["at_rest"][-1]["kind"] == "torsional-lateral on mesh"
     assert answer["speed_rpm"] == pytest.approx([0, 1500, 3000, 4500, 6000, 7500, 9000])
     assert answer["mesh_frequency_hz"]["mesh"] == pytest.approx(
@@ -53,6 +42,7 @@ def test_modes_cross_the_orders_of_the_mesh_at_critical_speeds(scene: Path) -> N
     assert answer["equilibrium"]["status"] == "converged"
     shown = loa("modes", scene, "--speed-rpm", "0:6000:3000", "-o", scene.with_name("modes.html")).stdout
     assert "torsional-lateral on mesh" in shown
+    assert re.search(r"^least damped critical speed: [\d.]+ rpm", shown, re.MULTILINE)
     page = scene.with_name("modes.html").read_text("utf-8")
     assert "Campbell diagram: whirl modes over speed" in page and "Critical speeds" in page
 
@@ -89,7 +79,7 @@ def test_a_load_far_beyond_the_table_ends_the_study_or_is_told(scene: Path) -> N
 
 
 def test_json_holds_amplitudes_by_order_and_speed_and_the_peaks(scene: Path) -> None:
-    answer = told("response", scene, "--speed-rpm", "100:6000:50", "--orders", 4)
+    answer = printed("response", scene, "--speed-rpm", "100:6000:50", "--orders", 4)
     assert answer["order"] == [1.0, 2.0, 3.0, 4.0]
     mesh = answer["meshes"]["mesh"]
     force = np.array(mesh["mesh_force_n"])
@@ -129,7 +119,7 @@ def test_the_report_says_where_the_vibration_is_lost_if_it_is_known(scene: Path,
 
 def test_the_power_of_the_vibration_is_lost_where_the_table_says(scene: Path) -> None:
     arguments = ("response", scene, "--speed-rpm", "2000:6000:500", "--orders", 3)
-    power = json.loads(loa(*arguments, "--json").stdout)["power"]
+    power = printed(*arguments)["power"]
     lost = np.sum([part["loss_w"] for part in power["losses"]], axis=0)
     assert lost.shape == (3, 9)
     np.testing.assert_allclose(lost, np.sum(list(power["input_w"].values()), axis=0), rtol=1e-9, atol=1e-12)
@@ -147,8 +137,7 @@ def test_the_power_of_the_vibration_is_lost_where_the_table_says(scene: Path) ->
 
 def test_speeds_at_which_flanks_part_are_said(scene: Path) -> None:
     scene.write_text(scene.read_text().replace("damping_ratio = 0.08", "damping_ratio = 0.005"))
-    result = loa("response", scene, "--speed-rpm", "13500:14500:50", "--json")
-    parting = json.loads(result.stdout)["parting_rpm"]
+    parting = printed("response", scene, "--speed-rpm", "13500:14500:50")["parting_rpm"]
     assert parting and min(parting) > 13500
     shown = loa("response", scene, "--speed-rpm", "13500:14500:50")
     assert f"flanks lift off at {len(parting)} of 21 speeds" in shown.stdout

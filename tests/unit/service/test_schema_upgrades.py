@@ -91,7 +91,6 @@ def test_a_data_directory_without_numbers_is_upgraded_and_keeps_all(tmp_path: Pa
 
 @pytest.fixture
 def fresh(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Engine]:
-    """A database without tables: a file, or on a server."""
     server: PostgresServer | None = request.getfixturevalue("postgres") if request.param else None
     engine = database_engine(server.new_database() if server else tmp_path / "new.sqlite3")
     yield engine

@@ -37,10 +37,6 @@ def test_every_secret_may_be_in_a_file(tmp_path: Path, monkeypatch: pytest.Monke
     assert {name: getattr(settings, name).get_secret_value() for name in SECRETS} == _VALID
 
 
-def test_the_database_is_among_the_secrets() -> None:
-    assert "database_url" in SECRETS
-
-
 def test_what_is_no_secret_is_not_read_from_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "port").write_text("99")
     monkeypatch.setenv("LOA_PORT_FILE", str(tmp_path / "port"))

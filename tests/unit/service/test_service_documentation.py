@@ -20,12 +20,10 @@ DOCS = Path(__file__).parents[3] / "docs"
 
 
 def page(name: str) -> str:
-    """Return a page."""
     return (DOCS / name).read_text(encoding="utf-8")
 
 
 def models() -> list[type[BaseModel]]:
-    """Return the tables of case and scene files."""
     modules = (case, gear, scene, bearings, bodies, housings, loads, meshes)
     found = [vars(module).values() for module in modules]
     return [m for group in found for m in group if inspect.isclass(m) and issubclass(m, BaseModel)]

@@ -8,7 +8,6 @@ import os
 import signal
 import socket
 import subprocess
-import sys
 import time
 import urllib.request
 from collections.abc import Iterator
@@ -16,36 +15,17 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from command_line import loa
+from own_process import ROOT, children, cpu_seconds, python
 from running_service import PATIENCE_S, lives, until
-from typer.testing import CliRunner, Result
 
-from lineofaction.cli.commands import app
-
-ROOT = Path(__file__).parents[3]
-
-
-def loa(*arguments: object) -> Result:
-    """Run the command line in this process."""
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
-def started(*arguments: str, **options: object) -> subprocess.Popen[str]:
-    """Run the command line in a process of its own."""
-    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
-    return subprocess.Popen(
-        [sys.executable, "-m", "lineofaction.cli", *arguments],
-        env={**os.environ, "PYTHONPATH": path},
-        text=True,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        **options,  # type: ignore[call-overload]
-    )
+LOA = ("-m", "lineofaction.cli")
 
 
 @contextmanager
 def serving(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """Serve on a free port; gives the process and its address."""
-    process = started("serve", "--port", "0", "--data-directory", str(folder))
+    process = python(*LOA, "serve", "--port", 0, "--data-directory", folder, stderr=subprocess.PIPE)
     assert process.stdout is not None
     line = process.stdout.readline()
     assert line, process.communicate()
@@ -57,7 +37,6 @@ def serving(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
 
 @pytest.fixture
 def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """A server process that a test may end."""
     with serving(tmp_path / "served") as found:
         yield found
 
@@ -77,7 +56,7 @@ def test_a_server_starts_serves_and_stops_clean(server: tuple[subprocess.Popen[s
     socket.create_connection((host, int(port)), timeout=PATIENCE_S).close()  # it listens before it says so
     until(lambda: _healthy(address))
     until(lambda: _is_idle(process.pid))  # its libraries are loaded
-    before = _cpu_s(process.pid)
+    before = cpu_seconds(process.pid)
     process.send_signal(signal.SIGTERM)
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
@@ -87,20 +66,14 @@ def test_a_server_starts_serves_and_stops_clean(server: tuple[subprocess.Popen[s
     assert usage.ru_utime + usage.ru_stime - before < 0.25
 
 
-def _cpu_s(pid: int) -> float:
-    """Return the CPU time of a process, s."""
-    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
 def _is_idle(pid: int) -> bool:
     """Whether a process takes next to no CPU time for a while, and not for want of a processor."""
-    before = _cpu_s(pid)
+    before = cpu_seconds(pid)
     for _ in range(20):
         time.sleep(0.05)
         if any(_state(task) == "R" for task in Path(f"/proc/{pid}/task").iterdir()):
             return False
-    return _cpu_s(pid) - before < 0.02
+    return cpu_seconds(pid) - before < 0.02
 
 
 def _state(task: Path) -> str:
@@ -112,7 +85,6 @@ def _state(task: Path) -> str:
 
 
 def _healthy(address: str) -> bool:
-    """Whether the service answers."""
     try:
         with urllib.request.urlopen(f"{address}/health", timeout=PATIENCE_S) as answer:
             return bool(answer.status == 200)
@@ -129,7 +101,7 @@ def test_a_stopped_server_leaves_no_worker(server: tuple[subprocess.Popen[str], 
     workers: list[int] = []
 
     def found() -> bool:
-        workers.extend(_children(process.pid))
+        workers.extend(children(process.pid))
         return bool(workers)
 
     until(found)
@@ -141,12 +113,6 @@ def test_a_stopped_server_leaves_no_worker(server: tuple[subprocess.Popen[str], 
         path: path.stat().st_mode & 0o777 for path in [tmp_path / "served", *(tmp_path / "served").rglob("*")]
     }
     assert {path: mode for path, mode in modes.items() if mode != (0o700 if path.is_dir() else 0o600)} == {}
-
-
-def _children(pid: int) -> list[int]:
-    """Return the children of all threads of a process."""
-    tasks = Path(f"/proc/{pid}/task").iterdir()
-    return [int(child) for task in tasks for child in (task / "children").read_text().split()]
 
 
 def test_a_second_server_in_the_same_directory_is_refused(lasting: tuple[Path, str]) -> None:
@@ -165,7 +131,7 @@ def test_a_port_in_use_is_said(lasting: tuple[Path, str], tmp_path: Path) -> Non
 def test_interrupting_is_clean(tmp_path: Path) -> None:
     fifo = tmp_path / "case.toml"
     os.mkfifo(fifo)  # the command waits for its case, so the signal comes while it works
-    process = started("analyze", str(fifo), "-o", str(tmp_path / "ste.nc"))
+    process = python(*LOA, "analyze", fifo, "-o", tmp_path / "ste.nc", stderr=subprocess.PIPE)
     writer: list[int] = []
 
     def reads() -> bool:

@@ -6,13 +6,12 @@ import signal
 
 import numpy as np
 import pytest
+from command_line import loa
 from geared_scenes import gear_pair_scene
-from typer.testing import CliRunner
 
 from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from dynamics.types import RunStatus
-from lineofaction.cli.commands import app
 from lineofaction.cli.guard import until_interrupted
 from lineofaction.cli.simulate import _run, _run_headlines
 from lineofaction.gearbox.convert.effects import _effect_lines
@@ -86,5 +85,5 @@ def test_a_run_ends_with_its_largest_forces():
 
 def test_resume_without_an_interrupted_run_is_refused(tmp_path):
     scene = "examples/palermo_scene.toml"
-    ended = CliRunner().invoke(app, ["simulate", scene, "-o", str(tmp_path / "run.nc"), "--resume"])
+    ended = loa("simulate", scene, "-o", tmp_path / "run.nc", "--resume")
     assert ended.exit_code == 2

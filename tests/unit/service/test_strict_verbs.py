@@ -8,9 +8,9 @@ from pathlib import Path
 import h5netcdf
 import pytest
 from click import Context
+from command_line import loa
 from spur_case import spur_case
 from typer.main import get_command
-from typer.testing import CliRunner, Result
 
 from fe_contact import SteDatabase
 from lineofaction.cli.commands import app
@@ -34,13 +34,8 @@ positions = 8
 MESSAGE = "pair.pinion.tip_relief_um = 0.02 um: "
 
 
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
 @pytest.fixture
 def case(tmp_path: Path) -> Path:
-    """A case whose tip relief is in millimeters."""
     file = tmp_path / "case.toml"
     file.write_text(CASE.format(relief="tip_relief_um = 0.02\ntip_relief_length_mm = 1.5"))
     return file

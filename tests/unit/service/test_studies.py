@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click import Context
 from typer.main import get_command
 
 from fe_contact import SteDatabase, analyze
@@ -25,14 +24,13 @@ from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.plan import OutlineBody, PlanBody
-from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS
 from lineofaction.gearbox.studies.computation import Computation
 from lineofaction.gearbox.studies.deflect import Inputs
 from lineofaction.report.document import stored_study
 from lineofaction.report.presentation import Presentation, presentation_of
 from service.live.work import live_plan
 from service.schemas.answers import UnitBody
-from service.schemas.examples import CASE, INPUTS
+from service.schemas.examples import CASE
 from service.worker.process import default_registry
 
 LOA = get_command(app)
@@ -45,28 +43,6 @@ def test_it_has_its_parts(study: Study) -> None:
     assert isinstance(study.run, Computation) and isinstance(presentation_of(study), Presentation)
     assert sum(share for _, share in study.stages) == pytest.approx(1.0)
     assert study_of(study.kind) is study
-
-
-@EVERY
-def test_its_process_takes_what_is_studied_and_what_is_varied(study: Study) -> None:
-    process = default_registry()[study.name]
-    subject = set(process.inputs.model_fields) - set(study.inputs.model_fields)
-    assert subject == set(study.subject.split(" or "))
-    assert process.kind == study.kind and study.kind in RESULT_KINDS
-    process.inputs.model_validate_json(json.dumps(INPUTS[study.name]))  # the example is accepted
-
-
-OF_LISTEN = {"run": "runs", "microphone_mm": "microphone"}
-"""Options of the verb that is not made from its row: it takes several runs, and a position as text."""
-
-
-@EVERY
-def test_its_verb_has_an_option_for_everything_that_is_varied(study: Study) -> None:
-    names = {option.name for option in LOA.get_command(Context(LOA), study.name).params}
-    varied = {"study"} if study.from_file else set(study.inputs.model_fields)
-    if study.name == "listen":
-        varied = {OF_LISTEN.get(name, name) for name in varied}
-    assert {study.argument, "output", "json", "strict"} | varied <= names
 
 
 @EVERY

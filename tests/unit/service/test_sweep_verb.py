@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import loa, printed
 from spur_case import SPUR
-from typer.testing import CliRunner
 
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
@@ -45,7 +43,7 @@ def case(file: Path) -> CheckedCase:
 
 
 def output(*arguments: object) -> str:
-    done = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    done = loa(*arguments)
     assert done.exit_code == 0, done.output
     return done.stdout
 
@@ -95,7 +93,7 @@ def test_files_and_terminal_say_the_same(file: Path, tmp_path: Path) -> None:
     )
     assert re.match(r"largest peak-to-peak STE: [\d.]+ µm ± [\d.]+ µm at torque", largest)
     assert written == f"written to {target}"
-    told = json.loads(output("sweep", file, "--over", OVER, "--json"))
+    told = printed("sweep", file, "--over", OVER)
     assert len(told["points"]) == 9
     for name, value in (entry for point in told["points"] for entry in point.items()):
         assert name.endswith(("n_m", "tip_relief_um")) or "_error" in name or value > 0.0
@@ -104,7 +102,7 @@ def test_files_and_terminal_say_the_same(file: Path, tmp_path: Path) -> None:
 
 
 def test_what_is_said_to_be_as_low_is(file: Path) -> None:
-    told = json.loads(output("sweep", file, "--over", OVER, "--json"))
+    told = printed("sweep", file, "--over", OVER)
     points = told["points"]
     least = min(points, key=lambda point: point["harmonic_1_um"])
     alike = [

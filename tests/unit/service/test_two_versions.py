@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
-
 import pytest
 from named_run import put_named_run
-from running_service import Bench, bench, until
-from service_fakes import REGISTRY
+from running_service import Bench, until
 from sqlalchemy import update
 
 from lineofaction.gearbox.problems import BadInput
@@ -26,23 +22,8 @@ from service.worker.process import default_registry
 NEWER, OLDER = "9.0.0", "0.0.9"
 
 
-@pytest.fixture
-def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
-    """The table without a running scheduler, on each database; its jobs are of the installed version."""
-    found = bench(tmp_path, REGISTRY, database_url=database_url)
-    yield found
-    found.close()
-
-
 def claims_of(machine: Bench, version: str) -> Claims:
-    """Return the claims of a scheduler of a version."""
     return Claims(machine.engine, version, 60.0, version)
-
-
-def test_own_work_is_claimed(machine: Bench) -> None:
-    job = machine.submit(text="a")
-    claim = claims_of(machine, solver_version()).claim()
-    assert claim is not None and claim.key == job.key
 
 
 def test_work_of_an_older_version_ends_with_the_reason(machine: Bench) -> None:

@@ -2,36 +2,27 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from command_line import loa, printed
 from declared_figures import check_declared
 from hulls import box
 from reduced_housings import bare_housing
 from scene_files import scene_file
 from sounding_housings import smooth_motion, with_surface
-from typer.testing import CliRunner, Result
 
 from dynamics.results import RunResult
-from lineofaction.cli.commands import app
 from lineofaction.report.drawing import surface_view
 
 ORDERS = 4
 
 
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
 def told(*arguments: object) -> Any:
-    """Return what is printed as JSON."""
-    result = loa(*arguments, "--json")
-    assert (result.exit_code, result.stderr) == (0, "")
-    answer = json.loads(result.stdout)
+    answer = printed(*arguments)
     check_declared(str(arguments[0]), answer)
     return answer
 
@@ -130,7 +121,6 @@ def test_velocities_of_a_run_are_by_its_speeds(scene: Path) -> None:
         (("--run", "none.nc"), ("run", "no such file")),
         (("--run", "run.nc", "--orders", 4, "--sensitivities"), ("sensitivities", "leave out the run")),
         (("--run", "run.nc", "--orders", 90), ("orders = 90", "outputs.mesh_orders = 90")),
-        ((), ("speed_rpm",)),
     ],
 )
 def test_what_does_not_go_together_is_refused(

@@ -11,27 +11,21 @@ from typing import Any
 import meshlane
 import numpy as np
 import pytest
+from command_line import loa, printed
 from computed_once import computed_once
 from declared_figures import check_declared
 from housing_solid import housed_scene, write_housed_scene
 from scene_files import scene_file
-from typer.testing import CliRunner, Result
 
 from dynamics.vibration import vibration_level
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.studies.vibration import run
 from lineofaction.report.drawing import surface_view
 
 SPEEDS = ("--speed-rpm", "1500:3000:250", "--orders", 4)
 
 
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["vibration", *(str(argument) for argument in arguments)])
-
-
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the scene of a block with two bores."""
     return write_housed_scene(tmp_path_factory.mktemp("vibration"), modes=6)
 
 
@@ -57,7 +51,7 @@ def scene(folder: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_surface_and_the_cost_of_the_housing_are_written(scene: Path, tmp_path: Path) -> None:
     files = {ending: tmp_path / f"vibration.{ending}" for ending in ("nc", "vtu", "html")}
     for file in files.values():
-        result = loa(scene, *SPEEDS, "-o", file)
+        result = loa("vibration", scene, *SPEEDS, "-o", file)
         assert (result.exit_code, result.stderr) == (0, "")
     found = run.RUN.file.read(files["nc"])
     surface = meshlane.read(files["vtu"])
@@ -103,16 +97,16 @@ def test_parts_are_those_of_the_order_and_speed_asked_for(scene: Path) -> None:
 def test_orders_that_the_modes_kept_do_not_carry_are_named(folder: Path, scene: Path) -> None:
     few = folder / "few.json"
     few.write_text(json.dumps(housed_scene(folder, modes=1)))
-    result = loa(few, "--speed-rpm", "2500,6000", "--orders", 4)
+    result = loa("vibration", few, "--speed-rpm", "2500,6000", "--orders", 4)
     assert result.exit_code == 0
-    answer = json.loads(loa(few, "--speed-rpm", "2500,6000", "--orders", 4, "--json").stdout)
+    answer = printed("vibration", few, "--speed-rpm", "2500,6000", "--orders", 4)
     beyond = [order for order in answer["order"] if order * 2000.0 > answer["highest_valid_frequency_hz"]]
     assert answer["orders_beyond"] == beyond != []
     assert f"orders {', '.join(f'{order:g}' for order in beyond)} go beyond" in result.stdout
 
 
 def test_a_mode_is_drawn_in_place_of_the_deflection(scene: Path, tmp_path: Path) -> None:
-    assert loa(scene, *SPEEDS, "--mode", 2, "-o", tmp_path / "mode.vtu").exit_code == 0
+    assert loa("vibration", scene, *SPEEDS, "--mode", 2, "-o", tmp_path / "mode.vtu").exit_code == 0
     motion = meshlane.read(tmp_path / "mode.vtu").point_data["mode_2_real"]
     assert np.linalg.norm(motion, axis=1).max() == pytest.approx(1.0)
 
@@ -122,26 +116,22 @@ def test_a_mode_is_drawn_in_place_of_the_deflection(scene: Path, tmp_path: Path)
     [
         (("--mode", 7), ("mode = 7", "from 1 to 6")),
         (("--housing", "other"), ("housing = 'other'", "one of case")),
-        (("--at-order", 0), ("at_order",)),
     ],
 )
 def test_what_is_not_there_is_refused(scene: Path, options: tuple[Any, ...], words: tuple[str, ...]) -> None:
-    result = loa(scene, *SPEEDS, *options)
+    result = loa("vibration", scene, *SPEEDS, *options)
     assert result.exit_code == 2
     for word in words:
         assert word in " ".join(result.stderr.split()), result.stderr
 
 
 def test_a_scene_without_a_housing_that_moves_is_refused_with_advice(tmp_path: Path) -> None:
-    result = loa(scene_file(tmp_path), *SPEEDS)
+    result = loa("vibration", scene_file(tmp_path), *SPEEDS)
     assert result.exit_code == 2
     assert "housings" in result.stderr and "step_file" in result.stderr
 
 
 def told(scene: Path, *options: object) -> Any:
-    """Return what is printed as JSON."""
-    result = loa(scene, *SPEEDS, *options, "--json")
-    assert (result.exit_code, result.stderr) == (0, "")
-    answer = json.loads(result.stdout)
+    answer = printed("vibration", scene, *SPEEDS, *options)
     check_declared("vibration", answer)
     return answer

@@ -14,19 +14,10 @@ from service_fakes import REGISTRY
 from sqlalchemy import delete, event
 
 from service.queue import watcher as watching
-from service.queue.claims import Claim
 from service.queue.job import Job
 from service.queue.tables import jobs
 from service.queue.watcher import Watcher
 from service.store.database import database_engine, writing
-
-
-@pytest.fixture
-def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
-    """The table without a running scheduler, on each database."""
-    found = bench(tmp_path, REGISTRY, database_url=database_url)
-    yield found
-    found.close()
 
 
 @pytest.fixture
@@ -43,19 +34,12 @@ def watcher(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> Iterator[Watcher
 FILE = "service.sqlite3"
 
 
-def claimed(machine: Bench) -> Claim:
-    """Claim the work that waits."""
-    claim = machine.claims.claim()
-    assert claim is not None
-    return claim
-
-
 def test_every_follower_gets_every_state_in_order(machine: Bench, watcher: Watcher[Job]) -> None:
     job, received = machine.submit(text="a"), [list[Job | None]() for _ in range(5)]
     with ExitStack() as following:
         for each in received:
             following.enter_context(watcher.following(job, each.append))
-        claim = claimed(machine)
+        claim = machine.claimed()
         until(lambda: all(each for each in received))
         for fraction in (0.2, 0.4):
             machine.claims.progress(claim, "first", fraction, fraction)
@@ -79,7 +63,7 @@ def test_a_state_that_was_reached_before_anybody_followed_is_reported(
     machine: Bench, watcher: Watcher[Job]
 ) -> None:
     job = machine.submit(text="a")
-    machine.claims.succeed(claimed(machine))
+    machine.claims.succeed(machine.claimed())
     received: list[Job | None] = []
     with watcher.following(job, received.append):
         until(lambda: _status(received) == "successful")
@@ -92,13 +76,13 @@ def test_a_dismissal_is_reported_to_those_of_that_job_alone(machine: Bench, watc
     with watcher.following(mine, received.append), watcher.following(other, others.append):
         machine.submissions.dismiss(mine.id)
         until(lambda: _status(received) == "dismissed")
-        claimed(machine)
+        machine.claimed()
         until(lambda: _status(others) == "running")
     assert [_status([state]) for state in others] == ["running"]
 
 
 def test_two_hundred_followers_cost_the_questions_of_one(machine: Bench, watcher: Watcher[Job]) -> None:
-    pair, claims = [machine.submit(text=text) for text in "ab"], [claimed(machine) for _ in range(2)]
+    pair, claims = [machine.submit(text=text) for text in "ab"], [machine.claimed() for _ in range(2)]
     heard = threading.Semaphore(0)
     received: list[Job | None] = []
     statements: list[str] = []
@@ -130,7 +114,7 @@ def test_what_is_not_heard_is_seen(
     )
     job, received = machine.submit(text="a"), list[Job | None]()
     with watcher.following(job, received.append):
-        claimed(machine)
+        machine.claimed()
         until(lambda: _status(received) == "running")
         machine.submissions.dismiss(job.id)
         until(lambda: _status(received) == "dismissed")
@@ -169,7 +153,7 @@ def test_lost_connections_lose_no_state(
     watcher, received = Watcher(engine, lambda job: job), list[Job | None]()
     try:
         with watcher.following(machine.submit(text="a"), received.append):
-            claim = claimed(machine)
+            claim = machine.claimed()
             until(lambda: _status(received) == "running")
             assert postgres.end_connections(url) > 0
             machine.claims.progress(claim, "first", 0.5, 0.5)

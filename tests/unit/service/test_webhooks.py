@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import base64
 import socket
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import Any
 
 import pytest
-from running_service import Bench, bench
-from service_fakes import REGISTRY
+from running_service import Bench
 
 from lineofaction.gearbox.problems import BadInput
 from service.origin import Origin
@@ -23,19 +20,9 @@ from service.webhooks.deliverer import signed_headers
 SECRET = "whsec_" + base64.b64encode(bytes(32)).decode()
 
 
-@pytest.fixture
-def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
-    """The table without a running scheduler, on each database."""
-    found = bench(tmp_path, REGISTRY, database_url=database_url)
-    yield found
-    found.close()
-
-
 def succeeded(machine: Bench, text: str) -> str:
-    """Return a job that was successful."""
     job = machine.submit(text=text)
-    claim = machine.claims.claim()
-    assert claim is not None
+    claim = machine.claimed()
     machine.claims.succeed(claim)
     return job.id
 
@@ -76,8 +63,7 @@ def test_calls_wait_for_the_state_of_their_job_and_for_each_other(machine: Bench
     uris = dict.fromkeys(("inProgress", "success", "failed"), "https://host.example/")
     made.enter(job.id, uris)
     assert made.claim() is None
-    claim = machine.claims.claim()
-    assert claim is not None
+    claim = machine.claimed()
     progress = made.claim()
     assert progress is not None and progress.event == "inProgress"
     machine.claims.succeed(claim)

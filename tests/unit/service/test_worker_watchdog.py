@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 
 import pytest
+from own_process import python
 from running_service import PATIENCE_S, lives, until
 
 from service.worker.order import WorkOrder
@@ -18,6 +17,7 @@ from service.worker.worker import Worker
 SERVICE = """
 import sys
 from pathlib import Path
+from own_process import python
 from running_service import bench
 from service_fakes import REGISTRY
 machine = bench(Path(sys.argv[1]), REGISTRY)
@@ -28,9 +28,7 @@ machine.scheduler._thread.join()
 
 
 def test_kill_minus_nine_leaves_no_orphan(tmp_path: Path) -> None:
-    root = Path(__file__).parents[3]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(root), os.environ["PYTHONPATH"]])}
-    service = subprocess.Popen([sys.executable, "-c", SERVICE, str(tmp_path)], env=environment)
+    service = python("-c", SERVICE, tmp_path, stdout=None)
     try:
         until(lambda: any(f.read_text() for f in tmp_path.glob("grandchild_*")))
         sleeper = int(next(tmp_path.glob("grandchild_*")).read_text())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from itertools import pairwise
 from pathlib import Path
@@ -20,14 +19,6 @@ from service.queue.workload import BOUNDS_S, Durations, WorkloadReader, bound_of
 from service.store.database import instant, writing
 
 
-@pytest.fixture
-def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
-    """The table without a running scheduler, on each database."""
-    found = bench(tmp_path, REGISTRY, queue_limit=50, database_url=database_url)
-    yield found
-    found.close()
-
-
 def set_back(machine: Bench, column: str, seconds: float) -> None:
     """Let all computations that wait or run have been entered, or have begun, so long ago."""
     before = instant(datetime.now(UTC) - timedelta(seconds=seconds))
@@ -39,21 +30,18 @@ def set_back(machine: Bench, column: str, seconds: float) -> None:
 def begun(machine: Bench, text: str, seconds: float = 0.0) -> Claim:
     """Enter a computation and claim it; it began so long ago."""
     machine.submit(text=text)
-    claim = machine.claims.claim()
-    assert claim is not None
+    claim = machine.claimed()
     set_back(machine, "started", seconds)
     return claim
 
 
 def ended(machine: Bench) -> dict[str, Durations]:
-    """Return the histograms by outcome."""
     found = WorkloadReader(machine.engine).read().durations
     assert {one.process for one in found} <= {"fake"}
     return {one.outcome: one for one in found}
 
 
 def counts(histogram: Durations) -> dict[str, int]:
-    """Return how many are in each class that has any."""
     numbers = [0, *(number for _, number in histogram.buckets)]
     steps = [upper - lower for lower, upper in pairwise(numbers)]
     return {le: step for (le, _), step in zip(histogram.buckets, steps, strict=True) if step}
@@ -87,7 +75,7 @@ def test_dismissed_work_is_counted_if_it_had_begun(machine: Bench) -> None:
     assert ended(machine) == {}
     machine.submissions.dismiss(machine.submit(text="again").id)
     job = machine.submit(text="runs")
-    assert machine.claims.claim() is not None
+    machine.claimed()
     machine.submissions.dismiss(job.id)
     machine.submissions.dismiss(job.id)
     assert {outcome: counts(one) for outcome, one in ended(machine).items()} == {"dismissed": {"1.0": 1}}
@@ -96,8 +84,7 @@ def test_dismissed_work_is_counted_if_it_had_begun(machine: Bench) -> None:
 def test_attempts_add_up(machine: Bench) -> None:
     claim = begun(machine, "dies once")
     machine.claims.put_back(claim, "died", counted=True)
-    again = machine.claims.claim()
-    assert again is not None
+    again = machine.claimed()
     machine.claims.succeed(again)
     machine.claims.succeed(begun(machine, "lives"))
     assert ended(machine)["successful"].attempts == 3
@@ -122,8 +109,7 @@ def test_all_services_of_a_database_tell_the_same(machine: Bench, tmp_path: Path
     other = bench(tmp_path / "other", REGISTRY, database_url=address)
     machine.claims.succeed(begun(machine, "here"))
     assert other.submit(text="there").status == "accepted"
-    claim = other.claims.claim()
-    assert claim is not None
+    claim = other.claimed()
     other.claims.succeed(claim)
     here, there = (WorkloadReader(one.engine).read() for one in (machine, other))
     assert here == there
@@ -138,7 +124,7 @@ def test_the_oldest_that_waits_has_its_age(machine: Bench) -> None:
     set_back(machine, "created", 1000.0)
     machine.submit(text="young")
     assert 1000.0 <= read().oldest_waiting_s < 1100.0
-    assert machine.claims.claim() is not None
+    machine.claimed()
     assert read().oldest_waiting_s < 100.0
 
 
