@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from bounds import engineering
+from bounds.types import Json
 from fe_contact.analysis.run_plan import PlannedLevel, RunPlan
 from fe_contact.planning.cost_model import STAGES
 from fe_contact.ste import SteDatabase
@@ -67,8 +68,6 @@ def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
 
 # Lines of `loa analyze` about a tolerance: drafts while it refines, its passes, and whether it is met.
 
-
-Json = dict[str, Any]
 _AXES = {
     "force": ("loads", 1.0, "N"),
     "misalignment": ("misalignments", UM, "um"),

@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 from bounds import engineering
+from bounds.types import Json
 from dynamics.acoustics import Recording, wav_file
 from dynamics.results import RunResult
 from host.directories import cache_home
@@ -35,7 +35,6 @@ from lineofaction.report.run.levels import Loudest, loudest
 from lineofaction.report.run.sound import full_scale_of, heard_runs
 from lineofaction.report.run.view import RunView
 
-Json = dict[str, Any]
 FAINT = 1e-3
 """Of the overall level: weaker orders are not printed."""
 

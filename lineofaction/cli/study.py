@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from bounds import engineering
+from bounds.types import Json
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.workers import Remembering, Workers
 from fe_contact.workers.remembering import content_digest
@@ -67,7 +68,6 @@ def _resumed_workers(
     shutil.rmtree(folder, ignore_errors=True)
 
 
-Json = dict[str, Any]
 Writer = Callable[[Any, Path], object]
 
 

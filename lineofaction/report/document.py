@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, get_origin
 
+from bounds.types import Json
 from dynamics.errors import DynamicsError
 from dynamics.results import RunResult
 from fe_contact.errors import FeContactError
@@ -225,9 +226,6 @@ def _title(read: Inputs) -> str:
         return pair_title(read.database.facts)
     titles = [page.title for page in read.pages.values()] or ["Dynamics of geared shafts"]
     return titles[0] if len(titles) == 1 else "Studies of gear pairs"
-
-
-Json = dict[str, Any]
 
 
 def stored_figures(inputs: Json) -> Json:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from bounds import engineering
+from bounds.types import Json
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.problems import JobFailed
 from lineofaction.gearbox.units import MM, UM, as_typed, boundary_ledger
-
-Json = dict[str, Any]
 
 
 def curve_json(

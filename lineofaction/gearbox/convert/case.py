@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from bounds import inside, warn_of
+from bounds.types import Json
 from fe_contact.allowed_error import AllowedError
 from fe_contact.errors import FeContactError
 from fe_contact.geometry import (
@@ -37,8 +38,6 @@ from lineofaction.gearbox.units import MM, NM, UM
 
 if TYPE_CHECKING:
     from fe_contact.analysis.request.request import Checked
-
-Json = dict[str, Any]
 
 Toothed = TypeVar("Toothed", bound=Toothing)
 Inputs = TypeVar("Inputs")

@@ -7,10 +7,11 @@ import math
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 
+from bounds.types import Json
 from fe_contact.analysis.flanks.deformed_pair import mesh_angles
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution, pressure_map
 from fe_contact.analysis.live.condensed_pair import CondensedPair
@@ -28,8 +29,6 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.live import LiveInput
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.units import DEGREE, MM, UM, factor, in_um
-
-Json = dict[str, Any]
 
 
 def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) -> RunPlan:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
-from typing import Any
 
 from bounds import Unit, finding_of
+from bounds.types import Json
 from dynamics.plausibility import scene_findings
 from dynamics.scene import Scene
 from fe_contact.plausibility import pair_findings
@@ -17,8 +17,6 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import factor, unit_name
-
-Json = dict[str, Any]
 
 
 def case_warnings(checked: CheckedCase) -> list[Json]:

@@ -10,11 +10,11 @@ from typing import Any
 import h5netcdf
 import numpy as np
 
+from bounds.types import Json
 from lineofaction.gearbox.registry import study_of
 from lineofaction.gearbox.units import boundary_ledger
 from model_studies.netcdf import opened, opened_netcdf
 
-Json = dict[str, Any]
 LEDGER, WARNINGS = "effect_ledger", "warnings"
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds.types import Json
 from dynamics.orders import Waterfall
 from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
@@ -298,7 +299,6 @@ def named_files(files: Sequence[Path]) -> list[tuple[str, Path]]:
     return [(file.stem if short else str(file), file) for file in files]
 
 
-Json = dict[str, Any]
 NAMES = ("first", "second")
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds.types import Json
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     BLANK,
@@ -29,8 +30,6 @@ from lineofaction.report.drawing.figure import (
     unit_of,
 )
 from lineofaction.report.drawing.placing import line_labels, rewritten, vertical_limits
-
-Json = dict[str, Any]
 
 STEPS = 12  # colors of strokes: a curve of plotly has one color
 THIN, THICK = 1.0, 6.0  # pixels

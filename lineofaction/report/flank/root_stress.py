@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from bounds import engineering
+from bounds.types import Json
 from lineofaction.gearbox.convert.effects import assumption_lines
 from lineofaction.gearbox.studies.root_stress.run import GEARS, RUN, Roots
 from lineofaction.report.drawing import palette
@@ -16,7 +17,6 @@ from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.tables import facts
 from lineofaction.report.presentation import Presentation
 
-Json = dict[str, Any]
 _WAY = Axis("position of the tooth's own pair, base pitches (0 = pitch point)")
 _STRESS = Axis("root stress, MPa")
 _SERIES = ("tension_mpa", "compression_mpa", "at_tension_peak_mpa", "at_compression_peak_mpa")

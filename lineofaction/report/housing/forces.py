@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from bounds.types import Json
 from dynamics.acoustics.levels import a_weighting
 from dynamics.noise.sound_over_time import BLOCK
 from dynamics.types import FloatArray
@@ -13,7 +12,6 @@ from lineofaction.gearbox.schemas.figures import LINEAR
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing.figure import Axis, Figure, Panel, Table, number, shaded_levels
 
-Json = dict[str, Any]
 COARSE = 10.0 ** (1.0 / 20.0) - 1.0
 """Smearing by 1 dB: above it a window does not resolve an order."""
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds.types import Json
 from dynamics.acoustics import OrderPower, a_weighting, sound_power_level
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
 from lineofaction.gearbox.units import MM, RPM
@@ -211,7 +212,6 @@ def _above(level: FloatArray, floor: float) -> FloatArray:
     return np.where(level < floor, np.nan, level)
 
 
-Json = dict[str, Any]
 SHOWN_ORDERS, SHOWN_CAUSES = 6, 3
 
 

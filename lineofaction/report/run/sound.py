@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds.types import Json
 from dynamics.acoustics import Recording, common_full_scale, wav_file
 from dynamics.acoustics.recording import PASSED, SAMPLE_RATE
 from dynamics.errors import InputError
@@ -115,8 +116,6 @@ def _track(heard: Heard, axis: Axis) -> Track:
 
 # The sound of a stored run or recording as a WAV file; work of the live worker.
 
-
-Json = dict[str, Any]
 LONGEST = 300.0
 """s of a run that the service makes a file of: 58 MB."""
 

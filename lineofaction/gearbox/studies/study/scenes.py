@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel, ValidationError
 
+from bounds.types import Json
 from dynamics.scene import Scene
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condensed_pair
@@ -30,7 +31,6 @@ from lineofaction.gearbox.schemas.faults import faults_of, model_in
 from lineofaction.gearbox.schemas.scene import SceneInput
 from model_studies import LeftOut
 
-Json = dict[str, Any]
 Place = tuple[str | int, ...]
 """Keys and indices down to a number of the scene as JSON."""
 
