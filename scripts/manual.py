@@ -26,6 +26,7 @@ from lineofaction.cli.commands import app
 
 ROOT = Path(__file__).parents[1]
 PICTURES = ROOT / "docs" / "images" / "manual"
+NEEDS_A_SERVICE = {"call-a-service"}  # its scripts are run by tests/flow/test_client_page.py
 _BLOCK = re.compile(r"^```(toml|sh|python|text)\n(.*?)^```$", re.M | re.S)
 _NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 _PICTURE = re.compile(r"\]\((?:\.\./)*images/manual/([^)]+)\)")
@@ -37,6 +38,7 @@ def pages() -> list[Path]:
         index.parent / f"{name}.md"
         for index in (ROOT / "docs" / "tutorials" / "index.md", ROOT / "docs" / "how-to" / "index.md")
         for name in re.findall(r"^([a-z0-9-]+)$", index.read_text("utf-8"), re.M)
+        if name not in NEEDS_A_SERVICE
     ]
 
 

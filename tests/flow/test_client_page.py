@@ -1,4 +1,4 @@
-"""What the page of the Python client shows runs as shown; the paper's flow runs again without its service."""
+"""What the pages of the Python client show runs as shown; the paper's flow runs again without its service."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from lineofaction.client import OfflineWarning, ResultCache
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "client.md").read_text(encoding="utf-8")
+RECIPES = (ROOT / "docs" / "how-to" / "call-a-service.md").read_text(encoding="utf-8")
 KEY = "ab" * 32
 
 
@@ -56,12 +57,12 @@ def _as_a_user(
 
 
 def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureFixture[str]) -> None:
-    scripts = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    scripts = re.findall(r"```python\n(.*?)```", RECIPES, re.DOTALL)
     assert len(scripts) == 14  # the first one, and the recipes
     names: dict[str, Any] = {}
     printed = []
     for script in scripts:
-        exec(compile(script, "docs/client.md", "exec"), names)
+        exec(compile(script, "docs/how-to/call-a-service.md", "exec"), names)
         printed.append(capsys.readouterr().out)
     table, followed, waited, many, batched, awaited, study, arrays, live, before, lists = printed[:11]
     labeled, shown, run_up = printed[11:]

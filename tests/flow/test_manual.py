@@ -25,7 +25,7 @@ def folder() -> Iterator[Path]:
 
 # Ten seconds and more, but for the tutorials and for pages whose files others read.
 LONG = {
-    *("deflect", "hear-a-gearbox", "planetary-stage", "quiet-flanks-by-search"),
+    *("deflect", "from-rexs-to-dba", "hear-a-gearbox", "planetary-stage", "quiet-flanks-by-search"),
     *("ripple-map", "tolerances", "vibration"),
 }
 PAGES = [
