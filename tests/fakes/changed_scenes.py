@@ -1,10 +1,11 @@
-"""Example scenes with other values at dotted places, on the small table, and where they are refused."""
+"""Examples with other values at dotted places, scenes on the small table, and where they are refused."""
 
 from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from types import MappingProxyType
 from typing import Any
 
@@ -14,7 +15,7 @@ from small_table import small_table
 from dynamics.scene import Scene
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.scene import dynamic_scene
-from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.problems import BadInput, Fault
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 
@@ -43,16 +44,29 @@ def changed(example: Table, changes: Mapping[str, Any]) -> Table:
     return table
 
 
-def changed_scene(
-    example: Table, changes: Mapping[str, Any] = MappingProxyType({}), table: SteDatabase | None = None
-) -> Scene:
+Tables = Mapping[str, SteDatabase]
+NONE: Mapping[str, Any] = MappingProxyType({})
+
+
+def changed_scene(example: Table, changes: Mapping[str, Any] = NONE, tables: Tables = NONE) -> Scene:
     checked = validated(SceneInput, changed(example, changes))
-    return dynamic_scene(checked, {mesh.name: table or small_table() for _, mesh in checked.with_database})
+    return dynamic_scene(
+        checked, {mesh.name: tables.get(mesh.name) or small_table() for _, mesh in checked.with_database}
+    )
 
 
-def check_refused(example: Table, field: str, value: Any) -> None:
-    """Check that a value at a field, or changes elsewhere, are one fault of that field."""
+@contextmanager
+def refused(field: str, words: str = "") -> Iterator[list[Fault]]:
+    """Check that an input is refused by one fault of a field, whose bound has these words; give it."""
+    faults: list[Fault] = []
     with pytest.raises(BadInput) as caught:
-        changed_scene(example, value if isinstance(value, By) else {field: value})
-    (fault,) = caught.value.faults
-    assert fault.field == field and fault.bound
+        yield faults
+    faults += caught.value.faults
+    assert [fault.field for fault in faults] == [field]
+    assert faults[0].bound and words in faults[0].bound
+
+
+def check_refused(example: Table, field: str, value: Any, tables: Tables = NONE) -> None:
+    """Check that a value at a field, or changes elsewhere, are one fault of that field."""
+    with refused(field):
+        changed_scene(example, value if isinstance(value, By) else {field: value}, tables)

@@ -1,16 +1,18 @@
-"""From a case to the library: every unit, every field, and errors back in the user's words."""
+"""From a case to the library: every unit, field and grid of a flank, and errors in the user's words."""
 
 from __future__ import annotations
 
-import copy
 import json
 import math
+import random
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from bad_inputs import GOOD
+from changed_scenes import changed, refused
+from spur_case import spur_case
 
 from bounds import Kind
 from fe_contact import AllowedError, FlankModification
@@ -18,6 +20,7 @@ from lineofaction.gearbox.convert.case import analysis_options, case_json, check
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.declared import figures
+from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import factor
 from service.schemas.examples import CASE
 from service.worker.process import content_key
@@ -26,9 +29,11 @@ ROOT = Path(__file__).parents[3]
 
 
 def case(**pinion: Any) -> Case:
-    table = copy.deepcopy(GOOD)
-    table["pair"]["pinion"] |= pinion
-    return validated(Case, table)
+    return changed_case({f"pair.pinion.{name}": value for name, value in pinion.items()})
+
+
+def changed_case(changes: dict[str, Any]) -> Case:
+    return validated(Case, changed(GOOD, changes))
 
 
 MODIFIED: dict[str, Any] = {
@@ -120,10 +125,8 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
     covered = set(changes) | set(MODIFIED) | shapes | corners
     assert covered == set(type(case().pair.pinion).model_fields)
     for name, value in changes.items():
-        table = copy.deepcopy(GOOD)
-        table["pair"]["pinion"][name] = value
-        table["pair"]["center_distance_mm"] = 82.1 if name == "teeth" else 80.2
-        pair = gear_pair(validated(Case, table))
+        distance = 82.1 if name == "teeth" else 80.2
+        pair = gear_pair(changed_case({f"pair.pinion.{name}": value, "pair.center_distance_mm": distance}))
         assert (pair.pinion, pair.shafts[0]) != (plain, None), name
 
 
@@ -138,12 +141,9 @@ def test_rim_web_and_hub_arrive_in_si_and_their_errors_in_mm() -> None:
     assert blank is not None
     found = (blank.rim_thickness, blank.web_thickness, blank.hub_diameter, blank.web_offset)
     assert found == pytest.approx((8e-3, 10e-3, 45e-3, -2e-3), rel=1e-15)
-    with pytest.raises(BadInput) as refusal:
+    with refused("pair.pinion.blank.rim_thickness_mm", "12.5 mm") as faults:
         gear_pair(case(blank=given | {"rim_thickness_mm": 20.0}))
-    (fault,) = refusal.value.faults
-    assert fault.field == "pair.pinion.blank.rim_thickness_mm"
-    assert "12.5 mm" in fault.bound
-    assert fault.value == pytest.approx(20.0)
+    assert faults[0].value == pytest.approx(20.0)
 
 
 def test_a_seat_arrives_in_si_and_its_errors_in_mm() -> None:
@@ -158,32 +158,25 @@ def test_a_seat_arrives_in_si_and_its_errors_in_mm() -> None:
     seat = replace(seat, key=None)
     assert seat.stiffness == pytest.approx((1e12, 2e12, 3e12), rel=1e-15)
     assert (seat.width, seat.offset) == pytest.approx((20e-3, -2e-3), rel=1e-15)
-    with pytest.raises(BadInput) as refusal:
+    with refused("pair.pinion.seat.width_mm", "25 mm") as faults:
         gear_pair(case(seat={"width_mm": 30.0}))
-    (fault,) = refusal.value.faults
-    assert (fault.field, fault.value) == ("pair.pinion.seat.width_mm", pytest.approx(30.0))
-    assert "25 mm" in fault.bound
-    with pytest.raises(BadInput) as refusal:
+    assert faults[0].value == pytest.approx(30.0)
+    with refused("pair.pinion.seat.tangential_foundation_n_per_mm3"):
         gear_pair(case(seat={"key": key}))
-    assert refusal.value.faults[0].field == "pair.pinion.seat.tangential_foundation_n_per_mm3"
-    with pytest.raises(BadInput) as refusal:
+    with refused("pair.pinion.seat.key.width_mm"):
         gear_pair(case(seat=given | {"key": key | {"width_mm": 200.0}}))
-    assert refusal.value.faults[0].field == "pair.pinion.seat.key.width_mm"
 
 
 def test_mating_gears_have_opposite_hands() -> None:
-    table = copy.deepcopy(GOOD)
-    table["pair"] |= {"helix_angle_deg": 15.0, "center_distance_mm": 80.0 / math.cos(math.radians(15.0))}
-    pair = gear_pair(validated(Case, table))
+    distance = 80.0 / math.cos(math.radians(15.0))
+    pair = gear_pair(changed_case({"pair.helix_angle_deg": 15.0, "pair.center_distance_mm": distance}))
     assert pair.pinion.helix_angle == pytest.approx(math.radians(15.0))
     assert pair.wheel.helix_angle == -pair.pinion.helix_angle
 
 
 def test_a_gears_own_material_wins() -> None:
-    table = copy.deepcopy(GOOD)
-    table["material"] = {"youngs_modulus_gpa": 206.0}
-    table["pair"]["wheel"]["material"] = {"youngs_modulus_gpa": 3.0, "poissons_ratio": 0.4}
-    pair = gear_pair(validated(Case, table))
+    own = {"youngs_modulus_gpa": 3.0, "poissons_ratio": 0.4}
+    pair = gear_pair(changed_case({"material.youngs_modulus_gpa": 206.0, "pair.wheel.material": own}))
     assert pair.pinion.material.youngs_modulus == pytest.approx(206e9)
     assert (pair.wheel.material.youngs_modulus, pair.wheel.material.poissons_ratio) == pytest.approx(
         (3e9, 0.4)
@@ -191,32 +184,25 @@ def test_a_gears_own_material_wins() -> None:
 
 
 def test_a_shaft_arrives_in_si_on_the_side_of_its_gear() -> None:
-    table = copy.deepcopy(GOOD)
-    shaft: dict[str, Any] = {"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": -20.0}
-    shaft |= {"bearing_stiffness_n_per_um": 400.0}
-    table["pair"]["wheel"]["shaft"] = shaft
-    first, second = gear_pair(validated(Case, table)).shafts
+    shaft = {"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": -20.0}
+    on_wheel = {"pair.wheel.shaft": shaft | {"bearing_stiffness_n_per_um": 400.0}}
+    first, second = gear_pair(changed_case(on_wheel)).shafts
     assert first is None and second is not None
     assert (second.length, second.diameter, second.position) == pytest.approx((0.2, 0.04, -0.02), rel=1e-12)
     assert second.bearing_stiffness == pytest.approx(4e8, rel=1e-12)
-    shaft["position_mm"] = 401.0
-    with pytest.raises(BadInput) as caught:
-        gear_pair(validated(Case, table))
-    (fault,) = caught.value.faults
-    assert (fault.field, fault.value) == ("pair.wheel.shaft.position_mm", 401.0)
-    assert fault.bound == "from -200 to 400"
-    shaft["position_mm"] = 100.0
-    with pytest.raises(BadInput) as caught:
-        check_case(validated(Case, table | {"accuracy": {"model": "plane_strain"}}))
-    assert caught.value.faults[0].field == "pair.wheel.shaft"
+    with refused("pair.wheel.shaft.position_mm") as faults:
+        gear_pair(changed_case({"pair.wheel.shaft": shaft | {"position_mm": 401.0}}))
+    assert (faults[0].value, faults[0].bound) == (401.0, "from -200 to 400")
+    inside = {"pair.wheel.shaft": shaft | {"position_mm": 100.0}, "accuracy.model": "plane_strain"}
+    with refused("pair.wheel.shaft"):
+        check_case(changed_case(inside))
 
 
 def test_arguments_of_the_analysis_are_si() -> None:
-    table = copy.deepcopy(GOOD) | {
-        "errors": {"misalignment_um": [0.0, 30.0], "center_distance_change_mm": [-0.1, 0.0]},
-        "accuracy": {"time_budget_s": 3.0, "positions": 64, "model": "plane_stress"},
-    }
-    axes, options = table_axes(validated(Case, table)), analysis_options(validated(Case, table))
+    errors = {"misalignment_um": [0.0, 30.0], "center_distance_change_mm": [-0.1, 0.0]}
+    accuracy = {"time_budget_s": 3.0, "positions": 64, "model": "plane_stress"}
+    stated = changed_case({"errors": errors, "accuracy": accuracy})
+    axes, options = table_axes(stated), analysis_options(stated)
     assert axes.torques == (10.0, 100.0) and axes.normal_forces is None
     assert axes.misalignments == pytest.approx((0.0, 3e-5))
     assert axes.center_distance_changes == pytest.approx((-1e-4, 0.0))
@@ -230,9 +216,8 @@ def test_the_floor_of_a_tolerance_is_given_in_nm() -> None:
     assert allowed() == AllowedError(0.01, 20e-9)
     assert allowed(tolerance=0.02, tolerance_floor_nm=0.0) == AllowedError(0.02, 0.0)
     assert allowed(tolerance_floor_nm=50.0).floor == pytest.approx(5e-8)
-    with pytest.raises(BadInput) as caught:
+    with refused("accuracy.tolerance"):
         allowed(tolerance=1e-6)
-    assert caught.value.faults[0].field == "accuracy.tolerance"
 
 
 def test_the_echo_holds_every_default_and_is_its_own_fixed_point() -> None:
@@ -245,8 +230,8 @@ def test_the_echo_holds_every_default_and_is_its_own_fixed_point() -> None:
 
 
 def test_the_key_depends_on_what_decides_the_result_and_on_nothing_else() -> None:
-    written_out = copy.deepcopy(GOOD) | {"effects": {}, "errors": {"misalignment_um": [0]}}
-    written_out["load"] = {"torque_n_m": [10, 100]}
+    loads = {"torque_n_m": [10, 100]}
+    written_out = GOOD | {"effects": {}, "errors": {"misalignment_um": [0]}, "load": loads}
     keys = [content_key("analyze", "1", case_json(validated(Case, table))) for table in (GOOD, written_out)]
     assert keys[0] == keys[1]
     assert content_key("analyze", "2", case_json(case())) != keys[0]
@@ -254,14 +239,13 @@ def test_the_key_depends_on_what_decides_the_result_and_on_nothing_else() -> Non
 
 
 def test_a_change_of_center_distance_at_which_the_gears_do_not_mesh_is_refused_by_its_place() -> None:
-    good = copy.deepcopy(GOOD) | {"errors": {"center_distance_change_mm": [0.0, 0.1]}}
-    assert check_case(validated(Case, good)).center_distance == pytest.approx(0.08)
-    wrong = copy.deepcopy(GOOD) | {"errors": {"center_distance_change_mm": [0.0, 8.0]}}
-    with pytest.raises(BadInput) as caught:
-        check_case(validated(Case, wrong))
-    (fault,) = caught.value.faults
-    assert (fault.field, fault.value) == ("errors.center_distance_change_mm[1]", 8.0)
-    assert fault.bound.startswith("a change at which the gears mesh") and fault.bound.endswith("below 1")
+    good, wrong = (changed_case({"errors.center_distance_change_mm": [0.0, far]}) for far in (0.1, 8.0))
+    assert check_case(good).center_distance == pytest.approx(0.08)
+    with refused("errors.center_distance_change_mm[1]") as faults:
+        check_case(wrong)
+    assert faults[0].value == 8.0
+    bound = faults[0].bound
+    assert bound.startswith("a change at which the gears mesh") and bound.endswith("below 1")
 
 
 def test_the_example_is_the_papers_pair() -> None:
@@ -276,9 +260,7 @@ def test_pitch_deviations_arrive_in_si_and_pitches_as_they_are() -> None:
     pair = gear_pair(found)
     assert pair.pinion.pitch_deviation.cumulative == pytest.approx([1e-6 * d for d in deviations], rel=1e-15)
     assert pair.wheel.pitch_deviation.neutral
-    table = copy.deepcopy(GOOD)
-    table["accuracy"] = {"pitches": 40}
-    assert table_axes(validated(Case, table)).pitches == 40
+    assert table_axes(changed_case({"accuracy.pitches": 40})).pitches == 40
     assert table_axes(case()).pitches is None
 
 
@@ -299,18 +281,131 @@ def test_pitch_deviations_arrive_in_si_and_pitches_as_they_are() -> None:
 def test_bad_pitch_errors_are_refused_by_the_name_of_the_case(
     pinion: dict[str, Any], accuracy: dict[str, Any], field: str, words: str
 ) -> None:
-    table = copy.deepcopy(GOOD)
-    table["pair"]["pinion"] |= pinion
-    table["pair"]["center_distance_mm"] += 2.0 * (len(pinion) and pinion.get("teeth", 20) - 20)
-    table["accuracy"] = accuracy
-    with pytest.raises(BadInput) as caught:
-        check_case(validated(Case, table))
-    fault = caught.value.faults[0]
-    assert fault.field == field
-    assert words in fault.bound
+    distance = {"pair.center_distance_mm": 80.0 + 2.0 * (pinion.get("teeth", 20) - 20)}
+    own = {f"pair.pinion.{name}": value for name, value in pinion.items()}
+    with refused(field, words):
+        check_case(changed_case(own | distance | {"accuracy": accuracy}))
 
 
 def test_a_modulus_below_that_of_rubber_is_refused() -> None:
     with pytest.raises(BadInput, match=r"youngs_modulus_gpa = 5e-324: must be from 0\.001 to 2000"):
         validated(Case, CASE | {"material": {"youngs_modulus_gpa": 5e-324}})
     assert validated(Case, CASE | {"material": {"youngs_modulus_gpa": 0.001}})
+
+
+INLINE = {"roll_length_mm": [4.0, 19.0], "face_position_mm": [-5.0, 5.0], "removed_um": [[0, 0], [1, 2]]}
+HEADING = "roll_length_mm,face_position_mm,removed_um"
+ROWS = [f"{roll},{face},{roll * face / 10}" for roll in (4.5, 10, 19) for face in (-12.5, 0, 12.5)]
+CASE_WITH_GRID = (
+    spur_case('flank_grid_csv = "flanks/pinion.csv"')
+    + """
+[load]
+torque_n_m = [100.0]
+"""
+)
+
+
+def written(folder: Path, *lines: str) -> Path:
+    """Write a case file and its CSV file; return the case file."""
+    (folder / "flanks").mkdir()
+    (folder / "flanks" / "pinion.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    file = folder / "case.toml"
+    file.write_text(CASE_WITH_GRID, encoding="utf-8")
+    return file
+
+
+def test_a_file_is_read_beside_the_case_whatever_the_order_of_its_rows(tmp_path: Path) -> None:
+    shuffled = random.Random(3).sample(ROWS, len(ROWS))
+    case = read_model(Case, written(tmp_path, "\ufeff# measured", HEADING, "", *shuffled))
+    grid = gear_pair(case).pinion.modification.flank_grid
+    assert grid is not None
+    assert grid.roll_length == pytest.approx((4.5e-3, 10e-3, 19e-3), rel=1e-12, abs=0.0)
+    assert grid.face_position == pytest.approx((-12.5e-3, 0.0, 12.5e-3), rel=1e-12, abs=1e-18)
+    assert grid.removed[2] == pytest.approx((-23.75e-6, 0.0, 23.75e-6), rel=1e-12, abs=1e-18)
+    assert gear_pair(case).wheel.modification.flank_grid is None
+
+
+def test_columns_may_fake_any_order(tmp_path: Path) -> None:
+    turned = [",".join(line.split(",")[::-1]) for line in (HEADING, *ROWS)]
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    cases = [
+        read_model(Case, written(tmp_path / name, *lines))
+        for name, lines in (("a", (HEADING, *ROWS)), ("b", turned))
+    ]
+    assert cases[0] == cases[1]
+
+
+def test_the_echo_holds_the_grid_itself_and_needs_no_file(tmp_path: Path) -> None:
+    case = read_model(Case, written(tmp_path, HEADING, *ROWS))
+    echo = case_json(case)
+    assert "flank_grid_csv" not in echo["pair"]["pinion"]
+    assert echo["pair"]["pinion"]["flank_grid"]["roll_length_mm"] == [4.5, 10.0, 19.0]
+    assert case_json(validated(Case, echo)) == echo
+
+
+def test_a_grid_of_a_case_inside_a_scene_is_found(tmp_path: Path) -> None:
+    written(tmp_path, HEADING, *ROWS)
+    nested = CASE_WITH_GRID.replace("[pair", "[meshes.case.pair").replace("[load]", "[meshes.case.load]")
+    (tmp_path / "scene.toml").write_text('[[meshes]]\nname = "m"\n' + nested, encoding="utf-8")
+    with pytest.raises(BadInput) as caught:
+        read_model(SceneInput, tmp_path / "scene.toml")
+    assert not [fault for fault in caught.value.faults if "case" in fault.field]
+    (tmp_path / "flanks" / "pinion.csv").unlink()
+    with pytest.raises(BadInput) as caught:
+        read_model(SceneInput, tmp_path / "scene.toml")
+    assert caught.value.faults[0].field == "meshes[0].case.pair.pinion.flank_grid_csv.file"
+
+
+def test_a_client_cannot_name_a_file() -> None:
+    with refused("pair.pinion.flank_grid_csv") as faults:
+        validated(Case, changed(GOOD, {"pair.pinion.flank_grid_csv": "/etc/passwd"}))
+    assert faults[0].bound.startswith("left out")
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        ([], "it is empty"),
+        ([HEADING.replace("_um", "_mm"), *ROWS], HEADING),
+        ([HEADING.replace(",", ";"), *ROWS], "with commas"),
+        (
+            [HEADING, *ROWS[:-1]],
+            "1 of 9 nodes are missing, the first at roll_length_mm = 19, face_position_mm",
+        ),
+        ([HEADING, *ROWS, ROWS[0]], "line 11 repeats"),
+        ([HEADING, *ROWS[:-1], "19,12.5,"], "line 10 holds nothing in removed_um"),
+        ([HEADING, *ROWS[:-1], "19,nan,1"], "line 10 holds 'nan' in face_position_mm"),
+        ([HEADING, *ROWS[:-1], "19,12.5"], "line 10 has 2"),
+    ],
+)
+def test_a_file_that_holds_no_grid_is_refused_by_what_is_wrong(
+    tmp_path: Path, lines: list[str], said: str
+) -> None:
+    with refused("pair.pinion.flank_grid_csv", said):
+        read_model(Case, written(tmp_path, *lines))
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"roll_length_mm": [19.0, 4.0]}, "roll_length_mm"),
+        ({"removed_um": [[0.0, 0.0], [1.0]]}, "removed_um[1]"),
+        ({"removed_um": [[0.0, 0.0], [1.0, 2000.0]]}, "removed_um[1][1]"),
+        ({"removed_um": [[0.0, 0.0], [1.0, float("nan")]]}, "removed_um[1][1]"),
+        ({"face_position_mm": [20.0, 30.0]}, "face_position_mm"),
+        ({"face_position_mm": [0.0]}, "face_position_mm"),
+    ],
+)
+def test_an_inline_grid_is_refused_by_the_cases_names(change: dict[str, Any], field: str) -> None:
+    with pytest.raises(BadInput) as caught:
+        check_case(validated(Case, changed(GOOD, {"pair.pinion.flank_grid": INLINE | change})))
+    assert caught.value.faults[0].field.startswith(f"pair.pinion.flank_grid.{field}")
+
+
+def test_a_grid_that_differs_over_the_face_is_no_matter_of_the_plane() -> None:
+    plane = GOOD | {"accuracy": {"model": "plane_strain"}}
+    even = INLINE | {"removed_um": [[0, 0], [2, 2]]}
+    check_case(validated(Case, changed(plane, {"pair.pinion.flank_grid": even})))
+    with refused("pair.pinion.flank_grid.removed_um"):
+        check_case(validated(Case, changed(plane, {"pair.pinion.flank_grid": INLINE})))

@@ -19,13 +19,18 @@ from fe_contact.analysis.request import request_check
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert import case as conversion
 from lineofaction.gearbox.convert.live import plan_of
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.toml import toml_text
 from service.app import create_app
+from service.page.files import examples
+from service.schemas.execute import AnalyzeInputs
 from service.settings import Settings
+from service.store.places import stored_results
 from service.worker import preparations
 from service.worker.child import stamp_products
 from service.worker.order import WorkOrder
+from service.worker.preparations import name_database, prepare_analyze
 from service.worker.simulation_work import analyze_case
 
 GEAR = {"teeth": 20, "face_width_mm": 2.0, "bore_diameter_mm": 10.0}
@@ -155,12 +160,12 @@ def test_a_tolerance_goes_on_from_the_check_of_the_submission(calls: Calls) -> N
 
 
 @pytest.mark.law
-def test_an_optimization_checks_each_of_its_requests_once(calls: Calls, file: Path, tmp_path: Path) -> None:
-    """That of its torques, and that of its maps, which have further torques."""
+def test_an_optimization_checks_its_request_once(calls: Calls, file: Path, tmp_path: Path) -> None:
+    """That of its maps, whose torques are more than its own."""
     (tmp_path / "study.json").write_text(json.dumps(STUDY))
     invoked("optimize", file, tmp_path / "study.json", "-o", tmp_path / "best")
     assert calls.converted == 1
-    assert len(calls.checked) == len(set(calls.checked)) == 2
+    assert len(calls.checked) == 1
 
 
 def test_a_sweep_checks_once(calls: Calls, file: Path, tmp_path: Path) -> None:
@@ -183,3 +188,28 @@ def test_a_plan_goes_on_from_the_check_of_the_submission(calls: Calls) -> None:
     case = conversion.CheckedCase(validated(Case, CASE))
     assert case.feasible.request.pair == plan_of(case, None, None).checked.request.pair
     assert calls.counts == (0, 1, 1)
+
+
+def inputs(torque_n_m: float) -> AnalyzeInputs:
+    """Return a case that differs by its largest torque."""
+    case: dict[str, Any] = {**examples()[0].content, "load": {"torque_n_m": [50.0, torque_n_m]}}
+    return AnalyzeInputs.model_validate({"case": case})
+
+
+def test_a_case_is_checked_until_its_table_is_stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Refused:
+        @property
+        def feasible(self) -> None:
+            raise BadInput.of("case", None, "never checked")
+
+    store, known = stored_results(tmp_path), inputs(100.0)
+    normalized = prepare_analyze(known, store)
+    assert normalized == known.model_dump(mode="json")
+    monkeypatch.setattr(preparations.CASES, "of", lambda _case: Refused())
+    with pytest.raises(BadInput):
+        prepare_analyze(known, store)
+    (tmp_path / "table.nc").write_bytes(b"a table")
+    store.put(name_database(normalized), "database", tmp_path / "table.nc")
+    assert prepare_analyze(known, store) == normalized
+    with pytest.raises(BadInput):
+        prepare_analyze(inputs(101.0), store)

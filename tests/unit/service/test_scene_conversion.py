@@ -1,4 +1,4 @@
-"""From a scene file and its tables to the scene of dynamics."""
+"""From a scene file and its tables to the scene of dynamics, planetary sets too; faults by name."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import pytest
 from changed_scenes import DROP, By, changed, changed_scene, check_refused
 from small_table import BASE_RADIUS, small_table
 
+from dynamics.assembly.assemble import assemble
 from dynamics.scene import Scene
 from fe_contact.geometry import Gear, GearPair, ToothProfile
 from fe_contact.geometry.backlash import base_circle_backlash
@@ -187,3 +188,111 @@ def test_a_coefficient_of_friction_goes_to_its_mesh() -> None:
     assert scene({"meshes[0].friction": 0.05}).meshes[0].friction == 0.05
     with pytest.raises(BadInput, match="friction"):
         scene({"meshes[0].friction": 0.0})
+
+
+def ring_table() -> Any:
+    """The small table as that of 20 teeth in a ring of 60, at the same center distance and base pitch."""
+    table = small_table()
+    facts = replace(table.facts, teeth=(20, 60), base_radius=(BASE_RADIUS, 3.0 * BASE_RADIUS), internal=True)
+    return replace(table, facts=facts)
+
+
+PLANETARY: dict[str, Any] = {
+    "run": {"duration_s": 0.01},
+    "shafts": [
+        {"name": name, "length_mm": 30.0, "diameter_mm": 20.0, "frame": "carrier", "origin_mm": [x, 0.0, 0.0]}
+        for name, x in (("sun", 0.0), ("ring", 0.0), ("carrier", 0.0), ("planet", 80.0))
+    ],
+    "gears": [{"name": name, "shaft": name, "position_mm": 15.0} for name in ("sun", "planet", "ring")],
+    "planet_bearings": [
+        {
+            "name": "pin",
+            "shaft": "planet",
+            "carrier": "carrier",
+            "position_mm": 15.0,
+            "radial_stiffness_n_per_m": 1e8,
+        }
+    ],
+    "planets": [{"planet": "planet", "number": 4, "tangential_errors_um": [20.0, 0.0, 0.0, 0.0]}],
+    "meshes": [
+        {"name": "sun mesh", "driver": "sun", "driven": "planet", "case_file": "sun.toml"},
+        {"name": "ring mesh", "driver": "planet", "driven": "ring", "case_file": "ring.toml"},
+    ],
+    "drives": [{"name": "held", "shaft": "ring", "speed_rpm": [0.0], "stiffness_n_m_per_rad": 1e7}],
+    "free_rotations": [{"name": "train", "shaft": "sun", "initial_speed_rpm": 600.0}],
+    "loads": [
+        {"name": "motor", "shaft": "sun", "torque_n_m": [-50.0]},
+        {"name": "brake", "shaft": "carrier", "torque_n_m": [200.0]},
+    ],
+}
+
+
+def planetary(changes: dict[str, Any] | None = None) -> Scene:
+    return changed_scene(PLANETARY, changes or {}, {"ring mesh": ring_table()})
+
+
+def test_a_planetary_set_has_all_its_planets() -> None:
+    found = planetary()
+    assert [gear.internal for gear in found.gears[:3]] == [False, False, True]
+    assert len(found.meshes) == 8
+    assert found.shafts[4].origin == pytest.approx((0.0, 0.08, 0.0))
+    assert [b.tangential_error for b in found.planet_bearings] == pytest.approx([2e-5, 0.0, 0.0, 0.0])
+    assert found.drives[0].stiffness == 1e7
+    assert found.free_rotations[0].initial_speed == pytest.approx(20.0 * math.pi)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        (
+            "planets[0].number",
+            By({"planets[0].number": 3, "planets[0].tangential_errors_um": [0.0] * 3}),
+        ),
+        ("planets[0].tangential_errors_um", By({"planets[0].number": 3})),
+        ("planets[0].planet", "moon"),
+        ("shafts[0].frame", "nobody"),
+        ("meshes[0].driven", By({"shafts[0].frame": DROP})),
+        ("planet_bearings[0].carrier", "ring"),
+        ("drives[0].speed_rpm", By(free_rotations=[])),
+        ("free_rotations[0].sense", "-z"),
+    ],
+)
+def test_planetary_sets_that_cannot_be_are_one_fault_by_name(field: str, value: Any) -> None:
+    check_refused(PLANETARY, field, value, {"ring mesh": ring_table()})
+
+
+def test_a_ring_gear_may_drive() -> None:
+    """The wheel of its case then is the driver; an external wheel is told to be another case's pinion."""
+    ring = {"name": "ring mesh", "case_file": "ring.toml", "driver": "ring", "driven": "planet"}
+    turned = {
+        "meshes[0].driver": "planet",
+        "meshes[0].driven": "sun",
+        "loads[0]": {"name": "motor", "shaft": "carrier", "torque_n_m": [-200.0]},
+        "loads[1]": {"name": "brake", "shaft": "sun", "torque_n_m": [50.0]},
+    }
+    found = planetary(turned | {"meshes[1]": ring | {"wheel_drives": True}})
+    assert [gear.internal for gear in found.gears[:3]] == [False, False, True]
+    with pytest.raises(BadInput, match=r"meshes\[1\]\.driven"):
+        planetary(turned | {"meshes[1]": ring | {"wheel_drives": False}})
+    with pytest.raises(BadInput, match=r"meshes\[0\]\.wheel_drives"):
+        planetary({"meshes[0].wheel_drives": True})
+
+
+def test_the_planetary_example_is_a_system() -> None:
+    """On fake tables with the facts of its pairs: six meshes, all torques carried, planets that fit."""
+    table = small_table()
+
+    def of(teeth: tuple[int, int], internal: bool) -> Any:
+        base = math.cos(math.radians(20.0)) * 1e-3
+        radius = (base * teeth[0], base * teeth[1])
+        facts = replace(table.facts, teeth=teeth, base_radius=radius, center_distance=0.06, internal=internal)
+        facts = replace(facts, base_pitch=2.0 * math.pi * base)
+        return replace(table, facts=facts, torque=table.force * radius[0])
+
+    example = tomllib.loads((ROOT / "examples" / "planetary_scene.toml").read_text())
+    tables = {"sun mesh": of((24, 36), False), "ring mesh": of((36, 96), True)}
+    system = assemble(changed_scene(example, {}, tables))
+    assert len(system.scene.meshes) == 6
+    assert system.kinematics.ratio[0][0] * 5 == 1  # the carrier
+    base = math.cos(math.radians(20.0)) * 1e-3
+    assert system.flanks.nominal_force == pytest.approx([60.0 / 3.0 / (24 * base)] * 6)

@@ -29,7 +29,7 @@ PAPER = tomllib.loads((ROOT / "examples" / "palermo_scene.toml").read_text())
 def scene(
     changes: dict[str, Any] | None = None, example: dict[str, Any] = EXAMPLE, table: Any = None
 ) -> Scene:
-    return changed_scene(example, changes or {}, table)
+    return changed_scene(example, changes or {}, {"mesh": table} if table else {})
 
 
 def on(found: Scene) -> dict[str, bool]:
