@@ -36,10 +36,6 @@ REMAINS = {
     ("fe_contact/ste/curve.py", "finite_width"): "source of an error in stored tables",
     ("fe_contact/analysis/estimates/assessed_table.py", "finite_width"): "the same source",
     ("lineofaction/gearbox/convert/scene.py", "shaft_deflection"): "the ledger of a stored table",
-    (
-        "lineofaction/gearbox/studies/sensitivity/run.py",
-        "corner_contact",
-    ): "field of the result's file",
 }
 CHOSEN_BY = ("choices", "decided", "effect", "effects", "ledger", "neglected", "turned_on")
 
