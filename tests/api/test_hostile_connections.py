@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import http.client
 import socket
 import threading
+import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 import uvicorn
+from killed_service import KilledService
 from running_service import PATIENCE_S, until
 from service_fakes import REGISTRY
 
@@ -123,3 +127,22 @@ def test_an_idle_connection_makes_room_for_another(
     with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as idle:
         assert b'{"status":"ok"}' in answered(port, closing)
         assert idle.recv(65536) == b""
+
+
+# Idle connections: kept for longer than callers and proxies keep them.
+
+
+CLIENTS_KEEP_S = 5.0  # the default of our client's library
+
+
+def test_an_idle_connection_is_closed_by_the_caller_not_under_its_request(tmp_path: Path) -> None:
+    with KilledService(tmp_path, {}, ["serve"]) as service:
+        service.request("GET", "/health")
+        connection = http.client.HTTPConnection(service.address.removeprefix("http://"), timeout=PATIENCE_S)
+        for pause in (0.0, 1.4 * CLIENTS_KEEP_S):
+            time.sleep(pause)
+            connection.request("GET", "/health")
+            answer = connection.getresponse()
+            assert (answer.status, answer.read()) == (200, b'{"status":"ok"}')
+        assert service.stop() == [0]
+        connection.close()

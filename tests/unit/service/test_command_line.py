@@ -10,14 +10,19 @@ import re
 import subprocess
 import sys
 import warnings
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 import pytest
+import typer
 from command_line import loa, printed
 from small_table import small_table
+from typer.testing import CliRunner
 
 from lineofaction.cli import commands
+from lineofaction.cli.guard import grouped, parameters_of
 from lineofaction.client import JobState, LineOfActionClient, OfflineWarning
 
 ROOT = Path(__file__).parents[3]
@@ -265,3 +270,77 @@ def test_the_service_refuses_an_address_that_others_reach(host: str, monkeypatch
     result = loa("serve", "--host", host)
     assert result.exit_code == 2
     assert f"host = '{host}': must be a loopback address" in result.stderr
+
+
+# ``loa plan``.
+
+
+AUTOMOTIVE = Path(__file__).parents[3] / "examples" / "sensitivity_automotive.toml"
+
+
+def plan(*arguments: str) -> str:
+    done = loa("plan", AUTOMOTIVE, *arguments)
+    assert done.exit_code == 0, done.output
+    return done.stdout
+
+
+def test_json_holds_cost_error_and_effects() -> None:
+    found = json.loads(plan("--json"))
+    assert found["choice"]["level"] == "standard"
+    assert found["prediction"]["cpu_seconds"] > 0.0
+    assert [entry["level"] for entry in found["levels"]] == ["draft", "standard", "fine"]
+    assert {entry["name"] for entry in found["effect_ledger"]} > {"corner_contact", "misalignment"}
+
+
+def test_a_time_that_is_too_short_is_said() -> None:
+    assert "cannot be had" in plan("--time-budget-s", "0.001")
+    assert "cannot be had" not in plan("--time-budget-s", "1e6")
+
+
+# Options that belong together: one dataclass in the verb, one option each on the command line.
+
+
+@dataclass(frozen=True)
+class Size:
+    """A length, asked for, and a width."""
+
+    length: Annotated[float, typer.Option(help="Length in mm.")]
+    width: Annotated[float, typer.Option(min=1.0, help="Width in mm.")] = 2.0
+
+
+def drawn(*arguments: str) -> str:
+    app = typer.Typer()
+
+    @app.command()
+    @grouped
+    def draw(*, name: str, size: Size, bold: bool = False) -> None:
+        typer.echo(f"{name} {size.length} {size.width} {bold}")
+
+    return CliRunner().invoke(app, arguments).output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("a", "--length", "3", "--width", "4", "--bold"), "a 3.0 4.0 True\n"),
+        (("a", "--length", "3"), "a 3.0 2.0 False\n"),
+    ],
+)
+def test_the_verb_is_called_with_the_group(arguments: tuple[str, ...], said: str) -> None:
+    assert drawn(*arguments) == said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [(("a",), "--length"), (("a", "--length", "3", "--width", "0"), "--width")],
+)
+def test_an_option_of_a_group_has_its_own_faults(arguments: tuple[str, ...], named: str) -> None:
+    assert named in drawn(*arguments)
+    assert "Error" in drawn(*arguments)
+
+
+def test_options_stand_where_their_group_stood() -> None:
+    @grouped
+    def verb(*, name: str, size: Size, bold: bool = False) -> None: ...
+
+    assert [part.name for part in parameters_of(verb)] == ["name", "length", "width", "bold"]

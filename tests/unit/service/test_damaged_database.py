@@ -5,7 +5,7 @@ from __future__ import annotations
 import resource
 import shutil
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -18,11 +18,19 @@ from sqlalchemy import event
 from sqlalchemy.exc import OperationalError
 from structlog.testing import LogCapture
 
-from lineofaction.gearbox.problems import EXIT_FAILED, DatabaseDamaged, NoSpace, OutOfFiles, ServiceError
+from lineofaction.gearbox.problems import (
+    EXIT_FAILED,
+    DatabaseDamaged,
+    DatabaseUnavailable,
+    NoSpace,
+    OutOfFiles,
+    ServiceError,
+)
 from service.app import create_app
 from service.settings import Settings
+from service.store import deployment
 from service.store.database import database_engine
-from service.store.deployment import NOTE
+from service.store.deployment import NOTE, WriteCheck
 from service.store.dialects import out_of_files, outage_of
 
 PAGE = 4096
@@ -212,3 +220,60 @@ def test_open_files_that_are_used_up_are_noticed() -> None:
         assert out_of_files()
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+
+
+# Waiting for a turn is no fault for a while.
+
+
+class Place:
+    """A deployment whose writes end as they are told to."""
+
+    def __init__(self) -> None:
+        self.database: Callable[[], None] = lambda: None
+
+    def write_database(self) -> None:
+        self.database()
+
+    def write_place(self) -> None:
+        pass
+
+
+def failing(error: Exception) -> Callable[[], None]:
+    def step() -> None:
+        raise error
+
+    return step
+
+
+@pytest.fixture
+def place(monkeypatch: pytest.MonkeyPatch) -> Place:
+    monkeypatch.setattr(deployment, "KEPT_S", -1.0)
+    return Place()
+
+
+def fault(check: WriteCheck) -> str:
+    return check.outcome().fault
+
+
+def test_one_that_waits_for_its_turn_is_ready_until_it_has_waited_too_long(
+    place: Place, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """200 submissions at once held the database for a second, and a service at work said 503."""
+    check = WriteCheck(place)  # type: ignore[arg-type]
+    assert fault(check) == ""
+    place.database = failing(DatabaseUnavailable("Others hold it."))
+    assert fault(check) == ""
+    monkeypatch.setattr(deployment, "LATE_S", -1.0)
+    assert fault(check) == "Others hold it."
+
+
+def test_one_that_has_never_written_is_not_ready(place: Place) -> None:
+    place.database = failing(DatabaseUnavailable("Others hold it."))
+    assert fault(WriteCheck(place)) == "Others hold it."  # type: ignore[arg-type]
+
+
+def test_damage_is_told_at_once(place: Place) -> None:
+    check = WriteCheck(place)  # type: ignore[arg-type]
+    assert fault(check) == ""
+    place.database = failing(DatabaseDamaged("It is malformed."))
+    assert fault(check) == "It is malformed."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from html import escape
 from pathlib import Path
@@ -18,13 +19,15 @@ from hulls import box
 from reduced_housings import bare_housing
 from scene_files import scene_file
 from sounding_housings import smooth_motion, with_surface
+from sounding_scene import sound
 
 from dynamics.acoustics import Hull, a_weighting
 from dynamics.noise import RadiatedSound, loudest
 from lineofaction.gearbox.studies.noise import run
 from lineofaction.report.drawing import surface_view
+from lineofaction.report.drawing.figure import HeatMap
 from lineofaction.report.housing import noise as page
-from lineofaction.report.housing.noise import _limits, _model_tables
+from lineofaction.report.housing.noise import DEPTH, _cells, _limits, _model_tables, row_axis
 
 BANDS = ("--speed-rpm", "300:6000:600", "--orders", 4)
 SPEEDS = (*BANDS, "--no-band")
@@ -201,3 +204,31 @@ def test_what_one_decibel_costs_is_ranked(scene: Path, tmp_path: Path) -> None:
         assert row["for_one_db_less"] == pytest.approx(-1.0 / row["slope_db"])
     (damping,) = (row for row in rows if row["figure"] == "housing_damping")
     assert damping["change_db"] < 0.0
+
+
+# The map of sound power: power is kept, and it ends where its colors do.
+
+
+def quiet_above() -> RadiatedSound:
+    power = np.array(sound().power)
+    power[-1] *= 1e-12
+    return replace(sound(), power=power, facts=sound().facts | {"leading_shaft": "input"})
+
+
+def shade() -> HeatMap:
+    sound = quiet_above()
+    _, along = row_axis(sound.speed, sound.facts)
+    return _cells(sound.orders, along)
+
+
+def test_it_holds_the_power_of_every_speed() -> None:
+    drawn = np.nansum(10.0 ** (shade().z / 10.0), axis=0) * 1e-12
+    total = quiet_above().orders.weighted_power.sum(axis=0)
+    left_out = total.max() * 10.0 ** (-DEPTH / 10.0) * quiet_above().order.size
+    np.testing.assert_allclose(drawn, total, atol=left_out)
+
+
+def test_it_ends_with_what_is_shown() -> None:
+    map_, frequency = shade(), quiet_above().orders.frequency
+    assert np.any(np.isfinite(map_.z[-1])) and len(map_.y) == len(map_.z)
+    assert map_.y[-1] < 0.5 * (frequency[-2:].max(axis=1).sum())

@@ -1,13 +1,19 @@
-"""A service answers before it has loaded the libraries that compute."""
+"""Before a service or a verb loads the libraries that compute: what it answers, loads later, and sets."""
 
 from __future__ import annotations
 
+import json
+import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
+from pathlib import Path
+from threading import Barrier
 
 import pytest
 
+from host import ONE_THREAD
 from lineofaction.gearbox.loading import on_demand
 from service.routes.warm_up import HEAVY, warm_up
 from service.worker.process import default_registry
@@ -44,3 +50,62 @@ def test_the_rest_is_loaded_behind() -> None:
     thread = warm_up()
     thread.join()
     assert set(HEAVY) <= set(sys.modules)
+
+
+# One thread.
+
+
+CALLED = """
+import json, os, sys
+from lineofaction.cli import commands
+commands.app = lambda: print(json.dumps([dict(os.environ), "numpy" in sys.modules]))
+commands.main()
+"""
+
+
+@pytest.mark.parametrize("set_by_user", [{}, {"OMP_NUM_THREADS": "3"}], ids=["nothing set", "three threads"])
+def test_libraries_find_it_before_they_are_loaded(set_by_user: dict[str, str]) -> None:
+    bare = {name: value for name, value in os.environ.items() if name not in ONE_THREAD}
+    done = subprocess.run(
+        [sys.executable, "-c", CALLED], env=bare | set_by_user, capture_output=True, text=True, check=True
+    )
+    environment, loaded = json.loads(done.stdout)
+    assert not loaded
+    found = {name: environment[name] for name in ONE_THREAD if name in environment}
+    assert found == (set_by_user or ONE_THREAD)
+
+
+# Whole, however many ask at once.
+
+
+MODULE = """
+import sys, time
+sys.being_loaded.append(__name__)
+time.sleep(0.2)
+sys.being_loaded.append(__name__)
+def named(): return __name__
+"""
+
+
+def test_modules_are_loaded_one_after_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the thread that loads what requests will need, and by two that are asked meanwhile."""
+    names = ["loaded_first", "loaded_on_demand", "loaded_beside_it"]
+    for name in names:
+        (tmp_path / f"{name}.py").write_text(MODULE, encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    order: list[str] = []
+    monkeypatch.setattr(sys, "being_loaded", order, raising=False)
+    together = Barrier(2)
+
+    def ask(name: str) -> str:
+        together.wait()
+        return str(on_demand(f"{name}:named")())
+
+    thread = warm_up(names[:1])
+    with ThreadPoolExecutor(2) as pool:
+        assert list(pool.map(ask, names[1:])) == names[1:]
+    thread.join()
+    assert sorted(order) == sorted(names * 2)
+    assert order[::2] == order[1::2], "another one was begun before this one had ended"
+    for name in names:
+        del sys.modules[name]
