@@ -12,14 +12,13 @@ from typing import Any
 import pytest
 from bad_inputs import BAD_FILES, BAD_INPUTS, BadInput
 from bad_scenes import BAD_SCENES, BadScene, good_scene
+from command_line import loa
 from fastapi.testclient import TestClient
 from toml_text import toml_text
-from typer.testing import CliRunner
 
 from dynamics.errors import InputError as DynamicsInputError
 from fe_contact.errors import InputError
 from fe_contact.ste import PairFacts
-from lineofaction.cli.commands import app as loa
 from lineofaction.gearbox.convert.case import check_case
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.schemas import Case, validated
@@ -76,7 +75,7 @@ def test_command_line_and_http_say_the_same(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     before, file, output = children(), tmp_path / "input.toml", tmp_path / "output.nc"
     file.write_text(toml_text(bad.table()))
-    result = CliRunner().invoke(loa, [bad.process, str(file), "-o", str(output), "--json"])
+    result = loa(bad.process, file, "-o", output, "--json")
     assert (result.exit_code, result.stdout) == (2, "")
     (line,) = result.stderr.splitlines()
     assert line.startswith(f"error: {bad.field} = ") and ": must be " in line

@@ -10,12 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
+from command_line import loa
 
 from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Figures
 from fe_contact.ste import SteDatabase
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.studies.ablate import Inputs
@@ -90,7 +89,7 @@ def boundary_case(name: str) -> Json:
 
 
 def invoked(*words: object) -> str:
-    run = CliRunner().invoke(app, [str(word) for word in words])
+    run = loa(*words)
     assert run.exit_code == 0, run.output
     return run.stdout
 

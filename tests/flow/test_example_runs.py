@@ -7,12 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
+from command_line import loa
 
 from dynamics.simulation import simulate
 from fe_contact import ste_database
 from fe_contact.ste import SteDatabase
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.subjects import case_of_mesh, scene_of
@@ -54,8 +53,8 @@ def test_the_energy_balance_of_every_example_closes(file, record_figure):
 RING = Path(__file__).parents[2] / "examples" / "internal_gear.toml"
 
 
-def loa(*arguments: object) -> str:
-    done = CliRunner().invoke(app, [str(argument) for argument in arguments])
+def output_of(*arguments: object) -> str:
+    done = loa(*arguments)
     assert done.exit_code == 0, done.output
     return done.stdout
 
@@ -63,7 +62,7 @@ def loa(*arguments: object) -> str:
 @pytest.fixture(scope="module")
 def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
     file = tmp_path_factory.mktemp("ring") / "ring.nc"
-    loa("analyze", RING, "-o", file)
+    output_of("analyze", RING, "-o", file)
     return file
 
 
@@ -76,8 +75,8 @@ def test_the_example_becomes_a_table(table: Path) -> None:
 
 
 def test_its_curve_and_its_report_can_be_read(table: Path, tmp_path: Path) -> None:
-    curve = json.loads(loa("ste", table, "--torque", 60, "--json"))
+    curve = json.loads(output_of("ste", table, "--torque", 60, "--json"))
     assert curve
     page = tmp_path / "ring.html"
-    loa("report", table, "-o", page)
+    output_of("report", table, "-o", page)
     assert "Gear pair 36/96, internal" in page.read_text(encoding="utf-8")

@@ -14,11 +14,9 @@ from typing import Any
 import h5netcdf
 import numpy as np
 import pytest
+from command_line import loa
 from running_service import PATIENCE_S
 from scene_files import scene_file
-from typer.testing import CliRunner
-
-from lineofaction.cli.commands import app
 
 DURATION, RATE = 5.0, 10_000.0
 RECORD = 8 * (2 * 5 + 1 + 2 * 5 + 3 + 2)  # q, v, quanta; filtered with force, place, error; extremes
@@ -106,7 +104,7 @@ def test_ctrl_c_and_resume_give_the_file_of_a_run_that_never_stopped(tmp_path: P
     assert (resumed.returncode, resumed.stderr) == (0, "")
     assert json.loads(resumed.stdout)["attributes"]["status"] == "COMPLETED"
     assert not (tmp_path / "parts.nc.partial").exists()
-    never = CliRunner().invoke(app, ["simulate", str(tmp_path / "scene.toml"), "-o", str(whole)])
+    never = loa("simulate", tmp_path / "scene.toml", "-o", whole)
     assert never.exit_code == 0, never.stderr
 
     (ours, said), (expected, told) = content(parts), content(whole)

@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from command_line import loa
 from fastapi.testclient import TestClient
-from typer.testing import CliRunner
 
-import lineofaction as loa
+import lineofaction
 from fe_contact.analysis.request import request_check
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert import case as conversion
 from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.problems import BadInput
@@ -98,7 +97,7 @@ def file(tmp_path: Path) -> Path:
 
 
 def invoked(*arguments: object) -> None:
-    done = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    done = loa(*arguments)
     assert done.exit_code == 0, done.output
 
 
@@ -140,7 +139,7 @@ def test_the_command_line_checks_once(calls: Calls, file: Path, tmp_path: Path) 
 
 
 def test_python_checks_once(calls: Calls) -> None:
-    loa.analyze(validated(Case, CASE))
+    lineofaction.analyze(validated(Case, CASE))
     assert calls.counts == (0, 1, 1)
 
 

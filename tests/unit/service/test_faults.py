@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from command_line import loa
 from pydantic import ValidationError
-from typer.testing import CliRunner
 
 from bounds import (
     Bound,
@@ -29,7 +29,6 @@ from bounds import (
 from dynamics.errors import InputError as DynamicsInputError
 from dynamics.errors import SolveError as DynamicsSolveError
 from fe_contact.errors import InputError, MeshError
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.errors import translated
 from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.problems import BadInput, Fault, JobFailed
@@ -196,7 +195,7 @@ def changed(tmp_path: Path, old: str, new: str) -> Path:
 
 
 def errors(*arguments: object) -> list[str]:
-    done = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    done = loa(*arguments)
     assert done.exit_code == 2
     return done.stderr.strip().splitlines()
 

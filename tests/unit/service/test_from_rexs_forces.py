@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
+from command_line import loa
 
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.from_rexs.opened import LOAD_CASES_FILE, OpenedUnit, opened, unit_files, unit_json
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import serialized
@@ -168,7 +167,7 @@ def test_the_answer_and_the_verb_show_the_forces_that_differ(tmp_path: Path) -> 
     answer = UnitBody.model_validate(unit_json(opened(document)))
     assert [[force.force_n for force in case.forces] for case in answer.load_cases] == [[], [[0.0, 5.0, 0.0]]]
     (tmp_path / "unit.rexs").write_bytes(serialized(document, "unit.rexs"))
-    shown = CliRunner().invoke(app, ["open", str(tmp_path / "unit.rexs"), "--out", str(tmp_path / "unit")])
+    shown = loa("open", tmp_path / "unit.rexs", "--out", tmp_path / "unit")
     assert "external_load 44 [0.0, 5.0, 0.0] N and [0.0, 0.0, 0.0] N m in x, y, z" in shown.stdout
 
 

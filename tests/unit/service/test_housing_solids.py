@@ -9,9 +9,9 @@ from typing import Any
 import meshlane
 import numpy as np
 import pytest
+from command_line import loa
 from declared_figures import check_declared
 from housing_solid import SEAT, housed_scene, housing, write_block, write_housed_scene
-from typer.testing import CliRunner
 
 from dynamics.housings import (
     GRAY_CAST_IRON,
@@ -31,7 +31,6 @@ from dynamics.housings import (
 )
 from dynamics.housings import reduction as kept
 from dynamics.work_cost import WorkCost
-from lineofaction.cli.commands import app
 from lineofaction.cli.simulate import tabled_scene
 from lineofaction.gearbox.convert import solid_housings
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene
@@ -331,7 +330,7 @@ def test_figures_and_report_state_the_cost_of_the_reduction(
     report = two_bores / f"{study}.html"
     costs = []
     for more in (("--json",), ("--json", "-o", str(report))):
-        result = CliRunner().invoke(app, [study, str(two_bores / "scene.json"), *STUDIES[study], *more])
+        result = loa(study, two_bores / "scene.json", *STUDIES[study], *more)
         assert result.exit_code == 0, result.stderr
         answer: dict[str, Any] = json.loads(result.stdout)
         check_declared(study, answer)

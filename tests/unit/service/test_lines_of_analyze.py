@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner, Result
+from command_line import loa
+from typer.testing import Result
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.options import AnalysisOptions, TableAxes
 from lineofaction.cli.analyze import _tolerance_lines, _tolerance_warnings
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.answers import draft_line
 from lineofaction.gearbox.convert.effects import assumption_lines, ledger_lines, run_lines
 from lineofaction.gearbox.problems import EXIT_WARNINGS
@@ -138,7 +138,7 @@ def draft() -> SteDatabase:
 def run(tmp_path: Path, tolerance: float, *options: str) -> Result:
     file = tmp_path / "case.toml"
     file.write_text(CASE.format(tolerance=tolerance))
-    return CliRunner().invoke(app, ["analyze", str(file), "-o", str(tmp_path / "ste.nc"), *options])
+    return loa("analyze", file, "-o", tmp_path / "ste.nc", *options)
 
 
 def test_a_tolerance_that_is_met_is_no_warning(tmp_path: Path) -> None:

@@ -11,14 +11,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from command_line import loa, printed
 from declared_figures import check_declared
 from scene_files import scene_file
 from two_stage_scenes import two_stages
-from typer.testing import CliRunner, Result
 
 from dynamics.deflection import BearingLoad, ForceUnderCase, deflect
 from dynamics.settings.load_case import LoadCase
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import read_model, validated
@@ -42,16 +41,12 @@ from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import number
 
 
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["deflect", *(str(argument) for argument in arguments)])
-
-
 def test_load_cases_come_from_their_file_in_its_units(tmp_path: Path) -> None:
     file = tmp_path / "cases.toml"
     file.write_text('[[load_cases]]\nname = "a"\nspeed_rpm = 600.0\ntorque_n_m = 20.0\ndirection = "coast"\n')
     (case,) = load_cases(read_model(Inputs, file))
     assert case.speed == pytest.approx(20.0 * np.pi) and (case.torque, case.direction) == (20.0, "coast")
-    answer = json.loads(loa(scene_file(tmp_path), file, "--json").stdout)["load_cases"][0]
+    answer = printed("deflect", scene_file(tmp_path), file)["load_cases"][0]
     assert (answer["torque_n_m"], answer["speed_rpm"]) == (pytest.approx(20.0), pytest.approx(600.0))
 
 
@@ -73,7 +68,7 @@ def test_load_cases_come_from_their_file_in_its_units(tmp_path: Path) -> None:
 def test_a_case_that_cannot_be_is_refused_by_its_field(tmp_path: Path, line: str, field: str) -> None:
     file = tmp_path / "cases.toml"
     file.write_text(f'[[load_cases]]\nname = "a"\n{line}\n')
-    done = loa(scene_file(tmp_path), file)
+    done = loa("deflect", scene_file(tmp_path), file)
     assert done.exit_code == 2 and field in done.stderr
 
 
@@ -101,7 +96,7 @@ def test_a_case_states_forces_of_the_scene(tmp_path: Path) -> None:
     scene, file = scene_file(tmp_path), tmp_path / "cases.toml"
     scene.write_text(scene.read_text("utf-8") + BELT, encoding="utf-8")
     file.write_text(PULLED)
-    cases = json.loads(loa(scene, file, "--json").stdout)["load_cases"]
+    cases = printed("deflect", scene, file)["load_cases"]
     across = [np.array(case["bearings"][0]["force_n"][:2]) for case in cases]
     assert cases[1]["forces"] == [
         {"name": "belt", "shaft": "input", "force_n": [0.0, -300.0, 50.0], "moment_n_m": [0.0, 0.0, 0.0]}
@@ -128,7 +123,7 @@ def test_a_case_without_forces_keeps_the_address_of_its_result() -> None:
 def test_a_force_of_a_scene_says_what_acts(tmp_path: Path) -> None:
     scene = scene_file(tmp_path)
     scene.write_text(scene.read_text("utf-8") + BELT.rpartition("force_n")[0], encoding="utf-8")
-    done = loa(scene)
+    done = loa("deflect", scene)
     assert done.exit_code == 2 and "forces[0].force_n" in done.stderr
 
 
@@ -174,10 +169,7 @@ def result() -> GearboxDeflection:
 
 
 def test_a_scene_is_deflected_under_its_own_load(tmp_path: Path) -> None:
-    result = loa(scene_file(tmp_path), "--json")
-    assert (result.exit_code, result.stderr) == (0, "")
-    answer = json.loads(result.stdout)
-    (case,) = answer["load_cases"]
+    (case,) = printed("deflect", scene_file(tmp_path))["load_cases"]
     assert (case["name"], case["status"], case["torque_n_m"]) == ("load", "converged", pytest.approx(100.0))
     (mesh,) = case["meshes"]
     assert mesh["force_n"] == pytest.approx(100.0 / 0.0375877, rel=1e-5)
@@ -362,7 +354,7 @@ def test_a_rotor_under_its_weight_hangs_in_its_bearings(tmp_path: Path) -> None:
     files = [tmp_path / f"rotor.{ending}" for ending in ("json", "png", "html")]
     for file in files:
         options = ["--set", "gravity_m_per_s2=[0.0, -9.81, 0.0]", "-o", str(file)]
-        result = CliRunner().invoke(app, ["deflect", str(ROTOR), *options])
+        result = loa("deflect", ROTOR, *options)
         assert (result.exit_code, result.stderr) == (0, "")
     (case,) = json.loads(files[0].read_text("utf-8"))["load_cases"]
     assert [bearing["force_n"][1] for bearing in case["bearings"]] == pytest.approx([-0.5 * WEIGHT] * 2)
@@ -373,7 +365,7 @@ def test_a_rotor_under_its_weight_hangs_in_its_bearings(tmp_path: Path) -> None:
 
 def test_the_cost_of_a_verb_is_that_of_its_process_and_children(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lineofaction.cli.study.cpu_seconds", lambda: 117.0)
-    result = CliRunner().invoke(app, ["deflect", str(ROTOR)])
+    result = loa("deflect", ROTOR)
     assert [line for line in result.stdout.splitlines() if "CPU" in line] == ["cost 117 CPU s"]
 
 

@@ -7,12 +7,11 @@ import multiprocessing
 
 import pytest
 import scenes_that_break as fake
+from command_line import loa
 from random_cases import kind_of_end, random_request
-from typer.testing import CliRunner
 
 import lineofaction.cli.hardcases as verb
 from fe_contact.errors import InputError
-from lineofaction.cli.commands import app as loa
 from lineofaction.gearbox.problems import EXIT_BAD_INPUT, EXIT_FAILED
 from lineofaction.hardcases import HARD_SCENES, Measured, Outcome, run_scenes
 
@@ -65,7 +64,7 @@ def test_cpu_time_counts_what_a_scene_starts() -> None:
 def test_the_verb_prints_json_and_fails_with_its_scenes(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
     monkeypatch.setattr(verb, "HARD_SCENES", (fake.GOOD, fake.OUT_OF_BOUNDS, fake.NO_NUMBER))
     page = tmp_path / "page.html"
-    result = CliRunner().invoke(loa, ["hardcases", "--json", "-o", str(page)])
+    result = loa("hardcases", "--json", "-o", page)
     assert result.exit_code == EXIT_FAILED
     first, second, third = json.loads(result.stdout)["scenes"]
     assert first["passed"] and not second["passed"] and not third["passed"]
@@ -77,13 +76,13 @@ def test_the_verb_prints_json_and_fails_with_its_scenes(monkeypatch: pytest.Monk
 
 def test_the_verb_ends_well_with_what_is_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(verb, "HARD_SCENES", (fake.GOOD, fake.OUT_OF_BOUNDS))
-    result = CliRunner().invoke(loa, ["hardcases", "--only", "good"])
+    result = loa("hardcases", "--only", "good")
     assert result.exit_code == 0, result.output
     assert "1 of 1 scenes passed" in result.stdout
 
 
 def test_unknown_scenes_are_refused() -> None:
-    result = CliRunner().invoke(loa, ["hardcases", "--only", "no_such_scene"])
+    result = loa("hardcases", "--only", "no_such_scene")
     assert result.exit_code == EXIT_BAD_INPUT
     assert result.stderr.startswith("error: only = 'no_such_scene': must be a scene or a family")
     assert HARD_SCENES[0].name in result.stderr

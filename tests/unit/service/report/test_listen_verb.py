@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import loa, printed
 from hulls import box
 from reduced_housings import bare_housing
 from scene_files import scene_file
 from sounding_housings import smooth_motion, with_surface
-from typer.testing import CliRunner, Result
 from wav_files import read_wav
 
 from dynamics.acoustics import Recording, loudness_over_time
@@ -23,14 +23,9 @@ from dynamics.joints import Housing
 from dynamics.noise import pressure_recording, sound_limit, velocity_recording
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
-from lineofaction.cli.commands import app
 from lineofaction.gearbox import workbench
 from lineofaction.gearbox.studies.housings import other_housings
 from lineofaction.gearbox.studies.listen.run import HeardRun, _sound_figures
-
-
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["listen", *map(str, arguments)])
 
 
 @pytest.fixture
@@ -41,7 +36,7 @@ def file(run: RunResult, tmp_path: Path) -> Path:
 
 def test_a_run_becomes_a_file_of_its_force_with_the_levels_of_its_orders(file: Path, tmp_path: Path) -> None:
     """10 N and 20 N at the first two mesh orders along y, on 1000 N."""
-    done = loa(file, "-o", tmp_path / "a.wav", "--json")
+    done = loa("listen", file, "-o", tmp_path / "a.wav", "--json")
     assert done.exit_code == 0
     facts = json.loads(done.stdout)
     (entry,) = facts["files"]
@@ -65,7 +60,7 @@ def test_two_runs_keep_their_ratio_and_are_heard_at_the_same_bearing(
     force = 0.25 * run.bearing_force
     force[0, 0] = 100.0 * np.cos(2.0 * np.pi * 200.0 * run.time)
     replace(run, bearing_force=force).to_netcdf(tmp_path / "quiet.nc")
-    done = loa(file, tmp_path / "quiet.nc", "-o", tmp_path / "sounds")
+    done = loa("listen", file, tmp_path / "quiet.nc", "-o", tmp_path / "sounds")
     assert done.exit_code == 0
     assert "loudness is that of a sound pressure alone" in done.stdout
     loud, quiet = (read_wav(tmp_path / "sounds" / f"{name}.wav") for name in ("run", "quiet"))
@@ -77,10 +72,8 @@ def test_along_an_axis_is_heard_that_component(run: RunResult, tmp_path: Path) -
     force[1, 0] = 0.5 * force[1, 1]
     replace(run, bearing_force=force).to_netcdf(tmp_path / "run.nc")
     for direction in ("x", "y", "principal"):
-        assert (
-            loa(tmp_path / "run.nc", "-o", tmp_path / f"{direction}.wav", "--direction", direction).exit_code
-            == 0
-        )
+        file = tmp_path / f"{direction}.wav"
+        assert loa("listen", tmp_path / "run.nc", "-o", file, "--direction", direction).exit_code == 0
     x, y, both = (read_wav(tmp_path / f"{name}.wav").samples for name in ("x", "y", "principal"))
     np.testing.assert_allclose(x, 0.5 * y, atol=1e-5)
     np.testing.assert_allclose(both, np.hypot(0.5, 1.0) * y, atol=1e-5)
@@ -97,7 +90,7 @@ def test_along_an_axis_is_heard_that_component(run: RunResult, tmp_path: Path) -
     ],
 )
 def test_what_cannot_be_heard_is_refused(options: list[str], words: str, file: Path, tmp_path: Path) -> None:
-    done = loa(file, "-o", tmp_path / "a.wav", *options)
+    done = loa("listen", file, "-o", tmp_path / "a.wav", *options)
     assert done.exit_code == 2
     assert words in " ".join(done.stderr.split())
     assert not (tmp_path / "a.wav").exists()
@@ -106,15 +99,15 @@ def test_what_cannot_be_heard_is_refused(options: list[str], words: str, file: P
 def test_a_run_without_forces_on_bearings_says_what_it_holds(run: RunResult, tmp_path: Path) -> None:
     none = np.empty((0, 3, run.time.size))
     replace(run, bearing_force=none, bearing=()).to_netcdf(tmp_path / "run.nc")
-    done = loa(tmp_path / "run.nc", "-o", tmp_path / "a.wav", "--quantity", "force")
+    done = loa("listen", tmp_path / "run.nc", "-o", tmp_path / "a.wav", "--quantity", "force")
     assert done.exit_code == 2
     assert "one that the run holds" in " ".join(done.stderr.split())
 
 
 def test_outputs_that_would_overwrite_each_other_are_refused(file: Path, tmp_path: Path) -> None:
-    assert loa(file, file, "-o", tmp_path / "a.wav").exit_code == 2
-    assert loa(file, file, "-o", tmp_path / "sounds").exit_code == 2
-    assert loa(file, "-o", tmp_path / "no" / "sounds").exit_code == 2
+    assert loa("listen", file, file, "-o", tmp_path / "a.wav").exit_code == 2
+    assert loa("listen", file, file, "-o", tmp_path / "sounds").exit_code == 2
+    assert loa("listen", file, "-o", tmp_path / "no" / "sounds").exit_code == 2
 
 
 MICROPHONE = ("--microphone", "600,800,-200")
@@ -172,9 +165,7 @@ def test_the_sound_pressure_is_that_of_the_library_with_its_limits(
 ) -> None:
     monkeypatch.setitem(sys.modules, "mosqito", None)  # its figures take seconds
     call = (moved_file, "-o", tmp_path / "a.wav", "--scene", scene, *MICROPHONE)
-    done = loa(*call, "--json")
-    assert (done.exit_code, done.stderr) == (0, "")
-    facts = json.loads(done.stdout)
+    facts = printed("listen", *call)
     (entry,) = facts["files"]
     heard, expected = read_wav(tmp_path / "a.wav"), pressure_recording(housing, moved, [0.6, 0.8, -0.2])
     np.testing.assert_allclose(heard.samples, expected.samples, atol=1e-6 * expected.peak)
@@ -185,9 +176,9 @@ def test_the_sound_pressure_is_that_of_the_library_with_its_limits(
     level = 20.0 * np.log10(entry["rms"] / 20e-6)
     assert entry["sound"]["level_db"] == pytest.approx(level, abs=1e-6)
     assert entry["sound"]["level_db_a"] < level
-    printed = loa(*call).stdout
+    shown = loa("listen", *call).stdout
     for words in ("dB(A)", "sone", "acum", "tones, Hz", f"{entry['sound']['level_db_a']:.1f}", "no room"):
-        assert words in printed
+        assert words in shown
 
 
 def test_two_designs_are_told_apart_in_one_call(
@@ -197,7 +188,7 @@ def test_two_designs_are_told_apart_in_one_call(
     pytest.importorskip("mosqito", reason="loudness needs the extra psychoacoustics")
     replace(moved, bearing_force=0.5 * moved.bearing_force).to_netcdf(tmp_path / "after.nc")
     call = (moved_file, tmp_path / "after.nc", "-o", tmp_path / "sounds", "--scene", scene, *MICROPHONE)
-    before, after = (entry["sound"] for entry in json.loads(loa(*call, "--json").stdout)["files"])
+    before, after = (entry["sound"] for entry in printed("listen", *call)["files"])
     for name in ("level_db", "level_db_a"):
         assert before[name] - after[name] == pytest.approx(20.0 * np.log10(2.0), abs=1e-6)
     assert before["loudness_sone"] > after["loudness_sone"] > 0.0
@@ -210,7 +201,7 @@ def test_a_point_is_heard_by_its_velocity(
 ) -> None:
     call = (moved_file, "-o", tmp_path / "a.wav", "--scene", scene, "--point", "lid")
     for extra, axis in (((), None), (("--direction", "z"), np.array([0.0, 0.0, 1.0]))):
-        done = loa(*call, *extra)
+        done = loa("listen", *call, *extra)
         assert done.exit_code == 0 and "loudness is that of a sound pressure alone" in done.stdout
         expected = velocity_recording(housing, moved, "lid", axis)
         heard = read_wav(tmp_path / "a.wav")
@@ -226,7 +217,15 @@ def test_a_run_that_moved_in_no_or_another_housing_is_warned_of(
     for case in (run.case, run.case | {"housings": [softer]}):
         replace(run, case=case).to_netcdf(tmp_path / "run.nc")
         done = loa(
-            tmp_path / "run.nc", "-o", tmp_path / "a.wav", "--scene", scene, "--point", "lid", "--json"
+            "listen",
+            tmp_path / "run.nc",
+            "-o",
+            tmp_path / "a.wav",
+            "--scene",
+            scene,
+            "--point",
+            "lid",
+            "--json",
         )
         (warning,) = json.loads(done.stdout)["warnings"]
         assert 'did not move in housing "case"' in warning["message"]
@@ -269,17 +268,17 @@ def _rows(matrix: FloatArray) -> tuple[tuple[float, ...], ...]:
 def test_what_cannot_be_heard_through_a_housing_is_refused(
     options: list[str], words: str, moved_file: Path, scene: Path, tmp_path: Path
 ) -> None:
-    done = loa(moved_file, "-o", tmp_path / "a.wav", "--scene", scene, *options)
+    done = loa("listen", moved_file, "-o", tmp_path / "a.wav", "--scene", scene, *options)
     assert done.exit_code == 2
     assert words in " ".join(done.stderr.split())
     assert not (tmp_path / "a.wav").exists()
 
 
 def test_a_scene_is_needed_and_one_that_sounds(moved_file: Path, tmp_path: Path) -> None:
-    done = loa(moved_file, "-o", tmp_path / "a.wav", *MICROPHONE)
+    done = loa("listen", moved_file, "-o", tmp_path / "a.wav", *MICROPHONE)
     assert done.exit_code == 2 and "--scene" in done.stderr
     bare = scene_file(tmp_path)
-    done = loa(moved_file, "-o", tmp_path / "a.wav", "--scene", bare, *MICROPHONE)
+    done = loa("listen", moved_file, "-o", tmp_path / "a.wav", "--scene", bare, *MICROPHONE)
     assert done.exit_code == 2 and "at least one with a surface" in " ".join(done.stderr.split())
 
 

@@ -11,13 +11,12 @@ from typing import Any
 import h5netcdf
 import numpy as np
 import pytest
-from typer.testing import CliRunner
+from command_line import loa
 
 from dynamics.orders import highest_valid_order, order_frequency
 from dynamics.results import RunResult
 from fe_contact.analysis.studies.frontier import FidelityResult, Frontier
 from fe_contact.ste import SteDatabase
-from lineofaction.cli.commands import app
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.comparison.compare import stored_comparison
@@ -182,7 +181,7 @@ SPEED = 3843.5 / 60.0  # turns per second
 @pytest.fixture(scope="module")
 def rotor_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     file = tmp_path_factory.mktemp("rotor") / "run.nc"
-    told = CliRunner().invoke(app, ["simulate", str(ROTOR), "-o", str(file)])
+    told = loa("simulate", ROTOR, "-o", file)
     assert told.exit_code == 0, told.output
     return file
 
@@ -210,7 +209,7 @@ def test_the_spectrum_of_a_run_has_order_1(rotor_run: Path, tmp_path: Path) -> N
 )
 def test_studies_print_and_draw_bearings(verb: str, says: str, tmp_path: Path) -> None:
     file = tmp_path / f"{verb}.nc"
-    told = CliRunner().invoke(app, [verb, str(ROTOR), "--speed-rpm", "3800,4000", "-o", str(file)])
+    told = loa(verb, ROTOR, "--speed-rpm", "3800,4000", "-o", file)
     assert told.exit_code == 0, told.output
     assert says in told.output
     assert write_report(file, tmp_path / "page.html")[0].exists()

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from command_line import loa
 from planetary_scenes import driven_scene, planetary_scene, published_set
 from rich.table import Table
-from typer.testing import CliRunner
 
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
@@ -22,7 +22,6 @@ from dynamics.results import RunResult
 from dynamics.results.run_result import SERIES
 from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
-from lineofaction.cli.commands import app
 from lineofaction.cli.output import console
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES
@@ -264,7 +263,7 @@ def _defect(*_arguments: object) -> None:
 
 def test_a_table_is_no_run_to_export(database: SteDatabase, tmp_path: Path) -> None:
     database.to_netcdf(tmp_path / "ste.nc")
-    ended = CliRunner().invoke(app, ["export", str(tmp_path / "ste.nc"), "-o", str(tmp_path / "run.csv")])
+    ended = loa("export", tmp_path / "ste.nc", "-o", tmp_path / "run.csv")
     assert (ended.exit_code, ended.stderr[:12]) == (2, "error: file ")
     assert "must be a run" in ended.stderr
 

@@ -16,10 +16,10 @@ from typing import Any, get_args
 
 import numpy as np
 import pytest
+from command_line import loa
 from declared_figures import check_declared
 from scene_files import SCENE, scene_file
 from spur_case import spur_case
-from typer.testing import CliRunner, Result
 
 from dynamics.results import RunResult
 from dynamics.simulation import simulate
@@ -27,7 +27,6 @@ from dynamics.study import QUANTITIES, Design, Levels, Response, Study, StudyTas
 from dynamics.study.run_study import run_batch
 from fe_contact.ste import PairFacts
 from lineofaction.cli.analyze import analyzed
-from lineofaction.cli.commands import app
 from lineofaction.gearbox import workbench
 from lineofaction.gearbox.convert.case import CheckedCase, gear_pair
 from lineofaction.gearbox.convert.scene import check_scene, dynamic_scene
@@ -58,10 +57,6 @@ order = 1
 [[responses]]
 quantity = "dte_peak_to_peak"
 """
-
-
-def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
 def study_file(folder: Path, text: str = STUDY) -> Path:
