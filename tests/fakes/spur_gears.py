@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from typing import Any
 
-from fe_contact.geometry import Gear, GearPair, RingGear
+from fe_contact.geometry import FlankModification, Gear, GearPair, RingGear
 
 SIZE: dict[str, Any] = {"normal_module": 4e-3, "face_width": 25e-3}
 
@@ -24,3 +26,14 @@ def make_ring(teeth: int = 60, **changes: Any) -> RingGear:
 
 GEAR = gear()
 PAIR = GearPair(GEAR, GEAR, 80e-3)
+
+
+def _with_long_reliefs() -> GearPair:
+    path = PAIR.path_of_contact
+    single = math.hypot(GEAR.base_radius, path.start + path.base_pitch)
+    room = replace(GEAR, modification=FlankModification(tip_relief_length=GEAR.tip_radius - single))
+    return replace(PAIR, pinion=room, wheel=room)
+
+
+LONG_RELIEFS = _with_long_reliefs()
+"""The pair with room for tip reliefs down to where a single pair of teeth carries."""

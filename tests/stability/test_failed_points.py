@@ -7,16 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from analysis_requests import point_request
+from spur_gears import PAIR
 
 import fe_contact.analysis.pairs.pair_contact as room
-from fe_contact import Gear, GearPair, SteDatabase, analyze, flank_results
+from fe_contact import SteDatabase, analyze, flank_results
 from fe_contact.contact import ContactProblem, ContactSolution, Start, solve_contact
 from fe_contact.errors import SolveError
-from fe_contact.options import AnalysisOptions, OperatingPoint
 from fe_contact.types import FloatArray, Status
 
-GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-PAIR = GearPair(GEAR, GEAR, 80e-3)
 TORQUES = [10.0, 50.0, 100.0]
 DAMAGED = 0.25
 
@@ -42,7 +41,7 @@ def both(request) -> tuple[SteDatabase, SteDatabase]:
         return sound, table(**request.param)
 
 
-def test_the_failed_points_are_marked_and_nothing_else(both) -> None:
+def test_the_failed_points_are_marked_and_the_rest_is_as_it_would_be(both) -> None:
     _, damaged = both
     at = damaged.position == DAMAGED
     assert at.sum() == 1
@@ -51,18 +50,19 @@ def test_the_failed_points_are_marked_and_nothing_else(both) -> None:
     for name in ("static_transmission_error", "tangent_compliance", "max_pressure"):
         assert np.all(np.isnan(getattr(damaged, name)[at])), name
         assert np.all(np.isfinite(getattr(damaged, name)[~at])), name
-
-
-def test_the_rest_of_the_table_is_what_it_would_have_been(both) -> None:
     sound, damaged = both
     common = np.intersect1d(sound.position, damaged.position[damaged.position != DAMAGED])
     assert common.size >= 31
     for name in ("static_transmission_error", "load_share", "no_load_transmission_error", "residuals"):
         these, those = (getattr(t, name)[np.isin(t.position, common)] for t in (sound, damaged))
         np.testing.assert_array_equal(these, those, err_msg=name)
+    assert sound.support_force.size > 0
+    assert sound.metadata.receipt["support_loads_left_out"] == []
+    assert damaged.support_force.size == 0
+    assert len(damaged.metadata.receipt["support_loads_left_out"]) == sound.support_force.size
 
 
-def test_the_table_says_which_failed_and_why(both) -> None:
+def test_the_table_says_which_failed_and_answers_only_if_asked(both, tmp_path) -> None:
     sound, damaged = both
     assert "3 of" in damaged.summary() and "position 0.25" in damaged.summary()
     assert "SINGULAR" in damaged.summary()
@@ -71,10 +71,6 @@ def test_the_table_says_which_failed_and_why(both) -> None:
     assert (damaged.metadata.receipt["condition_number_max"] is not None) == assessed
     assert sound.metadata.receipt["failed_points"] == {}
     json.dumps(damaged.metadata.receipt, allow_nan=False)
-
-
-def test_it_answers_from_the_rows_that_are_complete_and_only_if_asked(both, tmp_path) -> None:
-    sound, damaged = both
     with pytest.raises(SolveError, match="SINGULAR"):
         damaged.curve(torque=100.0)
     curve = damaged.curve(torque=100.0, allow_failed=True)
@@ -83,20 +79,10 @@ def test_it_answers_from_the_rows_that_are_complete_and_only_if_asked(both, tmp_
     assert SteDatabase.from_netcdf(tmp_path / "ste.nc").identical(damaged)
 
 
-def test_support_loads_that_fail_are_left_out_and_named(both) -> None:
-    sound, damaged = both
-    assert sound.support_force.size > 0
-    assert sound.metadata.receipt["support_loads_left_out"] == []
-    assert damaged.support_force.size == 0
-    assert len(damaged.metadata.receipt["support_loads_left_out"]) == sound.support_force.size
-
-
 def test_flank_results_say_which_position_failed_and_why() -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(room, "solve_contact", damaging)
         said = r"1 of 64 positions have no solution \(position 0.25: SINGULAR\)"
         with pytest.raises(SolveError, match=said) as error:
-            flank_results(
-                PAIR, OperatingPoint(torque=100.0), AnalysisOptions(model="plane_strain", level="draft")
-            )
+            flank_results(PAIR, *point_request(torque=100.0, model="plane_strain", level="draft"))
     assert isinstance(error.value.partial, ContactSolution)

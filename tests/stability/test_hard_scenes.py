@@ -14,7 +14,7 @@ LONG = (
 
 Of the jobs that end badly the suite keeps `worker_killed_once`, whose result must be that of Python; what the
 others end by and say is shown in tests/unit/service/test_job_scheduler.py and
-tests/unit/fe_contact/mesh/test_triangulation_child.py. Teeth like those of the last two have sound tables in
+tests/unit/fe_contact/mesh/test_gmsh_child.py. Teeth like those of the last two have sound tables in
 test_odd_but_feasible.py.
 """
 SCENES = [

@@ -20,12 +20,7 @@ from fe_contact.plausibility.pair_checks import (
 
 def pair_of(module: float, unit: float = 1.0) -> GearPair:
     """Return the spur pair of 20 teeth each; its lengths are those of `module`, times `unit`."""
-    gear = Gear(
-        teeth=20,
-        normal_module=module * unit,
-        face_width=6.25 * module * unit,
-        bore_diameter=10.0 * module * unit,
-    )
+    gear = Gear(20, module * unit, 6.25 * module * unit, 10.0 * module * unit)
     return GearPair(gear, gear, 20.0 * module * unit)
 
 
@@ -39,7 +34,7 @@ def said_by(pair: GearPair, torque: float) -> tuple[SteDatabase, list[str]]:
     return database, plausible
 
 
-def test_millimeters_are_recognized(tmp_path: Path) -> None:
+def test_millimeters_are_recognized_by_the_line_that_asked(tmp_path: Path) -> None:
     """A module of 4 is 4 m; scaled loads give the scaled table, and one warning, which the file keeps."""
     wrong, said = said_by(pair_of(4.0), 100.0e9)
     right, nothing = said_by(pair_of(4.0, 1e-3), 100.0)
@@ -53,9 +48,6 @@ def test_millimeters_are_recognized(tmp_path: Path) -> None:
     )
     wrong.to_netcdf(tmp_path / "ste.nc")
     assert SteDatabase.from_netcdf(tmp_path / "ste.nc").metadata == wrong.metadata
-
-
-def test_the_warning_names_the_line_that_asked() -> None:
     with pytest.warns(PlausibilityWarning) as caught:
         analyze(
             pair_of(4.0),
@@ -103,28 +95,14 @@ def test_the_nominal_root_stress_is_that_of_iso_6336_3() -> None:
     assert 2.3 < factor < 3.3
 
 
-@pytest.mark.parametrize(("pressure", "checks"), [(3.9e9, []), (4.1e9, ["hertz_pressure"])])
-def test_pressures_are_assessed_at_4_gpa(pressure: float, checks: list[str]) -> None:
-    assert [finding.check for finding in flank_findings(pressure)] == checks
-    table = np.full((8, 1, 1, 1), 1e-6)
-    assert [finding.check for finding in table_findings(table, 0.0 * table + pressure, 4e-3)] == checks
-
-
-@pytest.mark.parametrize(("stress", "count"), [(1.9e9, 0), (2.1e9, 1)])
-def test_roots_are_assessed_at_2_gpa(stress: float, count: int) -> None:
-    assert len(root_findings("wheel", stress)) == count
-
-
-@pytest.mark.parametrize(("mean", "count"), [(0.39e-3, 0), (0.41e-3, 1)])
-def test_transmission_errors_are_assessed_at_a_tenth_of_the_module(mean: float, count: int) -> None:
-    table = np.full((8, 1, 1, 1), mean)
-    assert len(table_findings(table, 0.0 * table, 4e-3)) == count
-
-
-def test_failed_points_are_not_assessed() -> None:
-    table = np.full((8, 1, 1, 1), np.nan)
-    assert table_findings(table, table, 4e-3) == ()
-
-
-def test_a_pair_alone_is_assessed_without_loads() -> None:
+def test_findings_begin_at_their_limits() -> None:
+    """At 4 GPa of pressure, 2 GPa at a root and a tenth of the module; failed points are not assessed."""
+    table, hertz = np.full((8, 1, 1, 1), 1e-6), ["hertz_pressure"]
+    for pressure, checks in ((3.9e9, []), (4.1e9, hertz)):
+        assert [finding.check for finding in flank_findings(pressure)] == checks
+        assert [finding.check for finding in table_findings(table, 0.0 * table + pressure, 4e-3)] == checks
+    assert [len(root_findings("wheel", stress)) for stress in (1.9e9, 2.1e9)] == [0, 1]
+    means = (np.full((8, 1, 1, 1), mean) for mean in (0.39e-3, 0.41e-3))
+    assert [len(table_findings(mean, 0.0 * mean, 4e-3)) for mean in means] == [0, 1]
+    assert table_findings(np.nan * table, np.nan * table, 4e-3) == ()
     assert pair_findings(pair_of(4.0, 1e-3)) == ()

@@ -1,12 +1,15 @@
-"""The same bits whoever does the work: here or in a pool (on a cluster: `tests/flow`)."""
+"""The same bits whoever works, here, in a pool or interrupted, and its cost (on clusters: tests/flow)."""
 
 from __future__ import annotations
 
 import gc
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from enum import Enum
+from math import radians
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -14,16 +17,20 @@ from typing import Any
 import numpy as np
 import pytest
 from analysis_requests import design_request
+from spur_gears import LONG_RELIEFS, PAIR
 
-from fe_contact import Gear, GearPair
+from fe_contact import Gear, GearPair, PitchDeviation, analyze
+from fe_contact.analysis.pairs import contact_lines
 from fe_contact.errors import InputError, WorkersLost
+from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.search import NelderMead, Search
 from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, ToleranceStudy, scatter
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Run
-from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers
-from fe_contact.workers.executor import Packed
+from fe_contact.workers import ByExecutor, InProcess, Remembering, RunCost, Workers, dask_workers
+from fe_contact.workers.executor import Packed, _Done
+from fe_contact.workers.remembering import content_digest
 
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
 SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 5e-6})
@@ -36,8 +43,7 @@ def compliances(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def pair() -> GearPair:
-    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-    return GearPair(gear, gear, 80e-3)
+    return PAIR
 
 
 @pytest.fixture(scope="module")
@@ -141,3 +147,158 @@ def test_a_scheduler_that_is_not_there_is_named() -> None:
     with pytest.raises(InputError) as caught:
         dask_workers("nowhere")
     assert caught.value.field == "dask"
+
+
+ASKED: dict[str, Any] = {"torques": [60.0, 150.0], "level": "draft", "positions": 24, "pitches": 1}
+
+
+class Interrupted(Exception):
+    """What a killed process does not raise; the test goes on."""
+
+
+@dataclass(frozen=True)
+class Here:
+    """Workers of this process that count their tasks, and stop for good after so many."""
+
+    most: int = 1_000_000
+    cost: RunCost = field(default_factory=RunCost)
+    tasks: list[str] = field(default_factory=list)
+
+    def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
+        for item in items:
+            if len(self.tasks) == self.most:
+                raise Interrupted
+            self.tasks.append(function.__name__)
+            yield function(shared, item)
+
+
+@pytest.fixture(autouse=True)
+def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cut small tables as large ones are."""
+    monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.005)
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("compliance")
+
+
+def full_pair(crowning: float = 4e-6) -> GearPair:
+    """Return a pair with everything that a task can hold."""
+    deviation = PitchDeviation(tuple(np.linspace(0.0, 4e-6, 20)))
+    modified = FlankModification(tip_relief=8e-6, tip_relief_length=2e-3, helix_crowning=crowning)
+    plain: dict[str, Any] = {"teeth": 20, "normal_module": 4e-3, "face_width": 20e-3, "bore_diameter": 40e-3}
+    first = Gear(**plain, helix_angle=radians(15), modification=modified, pitch_deviation=deviation)
+    shaft = Shaft(length=0.2, diameter=0.03, position=0.1)
+    return GearPair(first, Gear(**plain, helix_angle=-radians(15)), shafts=(shaft, shaft))
+
+
+@pytest.mark.law
+def test_an_interrupted_table_goes_on_where_it_was(cache: Path, tmp_path: Path) -> None:
+    whole = analyze(full_pair(), **ASKED, cache=cache)
+    first = Here(most=5)
+    with pytest.raises(Interrupted):
+        analyze(full_pair(), **ASKED, cache=cache, workers=Remembering(first, tmp_path, "1"))
+    second, third = Here(), Here()
+    for workers in (second, third):
+        found = analyze(full_pair(), **ASKED, cache=cache, workers=Remembering(workers, tmp_path, "1"))
+        for name in found.__dataclass_fields__:
+            if isinstance(getattr(whole, name), np.ndarray):
+                np.testing.assert_array_equal(getattr(found, name), getattr(whole, name), err_msg=name)
+    alone = Here()
+    analyze(full_pair(), **ASKED, cache=cache, workers=alone)
+    assert len(second.tasks) == len(alone.tasks) - 5 > 5
+    assert not third.tasks
+
+
+def test_another_question_takes_nothing(cache: Path, tmp_path: Path) -> None:
+    asked = {**ASKED, "positions": 12, "cache": cache, "receipt": "minimal"}
+    counts = []
+    for crowning, version in ((4e-6, "1"), (4e-6, "1"), (4.0000001e-6, "1"), (4e-6, "2")):
+        workers = Here()
+        analyze(full_pair(crowning), **asked, workers=Remembering(workers, tmp_path, version))
+        counts.append(len(workers.tasks))
+    assert counts[0] > 2 and counts == [counts[0], 0, counts[0], counts[0]]
+
+
+def test_a_damaged_file_is_made_again(tmp_path: Path) -> None:
+    assert list(Remembering(Here(), tmp_path, "1").run(divided, 1.0, [2.0, 4.0])) == [0.5, 0.25]
+    for file, content in zip(sorted(tmp_path.iterdir()), (b"", b"x" * 99), strict=True):
+        file.write_bytes(content)
+    workers = Here()
+    assert list(Remembering(workers, tmp_path, "1").run(divided, 1.0, [2.0, 4.0])) == [0.5, 0.25]
+    assert len(workers.tasks) == 2
+
+
+def test_what_nobody_can_tell_apart_is_not_kept(tmp_path: Path) -> None:
+    assert list(Remembering(Here(), tmp_path, "1").run(named, object(), [2.0])) == ["2.0"]
+    assert list(tmp_path.iterdir()) == []
+
+
+def named(shared: object, item: float) -> str:
+    return str(item)
+
+
+class Kind(Enum):
+    """Two kinds."""
+
+    ONE = 1
+    TWO = 2
+
+
+@dataclass(frozen=True)
+class Thing:
+    """Something with all sorts of fields."""
+
+    size: float = 1.0
+    values: Any = None
+    seconds: float = 0.0
+
+
+def test_content_decides_and_how_it_came_does_not() -> None:
+    grid = np.arange(6.0).reshape(2, 3)
+    one = Thing(1.0, (grid, "a", None, Kind.ONE, {"b": 1}))
+    assert content_digest(one) == content_digest(Thing(1.0, (grid.copy(), "a", None, Kind.ONE, {"b": 1})))
+    assert content_digest(one) == content_digest(replace(one, seconds=9.0))
+    others = [
+        replace(one, size=np.nextafter(1.0, 2.0)),
+        replace(one, values=(grid.T.copy().T, "a", None, Kind.ONE, {"b": 1})),  # laid out otherwise
+        replace(one, values=(grid.reshape(3, 2), "a", None, Kind.ONE, {"b": 1})),
+        replace(one, values=(grid, "a", None, Kind.TWO, {"b": 1})),
+        replace(one, values=(grid, "a", None, Kind.ONE, {"c": 1})),
+        replace(one, values=(grid, "a", 0, Kind.ONE, {"b": 1})),
+        replace(one, values=((grid, "a"), None, Kind.ONE, {"b": 1})),
+    ]
+    assert len({content_digest(each) for each in [one, *others]}) == len(others) + 1
+
+
+DEAR = 1000.0
+
+
+@dataclass(frozen=True)
+class DearWorkers:
+    """Others, who take 1000 CPU s for every task."""
+
+    cost: RunCost = field(default_factory=RunCost)
+
+    def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
+        for item in items:
+            yield self.cost.add(_Done(function(shared, item), DEAR, 0))
+
+
+def test_searches_by_workers_are_in_the_cost_of_an_optimization() -> None:
+    relief = DesignVariable("pinion.tip_relief", 0.0, 60e-6)
+    search = Search(NelderMead(), evaluations=4, positions=16, exploration=8, starts=2)
+    workers = DearWorkers()
+    request = design_request(LONG_RELIEFS, [100.0], (relief,), search=search, map_torques=[100.0], **DRAFT)
+    result = optimize(request, Run(workers))
+    assert workers.cost.tasks == 2
+    assert 2.0 * DEAR < result.cost["cpu_seconds"] < 3.0 * DEAR
+    assert result.cost["stages"]["search"]["cpu_seconds"] > 2.0 * DEAR
+
+
+def test_samples_by_workers_are_in_the_cost_of_a_tolerance_study() -> None:
+    workers, slope = DearWorkers(), Tolerances(0.0, {"pinion.profile_slope": 10e-6})
+    sampling = Sampling(samples=20, seed=3, positions=16)
+    result = scatter(PAIR, [100.0], slope, sampling, AnalysisOptions(**DRAFT), Run(workers))
+    assert result.cost["cpu_seconds"] > workers.cost.cpu_seconds >= DEAR

@@ -7,14 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from spur_gears import PAIR
 
-from fe_contact import Gear, GearPair
 from fe_contact.full_contact import Resolution, solve_full_contact
 
 REFERENCE = Path(__file__).parents[2] / "reference" / "spur_20_20_full_contact.csv"
 SOURCE = "CalculiX 2.20 and a mortar code, resolved meshes, plane strain, uncertainty 0.1 % (0.3 % at 10 N m)"
-GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-PAIR = GearPair(GEAR, GEAR, center_distance=80e-3)
 TARGETS = {10.0: 0.3, 50.0: 0.1, 100.0: 0.1, 200.0: 0.1, 400.0: 0.1}
 # single and double contact, and the tip edge on its mate's flank
 DRIVEN = (0.0, 0.165, 0.2, 0.215, 0.35, 0.5)

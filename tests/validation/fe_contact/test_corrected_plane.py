@@ -36,15 +36,12 @@ class Scene:
 
     @property
     def pair(self) -> GearPair:
-        module = 3e-3
+        module, material = 3e-3, Material(210e9, self.poissons_ratio)
+        width = self.modules * module
         gears = [
-            Gear(
-                teeth=z, normal_module=module, face_width=self.modules * module,
-                bore_diameter=self.bore * z * module, profile_shift_coefficient=x,
-                material=Material(210e9, self.poissons_ratio),
-            )
+            Gear(z, module, width, self.bore * z * module, profile_shift_coefficient=x, material=material)
             for z, x in zip(self.teeth, (self.shift, -self.shift), strict=True)
-        ]  # fmt: skip
+        ]
         return GearPair(*gears, 0.5 * module * sum(self.teeth))
 
 
@@ -54,12 +51,9 @@ SCENES = {
     "wide, soft across": Scene((22, 31), 14.0, poissons_ratio=0.45, bore=0.4).pair,
     "internal": InternalGearPair(
         Gear(teeth=24, normal_module=2e-3, face_width=10e-3, bore_diameter=20e-3),
-        RingGear(
-            teeth=70, normal_module=2e-3, face_width=10e-3, rim_diameter=165e-3, cutter_teeth=25,
-            addendum_coefficient=0.8,
-        ),
+        RingGear(70, 2e-3, 10e-3, 165e-3, cutter_teeth=25, addendum_coefficient=0.8),
     ),
-}  # fmt: skip
+}
 
 
 def solved(contact: PairContact, model: object, force: float) -> np.ndarray:
@@ -121,9 +115,9 @@ def test_the_correction_is_right_within_its_stated_error(name, record_figure):
     assert np.median(part) <= 0.7 * CORRECTION_ERROR
 
 
-def test_pair_of_six_modules_is_corrected_to_three_dimensions(cache, record_figure):
+def test_pair_of_six_modules_is_corrected_to_three_dimensions(record_figure):
     """A study with resolved contact found 1.028 to 1.030; the corrected plane must say so too."""
-    corrected, plain = (table(SIX, cache, model=model) for model in ("auto", "plane_strain"))
+    corrected, plain = (table(SIX, model=model) for model in ("auto", "plane_strain"))
     ratio = corrected.mean(force=2660.0).value / plain.mean(force=2660.0).value
     record_figure("corrected plane over plane strain, 20/20, 100 N m", ratio, "1.028 to 1.030", "-", SOURCE)
     assert 1.0275 < ratio < 1.030
@@ -136,32 +130,23 @@ SIX = GearPair(
 )
 
 
-@pytest.fixture(scope="module")
-def cache(tmp_path_factory):
-    return tmp_path_factory.mktemp("compliance")
+def table(pair: GearPair, **options: object) -> SteDatabase:
+    return analyze(pair, normal_forces=[2660.0], **options)
 
 
-def table(pair: GearPair, cache, **options: object) -> SteDatabase:
-    return analyze(pair, normal_forces=[2660.0], cache=cache, **options)
-
-
-def test_switched_off_it_is_plane_strain_to_the_last_bit(cache):
+def test_switched_off_it_is_plane_strain_and_on_its_error_is_stated_by_source(monkeypatch):
     """The effect off, and the explicit model: the same table, which states what is left out as an error."""
     options = {"level": "draft", "positions": 16}
-    off = table(SIX, cache, effects={"finite_width": "off"}, **options)
-    asked = table(SIX, cache, model="plane_strain", **options)
+    off = table(SIX, effects={"finite_width": "off"}, **options)
+    asked = table(SIX, model="plane_strain", **options)
     assert np.array_equal(off.static_transmission_error, asked.static_transmission_error)
     assert np.array_equal(off.error_estimate, asked.error_estimate)
     sources = asked.metadata.receipt["error_by_source"]
     missing = sources["plane_for_finite_width_relative"]
     highest = asked.static_transmission_error.max()
     assert sources["finite_width_m"] == pytest.approx([LEFT_OUT * missing * highest], rel=1e-9)
-
-
-def test_its_error_is_stated_by_source_and_in_the_band(cache, monkeypatch):
-    """Three parts in a hundred of what it changed, added to the other sources at every point."""
-    options = {"level": "draft", "positions": 16}
-    corrected, plain = (table(SIX, cache, model=model, **options) for model in ("auto", "plane_strain"))
+    # Three parts in a hundred of what it changed, added to the other sources at every point.
+    corrected, plain = (table(SIX, model=model, **options) for model in ("auto", "plane_strain"))
     change = corrected.static_transmission_error - plain.static_transmission_error
     assert change.min() > 0.0
     stated = corrected.metadata.receipt["error_by_source"]
@@ -169,6 +154,6 @@ def test_its_error_is_stated_by_source_and_in_the_band(cache, monkeypatch):
     assert stated["plane_for_finite_width_relative"] == 0.0
     assert stated["discretisation_m"] == plain.metadata.receipt["error_by_source"]["discretisation_m"]
     monkeypatch.setattr(assessed_table, "CORRECTION_ERROR", 0.0)
-    exact = table(SIX, cache, **options)
+    exact = table(SIX, **options)
     part = corrected.error_estimate - exact.error_estimate
     assert part == pytest.approx(CORRECTION_ERROR * change, rel=1e-9, abs=0.0)

@@ -49,8 +49,7 @@ def test_the_face_is_softer_than_plane_strain(record_figure) -> None:
     plane = solve_full_contact(pair, [100.0], [0.05], mesh).transmission_error
     (face,) = solve_full_contact_over_face(pair, [100.0], [0.05], [0.0], mesh)
     ratio = float(face.transmission_error[0, 0] / plane[0, 0])
-    record_figure(
-        "full contact, three dimensions over plane strain, 100 N m", ratio, "1.028 to 1.030", "-", RESOLVED
-    )
+    name = "full contact, three dimensions over plane strain, 100 N m"
+    record_figure(name, ratio, "1.028 to 1.030", "-", RESOLVED)
     assert 1.028 - 5e-4 < ratio < 1.030 + 5e-4
     assert face.points[0][0].residual < 1e-10

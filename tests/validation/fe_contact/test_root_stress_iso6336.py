@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from analysis_requests import point_request
 
 from fe_contact import Gear, GearPair, root_stress
 from fe_contact.geometry import tooth_profile
 from fe_contact.geometry.flank_profile import critical_section
-from fe_contact.options import AnalysisOptions, OperatingPoint
 from fe_contact.plausibility.pair_checks import nominal_root_stresses
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "reference"))
@@ -29,14 +29,7 @@ CASES = [
 
 
 def made(teeth: int, shift: float, radius: float, bore: float) -> Gear:
-    return Gear(
-        teeth=teeth,
-        normal_module=MODULE,
-        face_width=WIDTH,
-        bore_diameter=bore,
-        profile_shift_coefficient=shift,
-        root_radius_coefficient=radius,
-    )
+    return Gear(teeth, MODULE, WIDTH, bore, profile_shift_coefficient=shift, root_radius_coefficient=radius)
 
 
 def pair_and_section(
@@ -85,15 +78,12 @@ def test_finite_elements_beside_the_nominal_stress(
     at = float(pair.position(outer.start + outer.base_pitch))
     found = root_stress(
         pair,
-        OperatingPoint(torque=torque),
-        AnalysisOptions(effects={"corner_contact": "off"}),
+        *point_request(torque=torque, effects={"corner_contact": "off"}),
         at=at + np.array([-0.02, 0.0, 0.02]),
     ).pinion.peak("tension")
     nominal = nominal_stress(section, torque / pair.pinion.reference_radius, WIDTH, MODULE)
     ratio = found.stress.value / nominal
     assert 0.88 < ratio < 1.02
     assert 30.0 < np.degrees(found.tangent_angle) < 47.0
-    record_figure(
-        f"root stress over ISO 6336-3 method B, {case[0]}/{case[1]} teeth, x {case[2]:g}, rho {case[3]:g}",
-        ratio, "0.88 to 1.02", "1", "ISO 6336-3 (2006), method B",
-    )  # fmt: skip
+    name = f"root stress over ISO 6336-3 method B, {case[0]}/{case[1]} teeth, x {case[2]:g}, rho {case[3]:g}"
+    record_figure(name, ratio, "0.88 to 1.02", "1", "ISO 6336-3 (2006), method B")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint, operating_points
@@ -15,7 +16,7 @@ from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import condensed_bodies
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, solve_contact
-from fe_contact.options import AnalysisOptions, Run, TableAxes
+from fe_contact.options import Run
 from fe_contact.stage_clock import StageClock
 
 LOAD = np.array([2500.0])
@@ -26,14 +27,7 @@ HELIX = math.radians(22.0)
 
 def pair(helix: float, **shape: float) -> GearPair:
     gears = [
-        Gear(
-            teeth=teeth,
-            normal_module=1.8e-3,
-            face_width=30e-3,
-            bore_diameter=20e-3,
-            helix_angle=hand * helix,
-            modification=FlankModification(**shape),
-        )
+        Gear(teeth, 1.8e-3, 30e-3, 20e-3, helix_angle=hand * helix, modification=FlankModification(**shape))
         for teeth, hand in ((33, 1), (33, -1))
     ]
     return GearPair(*gears)
@@ -60,8 +54,9 @@ def contact_of(
     """Bodies that all shapes share."""
     checked = check_request(
         pair(helix, **shape),
-        TableAxes(normal_forces=LOAD.tolist()),
-        AnalysisOptions(level=level, effects={"corner_contact": "on" if corner else "off"}),
+        *table_request(
+            normal_forces=LOAD.tolist(), level=level, effects={"corner_contact": "on" if corner else "off"}
+        ),
     )
     bodies = condensed_bodies(checked, decide(checked).plan, StageClock(), Run(cache=cache))
     return operating_points(checked.request.scene, checked.request.choices, bodies).places[0]

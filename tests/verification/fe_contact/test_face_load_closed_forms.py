@@ -1,4 +1,4 @@
-"""Contact over the face against closed forms: uncoupled slices, and the length of the contact lines."""
+"""Contact over the face against closed forms: uncoupled slices, tilting shafts, lengths of contact lines."""
 
 from __future__ import annotations
 
@@ -13,27 +13,26 @@ from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_
 from fe_contact.contact import (
     ContactModel,
     ContactProblem,
+    ContactSolution,
     PatchRule,
     Slices,
     contact_candidates,
     solve_contact,
+    with_compliances,
     with_gaps,
 )
 from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.effects.misalignment import MisalignmentGap
+from fe_contact.effects.shaft_deflection import _SeatCompliance, _ShaftCompliance
+from fe_contact.geometry import Shaft
 
 SOURCE = "thin slices, closed form"
-WIDTH, STIFFNESS, FORCE = 20e-3, 15e9, 3000.0  # m, N/m per m of face, N
+WIDTH = 20e-3
+STIFFNESS, FORCE = 15e9, 3000.0  # N/m per m of face, N
 
 
 def slice_pair(**modification: float) -> GearPair:
-    gear = Gear(
-        teeth=20,
-        normal_module=4e-3,
-        face_width=WIDTH,
-        bore_diameter=40e-3,
-        modification=FlankModification(**modification),
-    )
+    gear = Gear(20, 4e-3, WIDTH, 40e-3, modification=FlankModification(**modification))
     return GearPair(gear, dataclasses.replace(gear, modification=FlankModification()), 80e-3)
 
 
@@ -48,21 +47,26 @@ def uncoupled(pair: GearPair, *gaps: object) -> tuple[float, np.ndarray]:
 
 def springs(pair: GearPair, *gaps: object) -> LoadDistribution:
     """Load distribution of that pair."""
-    model = ContactModel(gaps=gaps)
+    problem, solution, _ = solved_slices(pair, ContactModel(gaps=gaps), np.array([FORCE]))
+    return load_distribution(pair, problem, solution)
+
+
+def solved_slices(
+    pair: GearPair, model: ContactModel, force: np.ndarray, modulus: float = 1e20, soft: float = 1e-20
+) -> tuple[ContactProblem, ContactSolution, np.ndarray]:
+    """One pair at the pitch point, bodies a billion times stiffer than steel: no local approach."""
     slices = Slices.of_pair(pair, COUNT, 1)
     plain = contact_candidates(pair, model, np.zeros(1), PatchRule(1e-3, 1e-4), slices)
     # one point a slice that moves with its own slice alone: no curve through the means of its neighbors
-    plain = dataclasses.replace(plain, blend=np.eye(COUNT))
-    candidates = with_gaps(pair, plain, model)
+    candidates = with_gaps(pair, dataclasses.replace(plain, blend=np.eye(COUNT)), model)
     only = candidates.pair == 0
     gap = np.where(only, candidates.gap, np.inf)
     candidates = candidates.touching(dataclasses.replace(candidates.touch, gap=gap))
     spring = np.eye(only.size)[None] / (STIFFNESS * WIDTH / COUNT)
-    # bodies a billion times stiffer than steel: no local approach
-    problem = ContactProblem(candidates, spring, 1e20, 1e-20, 1e-20)
-    solution = solve_contact(problem, np.array([FORCE]))
+    problem = with_compliances(pair, ContactProblem(candidates, spring, modulus, soft, soft), model)
+    solution = solve_contact(problem, force)
     assert solution.converged
-    return load_distribution(pair, problem, solution)
+    return problem, solution, only
 
 
 @pytest.mark.parametrize(
@@ -115,13 +119,8 @@ def test_crowning_of_uncoupled_slices(crown, expected, record_figure):
     pair = slice_pair(helix_crowning=crown)
     lead = ModificationGap(pair.pinion.modification, pair.wheel.modification)
     deflection, _ = uncoupled(pair, lead)
-    record_figure(
-        f"deflection of crowned thin slices, {1e6 * crown:g} um",
-        1e6 * deflection,
-        1e6 * expected,
-        "um",
-        SOURCE,
-    )
+    name = f"deflection of crowned thin slices, {1e6 * crown:g} um"
+    record_figure(name, 1e6 * deflection, 1e6 * expected, "um", SOURCE)
     assert deflection == pytest.approx(expected, rel=1e-3)
 
 
@@ -130,13 +129,7 @@ def helical_pair(overlap: float) -> GearPair:
     angle = math.radians(15.8)
     width = overlap * math.pi * 8e-3 / math.sin(angle)
     pinion = Gear(
-        teeth=17,
-        normal_module=8e-3,
-        face_width=width,
-        bore_diameter=60e-3,
-        helix_angle=angle,
-        profile_shift_coefficient=0.145,
-        dedendum_coefficient=1.4,
+        17, 8e-3, width, 60e-3, helix_angle=angle, profile_shift_coefficient=0.145, dedendum_coefficient=1.4
     )
     wheel = dataclasses.replace(pinion, teeth=103, helix_angle=-angle, profile_shift_coefficient=0.0)
     return GearPair(pinion, wheel, 0.5)
@@ -159,13 +152,8 @@ def test_length_of_contact_lines(overlap, record_figure):
     lines = length * math.cos(pair.base_helix_angle) / axial_pitch
     alpha, beta = pair.transverse_contact_ratio, pair.overlap_ratio
     mean, low, high = alpha * beta, *closed_form_extremes(alpha, beta)
-    record_figure(
-        f"mean contact length, eps_beta {overlap:g}",
-        float(lines[:-1].mean()),
-        mean,
-        "p_x/cos(beta_b)",
-        "closed form",
-    )
+    name = f"mean contact length, eps_beta {overlap:g}"
+    record_figure(name, float(lines[:-1].mean()), mean, "p_x/cos(beta_b)", "closed form")
     # the mean of a hundred places misses the corners of the trapezoids
     assert lines[:-1].mean() == pytest.approx(mean, rel=1e-5)
     assert lines.min() == pytest.approx(low, abs=1e-10)
@@ -194,3 +182,84 @@ def test_the_closed_form_is_the_published_table(alpha, beta, mean, low, high):
     found = closed_form_extremes(alpha, beta)
     assert alpha * beta == pytest.approx(mean, abs=1e-4)
     assert found == pytest.approx((low, high), abs=1e-3)
+
+
+ON_A_BEAM = "thin slices on a beam, closed form"
+RIGID = 2e-17
+"""2 (1 - nu^2)/(pi E) in 1/Pa of bodies a hundred thousand times stiffer than steel: next to no approach.
+
+Forces follow from the local approach, a difference of motions: the stiffer the bodies, the more rounding.
+"""
+
+GEAR = Gear(teeth=20, normal_module=4e-3, face_width=WIDTH, bore_diameter=40e-3)
+PAIR = GearPair(GEAR, GEAR, 80e-3)
+
+
+def loaded(
+    seats: tuple[_SeatCompliance | None, _SeatCompliance | None], force: np.ndarray, rigid: float = RIGID
+):
+    """Deflection and line load of one pair at the pitch point, at each normal force."""
+    model = ContactModel(compliances=(_ShaftCompliance(*seats),))
+    _, solution, only = solved_slices(PAIR, model, force, 1.0 / (math.pi * rigid), rigid)
+    return solution.deflection[0], solution.force[0][:, only] / (WIDTH / COUNT)
+
+
+def closed_form(seats: tuple[_SeatCompliance, ...]) -> tuple[float, float]:
+    """Deflection per force and K_Hbeta where the whole face carries.
+
+    With the line load q = c (d - u - v z), force c b (d - u), moment -c v b^3/12, and u, v from the seats.
+    """
+    translation, coupling, tilt = (
+        sum(getattr(seat, name) for seat in seats) for name in ("translation", "coupling", "tilt")
+    )
+    inertia = STIFFNESS * WIDTH**3 / 12.0
+    slope = coupling / (1.0 + tilt * inertia)  # v per force
+    deflection = translation - coupling * slope * inertia + 1.0 / (STIFFNESS * WIDTH)
+    return deflection, 1.0 + STIFFNESS * abs(slope) * 0.5 * WIDTH**2
+
+
+@pytest.mark.parametrize("position", [0.03, 0.06, 0.1, 0.13, 0.22])
+def test_tilting_shafts_load_one_end_in_proportion_to_the_load(position, record_figure):
+    """K_Hbeta above 1, the same at every load: misalignment grows with it."""
+    shaft = Shaft(length=0.2, diameter=0.045, position=position, bearing_stiffness=5e8)
+    seats = (
+        _SeatCompliance.of_shaft(shaft),
+        _SeatCompliance.of_shaft(dataclasses.replace(shaft, diameter=0.06)),
+    )
+    force = np.array([300.0, 3000.0, 30000.0])
+    deflection, load = loaded(seats, force)
+    per_force, k_h_beta = closed_form(seats)
+    found = load.max(axis=1) / load.mean(axis=1)
+    record_figure(f"K_Hbeta, gear at {1e3 * position:g} of 200 mm", float(found[1]), k_h_beta, "-", ON_A_BEAM)
+    assert load.min() > 0.0
+    assert deflection == pytest.approx(per_force * force, rel=1e-5, abs=0.0)
+    # the middle of the last slice stands half of its own width from its end
+    assert found - 1.0 == pytest.approx(
+        np.full(3, (k_h_beta - 1.0) * (1.0 - 1.0 / COUNT)), rel=1e-4, abs=1e-9
+    )
+    # the end nearer to a bearing gives way less; a gear beside them loads its inner end
+    assert (np.argmax(load[1]) > COUNT / 2) == (0.1 < position < 0.2) or position == 0.1
+
+
+def test_load_grows_uneven_the_further_the_gear_stands_from_the_middle():
+    uneven = []
+    for position in (0.1, 0.08, 0.06, 0.05):
+        seat = _SeatCompliance.of_shaft(Shaft(length=0.2, diameter=0.04, position=position))
+        _, load = loaded((seat, None), np.array([3000.0]))
+        uneven.append(load.max() / load.mean())
+    assert uneven[0] == pytest.approx(1.0, abs=1e-9)
+    assert np.all(np.diff(uneven) > 0.01)
+
+
+def test_partial_contact_satisfies_its_own_tilt():
+    """Where the tilt lifts part of the face off, the load that is left bends the shaft to that tilt."""
+    seat = _SeatCompliance(translation=1e-8, coupling=1e-6, tilt=1e-5)
+    deflection, load = loaded((seat, None), np.array([2000.0]), rigid=0.05 * RIGID)
+    z = Slices.of_pair(PAIR, COUNT).center
+    slice_force = load[0] * WIDTH / COUNT
+    force, moment = slice_force.sum(), slice_force @ z
+    u, v = seat.translation * force + seat.coupling * moment, seat.coupling * force + seat.tilt * moment
+    expected = np.maximum(STIFFNESS * (deflection[0] - u - v * z), 0.0)
+    assert 0.1 < np.mean(load[0] > 0.0) < 0.9
+    assert force == pytest.approx(2000.0, rel=1e-9)
+    assert load[0] == pytest.approx(expected, rel=1e-6, abs=1e-6 * load.max())

@@ -9,21 +9,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_requests import point_request
 
 from fe_contact.analysis.analyze import analyze
 from fe_contact.analysis.flanks.flank_file import flank_results
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.contact import ContactModel
 from fe_contact.effects.misalignment import MisalignmentGap
-from fe_contact.geometry import (
-    Gear,
-    GearPair,
-    InternalGearPair,
-    ParallelAxes,
-    RingGear,
-)
+from fe_contact.geometry import Gear, GearPair, InternalGearPair, ParallelAxes, RingGear
 from fe_contact.mesh import SectorRecipe
-from fe_contact.options import AnalysisOptions, OperatingPoint
+from fe_contact.options import AnalysisOptions
 from fe_contact.planning.plan import FaceDiscretization, make_plan
 from fe_contact.ste import SteDatabase
 
@@ -90,9 +85,7 @@ def test_the_corrected_plane_stands_in_for_three_dimensions(record_figure: Any) 
 
 
 def test_pressure_at_the_pitch_point_is_hertz_with_the_hollow_flank() -> None:
-    found = flank_results(
-        PAIR, OperatingPoint(torque=60.0), AnalysisOptions(level="draft", model="plane_strain"), at=[0.0]
-    )
+    found = flank_results(PAIR, *point_request(torque=60.0, level="draft", model="plane_strain"), at=[0.0])
     at = int(np.flatnonzero(found.pair == 0)[0])
     assert found.roll_length_2[0, at, 0] - found.roll_length_1[0, at, 0] == pytest.approx(
         PAIR.common_tangent, rel=1e-12

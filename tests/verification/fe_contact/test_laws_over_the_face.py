@@ -13,19 +13,9 @@ from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 
 
-@pytest.fixture(scope="module")
-def cache(tmp_path_factory):
-    return tmp_path_factory.mktemp("compliance")
-
-
 def helical(hand: int = 1, scale: float = 1.0, **changes: object) -> GearPair:
     pinion = Gear(
-        teeth=19,
-        normal_module=3e-3 * scale,
-        face_width=20e-3 * scale,
-        bore_diameter=30e-3 * scale,
-        helix_angle=hand * math.radians(20.0),
-        **changes,
+        19, 3e-3 * scale, 20e-3 * scale, 30e-3 * scale, helix_angle=hand * math.radians(20.0), **changes
     )
     modification = FlankModification()
     return GearPair(
@@ -34,15 +24,15 @@ def helical(hand: int = 1, scale: float = 1.0, **changes: object) -> GearPair:
     )
 
 
-def draft(pair: GearPair, cache, force: float = 2000.0, **options: object) -> SteDatabase:
-    return analyze(pair, normal_forces=[force], level="draft", positions=12, cache=cache, **options)
+def draft(pair: GearPair, force: float = 2000.0, **options: object) -> SteDatabase:
+    return analyze(pair, normal_forces=[force], level="draft", positions=12, **options)
 
 
-def test_opposite_hand_is_the_mirror_image(cache):
+def test_opposite_hand_is_the_mirror_image():
     """Mirroring both gears and the misalignment in the transverse plane changes nothing."""
     skew = 20e-6
-    first = draft(helical(+1), cache, misalignments=[-skew, 0.0, skew])
-    second = draft(helical(-1), cache, misalignments=[-skew, 0.0, skew])
+    first = draft(helical(+1), misalignments=[-skew, 0.0, skew])
+    second = draft(helical(-1), misalignments=[-skew, 0.0, skew])
     assert second.static_transmission_error == pytest.approx(
         first.static_transmission_error[:, :, ::-1], rel=1e-9, abs=0.0
     )
@@ -50,16 +40,16 @@ def test_opposite_hand_is_the_mirror_image(cache):
 
 
 @pytest.mark.law
-def test_lengths_by_s_and_forces_by_s2(cache):
+def test_lengths_by_s_and_forces_by_s2():
     s = 3.0
-    small, large = draft(helical(), cache), draft(helical(scale=s), cache, force=2000.0 * s**2)
+    small, large = draft(helical()), draft(helical(scale=s), force=2000.0 * s**2)
     assert large.static_transmission_error == pytest.approx(
         s * small.static_transmission_error, rel=1e-6, abs=0.0
     )
     assert large.load_share == pytest.approx(small.load_share, abs=1e-6)
 
 
-def test_swapped_gears_have_the_mirrored_curve(cache):
+def test_swapped_gears_have_the_mirrored_curve():
     """With the wheel driving, positions run backwards; in double contact the shift by STE is invisible."""
     pair = helical()
     swapped = pair.swapped()
@@ -69,14 +59,14 @@ def test_swapped_gears_have_the_mirrored_curve(cache):
         wheel=dataclasses.replace(swapped.wheel, helix_angle=-swapped.wheel.helix_angle),
     )
     options = {"effects": {"corner_contact": "off"}}
-    first, second = draft(pair, cache, **options), draft(swapped, cache, **options)
+    first, second = draft(pair, **options), draft(swapped, **options)
     ours = first.static_transmission_error[:, 0, 0, 0]
     theirs = second.static_transmission_error[:, 0, 0, 0]
     mirrored = np.roll(theirs[::-1], 1)
     assert mirrored == pytest.approx(ours, rel=1e-6, abs=0.0)
 
 
-def test_laws_hold_over_the_face(cache):
+def test_laws_hold_over_the_face():
     loads = [20.0, 200.0, 2000.0, 8000.0]
     pair = helical(
         modification=FlankModification(helix_crowning=8e-6, tip_relief=6e-6, tip_relief_length=0.8e-3)
@@ -87,7 +77,6 @@ def test_laws_hold_over_the_face(cache):
         misalignments=[-30e-6, 0.0, 30e-6],
         level="draft",
         positions=12,
-        cache=cache,
     )
     assert table.n_failed == 0
     assert table.residuals.max() < 1e-9
@@ -98,8 +87,8 @@ def test_laws_hold_over_the_face(cache):
     assert np.all(table.face_centroid[:, 1:, 2] < table.face_centroid[:, 1:, 0])
 
 
-def test_force_extraction_covers_all_axes(cache):
-    table = draft(helical(), cache, misalignments=[0.0, 20e-6], center_distance_changes=[0.0, 50e-6])
+def test_force_extraction_covers_all_axes():
+    table = draft(helical(), misalignments=[0.0, 20e-6], center_distance_changes=[0.0, 50e-6])
     x = np.linspace(0.0, 1.0, 9)
     force = table.force[0]
     for m, d in ((0.0, 0.0), (20e-6, 50e-6), (8e-6, 20e-6)):
@@ -108,10 +97,10 @@ def test_force_extraction_covers_all_axes(cache):
         assert sample.force == pytest.approx(force * math.cos(table.facts.base_helix_angle), rel=1e-9)
 
 
-def test_a_wheel_beside_its_pinion_carries_on_the_common_face(cache):
+def test_a_wheel_beside_its_pinion_carries_on_the_common_face():
     gear = Gear(teeth=20, normal_module=4e-3, face_width=20e-3, bore_diameter=40e-3)
     pair = GearPair(gear, gear, 80e-3, axial_offset=8e-3)
-    table = draft(pair, cache)
+    table = draft(pair)
     assert table.facts.face_width == pytest.approx(12e-3)
     assert np.all((table.face_centroid > -2e-3) & (table.face_centroid < 10e-3))
     assert table.n_failed == 0

@@ -8,17 +8,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from analysis_requests import point_request
+from spur_gears import GEAR
 
 from fe_contact import GearPair, root_stress
 from fe_contact.analysis.flanks.root_stress import _crest_values, _finer_root
 from fe_contact.compliance import UnitRootStress, unit_root_stress, unit_root_stress_3d
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
-from fe_contact.geometry import Gear
 from fe_contact.mesh import MeshRecipe, PlaneStrain, SectorRecipe
-from fe_contact.options import AnalysisOptions, OperatingPoint
 
-GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 PEAKS = ("tension", "compression")
 
 
@@ -102,19 +101,15 @@ def test_the_middle_of_a_wide_gear_approaches_plane_strain(record_figure: Callab
     assert np.all(excess[0] > 0.03)  # end faces are free to move along the axis
     assert np.all(np.abs(excess[1]) < 0.005)
     assert np.all(np.abs(excess[2]) < 5e-4)
-    record_figure(
-        "root stress of a gear 60 modules wide over plane strain, mid-face", 100.0 * float(excess[2][0]),
-        "within 0.05", "%", "limit of a wide gear",
-    )  # fmt: skip
+    name = "root stress of a gear 60 modules wide over plane strain, mid-face"
+    record_figure(name, 100.0 * float(excess[2][0]), "within 0.05", "%", "limit of a wide gear")
 
 
 @pytest.mark.law
 def test_the_stated_error_holds_in_the_plane() -> None:
     pair = GearPair(GEAR, GEAR, 80e-3)
     found = {
-        level: root_stress(
-            pair, OperatingPoint(torque=100.0), AnalysisOptions(level=level), at=[0.0, 0.19]
-        ).pinion
+        level: root_stress(pair, *point_request(torque=100.0, level=level), at=[0.0, 0.19]).pinion
         for level in ("draft", "standard", "fine")
     }
     for root in PEAKS:

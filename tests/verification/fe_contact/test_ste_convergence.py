@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from spur_gears import PAIR
 
-from fe_contact import Gear, GearPair
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.options import AnalysisOptions
@@ -21,8 +21,7 @@ LOAD = np.array([100.0, 400.0]) / 37.588e-3  # N, 100 and 400 N m
 def contact(tmp_path_factory):
     """Return the STE on the standard mesh refined by a factor, patches kept."""
     cache: Path = tmp_path_factory.mktemp("compliance")
-    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-    pair = GearPair(gear, gear, 80e-3)
+    pair = PAIR
     model, _ = compose(ContactScene(pair, pair.torque(LOAD), EFFECTS), {})
     plan = make_plan(pair, LOAD, AnalysisOptions(), model)
 
@@ -43,9 +42,8 @@ def test_rate_and_level(contact, record_figure):
     rate = float(np.log2(first / second))
     left = float(second / (2**rate - 1.0) / ste[2].max())
     record_figure("STE under mesh refinement, rate", rate, "at least 2", "-", "quadratic elements")
-    record_figure(
-        "STE, discretization error of the standard mesh", 100 * left, "below 0.1 %", "%", "Richardson"
-    )
+    name = "STE, discretization error of the standard mesh"
+    record_figure(name, 100 * left, "below 0.1 %", "%", "Richardson")
     assert rate > 2.0
     assert left < 1e-3
 

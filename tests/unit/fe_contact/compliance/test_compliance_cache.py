@@ -1,28 +1,32 @@
-"""The disk cache returns what was computed, or computes it again."""
+"""The disk cache of compliances returns what was computed, or computes it again; all is in the key."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from compliance_gears import HELICAL, SPUR, WEBBED, coarse, coarse_plane
+from spur_gears import gear as make_gear
 
+import fe_contact.compliance.cyclic_compliance as cyclic
 import fe_contact.compliance.flank_compliance_2d as flow
 from fe_contact.cache_reads import COMPLIANCE_READS
 from fe_contact.compliance import (
     FlankCompliance,
+    FlankCompliance3D,
     PlaneHypothesis,
     default_cache_directory,
     flank_compliance,
+    flank_compliance_3d,
+    flank_compliances_3d,
+    predict_cost,
 )
 from fe_contact.geometry import Gear
 from fe_contact.material import Material
-from fe_contact.mesh import MeshRecipe
-
-MakeGear = Callable[..., Gear]
-MakeRecipe = Callable[..., MeshRecipe]
+from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe
 
 
 @pytest.fixture
@@ -54,12 +58,10 @@ def same(first: FlankCompliance, second: FlankCompliance) -> bool:
     return arrays and all(getattr(first, n) == getattr(second, n) for n in plain)
 
 
-def test_second_call_reads_the_same_bits(
-    tmp_path: Path, make_gear: MakeGear, coarse: MakeRecipe, counted: list[Gear]
-) -> None:
+def test_second_call_reads_the_same_bits(tmp_path: Path, counted: list[Gear]) -> None:
     gear, before = make_gear(), replace(COMPLIANCE_READS)
-    first = flank_compliance(gear, coarse(gear), cache=tmp_path / "deep" / "cache")
-    second = flank_compliance(gear, coarse(gear), cache=tmp_path / "deep" / "cache")
+    first = flank_compliance(gear, coarse_plane(gear), cache=tmp_path / "deep" / "cache")
+    second = flank_compliance(gear, coarse_plane(gear), cache=tmp_path / "deep" / "cache")
     assert len(counted) == 1
     assert (first.from_cache, second.from_cache) == (False, True)
     assert replace(before, hits=before.hits + 1, misses=before.misses + 1) == COMPLIANCE_READS
@@ -69,10 +71,10 @@ def test_second_call_reads_the_same_bits(
 
 @pytest.mark.parametrize("damage", ["flipped bit", "truncated", "empty", "foreign", "another result"])
 def test_a_damaged_file_is_computed_again_and_mended(
-    tmp_path: Path, make_gear: MakeGear, coarse: MakeRecipe, counted: list[Gear], damage: str
+    tmp_path: Path, counted: list[Gear], damage: str
 ) -> None:
     gear = make_gear()
-    first = flank_compliance(gear, coarse(gear), cache=tmp_path)
+    first = flank_compliance(gear, coarse_plane(gear), cache=tmp_path)
     (file,) = tmp_path.iterdir()
     content = file.read_bytes()
     middle = len(content) // 2
@@ -89,16 +91,16 @@ def test_a_damaged_file_is_computed_again_and_mended(
         np.savez(file, allow_pickle=False, **changed)
     else:
         file.write_bytes(damaged[damage])
-    again = flank_compliance(gear, coarse(gear), cache=tmp_path)
+    again = flank_compliance(gear, coarse_plane(gear), cache=tmp_path)
     assert not again.from_cache
     assert np.array_equal(again.matrix, first.matrix)
-    assert flank_compliance(gear, coarse(gear), cache=tmp_path).from_cache
+    assert flank_compliance(gear, coarse_plane(gear), cache=tmp_path).from_cache
     assert len(counted) == 2
 
 
-def test_all_that_decides_the_result_is_in_the_key(make_gear: MakeGear, coarse: MakeRecipe) -> None:
+def test_all_that_decides_the_result_is_in_the_key() -> None:
     gear, strain = make_gear(), PlaneHypothesis.PLANE_STRAIN
-    recipe = coarse(gear)
+    recipe = coarse_plane(gear)
     keys = [
         flow.compliance_key(gear, recipe, strain, 5),
         flow.compliance_key(gear, recipe.refined(), strain, 5),
@@ -123,34 +125,24 @@ def test_all_that_decides_the_result_is_in_the_key(make_gear: MakeGear, coarse: 
 
 
 def test_a_new_model_version_does_not_read_old_files(
-    tmp_path: Path,
-    make_gear: MakeGear,
-    coarse: MakeRecipe,
-    counted: list[Gear],
-    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path, counted: list[Gear], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     gear = make_gear()
-    flank_compliance(gear, coarse(gear), cache=tmp_path)
+    flank_compliance(gear, coarse_plane(gear), cache=tmp_path)
     monkeypatch.setattr(flow, "MODEL_VERSION", flow.MODEL_VERSION + 1)
-    assert not flank_compliance(gear, coarse(gear), cache=tmp_path).from_cache
+    assert not flank_compliance(gear, coarse_plane(gear), cache=tmp_path).from_cache
     assert len(counted) == 2
 
 
-def test_without_a_directory_nothing_is_kept(
-    make_gear: MakeGear, coarse: MakeRecipe, counted: list[Gear]
-) -> None:
+def test_without_a_directory_nothing_is_kept_and_no_result_lost(counted: list[Gear], tmp_path: Path) -> None:
     gear = make_gear()
     for _ in range(2):
-        flank_compliance(gear, coarse(gear), cache=None)
+        flank_compliance(gear, coarse_plane(gear), cache=None)
     assert len(counted) == 2
-
-
-def test_a_directory_that_cannot_be_made_costs_no_result(
-    tmp_path: Path, make_gear: MakeGear, coarse: MakeRecipe
-) -> None:
     (tmp_path / "file").write_text("in the way")
-    gear = make_gear()
-    assert not flank_compliance(gear, coarse(gear), cache=tmp_path / "file" / "cache").from_cache
+    assert not flank_compliance(gear, coarse_plane(gear), cache=tmp_path / "file" / "cache").from_cache
+    found = flank_compliance(gear, coarse_plane(gear), teeth=1)
+    assert not same(found, replace(found, matrix=np.nextafter(found.matrix, 1.0)))
 
 
 def test_the_default_directory_follows_the_environment(
@@ -169,7 +161,94 @@ def test_the_default_directory_follows_the_environment(
     assert default_cache_directory() == Path.home() / ".cache" / "lineofaction"
 
 
-def test_a_changed_copy_is_not_the_same(make_gear: MakeGear, coarse: MakeRecipe) -> None:
-    gear = make_gear()
-    found = flank_compliance(gear, coarse(gear), teeth=1)
-    assert not same(found, replace(found, matrix=np.nextafter(found.matrix, 1.0)))
+def test_hands_of_one_pair_share_a_computation(monkeypatch: pytest.MonkeyPatch) -> None:
+    computed = count_runs(monkeypatch)
+    left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
+    found = flank_compliances_3d([HELICAL, left, HELICAL], [coarse(HELICAL)] * 3)
+    assert len(computed) == 1
+    assert found[0] is found[2]
+    assert found[1].base_helix_angle == -found[0].base_helix_angle
+    assert np.array_equal(found[1].mirrored().blocks, found[0].blocks)
+    backwards = flank_compliances_3d([left, HELICAL], [coarse(HELICAL)] * 2)
+    assert np.array_equal(backwards[0].blocks, found[1].blocks)
+    assert np.array_equal(backwards[1].blocks, found[0].blocks)
+
+
+def count_runs(monkeypatch: pytest.MonkeyPatch) -> list[Gear]:
+    computed: list[Gear] = []
+    genuine = cyclic.compute_flank_compliance_3d
+
+    def counting(gear: Gear, *arguments: object, **reports: object) -> FlankCompliance3D:
+        computed.append(gear)
+        return genuine(gear, *arguments, **reports)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(cyclic, "compute_flank_compliance_3d", counting)
+    return computed
+
+
+def test_the_cache_returns_the_same_bits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    computed = count_runs(monkeypatch)
+    recipe = coarse(HELICAL)
+    first = flank_compliance_3d(HELICAL, recipe, cache=tmp_path)
+    second = flank_compliance_3d(HELICAL, recipe, cache=tmp_path)
+    left = flank_compliance_3d(replace(HELICAL, helix_angle=-HELICAL.helix_angle), recipe, cache=tmp_path)
+    assert len(computed) == 1
+    assert (first.from_cache, second.from_cache, left.from_cache) == (False, True, True)
+    for name in ("s", "z", "index", "blocks"):
+        assert np.array_equal(getattr(first, name), getattr(second, name))
+        assert getattr(first, name).dtype == getattr(second, name).dtype
+    plain = (
+        "s_form",
+        "s_tip",
+        "contact_modulus",
+        "base_helix_angle",
+        "teeth",
+        "checks",
+        "unknowns",
+        "seconds",
+        "solver",
+    )
+    assert all(getattr(first, name) == getattr(second, name) for name in plain)
+    assert np.array_equal(left.blocks, first.mirrored().blocks)
+    (file,) = tmp_path.iterdir()
+    content = file.read_bytes()
+    file.write_bytes(content[: len(content) // 2])
+    assert not flank_compliance_3d(HELICAL, recipe, cache=tmp_path).from_cache
+
+
+def test_all_that_decides_the_result_in_three_dimensions_is_in_the_key() -> None:
+    clamped, recipe = ClampedBore(), coarse(SPUR)
+    keys = [
+        cyclic.compliance_key_3d(SPUR, recipe, 2, clamped),
+        cyclic.compliance_key_3d(SPUR, recipe, 1, clamped),
+        cyclic.compliance_key_3d(SPUR, recipe, 2, PlaneStrain()),
+        cyclic.compliance_key_3d(SPUR, replace(recipe, layers=8), 2, clamped),
+    ]
+    for change in (
+        {"face_width": 21e-3},
+        {"bore_diameter": 13e-3},
+        {"helix_angle": 0.1},
+        {"teeth": 10},
+        {"material": Material(poissons_ratio=0.29)},
+    ):
+        keys.append(cyclic.compliance_key_3d(replace(SPUR, **change), recipe, 2, clamped))  # type: ignore[arg-type]
+    assert len(set(keys)) == len(keys)
+    hands = [cyclic.compliance_key_3d(replace(SPUR, helix_angle=a), recipe, 2, clamped) for a in (0.1, -0.1)]
+    assert hands[0] == hands[1]
+
+
+@pytest.mark.parametrize(
+    "gear",
+    [replace(SPUR, teeth=20, bore_diameter=40e-3), WEBBED],
+    ids=["spur", "helical with a web"],
+)
+def test_cost_is_known_before_the_run(gear: Gear) -> None:
+    recipe = SectorRecipe.draft(gear)
+    flank_compliance_3d(gear, recipe)  # compiled code and libraries are loaded
+    predicted = predict_cost(gear, recipe)  # its seconds are held against measured ones in benchmarks/
+    tracemalloc.start()
+    flank_compliance_3d(gear, recipe)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert 0.8 < predicted.bytes / peak < 1.8
+    assert predict_cost(gear).seconds > predicted.seconds

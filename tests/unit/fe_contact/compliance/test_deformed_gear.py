@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from compliance_gears import HELICAL, SPUR, coarse
+from compliance_gears import HELICAL, SPUR, coarse, coarse_plane
+from spur_gears import gear as make_gear
 
 from fe_contact.compliance import PlaneHypothesis, flank_compliance, flank_compliance_3d
 from fe_contact.compliance.deformation_3d import _sector_elements, _SectorElements, deformed_solids
@@ -16,22 +16,15 @@ from fe_contact.compliance.deformed_gear import DeformedGear, _element_stress, d
 from fe_contact.compliance.sector_stiffness import REFERENCE, gradients_at, lame_parameters
 from fe_contact.errors import InputError
 from fe_contact.geometry import BoreSeat, Gear, GearBlank, Key, RingGear, Toothing, tooth_profile
-from fe_contact.mesh import MeshRecipe, mesh_gear, quad_sector, swept_sector
+from fe_contact.mesh import mesh_gear, quad_sector, swept_sector
 
 LEFT = replace(SPUR, helix_angle=math.radians(-25.0))
-RING = RingGear(
-    teeth=30,
-    normal_module=4e-3,
-    face_width=20e-3,
-    rim_diameter=150e-3,
-    cutter_teeth=15,
-    addendum_coefficient=0.6,
-)
+RING = RingGear(30, 4e-3, 20e-3, 150e-3, cutter_teeth=15, addendum_coefficient=0.6)
 WEB = Gear(
-    teeth=21,
-    normal_module=4e-3,
-    face_width=24e-3,
-    bore_diameter=24e-3,
+    21,
+    4e-3,
+    24e-3,
+    24e-3,
     helix_angle=math.radians(-20.0),
     blank=GearBlank(rim_thickness=9e-3, web_thickness=8e-3, web_offset=4e-3, hub_diameter=32e-3),
 )
@@ -61,11 +54,9 @@ def test_flanks_move_as_compliance_times_force(gear: Toothing) -> None:
 
 
 @pytest.mark.parametrize("teeth", [None, 5])
-def test_sections_move_as_compliance_times_force(
-    teeth: int | None, make_gear: Callable[..., Gear], coarse: Callable[..., MeshRecipe]
-) -> None:
+def test_sections_move_as_compliance_times_force(teeth: int | None) -> None:
     gear = make_gear()
-    recipe = coarse(gear, real_teeth=teeth)
+    recipe = coarse_plane(gear, real_teeth=teeth)
     strain = PlaneHypothesis.PLANE_STRAIN
     flank = flank_compliance(gear, recipe, strain, teeth=5)
     load = {0: random_load(flank.s.size, 1), -1: random_load(flank.s.size, 2)}
@@ -78,12 +69,18 @@ def test_sections_move_as_compliance_times_force(
 
 
 @SOLIDS
-def test_linear_displacement_gives_its_constant_stress(gear: Toothing) -> None:
+def test_elements_agree_and_a_linear_displacement_gives_its_constant_stress(gear: Toothing) -> None:
     """At every node of every element, those that hang on coarser ones too."""
     elements = sector_of(gear)
     moved = elements.nodes @ GRADIENT.T
     expected = stress_of(GRADIENT, lame_parameters(gear.material))
     assert np.abs(elements.stress(moved) - expected).max() < 1e-9 * np.abs(expected).max()
+    assert elements.points > len(elements.sector.freedoms)  # some do hang
+    field = np.sin(np.arange(elements.sector.size, dtype=float))
+    for values in (elements.nodes, elements.displacement(field)):
+        first = np.full((elements.points, 3), np.nan)
+        first[elements.numbers] = values
+        assert np.abs(first[elements.numbers] - values).max() < 1e-12 * np.abs(values).max()
 
 
 def sector_of(gear: Toothing) -> _SectorElements:
@@ -95,24 +92,11 @@ def sector_of(gear: Toothing) -> _SectorElements:
     )
 
 
-@SOLIDS
-def test_elements_agree_on_nodes_and_displacements_they_share(gear: Toothing) -> None:
-    elements = sector_of(gear)
-    assert elements.points > len(elements.sector.freedoms)  # some do hang
-    field = np.sin(np.arange(elements.sector.size, dtype=float))
-    for values in (elements.nodes, elements.displacement(field)):
-        first = np.full((elements.points, 3), np.nan)
-        first[elements.numbers] = values
-        assert np.abs(first[elements.numbers] - values).max() < 1e-12 * np.abs(values).max()
-
-
 @pytest.mark.parametrize("hypothesis", list(PlaneHypothesis))
-def test_linear_displacement_gives_its_constant_plane_stress(
-    hypothesis: PlaneHypothesis, make_gear: Callable[..., Gear], coarse: Callable[..., MeshRecipe]
-) -> None:
+def test_linear_displacement_gives_its_constant_plane_stress(hypothesis: PlaneHypothesis) -> None:
     """Against Hooke's law in E and nu."""
     gear = make_gear()
-    mesh = mesh_gear(gear, coarse(gear))
+    mesh = mesh_gear(gear, coarse_plane(gear))
     lame = hypothesis.lame_parameters(gear.material)
     strain = hypothesis is PlaneHypothesis.PLANE_STRAIN
     found = _element_stress(mesh, mesh.points @ GRADIENT[:2, :2].T, lame, lame[0] if strain else 0.0)

@@ -8,7 +8,7 @@ from functools import cache, partial
 
 import numpy as np
 import pytest
-from compliance_gears import coarse
+from compliance_gears import coarse, coarse_plane, moved
 
 import fe_contact.compliance.cyclic_compliance as flow
 from fe_contact.compliance import (
@@ -25,7 +25,7 @@ from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
 from fe_contact.geometry import Gear, GearBlank
 from fe_contact.geometry.web_compliance import torsion_compliance
 from fe_contact.material import STEEL
-from fe_contact.mesh import ClampedBore, MeshRecipe, mesh_gear, quad_sector
+from fe_contact.mesh import ClampedBore, mesh_gear, quad_sector
 from fe_contact.stage_clock import StageClock
 
 SOLID = Gear(teeth=21, normal_module=4e-3, face_width=24e-3, bore_diameter=24e-3)
@@ -39,26 +39,15 @@ def with_blank(**change: float) -> Gear:
 six_layers = partial(coarse, layers=6)
 
 
-def coarse_2d(gear: Gear) -> MeshRecipe:
-    m = gear.normal_module
-    return replace(MeshRecipe.standard(gear), flank_size=0.2 * m, tip_size=0.1 * m, fillet_size=0.2 * m)
-
-
 def moved_2d(compliance: FlankCompliance, tooth: int = 0) -> float:
     """Mean displacement of the flank of a tooth under an even pressure of unit force on tooth 0, 1/Pa."""
     forces = uniform_pressure(compliance.s, compliance.s_form, 1.0).forces
     return float(forces @ compliance.block(tooth, 0) @ forces / forces.sum() ** 2)
 
 
-def moved_3d(compliance: FlankCompliance3D, tooth: int = 0) -> float:
-    """The same over the face, m/N."""
-    loads = _probe_loads(compliance.s, compliance.z, compliance.index, compliance.s_form)[:, 0]
-    return float(loads @ compliance.block(tooth, 0) @ loads / loads.sum() ** 2)
-
-
 @cache
 def plane(gear: Gear, teeth: int | None = None) -> FlankCompliance:
-    return flank_compliance(gear, coarse_2d(gear), PlaneHypothesis.PLANE_STRESS, teeth=teeth)
+    return flank_compliance(gear, coarse_plane(gear), PlaneHypothesis.PLANE_STRESS, teeth=teeth)
 
 
 @cache
@@ -72,7 +61,7 @@ def test_a_web_of_full_width_is_the_solid_gear_to_the_last_bit() -> None:
     assert np.array_equal(plane(full).matrix, plane(SOLID).matrix)
     assert np.array_equal(solid_3d(full).blocks, solid_3d(SOLID).blocks)
     nearly = with_blank(web_thickness=24e-3 * (1.0 - 1e-3))
-    assert moved_3d(solid_3d(nearly)) == pytest.approx(moved_3d(solid_3d(SOLID)), rel=5e-3)
+    assert moved(solid_3d(nearly)) == pytest.approx(moved(solid_3d(SOLID)), rel=5e-3)
     assert moved_2d(plane(nearly)) == pytest.approx(moved_2d(plane(SOLID)), rel=5e-3)
 
 
@@ -89,14 +78,14 @@ def test_less_of_a_body_is_softer(field: str, values: tuple[float, ...]) -> None
     gears = [with_blank(**{field: value}) for value in values]
     flat, face = [plane(g) for g in gears], [solid_3d(g) for g in gears]
     for tooth in (0, 1):
-        in_plane, over_face = [moved_2d(c, tooth) for c in flat], [moved_3d(c, tooth) for c in face]
+        in_plane, over_face = [moved_2d(c, tooth) for c in flat], [moved(c, tooth) for c in face]
         assert np.all(np.diff(in_plane) > 0.01 * in_plane[0])
         assert np.all(np.diff(over_face) > 0.01 * over_face[0])
 
 
 def test_torsion_of_web_and_hub_is_that_of_tubes_in_the_plane() -> None:
     """A moment at the rim's inside turns it against hub and bore by (1/r_i^2 - 1/r_o^2) / (4 pi G b)."""
-    gear, recipe = with_blank(), coarse_2d(SOLID)
+    gear, recipe = with_blank(), coarse_plane(SOLID)
     mesh, web = mesh_gear(gear, recipe), gear.web
     assert web is not None
     ring = condensed_ring(gear, mesh, PlaneHypothesis.PLANE_STRESS)
@@ -151,7 +140,7 @@ def test_a_web_off_the_middle_tilts_the_rim_and_its_mirror_image_the_other_way()
     loads = _probe_loads(left.s, left.z, left.index, left.s_form)
     far = loads[:, 1] @ left.blocks[0] @ loads[:, 1]
     assert far > 1.1 * near
-    assert moved_3d(right) > 1.05 * moved_3d(solid_3d(with_blank()))
+    assert moved(right) > 1.05 * moved(solid_3d(with_blank()))
 
 
 def test_a_left_hand_gear_keeps_its_web_on_its_side() -> None:
@@ -183,7 +172,7 @@ def test_the_key_knows_the_web() -> None:
     )
     gears = [SOLID, *(with_blank(**change) for change in changes)]
     assert len({flow.compliance_key_3d(g, recipe, 2, clamped) for g in gears}) == len(gears)
-    flat = {compliance_key(g, coarse_2d(g), stress, 5) for g in gears}
+    flat = {compliance_key(g, coarse_plane(g), stress, 5) for g in gears}
     assert len(flat) >= len(gears) - 1
     wider = replace(with_blank(), face_width=30e-3)
-    assert compliance_key(wider, coarse_2d(wider), stress, 5) not in flat
+    assert compliance_key(wider, coarse_plane(wider), stress, 5) not in flat

@@ -24,14 +24,7 @@ from fe_contact.geometry import BoreSeat, Gear
 from fe_contact.mesh import QuadSector, SectorRecipe, SweptSector, quad_sector, swept_sector
 
 LAME = (121e9, 81e9)
-GEAR = Gear(
-    teeth=17,
-    normal_module=4e-3,
-    face_width=25e-3,
-    bore_diameter=30e-3,
-    helix_angle=0.5,
-    profile_shift_coefficient=0.1,
-)
+GEAR = Gear(17, 4e-3, 25e-3, 30e-3, helix_angle=0.5, profile_shift_coefficient=0.1)
 RECIPE = replace(SectorRecipe.draft(GEAR), layers=8, merge_rows=(-1, -3))
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from compliance_gears import HELICAL, SPUR, coarse
+from compliance_gears import HELICAL, SPUR, coarse, coarse_plane, relative, whole_gear
 from scipy.sparse.linalg import splu
 
 import fe_contact.compliance.root_stress_3d as face_module
@@ -21,7 +21,6 @@ from fe_contact.compliance.plane_elasticity import stiffness_matrix
 from fe_contact.compliance.ring_2d import _inward_loads, factorise, freedoms
 from fe_contact.compliance.root_stress import UnitRootStress, refuse_broken_stress
 from fe_contact.compliance.root_stress_3d import _quad_root, _root_functionals, compute_root_stress_3d
-from fe_contact.compliance.sector_stiffness import sector_stiffness
 from fe_contact.compliance.unit_root_stress import (
     _edge_stress,
     _triangle_root,
@@ -43,14 +42,11 @@ from fe_contact.mesh import (
     SectorRecipe,
     mesh_gear,
     quad_sector,
-    swept_sector,
 )
 
 GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
 PLANE = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-RING = RingGear(
-    teeth=41, normal_module=4e-3, face_width=20e-3, rim_diameter=0.204, profile_shift_coefficient=-0.3
-)
+RING = RingGear(41, 4e-3, 20e-3, 0.204, profile_shift_coefficient=-0.3)
 RINGS = [(20, 40e-3, None), (40, 40e-3, None), (20, 40e-3, 5)]
 RING_NAMES = ["sectors to the bore", "hub", "plain ring"]
 STRAIN = PlaneHypothesis.PLANE_STRAIN
@@ -59,18 +55,8 @@ STRAIN = PlaneHypothesis.PLANE_STRAIN
 two_on_land = functools.partial(coarse, land_elements=2)
 
 
-def coarse_plane(gear: Toothing, **changes: object) -> MeshRecipe:
-    m = gear.normal_module
-    changes = {"flank_size": 0.2 * m, "tip_size": 0.1 * m, "fillet_size": 0.2 * m} | changes
-    return replace(MeshRecipe.standard(gear), **changes)  # type: ignore[arg-type]
-
-
 in_plane = functools.cache(unit_root_stress)
 over_face = functools.cache(unit_root_stress_3d)
-
-
-def relative(found: np.ndarray, expected: np.ndarray) -> float:
-    return float(np.abs(found - expected).max() / np.abs(expected).max())
 
 
 def on_flank(found: UnitRootStress) -> np.ndarray:
@@ -124,24 +110,12 @@ def agrees_with_the_whole_mesh(gear: Toothing, recipe: MeshRecipe) -> None:
 
 def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
     """Root stress of every tooth by forces on tooth 0, (z, r, 3), by one sparse factorisation."""
-    section = quad_sector(gear, recipe)
-    sector = swept_sector(section.grid, gear.face_width, recipe)
-    stiffness = sector_stiffness(gear, section, sector)
-    number = np.full((gear.teeth, sector.size), -1)
-    own = np.setdiff1d(np.arange(sector.size), sector.left)
-    number[:, own] = np.arange(gear.teeth * len(own)).reshape(gear.teeth, -1)
-    number[:, sector.left] = np.roll(number[:, sector.right], -1, axis=0)
-    held = np.append(number, np.full((gear.teeth, 1), -1), axis=1)
-    dofs = held[:, sector.element_freedoms]
-    i, k = np.broadcast_arrays(dofs[..., :, None], dofs[..., None, :])
-    free = (i >= 0) & (k >= 0)
-    values = np.broadcast_to(stiffness.matrices[stiffness.of_element], i.shape)[free]
-    matrix = sp.csc_array(sp.coo_array((values, (i[free], k[free]))))
+    section, sector, number, matrix = whole_gear(gear, recipe)
     loads = np.zeros((matrix.shape[0], 3))
     loads[number[0, sector.flank]] = -some_forces(len(sector.flank))  # inwards
     moved = factorise(matrix, block=1)(loads)
     rows = _root_functionals(gear, section, sector, _quad_root(section, tooth_profile(gear)))
-    return np.stack([rows @ moved[number[j]] for j in range(gear.teeth)])
+    return np.stack([rows @ moved[each[:-1]] for each in number])
 
 
 @GEARS
@@ -218,6 +192,10 @@ def test_opposite_hands_are_mirror_images() -> None:
     assert np.array_equal(found.stress, right.mirrored().stress)
     assert np.array_equal(found.mirrored().stress, right.stress)
     assert relative(found.stress, right.stress) > 0.1
+    found = over_face(SPUR, two_on_land(SPUR))
+    assert relative(found.mirrored().stress, found.stress) < 2e-6
+    shear = found.stress[:, :, 2] @ on_flank(found)
+    assert np.abs(shear + shear[..., ::-1]).max() < 1e-6 * np.abs(found.stress @ on_flank(found)).max()
 
 
 def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -228,13 +206,6 @@ def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.Monk
     swept = compute_root_stress_3d(left, two_on_land(left), 1, ClampedBore())
     # single nodal forces hold what the cuts tell apart to 1e-6 only
     assert relative(swept.stress, mirrored.stress) < 2e-6
-
-
-def test_a_spur_gear_is_its_own_mirror_image() -> None:
-    found = over_face(SPUR, two_on_land(SPUR))
-    assert relative(found.mirrored().stress, found.stress) < 2e-6
-    shear = found.stress[:, :, 2] @ on_flank(found)
-    assert np.abs(shear + shear[..., ::-1]).max() < 1e-6 * np.abs(found.stress @ on_flank(found)).max()
 
 
 def test_stress_per_force_goes_with_one_over_length_and_not_with_stiffness() -> None:
@@ -250,7 +221,7 @@ def test_stress_per_force_goes_with_one_over_length_and_not_with_stiffness() -> 
     assert relative(softer.stress, found.stress) < 1e-9
 
 
-def test_stations_lie_on_the_fillet() -> None:
+def test_stations_lie_on_the_fillet_with_its_tangents() -> None:
     profile = tooth_profile(PLANE)
     for found in (in_plane(PLANE), over_face(PLANE, SectorRecipe.draft(PLANE))):
         assert profile.s_space < found.station_s[0] < found.station_s[-1] < profile.s_form
@@ -258,6 +229,17 @@ def test_stations_lie_on_the_fillet() -> None:
         assert np.all(np.diff(found.tangent_angle[found.station_s > profile.s_root]) < 0.0)
     assert found.station_z == pytest.approx(-found.station_z[::-1], rel=1e-12)
     assert np.abs(found.station_z).max() < 0.5 * PLANE.face_width
+    for gear in (PLANE, SPUR, HELICAL, replace(PLANE, teeth=80, bore_diameter=60e-3)):
+        profile = tooth_profile(gear)
+        at = critical_section(profile)
+        assert profile.s_root < at < profile.s_form
+        step = 1e-4 * gear.normal_module
+        low, high = profile.flank(np.array([at - step, at + step]))
+        lean = math.degrees(math.atan2(*(low - high) * [1.0, -1.0]))
+        assert lean == pytest.approx(30.0, abs=0.05)
+        assert float(tangent_angle(profile, profile.s_root)) == pytest.approx(
+            0.5 * math.pi - profile.root_angle, rel=1e-6
+        )
 
 
 @pytest.mark.parametrize("gear", [PLANE, RING], ids=["external", "internal"])
@@ -275,20 +257,6 @@ def test_nodes_of_the_root_have_their_flank_coordinates(gear: Toothing) -> None:
         assert np.abs(profile.flank(root.s) - right).max() < 1e-9
         middles = 0.5 * (root.s[:-2:2] + root.s[2::2])
         assert root.s[1::2] == pytest.approx(middles, abs=1e-8)
-
-
-def test_the_tangent_of_the_critical_section_has_30_degrees() -> None:
-    for gear in (PLANE, SPUR, HELICAL, replace(PLANE, teeth=80, bore_diameter=60e-3)):
-        profile = tooth_profile(gear)
-        at = critical_section(profile)
-        assert profile.s_root < at < profile.s_form
-        step = 1e-4 * gear.normal_module
-        low, high = profile.flank(np.array([at - step, at + step]))
-        lean = math.degrees(math.atan2(*(low - high) * [1.0, -1.0]))
-        assert lean == pytest.approx(30.0, abs=0.05)
-        assert float(tangent_angle(profile, profile.s_root)) == pytest.approx(
-            0.5 * math.pi - profile.root_angle, rel=1e-6
-        )
 
 
 def test_the_cache_returns_the_same_bits(tmp_path: Path) -> None:

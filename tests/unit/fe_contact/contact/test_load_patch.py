@@ -1,16 +1,20 @@
-"""Consistent nodal forces of load patches: exact moments, locality, and independence of the elements."""
+"""Load patches: nodal forces along the profile and over the face, and the pressure of their strips."""
 
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hertz_laws import edge_contact_length
 from scipy.special import j1
 
-from fe_contact.contact import PatchRule
+from fe_contact.contact import PatchRule, at_edges, contact_pressure
+from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
 from fe_contact.contact.patch import Patches, load_vector, tip_patches
+from fe_contact.contact.strip import Gap
+from fe_contact.hertz import half_width, peak_pressure
 
 
 def flank(ends: np.ndarray) -> np.ndarray:
@@ -60,15 +64,11 @@ def test_moments_of_a_patch_at_an_edge(nodes, share):
     assert forces @ (tip - nodes) ** 2 == pytest.approx(c**2 * second, rel=1e-9, abs=0.0)
 
 
-def test_a_smooth_field_is_weighed_alike_on_every_mesh():
+def test_a_field_is_weighed_alike_on_every_mesh_and_wherever_the_patch_is():
     def work(nodes, center):
         return patch(nodes, center, 3e-4) @ np.cos(500.0 * nodes)
 
     assert work(UNIFORM, 5.123e-3) == pytest.approx(work(GRADED, 5.123e-3), rel=2e-6, abs=0.0)
-
-
-def test_moving_the_patch_through_an_element_does_not_ripple():
-    # the mean of cos(k s) over the patch is cos(k s0) 2 J_1(k a)/(k a), wherever in the element it lies
     k, half = 500.0, 3e-4
     places = np.linspace(5.0e-3, 5.2e-3, 41)
     found = np.array([patch(UNIFORM, s, half) @ np.cos(k * UNIFORM) for s in places])
@@ -77,13 +77,16 @@ def test_moving_the_patch_through_an_element_does_not_ripple():
 
 
 @MESHES
-def test_only_the_touched_elements_carry(nodes):
+def test_only_the_touched_elements_carry_and_mirrors_are_alike(nodes):
     out = np.zeros(nodes.size)
     first, last = load_vector(nodes, 5e-3, 3e-4, 0.0, out)
     ends = nodes[::2]
     touched = (ends[1:] > 4.7e-3) & (ends[:-1] < 5.3e-3)
     assert first == 2 * np.flatnonzero(touched)[0]
     assert last == 2 * np.flatnonzero(touched)[-1] + 3
+    mirrored = (nodes[-1] - nodes)[::-1].copy()
+    forces = patch(nodes, 3.3e-3, 4e-4)
+    assert patch(mirrored, nodes[-1] - 3.3e-3, 4e-4)[::-1] == pytest.approx(forces, abs=1e-13)
 
 
 def test_entries_outside_the_range_are_left_alone():
@@ -92,16 +95,6 @@ def test_entries_outside_the_range_are_left_alone():
     assert np.isnan(out[:first]).all()
     assert np.isnan(out[last:]).all()
     assert np.isfinite(out[first:last]).all()
-
-
-@MESHES
-def test_mirror(nodes):
-    mirrored = (nodes[-1] - nodes)[::-1].copy()
-    forces = patch(nodes, 3.3e-3, 4e-4)
-    assert patch(mirrored, nodes[-1] - 3.3e-3, 4e-4)[::-1] == pytest.approx(forces, abs=1e-13)
-
-
-def test_patch_at_the_end_of_the_flank():
     tip = UNIFORM[-1]
     forces = patch(UNIFORM, tip - 2e-4, 2e-4, 1.0)
     assert forces.sum() == pytest.approx(1.0, rel=1e-13, abs=0.0)
@@ -115,17 +108,24 @@ def at(offset):
     return tip_patches(TIP - offset, offset, TIP, HALF, EDGE_LENGTH)
 
 
-def test_patches_far_from_the_tip_are_the_plain_ones():
+def test_patches_are_plain_far_from_the_tip_and_hang_on_its_edge():
     found = at([1e-3, 4e-4])
     assert found.center == pytest.approx(TIP - np.array([1e-3, 4e-4]), rel=1e-15, abs=0.0)
     assert found.half_width.tolist() == [HALF, HALF]
     assert found.edge_share.tolist() == [0.0, 0.0]
-
-
-def test_patches_never_pass_the_tip():
     found = at(np.linspace(-1e-3, 1e-3, 101))
     assert np.all(found.center + found.half_width <= TIP + 1e-15)
     assert np.all((found.edge_share >= 0.0) & (found.edge_share <= 1.0))
+    for offset in (-1e-3, -1e-5, 0.0, 5e-5):
+        found = at(offset)
+        forces = patch(UNIFORM, found.center[0], found.half_width[0], found.edge_share[0])
+        assert forces @ UNIFORM == pytest.approx(found.centroid[0], rel=1e-12, abs=0.0)
+    hang = at([0.5 * EDGE_LENGTH, 0.25 * EDGE_LENGTH, 0.0, -1e-4]).at_edge
+    assert hang[0] == 0.0 and 0.0 < hang[1] < 1.0
+    assert hang[2:] == pytest.approx([1.0, 1.0], rel=1e-12)
+    rule = PatchRule(half_width=3e-4, edge_length=5e-5, edge_load=1e-5)
+    lengths = rule.lengths(np.array([-1.0, 0.0, 1.0]), np.array([1e-2, 10.0, 1e-2]))
+    assert lengths.tolist() == [5e-5, 6e-4, 6e-4]
 
 
 @pytest.mark.parametrize("offset", [HALF, 0.5 * EDGE_LENGTH])
@@ -146,13 +146,6 @@ def test_edge_share_is_that_of_the_edge_pressure(offset):
     whole = np.sum(weight * (-offset + x + 0.5 * c) / radius)
     singular = np.sum(weight * (-offset + 0.5 * c) / radius)
     assert at(offset).edge_share[0] == pytest.approx(singular / whole, rel=1e-9, abs=0.0)
-
-
-def test_centroid_is_that_of_the_nodal_forces():
-    for offset in (-1e-3, -1e-5, 0.0, 5e-5):
-        found = at(offset)
-        forces = patch(UNIFORM, found.center[0], found.half_width[0], found.edge_share[0])
-        assert forces @ UNIFORM == pytest.approx(found.centroid[0], rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.4, 0.9, 1.0])
@@ -179,13 +172,150 @@ def test_patches_at_an_edge_are_as_long_as_the_strip(slope):
     assert float(found) == pytest.approx(strip, rel=1e-9, abs=0.0)
 
 
-def test_patches_at_an_edge_keep_their_bounds():
-    rule = PatchRule(half_width=3e-4, edge_length=5e-5, edge_load=1e-5)
-    lengths = rule.lengths(np.array([-1.0, 0.0, 1.0]), np.array([1e-2, 10.0, 1e-2]))
-    assert lengths.tolist() == [5e-5, 6e-4, 6e-4]
+def grid(profile: int = 6, layers: int = 4) -> FaceGrid:
+    ends = np.array([0.0, *np.cumsum(np.linspace(1.0, 2.0, profile))])
+    s = np.sort(np.concatenate([ends, 0.5 * (ends[1:] + ends[:-1])])) * 1e-3
+    z = np.linspace(-1.0, 1.0, layers + 1) ** 3 * 0.3e-2 + np.linspace(-1.0, 1.0, layers + 1) * 0.7e-2
+    planes, nodes = np.meshgrid(np.arange(2 * layers + 1), np.arange(2 * profile + 1), indexing="ij")
+    freedom = np.where((planes % 2 == 1) & (nodes % 2 == 1), -1, 0)
+    freedom[freedom == 0] = np.arange(np.count_nonzero(freedom == 0))
+    return FaceGrid(s, z, freedom)
 
 
-def test_a_contact_hangs_on_the_edge_from_the_patch_that_reaches_it_to_the_edge_itself():
-    hang = at([0.5 * EDGE_LENGTH, 0.25 * EDGE_LENGTH, 0.0, -1e-4]).at_edge
-    assert hang[0] == 0.0 and 0.0 < hang[1] < 1.0
-    assert hang[2:] == pytest.approx([1.0, 1.0], rel=1e-12)
+def coordinates(mesh: FaceGrid) -> np.ndarray:
+    planes = np.sort(np.concatenate([mesh.z, 0.5 * (mesh.z[1:] + mesh.z[:-1])]))
+    where = np.array([np.argwhere(mesh.freedom == k)[0] for k in range(mesh.freedom.max() + 1)])
+    return np.column_stack([mesh.s[where[:, 1]], planes[where[:, 0]]])
+
+
+def loads_of(mesh: FaceGrid, *patches: tuple[float, float, float, float, float]) -> FaceLoads:
+    center, half_width, share, low, high = (np.array(column) for column in zip(*patches, strict=True))
+    return face_loads(mesh, center[:, None], half_width[:, None], share[:, None], low, high)
+
+
+def dense(mesh: FaceGrid, *patches: tuple[float, float, float, float, float]) -> np.ndarray:
+    loads = loads_of(mesh, *patches)
+    result = np.zeros((len(patches), mesh.freedom.max() + 1))
+    for p in range(len(patches)):
+        used = loads.used[p]
+        np.add.at(result[p], loads.nodes[p, :used], loads.forces[p, :used])
+    return result
+
+
+PATCHES = [
+    (4e-3, 1e-3, 0.0, -2e-3, 1e-3),
+    (2.5e-3, 0.3e-3, 0.0, 0.1e-3, 0.2e-3),
+    (8.5e-3, 0.5e-3, 0.7, -1e-2, 1e-2),
+    (8.0e-3, 1.0e-3, 1.0, 3e-3, 1e-2),
+]
+
+
+@pytest.mark.parametrize("box", PATCHES)
+def test_resultant_and_moments(box):
+    """Quadratic shape functions carry constants, first moments and pure second moments exactly."""
+    mesh = grid()
+    center, a, share, low, high = box
+    force, (s, z) = dense(mesh, box)[0], coordinates(mesh).T
+    assert force.sum() == pytest.approx(1.0, abs=1e-12)
+    assert force @ s == pytest.approx(center + 0.5 * share * a, rel=1e-12, abs=0.0)
+    assert force @ z == pytest.approx(0.5 * (low + high), rel=1e-11, abs=1e-16)
+    assert force @ z**2 == pytest.approx((high**3 - low**3) / (high - low) / 3.0, rel=1e-11, abs=0.0)
+    variance = a**2 * (1.0 + share) / 4.0  # of the mixture about the patch's middle
+    assert force @ (s - center) ** 2 == pytest.approx(variance, rel=1e-9, abs=0.0)
+
+
+def test_boxes_over_the_face_add_up_and_follow_their_contact_line():
+    mesh = grid()
+    box = (4e-3, 1e-3, 0.3, mesh.z[0], mesh.z[-1])
+    plane = np.zeros(mesh.s.size)
+    first, last = load_vector(mesh.s, *box[:3], plane)
+    plane[:first] = plane[last:] = 0.0
+    force = dense(mesh, box)[0]
+    # on the corner profile nodes and mid-side nodes of linear functions of s both must agree
+    assert force @ coordinates(mesh)[:, 0] == pytest.approx(plane @ mesh.s, rel=1e-13)
+    assert force @ coordinates(mesh)[:, 0] ** 2 == pytest.approx(plane @ mesh.s**2, rel=1e-12)
+    whole = dense(mesh, (4e-3, 1e-3, 0.0, -4e-3, 6e-3))[0]
+    parts = dense(mesh, (4e-3, 1e-3, 0.0, -4e-3, -1e-3), (4e-3, 1e-3, 0.0, -1e-3, 6e-3))
+    assert 0.3 * parts[0] + 0.7 * parts[1] == pytest.approx(whole, abs=1e-14)
+    centers, half, share = (
+        np.array([[3e-3, 3.4e-3, 3.8e-3]]),
+        np.full((1, 3), 1e-3),
+        np.array([[0.0, 0.2, 0.4]]),
+    )
+    loads = face_loads(mesh, centers, half, share, np.array([-3e-3]), np.array([6e-3]))
+    found = np.zeros(mesh.freedom.max() + 1)
+    np.add.at(found, loads.nodes[0, : loads.used[0]], loads.forces[0, : loads.used[0]])
+    bounds = ((-3e-3, 0.0), (0.0, 3e-3), (3e-3, 6e-3))
+    parts = dense(mesh, *((centers[0, q], 1e-3, share[0, q], *bounds[q]) for q in range(3)))
+    assert found == pytest.approx(parts.mean(axis=0), abs=1e-15)
+
+
+@pytest.mark.parametrize("teeth", [[0, 0, 0, 0], [-1, -1, 0, 1], [2, 1, 0, -1]])
+def test_compliance_is_the_double_product(teeth):
+    mesh = grid()
+    rng = np.random.default_rng(3)
+    freedoms = mesh.freedom.max() + 1
+    blocks = rng.normal(size=(3, freedoms, freedoms))
+    blocks[0] += blocks[0].T
+    loads = loads_of(mesh, *PATCHES)
+    lever = np.array([1.0, 0.9, 1.0, 0.8])
+    found = np.zeros((4, 4))
+    add_compliance(blocks, np.array(teeth), loads, lever, found)
+    force = dense(mesh, *PATCHES) * lever[:, None]
+    for i in range(4):
+        for j in range(4):
+            apart = teeth[i] - teeth[j]
+            block = np.zeros_like(blocks[0])
+            if abs(apart) < 3:
+                block = blocks[apart] if apart >= 0 else blocks[-apart].T
+            assert found[i, j] == pytest.approx(force[i] @ block @ force[j], rel=1e-10, abs=1e-12)
+
+
+MODULUS, RADIUS, WIDTH = 115e9, 6e-3, 25e-3
+LOAD = 4000.0
+FORCE = np.array([[[LOAD]]])
+STRIP = float(half_width(LOAD / WIDTH, RADIUS, MODULUS))
+
+
+def problem(slope=0.0, low=-math.inf, high=math.inf, place=math.inf, jump=0.0) -> SimpleNamespace:
+    one = [np.array([[value]]) for value in (slope, 1.0 / RADIUS, low, high)]
+    breaks = [np.array([[[value]]]) for value in (place, jump, 0.0)]
+    candidates = SimpleNamespace(gap_about=Gap(*one, *breaks), width=np.array([[WIDTH]]))
+    return SimpleNamespace(candidates=candidates, modulus=MODULUS)
+
+
+def pressure(**about) -> float:
+    return float(contact_pressure(problem(**about), FORCE)[0, 0, 0])
+
+
+def edge(force=None, **about) -> bool:
+    force = FORCE if force is None else force
+    contact = problem(**about)
+    return bool(at_edges(contact, force, contact_pressure(contact, force))[0, 0, 0])
+
+
+HERTZ = float(peak_pressure(LOAD / WIDTH, RADIUS, MODULUS))
+
+
+def test_a_plain_flank_has_the_pressure_of_hertz_and_a_relief_in_the_strip_more():
+    assert pressure() == pytest.approx(HERTZ, rel=1e-12)
+    beside = [pressure(place=share * STRIP, jump=0.01) for share in (1.01, 0.5, 0.0)]
+    assert beside[0] == pytest.approx(HERTZ, rel=1e-12)
+    assert beside[0] < beside[1] < beside[2] < 2.0 * HERTZ
+
+
+AT_EDGE = [
+    {"low": 0.0, "slope": 0.1},
+    {"low": -0.99 * STRIP},
+    {"high": 0.99 * STRIP},
+    {"place": 0.5 * STRIP, "jump": 0.5},
+]
+BESIDE = [{}, {"low": -1.01 * STRIP}, {"high": 1.01 * STRIP}, {"place": 0.5 * STRIP, "jump": 0.01}]
+
+
+def test_a_strip_that_reaches_an_edge_or_a_chamfer_is_told_apart():
+    for about in ({"low": 0.0, "slope": 0.1}, {"low": -0.3 * STRIP}, {"high": 0.0, "slope": -0.01}):
+        assert pressure(**about) == pytest.approx(HERTZ, rel=1e-9)  # an edge does not count
+    for about in AT_EDGE:
+        assert edge(**about) and not edge(force=0.0 * FORCE, **about), about
+    assert not any(edge(**about) for about in BESIDE)

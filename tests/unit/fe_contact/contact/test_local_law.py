@@ -81,61 +81,24 @@ def test_value_is_that_of_the_hertz_room(slope, second):
 
 
 @pytest.mark.parametrize("slope", SLOPES)
-def test_slope_is_the_derivative(slope):
+def test_the_law_is_increasing_concave_and_joined_at_its_guards(slope):
     law = law_of(slope)
     loads = np.geomspace(1e-3 * low(law), 1e3 * high(law), 60)
     for p in loads[(np.abs(loads / low(law) - 1.0) > 0.01) & (np.abs(loads / high(law) - 1.0) > 0.01)]:
         step = 1e-5 * p
         difference = (value(law, p + step) - value(law, p - step)) / (2.0 * step * WIDTH)
         assert approach(law, 0, p * WIDTH)[1] == pytest.approx(difference, rel=1e-6, abs=0.0)
-
-
-@pytest.mark.parametrize("slope", SLOPES)
-def test_increasing_and_concave(slope):
-    law = law_of(slope)
     forces = WIDTH * np.geomspace(1e-3 * low(law), 1e3 * high(law), 400)
     values, slopes, _ = (np.array(v) for v in zip(*(approach(law, 0, f) for f in forces), strict=True))
     assert np.all(np.diff(values) > 0.0)
     assert np.all(slopes > 0.0)
     assert np.all(np.diff(slopes) <= 1e-12 * slopes[:-1])
-
-
-@pytest.mark.parametrize("slope", SLOPES)
-def test_guards_join_continuously(slope):
-    law = law_of(slope)
     for p in (low(law), high(law)):
         assert value(law, p * (1.0 + 1e-12)) == pytest.approx(
             value(law, p * (1.0 - 1e-12)), rel=1e-10, abs=0.0
         )
     above, below = (approach(law, 0, high(law) * WIDTH * f)[1] for f in (1.0 + 1e-9, 1.0 - 1e-9))
     assert above == pytest.approx(below, rel=1e-7, abs=0.0)
-
-
-def test_guards_lie_at_their_strips():
-    law = law_of(math.nan)
-    modulus = contact_modulus(STEEL, STEEL)
-    for found, share in ((low(law), SMALLEST_STRIP), (high(law), LARGEST_STRIP)):
-        assert found == pytest.approx(
-            line_load_at_half_width(share * LENGTH, RADIUS, modulus), rel=1e-12, abs=0.0
-        )
-
-
-@pytest.mark.parametrize("slope", [0.05, 0.0, -0.005])
-def test_an_edge_strip_counts_with_half_its_length(slope):
-    law = law_of(slope)
-    length = edge_contact_length(high(law), slope, RADIUS, contact_modulus(STEEL, STEEL))
-    assert length == pytest.approx(2.0 * LARGEST_STRIP * LENGTH, rel=1e-12, abs=0.0)
-
-
-def test_outgrown_patch_is_flagged_and_nothing_else():
-    law = law_of(0.02)
-    flags = [approach(law, 0, WIDTH * p)[2] for p in (0.0, low(law), 0.999 * high(law), 1.001 * high(law))]
-    assert flags == [False, False, False, True]
-
-
-@pytest.mark.parametrize("slope", SLOPES)
-def test_straight_below_the_smallest_strip(slope):
-    law = law_of(slope)
     secant = value(law, low(law)) / low(law)
     for share in (1e-6, 0.3, 0.99):
         found, stiffness, _ = approach(law, 0, share * low(law) * WIDTH)
@@ -143,11 +106,26 @@ def test_straight_below_the_smallest_strip(slope):
         assert stiffness == pytest.approx(secant / WIDTH, rel=1e-12, abs=0.0)
 
 
-def test_no_force_no_approach_and_straight_through_zero():
+def test_guards_lie_at_their_strips_and_flag_what_outgrows_them():
+    law = law_of(math.nan)
+    modulus = contact_modulus(STEEL, STEEL)
+    for found, share in ((low(law), SMALLEST_STRIP), (high(law), LARGEST_STRIP)):
+        assert found == pytest.approx(
+            line_load_at_half_width(share * LENGTH, RADIUS, modulus), rel=1e-12, abs=0.0
+        )
     law = law_of(0.02)
+    flags = [approach(law, 0, WIDTH * p)[2] for p in (0.0, low(law), 0.999 * high(law), 1.001 * high(law))]
+    assert flags == [False, False, False, True]
     at_zero, slope, _ = approach(law, 0, 0.0)
     assert at_zero == 0.0
     assert approach(law, 0, -1e-9)[0] == pytest.approx(-1e-9 * slope, rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize("slope", [0.05, 0.0, -0.005])
+def test_an_edge_strip_counts_with_half_its_length(slope):
+    law = law_of(slope)
+    length = edge_contact_length(high(law), slope, RADIUS, contact_modulus(STEEL, STEEL))
+    assert length == pytest.approx(2.0 * LARGEST_STRIP * LENGTH, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("slope", SLOPES)

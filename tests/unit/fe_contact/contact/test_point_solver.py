@@ -1,4 +1,4 @@
-"""The contact solver on problems with known answers, its outcomes, and its sweep over positions and loads."""
+"""The contact solver on problems with known answers: outcomes, sweeps, and where it starts."""
 
 from __future__ import annotations
 
@@ -8,12 +8,33 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from numba import typeof
 
-from fe_contact.contact import ContactProblem, LoadedSlices, solve_contact
+from fe_contact import Gear, GearPair
+from fe_contact.contact import (
+    Candidates,
+    ContactModel,
+    ContactProblem,
+    LoadedSlices,
+    PatchRule,
+    Slices,
+    Start,
+    contact_candidates,
+    solve_contact,
+)
 from fe_contact.contact.newton import _residuals, solve_point
 from fe_contact.contact.patch import Patches
-from fe_contact.contact.point_problem import PointProblem, State, _free_strips, _LocalLaw, approach, eliminate
+from fe_contact.contact.point_problem import (
+    PointProblem,
+    State,
+    _free_strips,
+    _LocalLaw,
+    approach,
+    eliminate,
+    point_problems,
+)
 from fe_contact.contact.strip import Gap
+from fe_contact.effects.influence.deflection_budget import Springs
 from fe_contact.types import Status
 
 MODULUS = 115e9
@@ -61,10 +82,17 @@ def test_one_contact_in_closed_form(edge_slope):
     assert residual.max() < 1e-12
 
 
-def test_equal_contacts_share_equally():
+def test_contacts_share_by_their_balance():
     compliance = STIFF * (np.eye(4) + 0.3)
     *_, force, _ = solve(point(compliance, np.zeros(4)), 4000.0)
     assert force == pytest.approx(np.full(4, 1000.0), rel=1e-12, abs=0.0)
+    compliance = STIFF * np.array([[1.0, 0.2], [0.2, 1.4]])
+    problem = point(compliance, [0.0, 1e-6])
+    d, *_, force, _ = solve(problem, 3000.0)
+    for i in (0, 1):
+        local, _, _ = approach(problem.law, i, force[i])
+        assert problem.gap[i] + compliance[i] @ force + local == pytest.approx(d, rel=1e-12, abs=0.0)
+    assert force.sum() == pytest.approx(3000.0, rel=1e-12, abs=0.0)
 
 
 def test_a_contact_enters_when_its_gap_closes():
@@ -85,18 +113,7 @@ def test_a_contact_enters_when_its_gap_closes():
     assert 0.0 < barely[5][1] < 1e-8 * load
 
 
-def test_two_contacts_balance_their_approach():
-    # both loaded: d - g_i - sum C F - lambda = 0 for each, whatever the solver did
-    compliance = STIFF * np.array([[1.0, 0.2], [0.2, 1.4]])
-    problem = point(compliance, [0.0, 1e-6])
-    d, *_, force, _ = solve(problem, 3000.0)
-    for i in (0, 1):
-        local, _, _ = approach(problem.law, i, force[i])
-        assert problem.gap[i] + compliance[i] @ force + local == pytest.approx(d, rel=1e-12, abs=0.0)
-    assert force.sum() == pytest.approx(3000.0, rel=1e-12, abs=0.0)
-
-
-def test_no_contact_at_all_is_out_of_model():
+def test_what_has_no_solution_or_outgrows_its_patch_is_said():
     d, tangent, status, iterations, _, force, residual = solve(point([[STIFF]], [math.inf]), 1.0)
     assert status == Status.OUT_OF_MODEL
     assert math.isnan(d)
@@ -104,6 +121,14 @@ def test_no_contact_at_all_is_out_of_model():
     assert iterations == 0
     assert force.size == 0
     assert not np.any(residual < 1.0)
+    d, _, status, *_ = solve(point(STIFF * np.eye(2), [0.0, math.nan]), 1000.0)
+    assert status == Status.SINGULAR
+    assert math.isnan(d)
+    strip_load = WIDTH * math.pi * MODULUS * (0.66 * LENGTH) ** 2 / (4.0 * RADIUS)
+    assert [solve(point([[STIFF]], [0.0]), factor * strip_load)[4] for factor in (0.99, 1.01)] == [
+        False,
+        True,
+    ]
 
 
 @pytest.mark.parametrize("entry", [-1e-6, math.nan])
@@ -112,20 +137,6 @@ def test_a_compliance_without_a_solution_is_reported(entry):
     assert status == Status.SINGULAR
     assert math.isnan(d)
     assert not np.any(residual < 1.0)
-
-
-def test_a_gap_that_is_no_number_is_not_passed_over():
-    d, _, status, *_ = solve(point(STIFF * np.eye(2), [0.0, math.nan]), 1000.0)
-    assert status == Status.SINGULAR
-    assert math.isnan(d)
-
-
-def test_outgrown_patch_is_flagged():
-    strip_load = WIDTH * math.pi * MODULUS * (0.66 * LENGTH) ** 2 / (4.0 * RADIUS)
-    assert [solve(point([[STIFF]], [0.0]), factor * strip_load)[4] for factor in (0.99, 1.01)] == [
-        False,
-        True,
-    ]
 
 
 def test_residuals_measure_what_they_say():
@@ -197,7 +208,7 @@ def two_position_problem() -> ContactProblem:
 LOADS = np.array([10.0, 1000.0, 5000.0])
 
 
-def test_sweep_equals_single_solves():
+def test_sweep_equals_single_solves_and_a_failure_stays_alone():
     problem = two_position_problem()
     solution = solve_contact(problem, LOADS)
     assert solution.converged
@@ -211,10 +222,6 @@ def test_sweep_equals_single_solves():
             assert solution.deflection[p, k] == pytest.approx(d, rel=1e-12, abs=0.0)
             assert solution.tangent[p, k] == pytest.approx(tangent, rel=1e-9, abs=0.0)
             assert solution.force[p, k, single.place] == pytest.approx(force, rel=1e-9, abs=0.0)
-
-
-def test_a_failed_position_leaves_the_others_alone():
-    problem = two_position_problem()
     broken = problem.candidates.gap.copy()
     broken[0] = math.inf
     candidates = SimpleNamespace(**(vars(problem.candidates) | {"gap": broken}))
@@ -224,9 +231,92 @@ def test_a_failed_position_leaves_the_others_alone():
     assert np.isnan(solution.deflection[0]).all()
     assert np.all(solution.force[0] == 0.0)
     assert np.array_equal(solution.deflection[1], solve_contact(problem, LOADS).deflection[1])
-
-
-def test_positions_and_loads_are_independent_of_each_other():
-    problem = two_position_problem()
     all_loads, one_load = solve_contact(problem, LOADS), solve_contact(problem, LOADS[1:2])
     assert one_load.deflection[:, 0] == pytest.approx(all_loads.deflection[:, 1], rel=1e-12, abs=0.0)
+
+
+MODULE = 3e-3
+GEAR = Gear(teeth=24, normal_module=MODULE, face_width=8 * MODULE, bore_diameter=12 * MODULE, helix_angle=0.3)
+PAIR = GearPair(GEAR, replace(GEAR, helix_angle=-0.3))
+THREE_LOADS = np.array([200.0, 1500.0, 6000.0])
+MODEL = ContactModel(across_face=True)
+
+
+def candidates(slices: int, corner: bool = True) -> Candidates:
+    position, rule = np.arange(6) / 6, PatchRule(0.15 * MODULE, 0.0125 * MODULE)
+    model = replace(MODEL, corner_contact=corner)
+    return contact_candidates(PAIR, model, position, rule, Slices.of_pair(PAIR, slices))
+
+
+@pytest.fixture(scope="module")
+def springs() -> ContactProblem:
+    return Springs(PAIR)._springs(MODEL)
+
+
+def test_compiled_code_sees_one_order_in_memory(springs: ContactProblem) -> None:
+    """Candidates column by column or row by row: compiled once for both."""
+    touch, width = springs.candidates.touch, springs.candidates.width
+    kinds = set()
+    for order in "CF":
+        arrays = {name: np.copy(value, order) for name, value in vars(touch).items() if np.ndim(value) == 2}
+        here = replace(springs.candidates, touch=replace(touch, **arrays), width=np.copy(width, order))
+        kinds.add(typeof(point_problems(replace(springs, candidates=here))))
+    assert len(kinds) == 1
+
+
+def test_the_solution_is_the_same_wherever_it_starts_and_nearer_is_sooner(springs: ContactProblem) -> None:
+    """There is one alone: from its own forces, from others by far, and from none."""
+    cold = solve_contact(springs, THREE_LOADS)
+    rng = np.random.default_rng(3)
+    for force in (cold.force, 0.9 * cold.force[:, [1, 2, 0]], rng.uniform(-1.0, 1.0, cold.force.shape) * 1e3):
+        warm = solve_contact(springs, THREE_LOADS, Start(springs.candidates, force))
+        assert warm.converged
+        assert warm.deflection == pytest.approx(cold.deflection, rel=1e-11, abs=0.0)
+        assert warm.force == pytest.approx(cold.force, abs=1e-8 * THREE_LOADS[0])
+        assert warm.residuals.max() < 1e-9
+    rng = np.random.default_rng(4)
+    beside = cold.force * (1.0 + 0.02 * rng.uniform(-1.0, 1.0, cold.force.shape))
+    warm = solve_contact(springs, THREE_LOADS, Start(springs.candidates, beside))
+    assert warm.iterations.mean() < cold.iterations.mean() - 0.5
+    own = solve_contact(springs, THREE_LOADS, Start(springs.candidates, cold.force))
+    assert own.iterations.max() <= 2
+    force = np.full((springs.candidates.position.size, THREE_LOADS.size, springs.candidates.pair.size), 100.0)
+    solve_contact(springs, THREE_LOADS, Start(springs.candidates, force))
+    assert np.all(force == 100.0)
+
+
+def test_a_misleading_start_is_given_up(springs: ContactProblem) -> None:
+    """Where bodies are barely definite, forces on a few points may lead nowhere: a guess of its own does."""
+    present = springs.candidates.slices.present
+    least = np.linalg.eigvalsh(springs.bodies[0][np.ix_(present[0], present[0])])[0]
+    compliance, at = springs.compliance.copy(), np.arange(present.shape[1])
+    compliance[:, at, at] -= np.where(present, 2.7 * least, 0.0)
+    barely = replace(springs, compliance=compliance)
+    cold = solve_contact(barely, THREE_LOADS)
+    assert cold.converged
+    few = np.where(np.random.default_rng(3).uniform(size=cold.force.shape) > 0.99, 3e4, 0.0)
+    warm = solve_contact(barely, THREE_LOADS, Start(barely.candidates, few))
+    assert warm.converged
+    assert warm.deflection == pytest.approx(cold.deflection, rel=1e-9, abs=0.0)
+
+
+def test_forces_carried_to_other_slices_keep_the_line_load_of_their_pair() -> None:
+    fine, coarse = candidates(21), candidates(7)
+    load = np.arange(1.0, fine.pair.size + 1.0)[None, None, :]
+    carried = Start(fine, load).on(coarse)[0, 0]
+    for i in range(coarse.pair.size):
+        beside = np.flatnonzero(fine.pair == coarse.pair[i])
+        k = beside[np.argmin(np.abs(fine.face_position[beside] - coarse.face_position[i]))]
+        assert carried[i] / coarse.point_width == pytest.approx(
+            load[0, 0, k] / fine.point_width, rel=1e-12, abs=0.0
+        )
+    back = Start(coarse, carried[None, None]).on(fine)
+    for pair in np.unique(fine.pair):
+        whole = carried[coarse.pair == pair].sum()
+        assert back[0, 0, fine.pair == pair].sum() == pytest.approx(whole, rel=1e-12, abs=0.0)
+    here = candidates(5)
+    points = len(here.blend)
+    fewer = replace(here, pair=here.pair[points:], face_position=here.face_position[points:])
+    carried = Start(fewer, np.ones((1, 1, fewer.pair.size))).on(here)[0, 0]
+    assert np.all(carried[:points] == 0.0)
+    assert np.all(carried[points:] == 1.0)

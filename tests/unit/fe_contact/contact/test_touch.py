@@ -17,13 +17,7 @@ from fe_contact.geometry import InternalGearPair, RingGear, corner_contact, edge
 
 
 def pair(**modification: object) -> GearPair:
-    gear = Gear(
-        teeth=20,
-        normal_module=4e-3,
-        face_width=25e-3,
-        bore_diameter=40e-3,
-        modification=FlankModification(**modification),
-    )
+    gear = Gear(20, 4e-3, 25e-3, 40e-3, modification=FlankModification(**modification))
     return GearPair(gear, gear, 80e-3)
 
 
@@ -59,15 +53,11 @@ def touches(gears, position, terms):
     return plain, modified_touch(gears, plain, np.zeros(1), terms)
 
 
-def test_no_modification_moves_nothing():
+def test_no_modification_moves_nothing_and_a_constant_gap_only_adds():
     gears = pair()
     plain, modified = touches(gears, np.linspace(-0.9, 0.9, 41), (Removed(),))
     for name in plain.__dataclass_fields__:
         assert np.array_equal(getattr(modified, name), getattr(plain, name))
-
-
-def test_constant_gap_only_adds():
-    gears = pair()
     plain, modified = touches(gears, [0.0, 0.3], (Constant(),))
     assert modified.gap == pytest.approx(plain.gap + 3e-6, abs=1e-15)
     assert modified.s_1 == pytest.approx(plain.s_1, abs=1e-12)
@@ -146,32 +136,23 @@ def test_a_triangular_relief_against_a_direct_search_at_any_place_of_the_face(sh
         assert modified.jump[0, 0] == pytest.approx(start.jump, rel=1e-12)
 
 
-def test_the_gap_has_no_jump_where_the_relief_starts():
+def test_gaps_run_over_the_start_of_a_relief_and_past_the_edge():
     gears = pair(tip_relief=20e-6, tip_relief_length=1.0e-3)
     position = np.linspace(0.3, 0.778, 2000)
     _, modified = touches(gears, position, (Removed(),))
     assert np.abs(np.diff(modified.gap[:, 0])).max() < 0.1e-6
     assert np.all(modified.gap >= 0.0)
-
-
-def test_offsets_measure_the_way_to_the_tip_edge():
     gears = pair(tip_relief=15e-6, tip_relief_length=0.9e-3)
     _, modified = touches(gears, np.linspace(-0.7, 0.7, 30), (Removed(),))
     tip = float(flank_coordinate(gears.pinion, gears.pinion.tip_roll_length))
     assert modified.offset_1 == pytest.approx(tip - modified.s_1, abs=1e-12)
     assert modified.offset_2 == pytest.approx(tip - modified.s_2, abs=1e-12)
-
-
-def test_corner_contact_keeps_its_gap_and_adds_the_edge_relief():
-    """Past E the edge is what touches unless the relief opens faster than the flanks."""
+    # Past E the edge is what touches unless the relief opens faster than the flanks.
     gears = pair(tip_relief=2e-6, tip_relief_length=1.2e-3)
     plain, modified = touches(gears, [0.81], (Removed(),))
     assert 0.0 < plain.gap[0, 0] < modified.gap[0, 0] <= plain.gap[0, 0] + 2e-6 + 1e-12
     assert modified.offset_1[0, 0] < 0.0
-
-
-def test_the_least_modification_leaves_a_tip_edge_in_contact():
-    """Flanks that open at an edge touch there, however little is removed: 1e-155 m is as good as none."""
+    # Flanks that open at an edge touch there, however little is removed: 1e-155 m is as good as none.
     gears, position = pair(profile_crowning=1e-155), np.linspace(0.65, 0.9, 26)
     plain, modified = touches(gears, position, (Removed(),))
     beyond = np.minimum(plain.offset_1, plain.offset_2) < 0.0
@@ -201,9 +182,7 @@ def scaled_down(gears, scale):
 
 def test_the_edge_of_a_ring_on_a_flatter_flank_has_a_radius():
     """Where the ring's hollow flank is the more curved one, the relative curvature would be below zero."""
-    pinion = Gear(
-        teeth=21, normal_module=1e-3, face_width=10e-3, bore_diameter=8e-3, profile_shift_coefficient=0.37
-    )
+    pinion = Gear(21, 1e-3, 10e-3, 8e-3, profile_shift_coefficient=0.37)
     gears = InternalGearPair(pinion, RingGear(50, 1e-3, 10e-3, rim_diameter=60e-3, addendum_coefficient=0.8))
     roll_1, roll_2 = gears.roll_lengths(np.linspace(0.0, 0.97, 33)[:, None], np.arange(-3, 4))
     found = conjugate_touch(gears, roll_1, roll_2, corners=True)

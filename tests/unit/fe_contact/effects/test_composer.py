@@ -1,4 +1,4 @@
-"""Composition of effects: order, neutrality, refusals and the ledger."""
+"""Composition of effects: order, neutrality, refusals, the ledger, and a scene without one of them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ import pytest
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, Effect, Verdict, compose
+from fe_contact.effects.effect import across_face
 from fe_contact.errors import InputError
-from fe_contact.geometry import FlankModification, Gear, GearPair
+from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation, Shaft
 
 NAMES = [effect.name for effect in EFFECTS]
 EVERYTHING_ON = dict.fromkeys(NAMES, "on")
@@ -57,18 +58,16 @@ def test_order_does_not_matter(order, choices):
     assert compose(replace(case, registry=order), choices)[0] == compose(case, choices)[0]
 
 
-def test_everything_off_is_the_neutral_model():
+def test_everything_off_is_neutral_and_a_new_effect_needs_only_its_place():
     model, ledger = compose(scene(), EVERYTHING_OFF)
     assert model == ContactModel()
     assert not any(entry.on for entry in ledger)
-
-
-def test_a_new_effect_needs_nothing_but_its_place_in_the_registry():
     wider = replace(scene(), registry=(*EFFECTS, Lapping()))
     model, ledger = compose(wider, {})
     assert lapped in model.gaps
     assert [entry.name for entry in ledger] == [*NAMES, "lapping"]
     assert compose(wider, {"lapping": "off"})[0] == compose(scene(), {})[0]
+    assert len(set(NAMES)) == len(NAMES)
 
 
 @pytest.mark.parametrize("registry", [(Lapping(), *EFFECTS), (*EFFECTS, Lapping())], ids=["first", "last"])
@@ -78,38 +77,26 @@ def test_gaps_add_up_whoever_comes_first(registry):
     assert len(model.gaps) == 2
 
 
-@pytest.mark.parametrize("choice", ["on", "off"])
 @pytest.mark.parametrize("name", NAMES)
-def test_explicit_choices_are_obeyed(name, choice):
-    _, ledger = compose(scene(), {name: choice})
-    entry = next(e for e in ledger if e.name == name)
-    assert entry.on == (choice == "on")
-    assert entry.choice == choice
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_auto_follows_the_verdict(name):
-    for case in (scene(), scene(tip_relief=300e-6, tip_relief_length=1e-3)):
-        _, ledger = compose(case, {})
+def test_explicit_choices_are_obeyed_and_auto_follows_the_verdict(name):
+    relieved = scene(tip_relief=300e-6, tip_relief_length=1e-3)
+    for case, choice in ((scene(), "on"), (scene(), "off"), (scene(), "auto"), (relieved, "auto")):
+        _, ledger = compose(case, {} if choice == "auto" else {name: choice})
         entry = next(e for e in ledger if e.name == name)
-        assert entry.on == entry.verdict.on
-        assert entry.choice == "auto"
+        assert entry.on == (entry.verdict.on if choice == "auto" else choice == "on")
+        assert entry.choice == choice
 
 
-@pytest.mark.parametrize("choices", [{"corner_contacts": "on"}, {"": "off"}])
-def test_unknown_effects_are_refused(choices):
+@pytest.mark.parametrize(
+    ("name", "choice", "said"),
+    [("corner_contacts", "on", NAMES), ("", "off", NAMES)]
+    + [("corner_contact", choice, ['"auto"']) for choice in ("yes", "ON", "", True)],
+)
+def test_unknown_effects_and_choices_are_refused(name, choice, said):
     with pytest.raises(InputError) as refusal:
-        compose(scene(), choices)
-    assert refusal.value.field == f"effects.{next(iter(choices))}"
-    assert all(name in str(refusal.value) for name in NAMES)
-
-
-@pytest.mark.parametrize("choice", ["yes", "ON", "", True])
-def test_unknown_choices_are_refused(choice):
-    with pytest.raises(InputError) as refusal:
-        compose(scene(), {"corner_contact": choice})
-    assert refusal.value.field == "effects.corner_contact"
-    assert '"auto"' in str(refusal.value)
+        compose(scene(), {name: choice})
+    assert refusal.value.field == f"effects.{name}"
+    assert all(word in str(refusal.value) for word in said)
 
 
 @pytest.mark.parametrize("choices", [{}, EVERYTHING_OFF])
@@ -122,19 +109,51 @@ def test_the_ledger_says_what_was_decided_and_why(choices):
         assert page["name"] == effect.name
         assert page["on"] == entry.on
         assert page["called_for"] == entry.verdict.on
-        assert page["reason"]
-        assert page["decision"]
+        assert page["reason"] and page["decision"]
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=NAMES)
 def test_effects_declare_themselves(effect):
     assert effect.name.isidentifier()
-    assert effect.needs
-    assert effect.adds
-    assert effect.cost
-    assert effect.valid_for
+    assert effect.needs and effect.adds and effect.cost and effect.valid_for
     assert f"docs/effects.md#{effect.name}" in effect.sources
 
 
-def test_names_are_unique():
-    assert len(set(NAMES)) == len(NAMES)
+FULL = Gear(
+    20,
+    4e-3,
+    25e-3,
+    40e-3,
+    pitch_deviation=PitchDeviation((0.0, *19 * (3e-6,))),
+    modification=FlankModification(tip_relief=20e-6, tip_relief_length=2e-3, helix_crowning=5e-6),
+)
+SHAFT = Shaft(length=0.2, diameter=0.04, position=0.06)
+FULL_SCENE = ContactScene(
+    GearPair(FULL, FULL, 80e-3, shafts=(SHAFT, SHAFT)), np.array([50.0, 100.0]), EFFECTS, np.array([10e-6])
+)
+OWN = ("profile_modification", "lead_modification", "misalignment", "pitch_error", "shaft_deflection")
+
+
+def test_these_have_something_of_their_own_in_the_scene():
+    rest = {effect.name: effect.without(FULL_SCENE) for effect in EFFECTS}
+    assert tuple(name for name, scene in rest.items() if scene is not None and scene is not FULL_SCENE) == OWN
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_nothing_is_left_of_it_and_all_of_the_others(name):
+    effect = FULL_SCENE.effect(name)
+    rest = effect.without(FULL_SCENE)
+    assert rest is not None
+    assert (effect.called_for(FULL_SCENE).neutral, effect.called_for(rest).neutral) == (False, True)
+    assert effect.across_face(rest) is None
+    assert len(across_face(rest)) == len(across_face(FULL_SCENE)) - (
+        effect.across_face(FULL_SCENE) is not None
+    )
+    for other in OWN:
+        if other != name:
+            assert FULL_SCENE.effect(other).called_for(rest).on
+    rest = FULL_SCENE.effect(name).without(FULL_SCENE)
+    assert rest is not None
+    choices = {"corner_contact": "on", "face_load_distribution": "on", "finite_width": "off"}
+    off, _ = compose(FULL_SCENE, {**choices, name: "off"})
+    assert repr(off) == repr(compose(rest, choices)[0])

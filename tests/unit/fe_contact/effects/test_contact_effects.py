@@ -1,21 +1,22 @@
-"""What each effect contributes, when it is called for, and that neutral settings change no bit."""
+"""What each effect on flanks contributes, when it is called for, and that neutral settings change no bit."""
 
 from __future__ import annotations
 
 from dataclasses import fields, is_dataclass, replace
+from typing import Any
 
 import numpy as np
 import pytest
+from spur_gears import GEAR
 
 from fe_contact.contact import PatchRule, Slices, contact_candidates, with_gaps
 from fe_contact.contact.model import ContactModel
-from fe_contact.effects import EFFECTS, ContactScene
+from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.corner_contact import CornerContact
-from fe_contact.effects.flank_modification import ProfileModification
+from fe_contact.effects.flank_modification import LeadModification, ProfileModification
 from fe_contact.effects.tooth_coupling import ToothCoupling
-from fe_contact.geometry import FlankModification, Gear, GearPair
+from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair
 
-GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 RELIEF = FlankModification(tip_relief=30e-6, tip_relief_length=1e-3)
 POSITIONS = np.arange(64) / 64
 RULE = PatchRule(half_width=3e-4, edge_length=2e-4)
@@ -115,6 +116,9 @@ def test_modification_is_called_for_by_a_modified_flank_only():
     assert "pinion" in effect.called_for(scene(RELIEF)).reason
     assert "wheel" in effect.called_for(scene(None, RELIEF)).reason
     assert effect.called_for(scene(None, RELIEF)).on
+    verdict = ToothCoupling().called_for(scene())
+    assert verdict.on
+    assert "1.557" in verdict.reason
 
 
 def test_corner_contact_is_called_for_unless_relief_outgrows_deflection():
@@ -124,16 +128,74 @@ def test_corner_contact_is_called_for_unless_relief_outgrows_deflection():
     assert effect.called_for(scene(deep, None)).on, "the other gear's tip edge is not relieved"
     assert not effect.called_for(scene(deep, deep)).on
     assert effect.called_for(scene(deep, deep, torque=1e5)).on
-
-
-def test_corner_contact_is_called_for_where_steep_relief_only_moves_the_touching_point():
-    # 200 um at the very edge, but 0.15 mm beside it the flanks are 4 um apart
     rounding = FlankModification(tip_relief=200e-6, tip_relief_length=0.15e-3, tip_relief_shape="parabolic")
     verdict = CornerContact().called_for(scene(rounding, rounding))
     assert verdict.on
 
 
-def test_coupling_is_always_called_for_and_changes_more_with_more_pairs():
-    verdict = ToothCoupling().called_for(scene())
-    assert verdict.on
-    assert "1.557" in verdict.reason
+WIDE = Gear(teeth=20, normal_module=4e-3, face_width=24e-3, bore_diameter=40e-3)
+FEW_POSITIONS = np.arange(16) / 16
+SLICES = 8
+TWIST = 30e-6
+
+
+def lead_scene(torque: float = 100.0, **modification: Any) -> ContactScene:
+    gear = replace(WIDE, modification=FlankModification(**modification))
+    return ContactScene(GearPair(gear, WIDE, center_distance=80e-3), np.array([torque]), EFFECTS)
+
+
+def over_face(case: ContactScene, model: ContactModel):
+    slices = Slices.of_pair(case.pair, SLICES)
+    plain = contact_candidates(case.pair, model, FEW_POSITIONS, PatchRule(3e-4, 2e-4), slices)
+    return with_gaps(case.pair, plain, model)
+
+
+def test_twist_calls_for_the_lead_and_not_for_the_profile():
+    twisted = lead_scene(flank_twist=TWIST)
+    assert LeadModification().called_for(twisted).on
+    assert not ProfileModification().called_for(twisted).on
+    model, ledger = compose(twisted, {})
+    assert model.across_face
+    assert len(model.gaps) == 1
+    assert {entry.name for entry in ledger if entry.on} >= {"lead_modification", "face_load_distribution"}
+
+
+def test_each_slice_of_a_twisted_flank_is_a_sloped_profile():
+    """The touching points move off the line of action as on a profile slope of that slice's amount."""
+    twisted = lead_scene(flank_twist=TWIST)
+    found = over_face(twisted, LeadModification().contribute(twisted, ContactModel()))
+    for place in np.unique(found.face_position):
+        amount = 4.0 * TWIST * place / WIDE.face_width  # tip minus form point
+        sloped = lead_scene(profile_slope=amount)
+        expected = over_face(sloped, ProfileModification().contribute(sloped, ContactModel()))
+        ours, theirs = found.face_position == place, expected.face_position == place
+        for name in ("s_1", "s_2", "gap"):
+            values = getattr(found.touch, name)[:, ours], getattr(expected.touch, name)[:, theirs]
+            # the search ends on a grid of about 1e-4 of its reach
+            assert values[0] == pytest.approx(values[1], rel=0.0, abs=3e-7 if name != "gap" else 1e-11)
+    plain = over_face(twisted, ContactModel())
+    assert np.abs(found.touch.s_1 - plain.touch.s_1)[np.isfinite(found.gap)].max() > 3e-5
+
+
+def test_a_free_flank_made_of_a_twist_is_that_twist():
+    twisted = lead_scene(flank_twist=TWIST)
+    roll = (WIDE.form_roll_length, WIDE.tip_roll_length)
+    face = (-0.5 * WIDE.face_width, 0.5 * WIDE.face_width)
+    free = lead_scene(flank_grid=FlankGrid(roll, face, ((TWIST, -TWIST), (-TWIST, TWIST))))
+    assert LeadModification().called_for(free).on
+    first, second = (
+        over_face(case, LeadModification().contribute(case, ContactModel())).touch for case in (free, twisted)
+    )
+    for name in ("s_1", "s_2", "gap"):
+        assert getattr(first, name) == pytest.approx(getattr(second, name), rel=0.0, abs=1e-12)
+
+
+def test_a_tip_edge_is_clear_only_if_it_is_so_all_over_the_face():
+    relief = {"tip_relief": 200e-6, "tip_relief_length": 1e-3}
+    deep = replace(WIDE, modification=FlankModification(**relief))
+    low = replace(WIDE, modification=FlankModification(**relief, flank_twist=200e-6))
+    clear, touching = (
+        ContactScene(GearPair(deep, g, 80e-3), np.array([100.0]), EFFECTS) for g in (deep, low)
+    )
+    assert not CornerContact().called_for(clear).on
+    assert CornerContact().called_for(touching).on

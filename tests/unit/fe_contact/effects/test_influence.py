@@ -1,7 +1,8 @@
-"""Influence of effects without finite elements: springs against finite elements, laws of their compliance."""
+"""Influence of effects and parts of the deflection without finite elements: springs, and laws of both."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,18 +13,23 @@ from analysis_requests import table_request
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.request_check import check_request
+from fe_contact.body import Shaft, Shafts
 from fe_contact.compliance import flank_compliance
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, contact_problem
-from fe_contact.effects.influence.deflection_budget import Springs
+from fe_contact.effects import EFFECTS, ContactScene, compose
+from fe_contact.effects.influence.deflection_budget import DeflectionBudget, Springs, deflection_budget
 from fe_contact.effects.influence.estimate import EstimatedInfluence, estimate_influence
-from fe_contact.effects.influence.slice_compliance import _bent, slice_compliance
-from fe_contact.options import AnalysisOptions, TableAxes
+from fe_contact.effects.influence.slice_compliance import _bent, _tooth_bending, half_plane, slice_compliance
+from fe_contact.hertz import contact_modulus, half_width, relative_radius
+from fe_contact.options import TableAxes
 from fe_contact.planning.plan import make_plan
 from fe_contact.types import FloatArray
 
 M = 3e-3
 GEAR = Gear(teeth=24, normal_module=M, face_width=6 * M, bore_diameter=12 * M)
 PAIR = GearPair(GEAR, GEAR)
+
+
 HELICAL = GearPair(replace(GEAR, helix_angle=0.35), replace(GEAR, helix_angle=-0.35))
 
 
@@ -63,9 +69,7 @@ def test_springs_of_helical_teeth_are_as_soft_as_finite_elements(tmp_path: Path)
     """A force with an axial part bends the discs: without that teeth move their neighbors half as far."""
     narrow = {name: replace(getattr(HELICAL, name), face_width=4 * M) for name in ("pinion", "wheel")}
     checked = check_request(
-        replace(HELICAL, **narrow),
-        TableAxes(normal_forces=[2000.0]),
-        AnalysisOptions(level="draft", positions=8),
+        replace(HELICAL, **narrow), *table_request(normal_forces=[2000.0], level="draft", positions=8)
     )
     request = checked.request
     plan = make_plan(request.pair, request.load, request.options, checked.model)
@@ -131,13 +135,88 @@ def test_a_rigid_gap_under_all_of_the_load_is_seen_whole() -> None:
     assert found.largest < 1.0
 
 
-def test_what_a_scene_does_not_hold_changes_nothing() -> None:
+def test_what_a_scene_does_not_hold_changes_nothing_and_more_more() -> None:
     for name in ("lead_modification", "misalignment", "pitch_error", "shaft_deflection", "thin_rim"):
         assert influence(PAIR, name).largest == 0.0
     checked = check_request(HELICAL, TableAxes(normal_forces=[2000.0]))
     assert estimate_influence(checked.request.scene, checked.decided, "face_load_distribution") is None
-
-
-def test_misalignment_changes_more_the_larger_it_is() -> None:
     small, large = (influence(PAIR, "misalignment", misalignments=[x]) for x in (2e-6, 20e-6))
     assert large.largest > 10.0 * small.largest > 0.0
+
+
+PLANE = {"face_load_distribution": "off", "finite_width": "off", "corner_contact": "off"}
+TORQUE = 50.0
+PLAIN = FlankModification()
+
+
+def spur_pair(bore: float = 20e-3, relief: float = 0.0) -> GearPair:
+    gear = Gear(teeth=25, normal_module=2e-3, face_width=12e-3, bore_diameter=bore)
+    flank = FlankModification(tip_relief=relief, tip_relief_length=0.5e-3)
+    return GearPair(replace(gear, modification=flank), replace(gear, teeth=31))
+
+
+def helical_pair(flank: FlankModification = PLAIN, shafts: Shafts = (None, None)) -> GearPair:
+    gear = Gear(25, 2e-3, 12e-3, 20e-3, helix_angle=math.radians(20.0))
+    wheel = replace(gear, teeth=31, helix_angle=-gear.helix_angle)
+    return GearPair(replace(gear, modification=flank), wheel, shafts=shafts)
+
+
+def scene(pair: GearPair, skew: float = 0.0) -> ContactScene:
+    return ContactScene(pair, np.array([TORQUE]), EFFECTS, np.array([skew]))
+
+
+def budget(pair: GearPair, skew: float = 0.0, **choices: str) -> DeflectionBudget:
+    return deflection_budget(scene(pair, skew), choices)
+
+
+def test_the_parts_are_the_deflection_of_the_springs() -> None:
+    pair = helical_pair(FlankModification(tip_relief=15e-6, tip_relief_length=1e-3))
+    parts = budget(pair, skew=10e-6)
+    curve = Springs(pair).curve(compose(scene(pair, 10e-6), {})[0], pair.normal_force(np.array([TORQUE])))
+    assert float(np.mean(parts.total)) == pytest.approx(float(curve.mean[0]), rel=1e-9)
+
+
+def test_hertz_is_what_two_half_planes_approach_down_to_the_middles_of_the_teeth() -> None:
+    """K. L. Johnson, Contact Mechanics, eq. 5.57, where one pair carries all: at the pitch point."""
+    pair = spur_pair()
+    parts = budget(pair, **PLANE)
+    line_load = float(pair.normal_force(TORQUE)) / pair.face_width
+    roll = pair.path_of_contact.pitch_point
+    rolls = roll, float(pair.mating_roll_length(roll))
+    modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
+    width = float(half_width(line_load, relative_radius(*rolls), modulus))
+    expected = 0.0
+    for gear, length in zip((pair.pinion, pair.wheel), rolls, strict=True):
+        bending, ratio = _tooth_bending(gear), gear.material.poissons_ratio
+        depth = float(bending.at(bending.depth, np.array(length**2 / (2.0 * gear.base_radius))))
+        expected += (
+            half_plane(gear) * line_load * (math.log(2.0 * depth / width) - 0.5 * ratio / (1.0 - ratio))
+        )
+    assert parts.contact[0] == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_wider_bore_stiffens_the_bodies_alone_where_one_pair_carries() -> None:
+    thick, thin = (budget(spur_pair(bore), **PLANE) for bore in (15e-3, 30e-3))
+    for part in ("teeth", "bodies"):
+        for side in (0, 1):
+            ratio = getattr(thin, part)[side][0] / getattr(thick, part)[side][0]
+            assert ratio == pytest.approx(1.0, rel=1e-6) if part == "teeth" else ratio < 0.7
+    assert thin.contact[0] == pytest.approx(thick.contact[0], rel=1e-6)
+
+
+def test_every_cause_has_a_part_of_its_own() -> None:
+    plain, relieved = budget(spur_pair(), **PLANE), budget(spur_pair(relief=10e-6), **PLANE)
+    for gap in (plain.modification, plain.misalignment, plain.corner):
+        np.testing.assert_allclose(gap, 0.0, atol=1e-15)
+    assert 0.0 < relieved.modification.max() <= 10e-6
+    np.testing.assert_allclose(relieved.corner, 0.0, atol=1e-15)
+    aligned, skewed = budget(helical_pair()), budget(helical_pair(), skew=20e-6)
+    np.testing.assert_array_equal(aligned.misalignment, 0.0)
+    np.testing.assert_array_equal(skewed.modification, 0.0)
+    assert np.abs(skewed.misalignment).max() > 0.5e-6
+    assert aligned.corner.max() > 0.0
+    np.testing.assert_allclose(budget(helical_pair(), corner_contact="off").corner, 0.0, atol=1e-15)
+    shaft = Shaft(diameter=20e-3, length=100e-3, position=30e-3)
+    rigid, bent = budget(helical_pair()), budget(helical_pair(shafts=(shaft, None)))
+    np.testing.assert_array_equal(rigid.shafts, 0.0)
+    assert np.mean(bent.shafts) == pytest.approx(np.mean(bent.total - rigid.total), rel=0.1)

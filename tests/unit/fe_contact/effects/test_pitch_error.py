@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact.analysis.pairs.pair_contact import operating_points, pair_contact
 from fe_contact.analysis.request.request_check import check_request
@@ -15,7 +16,6 @@ from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.pitch_error import PitchError, _PitchGap
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, PitchDeviation, RingGear
-from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.plan import make_plan
 
 Z1, Z2 = 20, 23
@@ -44,10 +44,7 @@ def solved(cache):
 
     def solve(pair, pitches, position=POSITIONS, effects=None, torques=(LIGHT, HEAVY)):
         checked = check_request(
-            pair,
-            TableAxes(torques=torques),
-            AnalysisOptions(level="draft", effects=effects or {}),
-            whole_table=False,
+            pair, *table_request(torques=torques, level="draft", effects=effects or {}), whole_table=False
         )
         plan = make_plan(pair, checked.request.load, checked.request.options, checked.model)
         contact = pair_contact(pair, plan, cache)
@@ -157,15 +154,12 @@ def test_a_late_tooth_raises_the_error_by_itself_where_it_must_carry_alone(solve
     assert rise[0, 8] == pytest.approx(0.0, abs=1e-3 * error)  # position 6.5: two pairs touch
 
 
-def test_equal_deviations_turn_the_gear_and_do_nothing_else(solved, perfect):
+def test_equal_deviations_turn_the_gear_and_met_ones_do_nothing(solved, perfect):
     error = 30e-6
     pair = GearPair(gear(Z1, [error] * Z1), gear(Z2))
     assert composed(pair).period == 1
     shifted = solved(pair, [0])[0]
     assert shifted + error * COSINE == pytest.approx(perfect, rel=1e-9, abs=1e-17)
-
-
-def test_early_teeth_that_meet_late_ones_are_in_their_places(solved, perfect):
     pattern = 1e-6 * np.array([0.0, 5.0, -3.0, 8.0])
     pair = GearPair(gear(20, np.tile(pattern, 5)), gear(24, np.tile(-pattern, 6)))
     assert composed(pair).period == 4
@@ -206,15 +200,6 @@ def test_everything_repeats_with_the_period_and_not_before(solved):
     assert np.abs(start - gear_2).max() > 1e-7
 
 
-def test_fewer_pitches_close_the_table_on_itself():
-    pair = GearPair(gear(Z1, np.arange(Z1) * 1e-6), gear(Z2, np.arange(Z2) * 1e-5))
-    (term,) = composed(pair, pitches=30).tooth_gaps
-    assert composed(pair, pitches=30).period == 30
-    assert term(np.array([29, 30, 31])) == pytest.approx(
-        -COSINE * np.array([9e-6 + 6e-5, 0.0, 1e-6 + 1e-5]), abs=1e-18
-    )
-
-
 def test_swapped_gears_meet_the_same_teeth_going_backwards(solved):
     """Without corner contact, whose gap is not the same from both sides."""
     rng = np.random.default_rng(10)
@@ -247,7 +232,7 @@ def test_neutral_or_off_is_the_perfect_pair_to_the_bit(solved, perfect):
     assert np.array_equal(solved(neutral, [0], effects={"pitch_error": "on"})[0], perfect)
 
 
-def test_the_verdict_gives_the_figures_of_the_standard():
+def test_the_verdict_gives_the_figures_of_the_standard_and_periods_multiply():
     pair = GearPair(gear(Z1, one_tooth(Z1, 3, 5e-6)), gear(Z2))
     verdict = PitchError().called_for(ContactScene(pair, np.array([100.0]), EFFECTS))
     assert verdict.on
@@ -255,9 +240,12 @@ def test_the_verdict_gives_the_figures_of_the_standard():
     assert verdict.reason.endswith("over 20 base pitches")
     plain = GearPair(gear(Z1), gear(Z2))
     assert not PitchError().called_for(ContactScene(plain, np.array([100.0]), EFFECTS)).on
-
-
-def test_periods_of_several_terms_multiply():
     terms = (_PitchGap((1e-6, 0.0), (0.0,), 2), _PitchGap((0.0,), (2e-6, 0.0, 0.0), 3))
     model = ContactModel(tooth_gaps=terms)
     assert model.period == 6
+    pair = GearPair(gear(Z1, np.arange(Z1) * 1e-6), gear(Z2, np.arange(Z2) * 1e-5))
+    (term,) = composed(pair, pitches=30).tooth_gaps
+    assert composed(pair, pitches=30).period == 30
+    assert term(np.array([29, 30, 31])) == pytest.approx(
+        -COSINE * np.array([9e-6 + 6e-5, 0.0, 1e-6 + 1e-5]), abs=1e-18
+    )

@@ -32,13 +32,24 @@ def bending_stiffness(diameter: float) -> float:
     return E * math.pi * diameter**4 / 64.0
 
 
-def test_a_slender_shaft_is_the_textbooks_simply_supported_beam():
+def test_a_slender_shaft_is_the_textbooks_beam_and_shear_adds_what_timoshenko_says():
     length, a = 3.0, 1.2
     b = length - a
     found = seat(length=length, diameter=5e-3, position=a, bearing_stiffness=None)
     three = 3.0 * bending_stiffness(5e-3) * length
     closed = (a**2 * b**2 / three, a * b * (b - a) / three, (a**3 + b**3) / (three * length))
     assert figures(found) == pytest.approx(closed, rel=1e-5, abs=0.0)
+    # Against the beam of Bernoulli: a b/(k G A l) of translation, 1/(k G A l) of tilt, no coupling.
+    found = seat(bearing_stiffness=None)
+    a, b, length = 0.06, 0.14, 0.2
+    three = 3.0 * bending_stiffness(0.04) * length
+    area = 6.0 * (1.0 + NU) / (7.0 + 6.0 * NU) * E / (2.0 * (1.0 + NU)) * math.pi * 0.02**2
+    assert found.translation - a**2 * b**2 / three == pytest.approx(
+        a * b / (area * length), rel=1e-9, abs=0.0
+    )
+    assert found.coupling == pytest.approx(a * b * (b - a) / three, rel=1e-12, abs=0.0)
+    tilt = found.tilt - (a**3 + b**3) / (three * length)
+    assert tilt == pytest.approx(1.0 / (area * length), rel=1e-9, abs=0.0)
 
 
 @pytest.mark.parametrize("side", [+1, -1])
@@ -55,20 +66,6 @@ def test_a_gear_beside_the_bearings_is_the_textbooks_overhang(side):
     assert figures(found) == pytest.approx(closed, rel=1e-4, abs=0.0)
 
 
-def test_shear_adds_what_timoshenko_says():
-    """Against the beam of Bernoulli: a b/(k G A l) of translation, 1/(k G A l) of tilt, no coupling."""
-    found = seat(bearing_stiffness=None)
-    a, b, length = 0.06, 0.14, 0.2
-    three = 3.0 * bending_stiffness(0.04) * length
-    area = 6.0 * (1.0 + NU) / (7.0 + 6.0 * NU) * E / (2.0 * (1.0 + NU)) * math.pi * 0.02**2
-    assert found.translation - a**2 * b**2 / three == pytest.approx(
-        a * b / (area * length), rel=1e-9, abs=0.0
-    )
-    assert found.coupling == pytest.approx(a * b * (b - a) / three, rel=1e-12, abs=0.0)
-    tilt = found.tilt - (a**3 + b**3) / (three * length)
-    assert tilt == pytest.approx(1.0 / (area * length), rel=1e-9, abs=0.0)
-
-
 @pytest.mark.parametrize("position", [-0.05, 0.0, 0.06, 0.1, 0.23])
 def test_bearings_move_the_shaft_as_a_rigid_body(position):
     """Two springs k at 0 and l: translation ((l - a)^2 + a^2)/(k l^2), tilt 2/(k l^2)."""
@@ -77,13 +74,6 @@ def test_bearings_move_the_shaft_as_a_rigid_body(position):
     added = np.subtract(figures(soft), figures(hard))
     closed = ((length - position) ** 2 + position**2, 2.0 * position - length, 2.0)
     assert added == pytest.approx(np.array(closed) / (k * length**2), rel=1e-9, abs=1e-22)
-
-
-def test_seen_from_the_other_side_only_the_coupling_turns():
-    first, second = seat(position=0.05), seat(position=0.15)
-    assert second.translation == pytest.approx(first.translation, rel=1e-12, abs=0.0)
-    assert second.coupling == pytest.approx(-first.coupling, rel=1e-12, abs=0.0)
-    assert second.tilt == pytest.approx(first.tilt, rel=1e-12, abs=0.0)
 
 
 def make_pair(helix: float = 0.0, offset: float = 0.0, **fields: Any) -> GearPair:
@@ -160,12 +150,18 @@ def test_the_term_is_symmetric_and_never_gives_work_away(helix):
     assert np.linalg.matrix_rank(found[0], tol=1e-10 * values.max()) <= 4
 
 
-def test_opposite_hand_on_mirrored_shafts_is_the_mirror_image():
+def test_opposite_hand_or_side_is_the_mirror_image():
     right, left = make_pair(0.35), make_pair(-0.35)
     roll_1, roll_2, face = places(right)
     first = _ShaftCompliance(seat(), seat(position=0.15))(right, roll_1, roll_2, face)
     second = _ShaftCompliance(seat(position=0.14), seat(position=0.05))(left, roll_1, roll_2, -face)
     assert second == pytest.approx(first, rel=1e-12, abs=0.0)
+    first, second = seat(position=0.05), seat(position=0.15)
+    assert second.translation == pytest.approx(first.translation, rel=1e-12, abs=0.0)
+    assert second.coupling == pytest.approx(-first.coupling, rel=1e-12, abs=0.0)
+    assert second.tilt == pytest.approx(first.tilt, rel=1e-12, abs=0.0)
+    pair = make_pair(shafts=(SHAFT, None))
+    assert pair.swapped().shafts == (None, SHAFT)
 
 
 def problem_of(pair: GearPair) -> ContactProblem:
@@ -220,8 +216,3 @@ def test_a_shaft_calls_for_its_deflection_and_for_three_dimensions():
         == compose(scene(SHAFT, SHAFT), {})[0]
     )
     assert {entry.name for entry in ledger if entry.on} >= {"shaft_deflection", "face_load_distribution"}
-
-
-def test_swapped_gears_take_their_shafts_along():
-    pair = make_pair(shafts=(SHAFT, None))
-    assert pair.swapped().shafts == (None, SHAFT)

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import pytest
 from calculix import find_calculix, solve_position
+from spur_gears import GEAR
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.full_contact import Resolution, solve_full_contact
 
 CALCULIX = find_calculix()
 TORQUE = 400.0
-GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 CROWNED = replace(GEAR, modification=FlankModification(profile_crowning=20e-6))
 COARSE = Resolution(1.5)
 

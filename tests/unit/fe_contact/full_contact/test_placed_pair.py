@@ -71,9 +71,10 @@ def test_the_driving_gear_turns_towards_its_mate() -> None:
     assert moved[top, 0] > 0.0
     assert np.array_equal(after.gears[1].points, before.gears[1].points)
     assert before.meetings == ((0, 0),)
+    assert freedoms(np.array([3, 0])).tolist() == [6, 7, 0, 1]
 
 
-def test_modified_flanks_are_apart_by_what_was_removed() -> None:
+def test_modified_flanks_are_apart_by_what_was_removed_and_turn_no_element_over() -> None:
     relieved = replace(PINION, modification=FlankModification(profile_crowning=40e-6))
     pair = replace(PAIR, pinion=relieved)
     roll = float(pair.roll_lengths(0.0)[0])
@@ -83,6 +84,9 @@ def test_modified_flanks_are_apart_by_what_was_removed() -> None:
     first, second = bodies_at(pair, 0.0)
     assert closest(line_of(first, 0), line_of(second, 0)) == pytest.approx(removed, abs=2e-6)
     assert no_load_gap(PAIR, 0.3) == 0.0
+    relieved = replace(PINION, modification=FlankModification(tip_relief=60e-6, tip_relief_length=1.7e-3))
+    for body in bodies_at(GearPair(relieved, PINION, center_distance=80e-3), 0.2):
+        assert _least_jacobian(body.points[body.triangles]).min() > 0.1
 
 
 def test_teeth_off_the_path_are_held_where_the_lag_brings_them_to_touch() -> None:
@@ -92,13 +96,3 @@ def test_teeth_off_the_path_are_held_where_the_lag_brings_them_to_touch() -> Non
     wide = contact_sites(PAIR, 0.2, replace(HELD, lag=1.01 * gap), COARSE)
     assert len(wide) == len(near) + 1
     assert least_gap_left_out(PAIR, 0.2, wide) > gap
-
-
-def test_no_element_is_turned_over_by_a_relief_as_deep_as_it_is_large() -> None:
-    relieved = replace(PINION, modification=FlankModification(tip_relief=60e-6, tip_relief_length=1.7e-3))
-    for body in bodies_at(GearPair(relieved, PINION, center_distance=80e-3), 0.2):
-        assert _least_jacobian(body.points[body.triangles]).min() > 0.1
-
-
-def test_freedoms_go_node_by_node() -> None:
-    assert freedoms(np.array([3, 0])).tolist() == [6, 7, 0, 1]

@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from spur_gears import GEAR, PAIR
 
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
 from fe_contact.errors import InputError, MeshError
@@ -15,8 +16,6 @@ from fe_contact.full_contact.condensation import solve as solved_position
 from fe_contact.geometry import GearBlank
 from fe_contact.material import Material
 
-GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-PAIR = GearPair(GEAR, GEAR, center_distance=80e-3)
 WHEEL = Gear(teeth=31, normal_module=4e-3, face_width=25e-3, bore_diameter=60e-3)
 TORQUES = (10.0, 100.0, 400.0)
 COARSE = Resolution(4.0)
@@ -36,13 +35,10 @@ def test_equilibrium_energy_and_complementarity_hold_to_rounding(position: float
         assert point.iterations > 0
 
 
-def test_it_deflects_more_under_more_load_and_stiffens() -> None:
+def test_it_stiffens_under_load_and_torques_differ_off_the_line_of_action() -> None:
     ste = table(0.5).transmission_error[0]
     assert np.all(np.diff(ste) > 0.0)
     assert np.all(np.diff(ste / np.array(TORQUES)) < 0.0)
-
-
-def test_torques_differ_off_the_line_of_action_alone() -> None:
     on_line, at_corner = table(0.5).points[0][1], table(0.2).points[0][2]
     assert on_line.torque_ratio == pytest.approx(1.0, abs=2e-4)
     assert at_corner.torque_ratio < 0.995
@@ -61,17 +57,20 @@ def test_a_pair_of_twins_mirrors() -> None:
     assert first[0] == pytest.approx(second[0], abs=1e-3)
 
 
-def test_positions_repeat_after_a_base_pitch() -> None:
+def test_positions_repeat_and_a_coarser_mesh_states_the_error() -> None:
     near, far = table(0.2), solve_full_contact(PAIR, TORQUES, [3.2], COARSE)
     np.testing.assert_allclose(far.transmission_error, near.transmission_error, rtol=1e-9)
     assert far.points[0][0].position == 3.2
+    found = solve_full_contact(PAIR, [100.0], [0.5], estimate_error=True)
+    error = float(found.error_estimate[0, 0] / found.transmission_error[0, 0])
+    assert 0.0 < error < 2e-3
+    assert np.isnan(table(0.5).error_estimate).all()
+    assert "error_estimate_m" in found.points[0][0].to_json()
 
 
 def test_elasticity_scales() -> None:
     """Lengths, face and torque scaled: STE over length depends on torque / (E b r^2) alone."""
-    gear = Gear(
-        teeth=20, normal_module=2e-3, face_width=40e-3, bore_diameter=20e-3, material=Material(70e9, 0.3)
-    )
+    gear = Gear(20, 2e-3, 40e-3, 20e-3, material=Material(70e9, 0.3))
     pair = GearPair(gear, gear, center_distance=40e-3)
     torques = [torque * 0.25 * 1.6 * 70e9 / GEAR.material.youngs_modulus for torque in TORQUES]
     scaled = solve_full_contact(pair, torques, [0.5], COARSE).transmission_error
@@ -121,14 +120,6 @@ def test_unlike_materials_share_the_deflection() -> None:
     stiff = solve_full_contact(GearPair(GEAR, WHEEL, 102e-3), [40.0], [0.4], COARSE)
     assert not found.failed
     assert found.transmission_error[0, 0] > 8.0 * stiff.transmission_error[0, 0]
-
-
-def test_a_coarser_mesh_states_the_error() -> None:
-    found = solve_full_contact(PAIR, [100.0], [0.5], estimate_error=True)
-    error = float(found.error_estimate[0, 0] / found.transmission_error[0, 0])
-    assert 0.0 < error < 2e-3
-    assert np.isnan(table(0.5).error_estimate).all()
-    assert "error_estimate_m" in found.points[0][0].to_json()
 
 
 def test_what_it_cannot_hold_is_refused_by_reason() -> None:

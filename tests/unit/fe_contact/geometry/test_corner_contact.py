@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from spur_gears import make_gear
+from spur_gears import PAIR, make_gear
 
 from fe_contact.errors import InputError
 from fe_contact.geometry import (
-    Gear,
     GearPair,
     InternalGearPair,
     ParallelAxes,
@@ -25,7 +24,6 @@ from fe_contact.geometry import (
 from fe_contact.geometry.corner_contact import Side, _corner_gap
 
 SIDES: tuple[Side, Side] = ("approach", "exit")
-
 sides = pytest.mark.parametrize("side", SIDES)
 
 
@@ -35,7 +33,7 @@ def pair() -> GearPair:
 
 
 @sides
-def test_gap_starts_at_zero_with_zero_slope_on_the_line_of_action(pair: GearPair, side: Side) -> None:
+def test_gap_and_slope_grow_from_the_path_until_the_edge_leaves_the_flank(pair: GearPair, side: Side) -> None:
     start = corner_contact(pair, side, 0.0)
     on_path = (
         pair.path_of_contact.start if side == "approach" else pair.common_tangent - pair.path_of_contact.end
@@ -46,33 +44,32 @@ def test_gap_starts_at_zero_with_zero_slope_on_the_line_of_action(pair: GearPair
     assert start.flank_roll_length == pytest.approx(on_path, rel=1e-12)
     assert start.lever_arm_ratio_pinion == pytest.approx(1.0, rel=1e-14)
     assert start.lever_arm_ratio_wheel == pytest.approx(1.0, rel=1e-14)
-
-
-@sides
-def test_gap_and_slope_grow_with_the_overshoot(pair: GearPair, side: Side) -> None:
     state = corner_contact(pair, side, np.linspace(0.0, 3e-3, 200))
     assert np.all(state.valid)
     assert np.all(np.diff(state.gap) > 0.0)
     assert np.all(np.diff(state.slope_angle) > 0.0)
-
-
-@sides
-def test_near_the_path_the_gap_is_quadratic(pair: GearPair, side: Side) -> None:
     gap = _corner_gap(pair, side, np.array([1e-5, 2e-5]))
     assert gap[1] / gap[0] == pytest.approx(4.0, rel=1e-2)
+    assert _corner_gap(pair, side, 1e-4).shape == ()
+    assert _corner_gap(pair, side, np.full((2, 3), 1e-4)).shape == (2, 3)
+    over = np.linspace(0.0, 0.05, 300)
+    state = corner_contact(pair, side, over)
+    assert state.valid[0]
+    assert not state.valid[-1]
+    assert np.count_nonzero(np.diff(state.valid.astype(int))) == 1  # valid up to a limit, then never again
+    for part in (state.gap, state.flank_roll_length, state.slope_angle, state.lever_arm_ratio_pinion):
+        assert np.array_equal(np.isnan(part), ~state.valid)
+    flank = pair.pinion if side == "approach" else pair.wheel
+    inside = state.flank_roll_length[state.valid]
+    assert np.all((inside >= flank.form_roll_length) & (inside <= flank.tip_roll_length))
 
 
-def test_lever_arm_at_exit_is_the_rate_of_the_gap(pair: GearPair) -> None:
-    # virtual work: F (arm_1 dtheta_1 - r_b2 dtheta_2) = 0 along the closed contact
+def test_lever_arms_are_rates_of_the_gap(pair: GearPair) -> None:
     over, step = np.linspace(1e-4, 6e-3, 20), 1e-7
     rate = (_corner_gap(pair, "exit", over + step) - _corner_gap(pair, "exit", over - step)) / (2.0 * step)
     state = corner_contact(pair, "exit", over)
     assert 1.0 - rate == pytest.approx(state.lever_arm_ratio_pinion, rel=1e-8)
     assert np.all(state.lever_arm_ratio_wheel == 1.0)
-
-
-def test_lever_arm_at_approach_is_the_rate_of_the_gap(pair: GearPair) -> None:
-    # virtual work again: r_b1 dtheta_1 = arm_2 dtheta_2, now with the overshoot falling as gear 1 turns
     over, step = np.linspace(1e-4, 3e-3, 20), 1e-7
     rate = (_corner_gap(pair, "approach", over + step) - _corner_gap(pair, "approach", over - step)) / (
         2.0 * step
@@ -100,26 +97,6 @@ def test_lengths_scale(side: Side) -> None:
     assert _corner_gap(three, side, 3.0 * over) == pytest.approx(
         3.0 * _corner_gap(one, side, over), rel=1e-9, abs=1e-16
     )
-
-
-@sides
-def test_edge_that_has_left_the_flank_is_masked(pair: GearPair, side: Side) -> None:
-    over = np.linspace(0.0, 0.05, 300)
-    state = corner_contact(pair, side, over)
-    assert state.valid[0]
-    assert not state.valid[-1]
-    assert np.count_nonzero(np.diff(state.valid.astype(int))) == 1  # valid up to a limit, then never again
-    for part in (state.gap, state.flank_roll_length, state.slope_angle, state.lever_arm_ratio_pinion):
-        assert np.array_equal(np.isnan(part), ~state.valid)
-    flank = pair.pinion if side == "approach" else pair.wheel
-    inside = state.flank_roll_length[state.valid]
-    assert np.all((inside >= flank.form_roll_length) & (inside <= flank.tip_roll_length))
-
-
-@sides
-def test_shapes_follow_the_overshoot(pair: GearPair, side: Side) -> None:
-    assert _corner_gap(pair, side, 1e-4).shape == ()
-    assert _corner_gap(pair, side, np.full((2, 3), 1e-4)).shape == (2, 3)
 
 
 def test_bad_arguments_are_refused(pair: GearPair) -> None:
@@ -192,8 +169,7 @@ def test_sliding_changes_its_sense_at_the_pitch_point() -> None:
 
 def test_specific_sliding_of_equal_spur_gears_by_hand() -> None:
     """20/20, module 4: at A the roll lengths are sqrt(37.8548^2 - 37.5877^2) = 4.489 and 22.873 mm."""
-    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-    pair = GearPair(gear, gear, 80e-3)
+    pair = PAIR
     first, second = specific_sliding(pair, pair.path_of_contact.start)
     assert float(first) == pytest.approx(1.0 - 22.873 / 4.489, abs=2e-3)
     assert float(second) == pytest.approx(1.0 - 4.489 / 22.873, abs=2e-4)

@@ -24,7 +24,7 @@ from fe_contact.geometry import FlankModification, GearPair, iso6336_stiffness
 from fe_contact.material import Material
 
 
-def test_spur_gear_of_20_teeth() -> None:
+def test_circles_and_thicknesses_follow_the_textbook() -> None:
     gear = make_gear()
     assert gear.reference_radius == pytest.approx(0.04, rel=1e-15)
     assert gear.base_radius == pytest.approx(0.04 * math.cos(math.radians(20.0)), rel=1e-15)
@@ -32,9 +32,6 @@ def test_spur_gear_of_20_teeth() -> None:
     assert gear.root_radius == pytest.approx(0.035, rel=1e-15)
     assert gear.base_pitch == pytest.approx(math.pi * 4e-3 * math.cos(math.radians(20.0)), rel=1e-15)
     assert gear.tooth_thickness == pytest.approx(math.pi * 2e-3, rel=1e-15)
-
-
-def test_base_and_tip_thickness_follow_the_textbook() -> None:
     gear = make_gear(teeth=24, profile_shift_coefficient=0.25)
     involute = math.tan(math.radians(20.0)) - math.radians(20.0)
     half = gear.tooth_thickness / (2.0 * gear.reference_radius) + involute
@@ -58,11 +55,16 @@ def test_helical_quantities_come_from_the_normal_plane() -> None:
     assert gear.reference_radius - gear.root_radius == pytest.approx(4e-3 * 1.05)
 
 
-def test_left_hand_changes_nothing_but_the_sign_of_the_base_helix() -> None:
+def test_left_hand_and_allowance_change_what_they_should() -> None:
     right, left = make_gear(helix_angle=0.2), make_gear(helix_angle=-0.2)
     assert left.base_helix_angle == -right.base_helix_angle
     for name in ("base_radius", "form_radius", "tip_radius", "base_tooth_thickness", "base_pitch"):
         assert getattr(left, name) == getattr(right, name)
+    nominal, thin = make_gear(helix_angle=0.3), make_gear(helix_angle=0.3, thickness_allowance=8e-5)
+    removed = nominal.tooth_thickness - thin.tooth_thickness
+    assert removed * math.cos(0.3) == pytest.approx(8e-5, rel=1e-9)
+    assert thin.root_radius == nominal.root_radius
+    assert thin.form_roll_length == pytest.approx(nominal.form_roll_length, rel=1e-14)
 
 
 def test_form_point_without_undercut_is_generated_by_the_end_of_the_tool_flank() -> None:
@@ -75,14 +77,10 @@ def test_form_point_without_undercut_is_generated_by_the_end_of_the_tool_flank()
 
 
 def test_undercut_begins_where_the_textbook_says() -> None:
-    # sharp tool, h_fP = 1: z_min = 2 / sin^2(20 deg) = 17.1, and x_min = 1 - z/z_min
     sharp = {"root_radius_coefficient": 0.0, "dedendum_coefficient": 1.0, "teeth": 12}
     shift = 1.0 - 12.0 * math.sin(math.radians(20.0)) ** 2 / 2.0
     assert not make_gear(profile_shift_coefficient=shift + 1e-6, **sharp).form_point.undercut
     assert make_gear(profile_shift_coefficient=shift - 1e-6, **sharp).form_point.undercut
-
-
-def test_form_point_is_continuous_through_the_onset_of_undercut() -> None:
     sharp = {"root_radius_coefficient": 0.2, "dedendum_coefficient": 1.0, "teeth": 12}
     onset = 1.0 - 0.2 * (1.0 - math.sin(math.radians(20.0))) - 12.0 * math.sin(math.radians(20.0)) ** 2 / 2.0
     for offset in (1e-9, 1e-6, 1e-4):
@@ -90,14 +88,12 @@ def test_form_point_is_continuous_through_the_onset_of_undercut() -> None:
         after = make_gear(profile_shift_coefficient=onset - offset, **sharp)
         assert after.form_radius - before.form_radius == pytest.approx(0.0, abs=1e-2 * offset**2 + 1e-17)
         assert after.form_radius >= after.base_radius
-
-
-def test_allowance_thins_the_tooth_and_keeps_the_root_circle() -> None:
-    nominal, thin = make_gear(helix_angle=0.3), make_gear(helix_angle=0.3, thickness_allowance=8e-5)
-    removed = nominal.tooth_thickness - thin.tooth_thickness
-    assert removed * math.cos(0.3) == pytest.approx(8e-5, rel=1e-9)
-    assert thin.root_radius == nominal.root_radius
-    assert thin.form_roll_length == pytest.approx(nominal.form_roll_length, rel=1e-14)
+    gear = make_gear(teeth=9)
+    assert gear.form_point.undercut
+    assert gear.base_radius < gear.form_radius < gear.tip_radius
+    tool = {"normal_pressure_angle": math.radians(14.5), "dedendum_coefficient": 1.6}
+    with pytest.raises(InfeasibleGeometry, match=r"undercut.*cut the tooth off"):
+        make_gear(5, profile_shift_coefficient=-0.3, bore_diameter=1e-4, root_radius_coefficient=0.1, **tool)
 
 
 def test_macro_geometry_is_plain_and_complete() -> None:
@@ -135,15 +131,6 @@ def test_gear_is_a_value() -> None:
     assert hash(gear) == hash(make_gear(profile_shift_coefficient=0.1))
     assert gear.form_radius > 0.0  # fill its caches before it travels
     assert pickle.loads(pickle.dumps(gear)) == gear
-
-
-def test_undercut_pinion_is_computed() -> None:
-    gear = make_gear(teeth=9)
-    assert gear.form_point.undercut
-    assert gear.base_radius < gear.form_radius < gear.tip_radius
-    tool = {"normal_pressure_angle": math.radians(14.5), "dedendum_coefficient": 1.6}
-    with pytest.raises(InfeasibleGeometry, match=r"undercut.*cut the tooth off"):
-        make_gear(5, profile_shift_coefficient=-0.3, bore_diameter=1e-4, root_radius_coefficient=0.1, **tool)
 
 
 @pytest.mark.parametrize(
@@ -235,8 +222,14 @@ def test_modification_counts_from_the_tip_inwards_as_on_an_external_gear() -> No
     assert sloped - np.array([20e-6, 10e-6]) == pytest.approx([2e-6, -2e-6], rel=1e-9, abs=0.0)
 
 
-def test_involute_function_of_20_degrees_is_the_tabulated_one() -> None:
+def test_involute_function_is_tabulated_and_inverted() -> None:
     assert involute_function(math.radians(20.0)) == pytest.approx(0.014904384, abs=5e-10)
+    assert inverse_involute(0.0) == 0.0
+    with pytest.raises(ValueError, match="involute function"):
+        inverse_involute(-1e-9)
+    base = 0.0375877
+    for roll in (0.0, 1e-4, 0.0137, 0.03):
+        assert roll_length_at_radius(base, math.hypot(base, roll)) == pytest.approx(roll, abs=1e-12)
 
 
 @pytest.mark.parametrize("degrees", [1e-3, 0.5, 5.0, 20.0, 45.0, 70.0, 89.0])
@@ -246,27 +239,12 @@ def test_inverse_involute_undoes_the_involute_function(degrees: float) -> None:
     assert inverse_involute(involute_function(angle)) == pytest.approx(angle, rel=1e-14 + 1e-15 / angle**2)
 
 
-def test_inverse_involute_of_zero_is_zero_and_negative_is_refused() -> None:
-    assert inverse_involute(0.0) == 0.0
-    with pytest.raises(ValueError, match="involute function"):
-        inverse_involute(-1e-9)
-
-
-def test_roll_length_and_radius_are_inverse() -> None:
-    base = 0.0375877
-    for roll in (0.0, 1e-4, 0.0137, 0.03):
-        assert roll_length_at_radius(base, math.hypot(base, roll)) == pytest.approx(roll, abs=1e-12)
-
-
 def test_point_is_one_roll_length_along_its_normal_from_the_base_circle() -> None:
     base, half, roll = 0.04, 0.1, np.linspace(0.0, 0.03, 7)
     foot = involute_point(base, half, roll) - roll[:, None] * involute_normal(base, half, roll)
     assert np.hypot(*foot.T) == pytest.approx(np.full(7, base), rel=1e-14)
     # the string unwound from the base circle is as long as the arc it covered
     assert base * (half - np.arctan2(foot[:, 0], foot[:, 1])) == pytest.approx(roll, abs=1e-15)
-
-
-def test_normal_is_unit_and_perpendicular_to_the_curve() -> None:
     base, half, roll, step = 0.04, 0.1, np.linspace(0.001, 0.03, 9), 1e-7
     normal = involute_normal(base, half, roll)
     tangent = involute_point(base, half, roll + step) - involute_point(base, half, roll - step)
@@ -274,15 +252,12 @@ def test_normal_is_unit_and_perpendicular_to_the_curve() -> None:
     assert np.sum(normal * tangent, axis=1) / np.hypot(*tangent.T) == pytest.approx(np.zeros(9), abs=1e-7)
 
 
-def test_mesh_stiffness_follows_from_single_stiffness_and_contact_ratio() -> None:
+def test_mesh_stiffness_follows_the_standard() -> None:
     pair = GearPair(make_gear(teeth=23, helix_angle=0.3), make_gear(teeth=47, helix_angle=-0.3))
     stiffness = iso6336_stiffness(pair)
     expected = stiffness.single_stiffness * (0.75 * pair.transverse_contact_ratio + 0.25)
     assert stiffness.mesh_stiffness == pytest.approx(expected, rel=1e-14)
     assert stiffness.face_load_mesh_stiffness == pytest.approx(0.85 * expected, rel=1e-14)
-
-
-def test_low_line_load_reduces_by_its_fourth_root_and_high_load_does_nothing() -> None:
     pair = GearPair(make_gear(), make_gear())
     full = iso6336_stiffness(pair)
     reduced = iso6336_stiffness(pair, line_load=1e5 / 16.0)
@@ -290,17 +265,10 @@ def test_low_line_load_reduces_by_its_fourth_root_and_high_load_does_nothing() -
     assert iso6336_stiffness(pair, line_load=2e5) == full
     with pytest.raises(InputError, match="line_load"):
         iso6336_stiffness(pair, line_load=0.0)
-
-
-def test_modulus_enters_by_the_harmonic_mean() -> None:
     steel = GearPair(make_gear(), make_gear())
     soft = GearPair(make_gear(), make_gear(material=Material(70e9)))
     ratio = iso6336_stiffness(soft).single_stiffness / iso6336_stiffness(steel).single_stiffness
     assert ratio == pytest.approx(2.0 * 70.0 / (210.0 + 70.0), rel=1e-14)
-
-
-def test_equal_gears_may_be_swapped_and_lengths_do_not_matter() -> None:
-    # per unit width, stiffness is Pa: independent of the size of the gears
     pair = GearPair(make_gear(teeth=25), make_gear(teeth=25))
     large = GearPair(make_gear(teeth=25, normal_module=8e-3), make_gear(teeth=25, normal_module=8e-3))
     assert iso6336_stiffness(pair.swapped()) == iso6336_stiffness(pair)

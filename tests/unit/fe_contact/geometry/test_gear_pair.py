@@ -158,10 +158,10 @@ def test_worked_example_of_the_handbooks() -> None:
     # m 3 mm, 16 and 24 teeth, x_2 = +0.5 in the handbooks' sign (SDP/SI D785, KHK: table of internal gears)
     pinion = Gear(teeth=16, normal_module=3e-3, face_width=0.01, bore_diameter=2e-3)
     wheel = RingGear(
-        teeth=24,
-        normal_module=3e-3,
-        face_width=0.01,
-        rim_diameter=0.1,
+        24,
+        3e-3,
+        0.01,
+        0.1,
         profile_shift_coefficient=-0.5,
         cutter_teeth=10,
         tip_diameter=0.071,
@@ -175,7 +175,7 @@ def test_worked_example_of_the_handbooks() -> None:
     assert 2.0 * wheel.base_radius / cosine == pytest.approx(79.010e-3, abs=6e-7)
 
 
-def test_both_flanks_touch_at_one_point_of_the_line_of_action() -> None:
+def test_internal_flanks_touch_on_the_line_of_action_by_their_curvatures() -> None:
     pair = internal()
     position = np.linspace(-0.6, 0.6, 7)
     first, second = pair.roll_lengths(position)
@@ -191,10 +191,6 @@ def test_both_flanks_touch_at_one_point_of_the_line_of_action() -> None:
     assert pair.roll_lengths(0.0, 1)[0] - pair.roll_lengths(0.0)[0] == pytest.approx(
         pair.base_pitch, rel=1e-12
     )
-
-
-def test_relative_curvature_is_the_difference_of_a_bulging_and_a_hollow_flank() -> None:
-    pair = internal()
     first, second = pair.roll_lengths(0.2)
     assert pair.relative_curvature(first) == pytest.approx(1.0 / first - 1.0 / second, rel=1e-14)
     pitch = pair.relative_curvature(pair.path_of_contact.pitch_point)
@@ -220,18 +216,15 @@ def test_tip_clearances_and_tooth_number_difference() -> None:
     assert pair.tooth_number_difference == 50
 
 
-def test_refusal_of_jamming_external_teeth_tells_what_would_fit() -> None:
-    gear = make_gear(teeth=25, profile_shift_coefficient=0.2)
+def test_refusal_of_jamming_teeth_tells_what_would_fit() -> None:
+    alike = make_gear(teeth=25, profile_shift_coefficient=0.2)
     with pytest.raises(InfeasibleGeometry) as caught:
-        GearPair(gear, gear, 0.1008)
+        GearPair(alike, alike, 0.1008)
     words = str(caught.value.suggestion).rstrip(".").replace(",", "").split()
     distance, shift_sum = float(words[words.index("m") - 1]), float(words[words.index("instead") - 1])
-    assert 0.0 <= GearPair(gear, gear, distance).transverse_base_backlash < 1e-7  # the last of seven digits
+    assert 0.0 <= GearPair(alike, alike, distance).transverse_base_backlash < 1e-7  # the last of seven digits
     fitting = make_gear(teeth=25, profile_shift_coefficient=0.5 * shift_sum)
     assert GearPair(fitting, fitting, 0.1008).transverse_base_backlash == pytest.approx(0.0, abs=4e-9)
-
-
-def test_refusal_of_jamming_teeth_tells_what_would_fit() -> None:
     with pytest.raises(InfeasibleGeometry) as caught:
         InternalGearPair(gear(), ring(), 0.1002)
     distance, total = (float(number) for number in re.findall(r"= ([\d.e-]+)", str(caught.value.suggestion)))
@@ -257,9 +250,6 @@ def test_refusal_of_a_tip_tells_the_tip_diameter_that_fits() -> None:
     assert pair.roll_lengths(pair.position(pair.path_of_contact.end))[1] == pytest.approx(
         pair.wheel.form_roll_length, abs=1e-7
     )
-
-
-def test_tip_that_just_meets_the_form_circle_is_accepted() -> None:
     pinion = make_gear(teeth=10)
     with pytest.raises(InfeasibleGeometry) as caught:
         GearPair(pinion, make_gear(teeth=60))
@@ -292,9 +282,6 @@ def test_the_common_face_follows_the_axial_offset():
     assert shifted.common_face == pytest.approx((-5e-3, 10e-3))
     assert shifted.face_width == pytest.approx(15e-3)
     assert shifted.swapped().common_face == pytest.approx((-15e-3, 0.0))
-
-
-def test_gears_beside_each_other_are_refused():
     gear = bored(face_width=20e-3)
     with pytest.raises(InfeasibleGeometry, match="face overlap"):
         GearPair(gear, gear, 80e-3, axial_offset=20e-3)

@@ -223,10 +223,6 @@ def test_edges_touch_the_mating_flank_at_the_ends_of_the_path_of_contact() -> No
         at_contact = np.argmax(np.where(on_involute, path.depth, -np.inf))
         assert -1e-7 < path.depth[at_contact] <= 1e-15
         assert path.radius[at_contact] == pytest.approx(math.hypot(mate.base_radius, roll), rel=1e-3)
-
-
-def test_flank_angle_is_the_profiles() -> None:
-    pair = make_pair((40, 80), {}, {})
     for profile in (tooth_profile(pair.pinion), tooth_profile(pair.wheel)):
         s = np.linspace(profile.s_root, profile.s_tip, 97)[3:]
         x, y = profile.flank(s).T

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from spur_gears import make_gear
+from spur_gears import GEAR, make_gear
 
 from bounds import DEPTHS, Direction, Kind
 from fe_contact.errors import InputError
@@ -33,53 +33,37 @@ def test_neutral_modification_is_exactly_zero() -> None:
 
 
 @pytest.mark.parametrize("shape", ["linear", "parabolic"])
-def test_tip_relief_starts_at_its_radius_and_reaches_its_amount_at_the_tip(shape: Any) -> None:
+def test_reliefs_reach_their_amounts_at_tip_root_and_both_ends(shape: Any) -> None:
     gear = make_gear()
     relief = FlankModification(tip_relief=20e-6, tip_relief_length=1.5e-3, tip_relief_shape=shape)
     start, tip = gear.roll_length(gear.tip_radius - 1.5e-3), gear.tip_roll_length
     removed = relief.material_removed(gear, [gear.form_roll_length, start, 0.5 * (start + tip), tip])
     middle = 10e-6 if shape == "linear" else 5e-6
     assert removed == pytest.approx([0.0, 0.0, middle, 20e-6], rel=1e-12, abs=1e-18)
-
-
-@pytest.mark.parametrize("shape", ["linear", "parabolic"])
-def test_root_relief_is_the_mirror_of_tip_relief(shape: Any) -> None:
-    gear = make_gear()
     relief = FlankModification(root_relief=8e-6, root_relief_length=1e-3, root_relief_shape=shape)
     start, form = gear.roll_length(gear.form_radius + 1e-3), gear.form_roll_length
     removed = relief.material_removed(gear, [form, 0.5 * (start + form), start, gear.tip_roll_length])
     middle = 4e-6 if shape == "linear" else 2e-6
     assert removed == pytest.approx([8e-6, middle, 0.0, 0.0], rel=1e-12, abs=1e-18)
+    relief = FlankModification(end_relief=12e-6, end_relief_length=2e-3, end_relief_shape=shape)
+    face = np.array([-12.5e-3, -11.5e-3, -10.5e-3, 0.0, 10.5e-3, 11.5e-3, 12.5e-3])
+    middle = 6e-6 if shape == "linear" else 3e-6
+    removed = relief.material_removed(make_gear(), 0.012, face)
+    assert removed == pytest.approx([12e-6, middle, 0.0, 0.0, 0.0, middle, 12e-6], rel=1e-9, abs=1e-18)
 
 
-def test_profile_crowning_is_a_parabola_with_zero_in_the_middle() -> None:
+def test_crownings_and_slopes_over_profile_and_face() -> None:
     gear = make_gear()
     removed = FlankModification(profile_crowning=6e-6).material_removed(gear, over_profile(gear, 5))
     assert removed == pytest.approx([6e-6, 1.5e-6, 0.0, 1.5e-6, 6e-6], abs=1e-18)
-
-
-def test_profile_slope_removes_at_the_tip_and_adds_at_the_form_point() -> None:
-    gear = make_gear()
     removed = FlankModification(profile_slope=10e-6).material_removed(gear, over_profile(gear, 5))
     assert removed == pytest.approx([-5e-6, -2.5e-6, 0.0, 2.5e-6, 5e-6], abs=1e-18)
-
-
-def test_helix_crowning_and_slope_over_the_face() -> None:
     gear, roll = make_gear(), 0.012
     face = np.array([-12.5e-3, -6.25e-3, 0.0, 6.25e-3, 12.5e-3])
     crowned = FlankModification(helix_crowning=8e-6).material_removed(gear, roll, face)
     assert crowned == pytest.approx([8e-6, 2e-6, 0.0, 2e-6, 8e-6], abs=1e-18)
     sloped = FlankModification(helix_slope=8e-6).material_removed(gear, roll, face)
     assert sloped == pytest.approx([-4e-6, -2e-6, 0.0, 2e-6, 4e-6], abs=1e-18)
-
-
-@pytest.mark.parametrize("shape", ["linear", "parabolic"])
-def test_end_relief_acts_at_both_ends_only(shape: Any) -> None:
-    relief = FlankModification(end_relief=12e-6, end_relief_length=2e-3, end_relief_shape=shape)
-    face = np.array([-12.5e-3, -11.5e-3, -10.5e-3, 0.0, 10.5e-3, 11.5e-3, 12.5e-3])
-    middle = 6e-6 if shape == "linear" else 3e-6
-    removed = relief.material_removed(make_gear(), 0.012, face)
-    assert removed == pytest.approx([12e-6, middle, 0.0, 0.0, 0.0, middle, 12e-6], rel=1e-9, abs=1e-18)
 
 
 def test_twist_is_a_profile_slope_that_grows_along_the_face() -> None:
@@ -95,7 +79,7 @@ def test_twist_is_a_profile_slope_that_grows_along_the_face() -> None:
     assert beyond == pytest.approx([-4e-6, 4e-6], rel=1e-12, abs=0.0)
 
 
-def test_what_differs_over_the_face_and_what_does_not_add_up_to_all() -> None:
+def test_parts_over_profile_and_face_add_up_to_all() -> None:
     gear = make_gear()
     whole = FlankModification(
         tip_relief=20e-6, tip_relief_length=1e-3, profile_slope=3e-6, helix_crowning=5e-6, flank_twist=4e-6
@@ -111,10 +95,6 @@ def test_what_differs_over_the_face_and_what_does_not_add_up_to_all() -> None:
     assert twist.varies_along_profile
     assert twist.varies_along_face
     assert not twist.neutral
-
-
-def test_effects_add_and_broadcast() -> None:
-    gear = make_gear()
     tip = FlankModification(tip_relief=20e-6, tip_relief_length=1e-3)
     lead = FlankModification(helix_crowning=5e-6)
     both = FlankModification(tip_relief=20e-6, tip_relief_length=1e-3, helix_crowning=5e-6)
@@ -174,9 +154,7 @@ def test_the_whole_is_the_sum_of_its_parts_and_begins_where_they_do() -> None:
 
 
 ROLL = (4e-3, 7e-3, 9e-3, 14e-3, 19e-3)
-
 FACE = (-12.5e-3, -9e-3, -2e-3, 4e-3, 12.5e-3)
-
 NODES = FlankGrid(ROLL, FACE, 1e-6 * np.random.default_rng(7).uniform(-5.0, 20.0, (5, 5)))
 
 
@@ -190,11 +168,22 @@ def inside(count: int = 41) -> tuple[np.ndarray, np.ndarray]:
     return tuple(np.meshgrid(roll, face, indexing="ij"))
 
 
-def test_nodes_are_met_and_end_values_hold_beyond_them() -> None:
+def test_nodes_are_met_with_continuous_slopes_and_end_values_hold_beyond() -> None:
     roll, face = np.meshgrid(ROLL, FACE, indexing="ij")
     assert NODES.material_removed(roll, face) == pytest.approx(np.array(NODES.removed), rel=1e-12, abs=1e-20)
     beyond = NODES.material_removed(np.array([0.0, 1.0]), np.array([-1.0, 4e-3]))
     assert beyond == pytest.approx([NODES.removed[0][0], NODES.removed[-1][3]], rel=1e-12, abs=0.0)
+    # Slopes from either side of every node line agree; a bilinear surface would have kinks there.
+    step, jumps, slopes = 1e-8, [], []
+    for axis, others in ((0, FACE), (1, ROLL)):
+        between = np.linspace(others[0], others[-1], 23)
+        for node in (ROLL, FACE)[axis][1:-1]:
+            at = [np.full(23, node + shift) for shift in (-step, 0.0, step)]
+            places = [(a, between) if axis == 0 else (between, a) for a in at]
+            low, here, high = (NODES.material_removed(*place) for place in places)
+            jumps.append(np.abs((high - here) - (here - low)).max() / step)
+            slopes.append(np.abs(high - low).max() / (2 * step))
+    assert max(jumps) < 1e-4 * max(slopes)
 
 
 @pytest.mark.parametrize(
@@ -212,20 +201,6 @@ def test_what_is_quadratic_in_either_direction_is_reproduced(shape: Any) -> None
     assert sampled(shape).material_removed(roll, face) == pytest.approx(
         shape(roll, face), rel=1e-9, abs=1e-18
     )
-
-
-def test_the_surface_and_its_slopes_are_continuous() -> None:
-    """Slopes from either side of every node line agree; a bilinear surface would have kinks there."""
-    step, jumps, slopes = 1e-8, [], []
-    for axis, others in ((0, FACE), (1, ROLL)):
-        between = np.linspace(others[0], others[-1], 23)
-        for node in (ROLL, FACE)[axis][1:-1]:
-            at = [np.full(23, node + shift) for shift in (-step, 0.0, step)]
-            places = [(a, between) if axis == 0 else (between, a) for a in at]
-            low, here, high = (NODES.material_removed(*place) for place in places)
-            jumps.append(np.abs((high - here) - (here - low)).max() / step)
-            slopes.append(np.abs(high - low).max() / (2 * step))
-    assert max(jumps) < 1e-4 * max(slopes)
 
 
 def test_a_smooth_flank_is_met_at_third_order() -> None:
@@ -273,8 +248,6 @@ def test_a_grid_adds_to_the_other_amounts_and_tells_flanks_apart() -> None:
     assert asdict(gear)["modification"]["flank_grid"]["roll_length"] == ROLL
 
 
-GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-
 # a chart of five teeth: F_pi 0, 3, 1, -4, -2 um
 CHART = PitchDeviation((0.0, 3e-6, 1e-6, -4e-6, -2e-6))
 
@@ -283,13 +256,13 @@ def test_single_and_cumulative_deviations_of_a_chart():
     assert CHART.individual == pytest.approx([2e-6, 3e-6, -2e-6, -5e-6, 2e-6], abs=1e-18)
     assert CHART.single == pytest.approx(5e-6, abs=1e-18)
     assert CHART.total == pytest.approx(7e-6, abs=1e-18)
-
-
-def test_single_deviations_close_the_circle_and_cumulate_to_the_index_deviations():
     values = np.random.default_rng(3).normal(0.0, 5e-6, 37)
     deviation = PitchDeviation(tuple(values))
     assert deviation.individual.sum() == pytest.approx(0.0, abs=1e-19)
     assert values[0] + np.cumsum(deviation.individual[1:]) == pytest.approx(values[1:], abs=1e-19)
+    assert CHART.reversed.cumulative == (0.0, -2e-6, -4e-6, 1e-6, 3e-6)
+    assert CHART.reversed.reversed == CHART
+    assert PitchDeviation().reversed == PitchDeviation()
 
 
 @pytest.mark.parametrize(
@@ -300,12 +273,6 @@ def test_the_period_is_the_shortest_run_that_repeats(values, period):
     assert PitchDeviation(tuple(1e-6 * value for value in values)).period == period
 
 
-def test_turning_back_twice_changes_nothing_and_keeps_the_first_tooth():
-    assert CHART.reversed.cumulative == (0.0, -2e-6, -4e-6, 1e-6, 3e-6)
-    assert CHART.reversed.reversed == CHART
-    assert PitchDeviation().reversed == PitchDeviation()
-
-
 def test_along_the_line_of_action_an_arc_is_shorter_by_the_transverse_pressure_angle():
     """The tooth turns by F_pi / r; the line of action sees r_b of it."""
     helical = replace(GEAR, helix_angle=0.4, pitch_deviation=PitchDeviation((1e-6,) * 20))
@@ -313,29 +280,20 @@ def test_along_the_line_of_action_an_arc_is_shorter_by_the_transverse_pressure_a
     found = helical.pitch_deviation.on_line_of_action(helical.transverse_pressure_angle)
     assert found == pytest.approx([turned * helical.base_radius] * 20, rel=1e-12, abs=0.0)
     assert helical.base_radius / helical.reference_radius < math.cos(math.radians(20.0))
-
-
-def test_a_gear_with_deviations_keeps_its_macro_geometry():
-    """So the finite-element model of the perfect gear serves it."""
-    erring = replace(GEAR, pitch_deviation=PitchDeviation((0.0,) * 19 + (9e-6,)))
-    assert erring.macro_geometry() == GEAR.macro_geometry()
-
-
-def test_the_swapped_pair_has_the_same_teeth_in_the_other_order():
-    erring = replace(GEAR, pitch_deviation=PitchDeviation(tuple(1e-6 * k for k in range(20))))
-    pair = GearPair(erring, GEAR, 80e-3)
-    assert pair.swapped().wheel.pitch_deviation == erring.pitch_deviation.reversed
-    assert pair.swapped().swapped() == pair
-
-
-def test_the_list_has_one_value_per_tooth():
-    with pytest.raises(InputError, match="a list of 20") as refusal:
-        replace(GEAR, pitch_deviation=PitchDeviation((1e-6,) * 19))
-    assert refusal.value.field == "pitch_deviation"
-
-
-def test_ring_gears_have_them_too():
     ring = RingGear(teeth=60, normal_module=4e-3, face_width=25e-3, rim_diameter=300e-3, cutter_teeth=25)
     erring = replace(ring, pitch_deviation=PitchDeviation((1e-6,) * 60))
     found = erring.pitch_deviation.on_line_of_action(erring.transverse_pressure_angle)
     assert found == pytest.approx([1e-6 * math.cos(math.radians(20.0))] * 60, rel=1e-12, abs=0.0)
+
+
+def test_deviations_are_one_for_each_tooth_of_the_same_gear():
+    """So the finite-element model of the perfect gear serves it."""
+    erring = replace(GEAR, pitch_deviation=PitchDeviation((0.0,) * 19 + (9e-6,)))
+    assert erring.macro_geometry() == GEAR.macro_geometry()
+    erring = replace(GEAR, pitch_deviation=PitchDeviation(tuple(1e-6 * k for k in range(20))))
+    pair = GearPair(erring, GEAR, 80e-3)
+    assert pair.swapped().wheel.pitch_deviation == erring.pitch_deviation.reversed
+    assert pair.swapped().swapped() == pair
+    with pytest.raises(InputError, match="a list of 20") as refusal:
+        replace(GEAR, pitch_deviation=PitchDeviation((1e-6,) * 19))
+    assert refusal.value.field == "pitch_deviation"

@@ -18,7 +18,6 @@ from fe_contact.geometry import FlankModification, Gear, GearPair, InternalGearP
 from fe_contact.geometry.toothing import Toothing
 
 BY_SHAPE = pytest.mark.parametrize("shape", SHAPES)
-
 MEAN = {  # of the depth over the length
     "linear": 1.0 / 2.0,
     "parabolic": 1.0 / 3.0,
@@ -30,6 +29,17 @@ MEAN = {  # of the depth over the length
 def test_the_shapes_are_those_of_the_exchange_format() -> None:
     assert tuple(SHAPES) == get_args(Shape)
     assert sorted(SHAPES) == ["circular", "exponential", "linear", "logarithmic", "parabolic"]
+    u = np.linspace(0.0, 1.0, 21)
+    there_and_back = SHAPES["logarithmic"](SHAPES["exponential"](u, 0.01), 0.01)
+    assert there_and_back == pytest.approx(u, abs=1e-15)
+    facts: dict[str, Any] = {"end_relief_length": 1e-5, "end_relief_shape": "circular"}
+    FlankModification(end_relief=1e-5, **facts)
+    with pytest.raises(InputError) as caught:
+        FlankModification(end_relief=1.001e-5, **facts)
+    assert (caught.value.field, caught.value.bound) == (
+        "end_relief",
+        at_most(1e-5, "m", "the length of the arc"),
+    )
 
 
 @BY_SHAPE
@@ -59,12 +69,6 @@ def test_a_circular_relief_is_an_arc_that_touches_where_it_starts(ratio: float) 
     radius = (1.0 + ratio**2) / (2.0 * ratio)  # lengths
     depth = ratio * SHAPES["circular"](u, ratio)
     assert u**2 + (depth - radius) ** 2 == pytest.approx(np.full(11, radius**2), rel=1e-13)
-
-
-def test_exponential_and_logarithmic_are_each_other_s_mirror_images_at_the_diagonal() -> None:
-    u = np.linspace(0.0, 1.0, 21)
-    there_and_back = SHAPES["logarithmic"](SHAPES["exponential"](u, 0.01), 0.01)
-    assert there_and_back == pytest.approx(u, abs=1e-15)
 
 
 def helical(hand: int = 1, **modification: Any) -> Gear:
@@ -108,7 +112,7 @@ def test_end_reliefs_of_both_faces_are_the_symmetric_one(shape: Shape) -> None:
     assert not np.any(first[face > 0.0]) and not np.any(second[face < 0.0])
 
 
-def test_crownings_of_both_sides_from_the_middle_are_the_symmetric_one() -> None:
+def test_crownings_of_sides_meet_in_one_highest_point() -> None:
     gear = make_gear()
     middle = 0.5 * (gear.form_roll_length + gear.tip_roll_length)
     radius = math.hypot(gear.base_radius, middle)
@@ -129,10 +133,6 @@ def test_crownings_of_both_sides_from_the_middle_are_the_symmetric_one() -> None
     face = np.linspace(-half, half, 41)
     expected = FlankModification(helix_crowning=4e-6).material_removed(gear, 0.012, face)
     assert helix.material_removed(gear, 0.012, face) == pytest.approx(expected, abs=1e-20)
-
-
-def test_crownings_of_unlike_sides_reach_their_amounts_from_one_highest_point() -> None:
-    gear = make_gear()
     lead = FlankModification(
         helix_crowning_datum_face=3e-6, helix_crowning_datum_face_length=20e-3,
         helix_crowning_non_datum_face=8e-6, helix_crowning_non_datum_face_length=5e-3,
@@ -219,19 +219,7 @@ def test_on_either_gear_a_line_of_contact_is_relieved_all_along(pair: GearPair |
             assert depth.size == 0 or np.ptp(depth) < 1e-18
 
 
-def test_an_arc_is_at_most_as_deep_as_long() -> None:
-    facts: dict[str, Any] = {"end_relief_length": 1e-5, "end_relief_shape": "circular"}
-    FlankModification(end_relief=1e-5, **facts)
-    with pytest.raises(InputError) as caught:
-        FlankModification(end_relief=1.001e-5, **facts)
-    assert (caught.value.field, caught.value.bound) == (
-        "end_relief",
-        at_most(1e-5, "m", "the length of the arc"),
-    )
-
-
 RING = RingGear(60, 4e-3, 25e-3, rim_diameter=300e-3, addendum_coefficient=0.8)
-
 KINDS = ("spur", "helical", "ring")
 
 
@@ -302,7 +290,7 @@ def test_what_is_removed_is_what_the_break_says(kind: str, edge: dict[str, float
     assert not np.any(gear.modification.material_removed(gear, below))
 
 
-def test_no_edge_is_a_sharp_tip() -> None:
+def test_no_edge_is_a_sharp_tip_and_one_is_along_the_profile() -> None:
     none = FlankModification(tip_rounding=0.0, tip_chamfer=0.0, tip_chamfer_angle=1.0)
     gear = make_gear(modification=none)
     assert none.neutral
@@ -312,9 +300,6 @@ def test_no_edge_is_a_sharp_tip() -> None:
     pair = GearPair(gear, gear, 80e-3)
     assert pair.active_path == pair.path_of_contact
     assert pair.active_contact_ratio == pair.transverse_contact_ratio
-
-
-def test_an_edge_is_along_the_profile_all_over_the_face() -> None:
     shape = FlankModification(tip_chamfer=1e-4, helix_crowning=1e-6)
     assert shape.along_profile == FlankModification(tip_chamfer=1e-4)
     assert shape.along_face == FlankModification(helix_crowning=1e-6)

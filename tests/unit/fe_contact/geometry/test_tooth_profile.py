@@ -131,12 +131,19 @@ def test_full_fillet_leaves_no_root_land() -> None:
     assert profile.flank(profile.s_space) == pytest.approx(profile.fillet(profile.fillet_length), abs=1e-14)
 
 
-def test_arrays_of_any_shape_and_scalars() -> None:
+def test_arrays_scale_and_equal_gears_share_a_profile() -> None:
     profile = tooth_profile(make_gear())
     s = np.linspace(profile.s_space, profile.s_tip, 12).reshape(3, 4)
     assert profile.flank(s).shape == profile.normal(s).shape == (3, 4, 2)
     assert profile.flank(s)[1, 2] == pytest.approx(profile.flank(float(s[1, 2])), rel=1e-14)
     assert profile.flank([]).shape == (0, 2)
+    one = tooth_profile(make_gear(helix_angle=0.3))
+    large = {"normal_module": 12e-3, "face_width": 75e-3, "bore_diameter": 6e-3}
+    three = tooth_profile(make_gear(helix_angle=-0.3, **large))
+    s = np.linspace(one.s_space, one.s_tip, 30)
+    assert three.flank(3.0 * s) == pytest.approx(3.0 * one.flank(s), rel=1e-12)
+    assert three.normal(3.0 * s) == pytest.approx(one.normal(s), abs=1e-12)
+    assert tooth_profile(make_gear(teeth=31)) is tooth_profile(make_gear(teeth=31))
 
 
 @gear_and_ring
@@ -146,19 +153,6 @@ def test_coordinates_off_the_profile_are_refused(gear: Toothing, beyond: float) 
     end = profile.s_space if beyond < 0.0 else profile.s_tip
     with pytest.raises(InputError, match="s_space"):
         profile.flank([profile.s_form, end + beyond])
-
-
-def test_lengths_scale_and_the_hand_of_helix_does_not_matter() -> None:
-    one = tooth_profile(make_gear(helix_angle=0.3))
-    large = {"normal_module": 12e-3, "face_width": 75e-3, "bore_diameter": 6e-3}
-    three = tooth_profile(make_gear(helix_angle=-0.3, **large))
-    s = np.linspace(one.s_space, one.s_tip, 30)
-    assert three.flank(3.0 * s) == pytest.approx(3.0 * one.flank(s), rel=1e-12)
-    assert three.normal(3.0 * s) == pytest.approx(one.normal(s), abs=1e-12)
-
-
-def test_profile_of_equal_gears_is_computed_once() -> None:
-    assert tooth_profile(make_gear(teeth=31)) is tooth_profile(make_gear(teeth=31))
 
 
 # The tool of a ring gear: a cutter.
@@ -262,17 +256,12 @@ def clearance_to_tool_rounding(gear: Gear, point: np.ndarray) -> float:
 
 
 @cases
-def test_tool_touches_every_fillet_point(fields: dict[str, Any]) -> None:
+def test_tool_touches_every_fillet_point_and_cuts_no_involute(fields: dict[str, Any]) -> None:
     gear = make_gear(**fields)
     profile = tooth_profile(gear)
     points = profile.fillet(np.linspace(0.0, profile.fillet_length, 9))
     clearance = [clearance_to_tool_rounding(gear, point) for point in points]
     assert clearance == pytest.approx(np.zeros(9), abs=1e-11)
-
-
-@cases
-def test_tool_cuts_nothing_of_the_involute_above_the_form_point(fields: dict[str, Any]) -> None:
-    gear = make_gear(**fields)
     points = tooth_profile(gear).involute(np.linspace(gear.form_roll_length, gear.tip_roll_length, 9))
     assert min(clearance_to_tool_rounding(gear, point) for point in points) >= -1e-11
 
@@ -281,20 +270,20 @@ def test_undercut_removes_the_involute_below_the_form_point() -> None:
     gear = make_gear(teeth=9)
     below = tooth_profile(gear).involute(np.array([0.5 * gear.form_roll_length]))[0]
     assert clearance_to_tool_rounding(gear, below) < -1e-5
+    gear = make_gear(teeth=17, helix_angle=0.3)
+    angle = np.linspace(gear.normal_pressure_angle, 0.5 * math.pi, 20)
+    x, y = gear.trochoid.point(angle).T
+    assert np.arctan2(x, y) == pytest.approx(gear.trochoid.polar_angle(angle), rel=1e-13)
+    assert np.hypot(x, y) == pytest.approx(gear.trochoid.radius(angle), rel=1e-13)
 
 
 @cases
-def test_radius_falls_from_flank_to_root_circle(fields: dict[str, Any]) -> None:
+def test_radius_falls_along_an_arc_of_known_length(fields: dict[str, Any]) -> None:
     gear = make_gear(**fields)
     radius = gear.trochoid.radius(np.linspace(gear.form_point.tool_angle, 0.5 * math.pi, 100))
     assert np.all(np.diff(radius) < 0.0)
     assert radius[0] == pytest.approx(gear.form_radius, rel=1e-13)
     assert radius[-1] == pytest.approx(gear.root_radius, rel=1e-13)
-
-
-@cases
-def test_arc_length_and_its_inverse_agree(fields: dict[str, Any]) -> None:
-    gear = make_gear(**fields)
     start, trochoid = gear.form_point.tool_angle, gear.trochoid
     angle = np.linspace(start, 0.5 * math.pi, 50)
     arc = trochoid.arc_length(start, angle)
@@ -302,11 +291,3 @@ def test_arc_length_and_its_inverse_agree(fields: dict[str, Any]) -> None:
     # against the chord sum, whose error falls with the square of the step
     fine = trochoid.point(np.linspace(start, 0.5 * math.pi, 20001))
     assert arc[-1] == pytest.approx(np.sum(np.hypot(*np.diff(fine, axis=0).T)), rel=1e-8)
-
-
-def test_polar_angle_and_radius_are_the_points() -> None:
-    gear = make_gear(teeth=17, helix_angle=0.3)
-    angle = np.linspace(gear.normal_pressure_angle, 0.5 * math.pi, 20)
-    x, y = gear.trochoid.point(angle).T
-    assert np.arctan2(x, y) == pytest.approx(gear.trochoid.polar_angle(angle), rel=1e-13)
-    assert np.hypot(x, y) == pytest.approx(gear.trochoid.radius(angle), rel=1e-13)

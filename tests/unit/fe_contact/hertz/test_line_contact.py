@@ -1,4 +1,4 @@
-"""Laws of line contact: scaling, inverse, limits, and the replacement of a finite-element patch by Hertz."""
+"""Laws of line contact and of the contact at a tip edge: equilibrium, scaling, limits."""
 
 from __future__ import annotations
 
@@ -6,21 +6,18 @@ import math
 
 import numpy as np
 import pytest
-from hertz_laws import line_load_at_half_width, local_approach
+from hertz_laws import edge_contact_length, edge_half_width, line_load_at_half_width, local_approach
 from scipy.integrate import quad
 
-from fe_contact.hertz import contact_modulus, half_width, peak_pressure, relative_radius
+from fe_contact.hertz import contact_modulus, half_width, peak_pressure, relative_radius, wedge_softness
 from fe_contact.material import STEEL, Material
 
 MODULUS = contact_modulus(STEEL, STEEL)
 LOADS = np.geomspace(1e2, 1e7, 11)
 
 
-def test_contact_modulus_of_equal_bodies_is_half_the_plane_strain_modulus():
-    assert pytest.approx(0.5 * STEEL.plane_strain_modulus, rel=1e-15, abs=0.0) == MODULUS
-
-
 def test_contact_modulus_is_symmetric_and_follows_the_soft_body():
+    assert pytest.approx(0.5 * STEEL.plane_strain_modulus, rel=1e-15, abs=0.0) == MODULUS
     plastic = Material(2e9, 0.4)
     assert contact_modulus(plastic, STEEL) == contact_modulus(STEEL, plastic)
     assert contact_modulus(plastic, plastic) < contact_modulus(plastic, STEEL) < plastic.plane_strain_modulus
@@ -34,20 +31,12 @@ def test_relative_radius(first, second, expected):
     assert relative_radius(first, second) == pytest.approx(expected, rel=1e-15, abs=0.0)
 
 
-def test_half_width_and_load_are_inverse():
+def test_width_load_and_pressure_are_tied_and_scale_with_size():
     assert line_load_at_half_width(half_width(LOADS, 6e-3, MODULUS), 6e-3, MODULUS) == pytest.approx(
         LOADS, rel=1e-14, abs=0.0
     )
-
-
-def test_resultant_of_the_strip_is_the_load():
-    # p = pi b p0 / 2 ties half-width and peak pressure together
     width, pressure = half_width(LOADS, 6e-3, MODULUS), peak_pressure(LOADS, 6e-3, MODULUS)
     assert 0.5 * math.pi * width * pressure == pytest.approx(LOADS, rel=1e-14, abs=0.0)
-
-
-def test_lengths_and_loads_scale_with_size_at_equal_pressure():
-    # lengths times s, line loads times s: the same pressure, all displacements times s
     s = 3.7
     width = half_width(LOADS, 6e-3, MODULUS)
     assert half_width(s * LOADS, s * 6e-3, MODULUS) == pytest.approx(s * width, rel=1e-14, abs=0.0)
@@ -83,15 +72,52 @@ def test_local_approach_is_the_difference_of_two_half_plane_solutions():
     assert local_approach(p, a, b, STEEL) == pytest.approx(hertz - patch, rel=1e-7, abs=0.0)
 
 
-def test_local_approach_of_no_load_is_zero():
+def test_local_approach_vanishes_without_load_and_knows_no_patch_in_differences():
     approach = local_approach(np.array([0.0, 1e5]), 3e-4, half_width([0.0, 1e5], 6e-3, MODULUS), STEEL)
     assert approach[0] == 0.0
     assert approach[1] > 0.0
-
-
-def test_local_approach_does_not_know_the_patch_when_taken_as_a_difference():
-    # two loads at one patch: what depends on the patch is k p ln a, the rest is common
     width = half_width(LOADS, 6e-3, MODULUS)
     k = 2.0 / (math.pi * STEEL.plane_strain_modulus)
     difference = local_approach(LOADS, 4e-4, width, STEEL) - local_approach(LOADS, 2e-4, width, STEEL)
     assert difference == pytest.approx(k * LOADS * math.log(2.0), rel=1e-12, abs=0.0)
+
+
+EDGE_MODULUS, RADIUS = 115e9, 6e-3
+EDGE_LOADS = np.geomspace(1e2, 1e7, 21)
+SLOPES = [0.3, 0.02, 1e-4, 0.0, -1e-4, -0.02]
+
+
+@pytest.mark.parametrize("slope", SLOPES)
+def test_length_satisfies_equilibrium(slope):
+    c = edge_contact_length(EDGE_LOADS, slope, RADIUS, EDGE_MODULUS)
+    carried = 0.25 * math.pi * EDGE_MODULUS * c * (slope + 0.75 * c / RADIUS)
+    assert carried == pytest.approx(EDGE_LOADS, rel=1e-10, abs=0.0)
+
+
+def test_parallel_and_blunt_edges_keep_their_digits():
+    assert edge_contact_length(1e-6, 0.3, RADIUS, EDGE_MODULUS) == pytest.approx(
+        4e-6 / (math.pi * EDGE_MODULUS * 0.3), rel=1e-12, abs=0.0
+    )
+    c = edge_contact_length(EDGE_LOADS, 0.0, RADIUS, EDGE_MODULUS)
+    assert edge_half_width(c, 0.0, RADIUS) == pytest.approx(0.5 * c, rel=1e-14, abs=0.0)
+    assert c == pytest.approx(
+        2.0 / math.sqrt(3.0) * half_width(EDGE_LOADS, RADIUS, EDGE_MODULUS), rel=1e-14, abs=0.0
+    )
+    assert edge_half_width(1e-6, 0.5, 1.0) == pytest.approx(0.5e-6 * math.exp(-0.5), rel=1e-5, abs=0.0)
+
+
+def test_sharper_wedges_yield_more_than_a_half_plane():
+    assert wedge_softness(math.pi) == pytest.approx(1.0, rel=1e-15, abs=0.0)
+    softness = [wedge_softness(math.radians(angle)) for angle in range(180, 60, -5)]
+    assert np.all(np.diff(softness) > 0.0)
+
+
+@pytest.mark.parametrize("angle", [1.3, 0.5 * math.pi, 2.0, 2.6])
+def test_the_stresses_of_a_wedge_balance_the_force(angle):
+    # radial stress -(softness field)/r over an arc; k_w is half the moduli of axial and transverse force
+    theta = np.linspace(-0.5 * angle, 0.5 * angle, 4001)
+    normal = math.sin(0.5 * angle), math.cos(0.5 * angle)
+    directions = np.cos(theta), np.sin(theta)
+    stiff = [np.trapezoid(part**2, theta) for part in directions]
+    softness = 0.5 * math.pi * sum(n**2 / each for n, each in zip(normal, stiff, strict=True))
+    assert wedge_softness(angle) == pytest.approx(softness, rel=1e-6, abs=0.0)

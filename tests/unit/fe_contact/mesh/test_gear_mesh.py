@@ -51,9 +51,7 @@ def test_area_is_that_of_the_exact_section(gear_and_mesh: GearAndMesh) -> None:
     assert element_area(mesh.points, mesh.triangles).sum() == pytest.approx(exact, rel=4e-6)
 
 
-def test_every_inner_side_is_shared_by_two_elements_and_the_rest_close_two_loops(
-    gear_and_mesh: GearAndMesh,
-) -> None:
+def test_the_mesh_is_one_ring_without_spare_nodes(gear_and_mesh: GearAndMesh) -> None:
     _, mesh = gear_and_mesh
     pairs, counts = sides(mesh.triangles)
     assert counts.max() == 2
@@ -62,9 +60,6 @@ def test_every_inner_side_is_shared_by_two_elements_and_the_rest_close_two_loops
     assert np.all(uses == 2)
     vertices, elements = len(np.unique(mesh.triangles[:, :3])), len(mesh.triangles)
     assert vertices - len(pairs) + elements == 0  # Euler characteristic of a ring
-
-
-def test_no_node_is_unused_and_none_lies_on_another(gear_and_mesh: GearAndMesh) -> None:
     gear, mesh = gear_and_mesh
     assert np.array_equal(np.unique(mesh.triangles), np.arange(len(mesh.points)))
     rounded = np.round(mesh.points / (1e-7 * gear.normal_module)).astype(int)
@@ -117,16 +112,12 @@ def boundary_middles(triangles: np.ndarray, free: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
-def test_bore_nodes_are_all_on_the_circle_that_the_gear_is_held_by(gear_and_mesh: GearAndMesh) -> None:
+def test_bore_teeth_and_sizes_are_as_they_should(gear_and_mesh: GearAndMesh) -> None:
     gear, mesh = gear_and_mesh
     radius = np.linalg.norm(mesh.points, axis=1)
     on_bore = np.flatnonzero(gear.sign * (radius - gear.held_radius) < 1e-9)
     assert np.array_equal(np.sort(mesh.bore_nodes), on_bore)
     assert radius[on_bore] == pytest.approx(gear.held_radius, rel=1e-12)
-
-
-def test_teeth_are_copies_and_each_tooth_its_own_mirror_image(gear_and_mesh: GearAndMesh) -> None:
-    gear, mesh = gear_and_mesh
     sector = mesh.sector
     for nodes, tooth in zip(mesh.sector_nodes, mesh.teeth, strict=True):
         expected = rotated(sector.points, tooth * 2.0 * np.pi / gear.teeth)
@@ -134,9 +125,6 @@ def test_teeth_are_copies_and_each_tooth_its_own_mirror_image(gear_and_mesh: Gea
     assert sector.points[sector.coast_flank] == pytest.approx(sector.points[sector.flank] * [-1.0, 1.0])
     assert 0 in mesh.teeth
     assert np.all(np.diff(mesh.teeth) == 1)
-
-
-def test_quality_is_within_limits_and_element_sizes_follow_the_recipe(gear_and_mesh: GearAndMesh) -> None:
     _, mesh = gear_and_mesh
     quality = mesh_quality(mesh.points, mesh.triangles)
     assert quality.angle.min() > np.radians(20.0)

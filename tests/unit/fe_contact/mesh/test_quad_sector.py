@@ -109,12 +109,9 @@ def test_the_section_has_the_area_of_the_gear(subject: Toothing) -> None:
     )  # sides are parabolas
 
 
-def test_a_poor_element_is_named() -> None:
+def test_quality_of_known_quadrilaterals_and_a_poor_element_is_named() -> None:
     with pytest.raises(MeshError, match=r"sector section: element \d+ at .* mm: corner angle"):
         quad_sector(gear(), SectorRecipe.draft(gear()), QualityLimits(angle=math.radians(80.0)))
-
-
-def test_quality_of_known_quadrilaterals() -> None:
     corners = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
     middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
     slant = np.concatenate([corners, middles]) @ np.array([[1.0, 0.0], [1.0, 1.0]])

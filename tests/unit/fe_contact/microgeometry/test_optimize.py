@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from analysis_requests import design_request
+from spur_gears import LONG_RELIEFS, PAIR
 
 from fe_contact import GearPair, analyze
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study
@@ -30,24 +31,31 @@ FREE = (DesignVariable(RELIEF, 0.0, 60e-6), DesignVariable(LENGTH, 0.5e-3, 3e-3)
 AMOUNTS = (DesignVariable(RELIEF, 0.0, 60e-6), DesignVariable("wheel.tip_relief", 0.0, 60e-6))
 FEW = Search(evaluations=250, positions=32)
 QUICK = Search(NelderMead(), evaluations=150, positions=32)
-NONE = {"map_torques": [TORQUE]}
+
+
+def searched(
+    free: Iterable[DesignVariable] = AMOUNTS,
+    pair: GearPair = LONG_RELIEFS,
+    torque: float = TORQUE,
+    **further: Any,
+) -> Optimization:
+    """Search at draft in the plane, quickly unless further requests say otherwise."""
+    asked: dict[str, Any] = {"search": QUICK, "map_torques": [torque]} | DRAFT | further
+    cancel = {"cancel": asked.pop("cancel")} if "cancel" in asked else {}
+    return optimize(design_request(pair, [torque], free, **asked), **cancel)
 
 
 @pytest.fixture(scope="module")
-def found(long_reliefs: GearPair, compliances: Path) -> Optimization:
-    return optimize(
-        design_request(long_reliefs, [TORQUE], AMOUNTS, search=FEW, **DRAFT, **NONE), Run(cache=compliances)
-    )
+def found() -> Optimization:
+    return searched(search=FEW)
 
 
 @pytest.mark.law
-def test_no_design_of_a_fine_scan_is_better(
-    found: Optimization, long_reliefs: GearPair, compliances: Path
-) -> None:
+def test_no_design_of_a_fine_scan_is_better(found: Optimization) -> None:
     names = [one.name for one in AMOUNTS]
     varied = dict.fromkeys(names, 30e-6), Scatter(), 0.0, FEW.positions
-    space = DesignSpace(long_reliefs, *varied, AnalysisOptions(**DRAFT))
-    study = design_study(space, [TORQUE], [], StageClock(), Run(cache=compliances))
+    space = DesignSpace(LONG_RELIEFS, *varied, AnalysisOptions(**DRAFT))
+    study = design_study(space, [TORQUE], [], StageClock(), Run())
     scan = [
         float(study.evaluator.evaluate(dict(zip(names, values, strict=True))).peak_to_peak[0, 0])
         for values in itertools.product(np.linspace(0.0, 60e-6, 17), repeat=2)
@@ -56,38 +64,36 @@ def test_no_design_of_a_fine_scan_is_better(
     assert found.runs[0].assessed.objective > 0.5 * min(scan)  # the scan is fine
 
 
-def test_it_is_assessed_by_what_analyze_finds(
-    found: Optimization, long_reliefs: GearPair, compliances: Path
-) -> None:
+def test_it_is_assessed_by_what_analyze_finds(found: Optimization) -> None:
     for design in (found.start, found.optimum):
-        made = modified(long_reliefs, design.values)
-        assessed = analyze(made, torques=[TORQUE], cache=compliances, **DRAFT).peak_to_peak(torque=TORQUE)
+        made = modified(LONG_RELIEFS, design.values)
+        assessed = analyze(made, torques=[TORQUE], **DRAFT).peak_to_peak(torque=TORQUE)
         # the objective is read off the nodes, the curve also between them
         assert abs(design.objective.value - assessed.value) <= assessed.error
         assert design.objective.error == pytest.approx(assessed.error, rel=1e-2, abs=0.0)
 
 
-def test_a_relieved_spur_pair_loses_most_of_its_ripple(found: Optimization) -> None:
+def test_a_relieved_spur_pair_loses_most_of_its_ripple_alike_on_both_gears(found: Optimization) -> None:
     assert found.outcome is Outcome.IMPROVED
     assert found.gain.error < 0.15 * found.gain.value  # the finite width counts at both ends
     assert found.start.objective.value > 4.0 * found.optimum.objective.value
-
-
-def test_equal_gears_are_relieved_alike(found: Optimization) -> None:
     first, second = found.optimum.values.values()
     assert first == pytest.approx(second, rel=0.05)
+    for step in found.sensitivity:
+        assert step.low < found.optimum.values[step.name] < step.high
+        assert min(step.change_low, step.change_high) > 0.0
+    told = "; ".join(found.not_tried)
+    assert "scatter of anything" in told and "neglected effects: " in told and "pitch_error" in told
+    kept = next(line for line in found.not_tried if line.startswith("other values of "))
+    assert "pinion.helix_crowning" in kept and "pinion.tip_relief," not in kept
+    assert "wider bounds" not in told
 
 
 @pytest.mark.law
-def test_optimum_relief_is_the_deflection_at_the_load_and_grows_with_it(
-    found: Optimization, long_reliefs: GearPair, compliances: Path
-) -> None:
+def test_optimum_relief_is_the_deflection_at_the_load_and_grows_with_it(found: Optimization) -> None:
     """Harris's rule: long linear reliefs about as deep as the teeth give way at the design load."""
     half = TORQUE / 2.0
-    light = optimize(
-        design_request(long_reliefs, [half], AMOUNTS, search=FEW, map_torques=[half], **DRAFT),
-        Run(cache=compliances),
-    )
+    light = searched(torque=half, search=FEW)
     reliefs, deflections = [], []
     for torque, best in ((half, light.optimum), (TORQUE, found.optimum)):
         reliefs.append(np.mean(list(best.values.values())))
@@ -98,46 +104,32 @@ def test_optimum_relief_is_the_deflection_at_the_load_and_grows_with_it(
     assert reliefs[1] > 1.8 * reliefs[0]
 
 
-def test_wider_bounds_never_end_worse(found: Optimization, long_reliefs: GearPair, compliances: Path) -> None:
+def test_wider_bounds_never_end_worse(found: Optimization) -> None:
     narrow = [replace(one, low=5e-6, high=9e-6) for one in AMOUNTS]
-    held = optimize(
-        design_request(long_reliefs, [TORQUE], narrow, search=QUICK, **DRAFT, **NONE), Run(cache=compliances)
-    )
+    held = searched(narrow)
     assert all(v.low <= held.optimum.values[v.name] <= v.high for v in held.variables)
     assert found.runs[0].assessed.objective < held.runs[0].assessed.objective
     assert "wider bounds of pinion.tip_relief, wheel.tip_relief" in held.not_tried[0]
-    best = modified(long_reliefs, held.optimum.values)
+    best = modified(LONG_RELIEFS, held.optimum.values)
     once = Search(NelderMead(), evaluations=1, positions=32)
-    further = optimize(
-        design_request(best, [TORQUE], AMOUNTS, search=once, **DRAFT, **NONE), Run(cache=compliances)
-    )
+    further = searched(AMOUNTS, best, search=once)
     assert further.runs[0].assessed.objective == pytest.approx(
         held.runs[0].assessed.objective, rel=1e-9, abs=0.0
     )
 
 
 @pytest.mark.law
-def test_equal_seeds_give_equal_results(
-    found: Optimization, long_reliefs: GearPair, compliances: Path
-) -> None:
-    again, other = (
-        optimize(
-            design_request(long_reliefs, [TORQUE], AMOUNTS, search=replace(FEW, seed=seed), **DRAFT, **NONE),
-            Run(cache=compliances),
-        )
-        for seed in (FEW.seed, 7)
-    )
+def test_equal_seeds_give_equal_results(found: Optimization) -> None:
+    again, other = (searched(search=replace(FEW, seed=seed)) for seed in (FEW.seed, 7))
     assert again.optimum.values == found.optimum.values
     assert again.optimum.objective == found.optimum.objective
     assert other.optimum.values != found.optimum.values
     assert other.optimum.objective.value == pytest.approx(found.optimum.objective.value, rel=0.02)
 
 
-def test_the_best_of_all_starts_is_taken(pair: GearPair, compliances: Path) -> None:
+def test_the_best_of_all_starts_is_taken() -> None:
     search = Search(NelderMead(), starts=3, evaluations=60, positions=32)
-    best = optimize(
-        design_request(pair, [TORQUE], FREE, search=search, **DRAFT, **NONE), Run(cache=compliances)
-    )
+    best = searched(FREE, PAIR, search=search)
     reached = [run.assessed.objective for run in best.runs]
     assert len(set(reached)) > 1
     assert best.best_run == int(np.argmin(reached))
@@ -145,59 +137,36 @@ def test_the_best_of_all_starts_is_taken(pair: GearPair, compliances: Path) -> N
     assert ("all its evaluations" in best.reason) is not best.runs[best.best_run].converged
 
 
-def test_the_optimum_is_no_lower_to_either_side(found: Optimization) -> None:
-    for step in found.sensitivity:
-        assert step.low < found.optimum.values[step.name] < step.high
-        assert min(step.change_low, step.change_high) > 0.0
-
-
-def test_tip_edges_can_be_kept_from_contact(
-    found: Optimization, long_reliefs: GearPair, compliances: Path
-) -> None:
+def test_tip_edges_can_be_kept_from_contact_and_pressures_low(found: Optimization) -> None:
     assert found.start.figures.edge_load_share.max() > 0.05  # before A and after E
     limits = Limits(edge_load_share=0.0)
     small = [replace(one, high=12e-6) for one in AMOUNTS]
-    held = optimize(
-        design_request(long_reliefs, [TORQUE], small, search=QUICK, limits=limits, **DRAFT, **NONE),
-        Run(cache=compliances),
-    )
+    held = searched(small, limits=limits)
     assert held.start.violation == pytest.approx(held.start.figures.edge_load_share.max(), rel=1e-9, abs=0.0)
-    wide = optimize(
-        design_request(long_reliefs, [TORQUE], AMOUNTS, search=QUICK, limits=limits, **DRAFT, **NONE),
-        Run(cache=compliances),
-    )
+    wide = searched(limits=limits)
     assert held.outcome is Outcome.LIMITS_EXCEEDED
     assert wide.outcome is Outcome.IMPROVED and wide.optimum.violation < 0.005
-
-
-def test_a_pressure_limit_is_kept(found: Optimization, long_reliefs: GearPair, compliances: Path) -> None:
     reached = float(found.optimum.figures.pressure.max())
     limits = Limits(max_pressure=0.9 * reached)
-    held = optimize(
-        design_request(long_reliefs, [TORQUE], AMOUNTS, search=QUICK, limits=limits, **DRAFT, **NONE),
-        Run(cache=compliances),
-    )
+    held = searched(limits=limits)
     assert held.optimum.figures.pressure.max() < reached
     assert held.runs[0].assessed.violation < found.optimum.figures.violation(limits)
     assert (held.outcome is Outcome.LIMITS_EXCEEDED) == (held.optimum.violation > 0.005)
 
 
-def test_a_gain_smaller_than_the_errors_is_not_claimed(pair: GearPair, compliances: Path) -> None:
+def test_a_gain_smaller_than_the_errors_is_not_claimed() -> None:
     tiny = [DesignVariable("pinion.profile_slope", -1e-10, 1e-10)]
-    best = optimize(
-        design_request(pair, [TORQUE], tiny, search=QUICK, **DRAFT, **NONE), Run(cache=compliances)
-    )
+    best = searched(tiny, PAIR)
     assert best.outcome in (Outcome.WITHIN_ERROR, Outcome.NOT_IMPROVED)
     assert abs(best.gain.value) <= best.gain.error
     assert "the variables have no influence" in best.reason
 
 
-def test_bounds_that_leave_the_start_out_are_told(long_reliefs: GearPair, compliances: Path) -> None:
+def test_bounds_that_leave_the_start_out_are_told() -> None:
     """The start is the pair as it is, though no design of the search may be like it."""
     good = {one.name: 8e-6 for one in AMOUNTS}
     poor = [replace(one, low=30e-6, high=31e-6) for one in AMOUNTS]
-    request = design_request(modified(long_reliefs, good), [TORQUE], poor, search=QUICK, **DRAFT, **NONE)
-    best = optimize(request, Run(cache=compliances))
+    best = searched(poor, modified(LONG_RELIEFS, good))
     assert best.start.values == good
     assert all(30e-6 <= value <= 31e-6 for value in best.optimum.values.values())
     assert best.outcome is Outcome.NOT_IMPROVED and best.gain.value < 0.0
@@ -206,59 +175,35 @@ def test_bounds_that_leave_the_start_out_are_told(long_reliefs: GearPair, compli
     )
 
 
-def test_an_interrupted_search_gives_the_best_so_far_in_full(
-    found: Optimization, long_reliefs: GearPair, compliances: Path
-) -> None:
+def test_an_interrupted_search_gives_the_best_so_far_in_full(found: Optimization) -> None:
     asked = [0]
 
     def cancel() -> bool:
         asked[0] += 1
         return asked[0] > 61  # once before the start
 
-    best = optimize(
-        design_request(long_reliefs, [TORQUE], AMOUNTS, search=FEW, **DRAFT, **NONE),
-        Run(cache=compliances),
-        cancel=cancel,
-    )
+    best = searched(search=FEW, cancel=cancel)
     assert "interrupted after 60 of at most 250 designs" in best.reason
     assert best.evaluations == 60 and not best.runs[0].converged
     assert found.optimum.objective.value < best.optimum.objective.value < best.start.objective.value
-    made = modified(long_reliefs, best.optimum.values)
-    assessed = analyze(made, torques=[TORQUE], cache=compliances, **DRAFT).peak_to_peak(torque=TORQUE)
+    made = modified(LONG_RELIEFS, best.optimum.values)
+    assessed = analyze(made, torques=[TORQUE], **DRAFT).peak_to_peak(torque=TORQUE)
     assert abs(best.optimum.objective.value - assessed.value) <= assessed.error
 
 
-def test_few_positions_explore_as_well_as_many(
-    found: Optimization, long_reliefs: GearPair, compliances: Path
-) -> None:
+def test_few_positions_explore_as_well_as_many(found: Optimization) -> None:
     assert found.runs[0].explored > 0
-    full = optimize(
-        design_request(
-            long_reliefs, [TORQUE], AMOUNTS, search=replace(FEW, exploration=FEW.positions), **DRAFT, **NONE
-        ),
-        Run(cache=compliances),
-    )
+    full = searched(search=replace(FEW, exploration=FEW.positions))
     reached = found.runs[0].assessed.objective
     assert reached == pytest.approx(full.runs[0].assessed.objective, rel=0.01, abs=0.0)
 
 
-def test_what_was_not_tried_is_said(found: Optimization) -> None:
-    told = "; ".join(found.not_tried)
-    assert "scatter of anything" in told and "neglected effects: " in told and "pitch_error" in told
-    kept = next(line for line in found.not_tried if line.startswith("other values of "))
-    assert "pinion.helix_crowning" in kept and "pinion.tip_relief," not in kept
-    assert "wider bounds" not in told
-
-
-def test_objectives_differ_over_loads(long_reliefs: GearPair, compliances: Path) -> None:
+def test_objectives_differ_over_loads() -> None:
     torques = [80.0, 240.0]
 
     def best(objective: Any) -> FloatArray:
         both: dict[str, Any] = {"objective": objective, "map_torques": torques}
-        result = optimize(
-            design_request(long_reliefs, torques, AMOUNTS, search=QUICK, **both, **DRAFT),
-            Run(cache=compliances),
-        )
+        result = optimize(design_request(LONG_RELIEFS, torques, AMOUNTS, search=QUICK, **both, **DRAFT))
         return result.optimum.harris_map.expected
 
     light, heavy, worst = best(WeightedMean((1.0, 0.0))), best(WeightedMean((0.0, 1.0))), best(Worst())
@@ -266,9 +211,9 @@ def test_objectives_differ_over_loads(long_reliefs: GearPair, compliances: Path)
     assert worst.max() < min(light.max(), heavy.max())
 
 
-def test_the_map_runs_over_all_torques(pair: GearPair, compliances: Path) -> None:
+def test_the_map_runs_over_all_torques() -> None:
     once = Search(NelderMead(), evaluations=2, positions=16)
-    best = optimize(design_request(pair, [100.0, 200.0], FREE, search=once, **DRAFT), Run(cache=compliances))
+    best = optimize(design_request(PAIR, [100.0, 200.0], FREE, search=once, **DRAFT))
     harris = best.optimum.harris_map
     assert {100.0, 200.0} <= set(harris.torque) and harris.torque[-1] == 250.0 and harris.torque.size > 8
     assert harris.ste.shape == (harris.position.size, harris.torque.size)

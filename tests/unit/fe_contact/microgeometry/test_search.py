@@ -1,27 +1,35 @@
-"""How a search ends, what it keeps, and how it shares its designs between exploring and settling."""
+"""How a search ends, what it keeps and says, and what its linear programmes find."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from fe_contact.microgeometry import optimize as choice
+from fe_contact.microgeometry.confirmation import HarrisMap, rising
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
-from fe_contact.microgeometry.optimize import _search_all, _search_one
+from fe_contact.microgeometry.objective import Limits, LinearMerit, Objective, WeightedMean, Worst
+from fe_contact.microgeometry.optimization import Outcome
+from fe_contact.microgeometry.optimize import _conclusion, _search_all, _search_one
 from fe_contact.microgeometry.search import (
     EXPLORED,
     DifferentialEvolution,
     Ended,
     NelderMead,
     Search,
+    SearchRun,
     SequentialLinearProgramming,
     search_from,
 )
+from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
-from fe_contact.types import FloatArray
+from fe_contact.stage_clock import StageClock
+from fe_contact.types import Estimate, FloatArray
 from fe_contact.workers import InProcess
 
 START = np.array([0.9, 0.1, 0.5])
@@ -184,3 +192,144 @@ def test_cancelled_before_the_first_design_the_start_is_left(workers: Any) -> No
     )
     np.testing.assert_array_equal(run.place, START)
     assert run.ended is Ended.CANCELLED and run.evaluations == 1
+
+
+@dataclass(frozen=True)
+class Places:
+    """An evaluator that is nothing but its positions."""
+
+    position: FloatArray
+
+    def at(self, position: FloatArray) -> Places:
+        return Places(position)
+
+
+CONVERGED = SearchRun(np.array([0.5]), Assessed(1e-6, 0.0, 1.0), 10, Ended.CONVERGED, 0.0)
+VARIABLE = DesignVariable("pinion.profile_slope", -1e-6, 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("exceeded", "rounds"), [([0.0], 0), ([0.02, 0.0], 1), ([0.02, 0.01, 0.001], 2), ([0.02] * 9, 3)]
+)
+def test_positions_of_every_analysis_join_until_the_limits_are_kept(
+    exceeded: list[float], rounds: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    searched: list[list[float]] = []
+    confirmed = iter([(0.0, 0.9), *((violation, 0.1 * k) for k, violation in enumerate(exceeded, 1))])
+
+    def confirm(*_: Any) -> Any:
+        violation, place = next(confirmed)
+        return SimpleNamespace(violation=violation, harris_map=SimpleNamespace(position=np.array([place])))
+
+    def search_from(problem: DesignProblem, *_: Any, **__: Any) -> SearchRun:
+        searched.append(problem.evaluator.position.tolist())
+        return CONVERGED
+
+    monkeypatch.setattr(choice, "confirm", confirm)
+    monkeypatch.setattr(choice, "search_from", search_from)
+    problem = DesignProblem(
+        cast(Any, Places(np.array([0.0, 0.5]))), (VARIABLE,), WeightedMean(), Limits(), 1.0
+    )
+    asked: Any = SimpleNamespace(own=(0.0,), search=Search())
+    found = choice._choose(problem, (CONVERGED,), asked, cast(Any, None), StageClock(), None, lambda: False)
+    places = [0.1 * k for k in range(1, rounds + 1)]
+    assert searched == [sorted([0.0, 0.5, *places[: k + 1]]) for k in range(rounds)]
+    assert len(found.runs) == rounds + 1 and found.best == rounds
+    assert found.optimum.violation == exceeded[rounds]
+
+
+UM = 1e-6
+
+
+def harris(*ripples: float) -> HarrisMap:
+    """Return the map of ripples in um at 20, 50 and 80 N m, each known to 0.01 um."""
+    ripple, error = np.array(ripples) * UM, np.full(3, 0.01 * UM)
+    torque, position = np.array([20.0, 50.0, 80.0]), np.arange(2.0)
+    ste = np.zeros((2, 3))
+    return HarrisMap(torque, position, ste, ripple, error, ripple[None], error[None], np.ones(1))
+
+
+def concluded(after: HarrisMap, objective: float = 0.2, violation: float = 0.0) -> tuple[Outcome, str]:
+    """Return the conclusion of a search from 0.042, 0.2 and 0.3 um."""
+
+    def design(table: HarrisMap, value: float, over: float = 0.0) -> Any:
+        return SimpleNamespace(
+            harris_map=table, objective=Estimate(value * UM, 0.01 * UM, "m"), violation=over
+        )
+
+    run = SearchRun(np.array([0.5]), Assessed(0.2 * UM, 0.0, 1.0), 10, Ended.CONVERGED, 0.0)
+    designs = {"start": design(BEFORE, 0.3), "optimum": design(after, objective, violation)}
+    choice = SimpleNamespace(runs=(run,), run=run, **designs)
+    request = SimpleNamespace(search=Search(), outside=())
+    return _conclusion(cast(Any, choice), cast(Any, request))
+
+
+BEFORE = harris(0.042, 0.2, 0.3)
+
+
+@pytest.mark.parametrize(
+    ("after", "worse"),
+    [((0.042, 0.1, 0.2), []), ((0.0619, 0.1, 0.2), []), ((0.0621, 0.1, 0.2), [0]), ((0.1, 0.3, 0.2), [0, 1])],
+)
+def test_a_ripple_rises_if_it_does_by_more_than_both_errors(
+    after: tuple[float, ...], worse: list[int]
+) -> None:
+    assert rising(BEFORE, harris(*after)).tolist() == worse
+
+
+def test_the_reason_names_the_torques_that_get_worse() -> None:
+    outcome, reason = concluded(harris(0.123, 0.25, 0.2))
+    assert outcome is Outcome.IMPROVED
+    assert "falls by 0.1 um" in reason
+    assert "it rises at 20, 50 N m, most at 20 N m from 0.042 to 0.123 um" in reason
+    assert "rises" not in concluded(harris(0.042, 0.1, 0.2))[1]
+
+
+@pytest.mark.parametrize(("objective", "violation"), [(0.3, 0.0), (0.2, 0.5)])
+def test_it_does_so_whatever_the_outcome(objective: float, violation: float) -> None:
+    _, reason = concluded(harris(0.123, 0.1, 0.2), objective, violation)
+    assert "it rises at 20 N m" in reason
+
+
+DIMENSIONS, NODES, POSITIONS, LOADS = 3, 2, 20, 2
+LOW, HIGH = np.full(DIMENSIONS, -0.2), np.array([0.2, 0.1, 0.0])
+
+
+def some_merit(objective: Objective, seed: int, limits: int = 1) -> LinearMerit:
+    rng = np.random.default_rng(seed)
+    rows = tuple((rng.normal(size=9) - 1.0, rng.normal(size=(9, DIMENSIONS))) for _ in range(limits))
+    return LinearMerit(
+        5.0 + rng.normal(size=(NODES, POSITIONS, LOADS)),
+        rng.normal(size=(NODES, POSITIONS, LOADS, DIMENSIONS)),
+        np.array([0.25, 0.75]),
+        objective.rows(LOADS),
+        rows,
+        10.0,
+    )
+
+
+def merit_at(merit: LinearMerit, step: np.ndarray) -> float:
+    """Merit at a step, without any program."""
+    ripple = np.ptp(merit.curves + merit.by @ step, axis=1)
+    found = float((merit.load_weight @ (merit.node_weight @ ripple)).max())
+    for rows, by in merit.limits:
+        found += merit.penalty * max(0.0, float((rows + by @ step).max()))
+    return found
+
+
+@pytest.mark.parametrize("objective", [WeightedMean((1.0, 3.0)), Worst()])
+@pytest.mark.parametrize("seed", range(5))
+def test_the_least_is_that_of_the_merit_itself(objective, seed):
+    merit = some_merit(objective, seed)
+    step, promised = merit.least(LOW, HIGH)
+    assert ((step >= LOW - 1e-9) & (step <= HIGH + 1e-9)).all()
+    assert promised == pytest.approx(merit_at(merit, step), rel=1e-7)
+    rng = np.random.default_rng(seed)
+    others = rng.uniform(LOW, HIGH, size=(2000, DIMENSIONS))
+    assert min(merit_at(merit, other) for other in others) >= promised - 1e-7
+
+
+def test_objectives_are_the_largest_of_their_rows():
+    expected = np.array([2.0, 5.0, 1.0])
+    for objective in (WeightedMean(), WeightedMean((1.0, 0.0, 2.0)), Worst()):
+        assert (objective.rows(3) @ expected).max() == pytest.approx(objective.of(expected), rel=1e-12)

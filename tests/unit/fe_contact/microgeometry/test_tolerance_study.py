@@ -1,19 +1,24 @@
-"""Tolerance Monte Carlo: distributions of parts, bounds of quantiles, pairs as single tables have them."""
+"""Tolerance Monte Carlo and sweeps: every sample and point is the pair analyzed alone."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.special import ndtr
+from spur_gears import LONG_RELIEFS, PAIR
 
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
+from fe_contact.microgeometry.sweep import Sweep, SweepAxis, SweepRequest, sweep
 from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, ToleranceStudy, _quantile, scatter
 from fe_contact.microgeometry.variables import modified
-from fe_contact.options import AnalysisOptions, Run
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run
+from fe_contact.workers import Remembering, RunCost
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.scatter import QuantileFigures
 from model_studies.spread import rank_correlation
@@ -24,72 +29,48 @@ SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 
 
 
 @pytest.fixture(scope="module")
-def found(pair: GearPair, compliances: Path) -> ToleranceStudy:
+def found() -> ToleranceStudy:
     return scatter(
-        pair,
-        TORQUES,
-        SLOPES,
-        Sampling(samples=120, seed=3, positions=16),
-        AnalysisOptions(**DRAFT),
-        Run(cache=compliances),
+        PAIR, TORQUES, SLOPES, Sampling(samples=120, seed=3, positions=16), AnalysisOptions(**DRAFT)
     )
 
 
-def test_every_sample_is_the_pair_as_it_is_made(
-    found: ToleranceStudy, pair: GearPair, compliances: Path
-) -> None:
+def test_every_sample_is_the_pair_as_it_is_made(found: ToleranceStudy) -> None:
     for k in (0, 60, 119):  # of different tasks
-        made = modified(pair, dict(zip(found.names, found.deviation[k], strict=True)))
-        table = analyze(made, torques=TORQUES, positions=16, receipt="minimal", cache=compliances, **DRAFT)
+        made = modified(PAIR, dict(zip(found.names, found.deviation[k], strict=True)))
+        table = analyze(made, torques=TORQUES, positions=16, receipt="minimal", **DRAFT)
         ripple = np.ptp(table.static_transmission_error[:, :, 0, 0], axis=0)
         np.testing.assert_array_equal(found.peak_to_peak[k], ripple)
 
 
-def test_a_larger_sample_begins_with_the_smaller_one(
-    found: ToleranceStudy, pair: GearPair, compliances: Path
-) -> None:
+def test_a_larger_sample_begins_with_the_smaller_one(found: ToleranceStudy) -> None:
     more = scatter(
-        pair,
-        TORQUES,
-        SLOPES,
-        Sampling(samples=130, seed=3, positions=16),
-        AnalysisOptions(**DRAFT),
-        Run(cache=compliances),
+        PAIR, TORQUES, SLOPES, Sampling(samples=130, seed=3, positions=16), AnalysisOptions(**DRAFT)
     )
     np.testing.assert_array_equal(more.peak_to_peak[:120], found.peak_to_peak)
     other = scatter(
-        pair,
-        TORQUES,
-        SLOPES,
-        Sampling(samples=30, seed=4, positions=16),
-        AnalysisOptions(**DRAFT),
-        Run(cache=compliances),
+        PAIR, TORQUES, SLOPES, Sampling(samples=30, seed=4, positions=16), AnalysisOptions(**DRAFT)
     )
     assert not np.any(other.deviation == found.deviation[:30])
 
 
-def test_what_deviates_more_has_more_influence(found: ToleranceStudy) -> None:
+def test_bounds_enclose_their_quantiles_and_influence_follows_deviation(found: ToleranceStudy) -> None:
     pinion, wheel = np.abs(found.influence[:, -1])
     assert pinion > 0.8 > wheel
-
-
-def test_the_first_order_answer_is_off_by_the_square_of_the_tolerances(
-    found: ToleranceStudy, pair: GearPair, compliances: Path
-) -> None:
-    narrow = Tolerances(0.0, {name: 0.1 * width for name, width in SLOPES.modification.items()})
-    sampling = Sampling(samples=120, seed=3, positions=16)
-    tenth = scatter(pair, TORQUES, narrow, sampling, AnalysisOptions(**DRAFT), Run(cache=compliances))
-    one, other = (np.abs(each.first_order - each.peak_to_peak).mean(axis=0) for each in (found, tenth))
-    assert np.all(other < 0.05 * one)
-    assert np.all(one < 0.5 * found.peak_to_peak.std(axis=0))  # slopes of 10 um are not small
-
-
-def test_bounds_enclose_their_quantiles(found: ToleranceStudy) -> None:
     values = [one.value for one in found.quantiles]
     assert np.all(np.diff(values, axis=0) > 0.0)
     for one in found.quantiles:
         assert np.all(one.low <= one.value) and np.all(one.value <= one.high)
     assert np.all(found.mean_error < 0.1 * found.mean)
+
+
+def test_the_first_order_answer_is_off_by_the_square_of_the_tolerances(found: ToleranceStudy) -> None:
+    narrow = Tolerances(0.0, {name: 0.1 * width for name, width in SLOPES.modification.items()})
+    sampling = Sampling(samples=120, seed=3, positions=16)
+    tenth = scatter(PAIR, TORQUES, narrow, sampling, AnalysisOptions(**DRAFT))
+    one, other = (np.abs(each.first_order - each.peak_to_peak).mean(axis=0) for each in (found, tenth))
+    assert np.all(other < 0.05 * one)
+    assert np.all(one < 0.5 * found.peak_to_peak.std(axis=0))  # slopes of 10 um are not small
 
 
 def test_bounds_cover_the_true_quantile_as_often_as_they_say() -> None:
@@ -100,17 +81,16 @@ def test_bounds_cover_the_true_quantile_as_often_as_they_say() -> None:
     assert 0.94 < covered < 0.99  # order statistics are discrete: at least the asked confidence
 
 
-def test_a_sample_too_small_has_no_bound() -> None:
+def test_influence_sees_both_signs_and_small_samples_have_no_bound() -> None:
     small = _quantile(np.arange(1.0, 6.0)[:, None], 0.95, 0.95)
     assert np.isinf(small.high).all() and figures_of(QuantileFigures, small)["high_um"] is None
-
-
-def test_influence_sees_both_signs_and_sizes() -> None:
     deviation = np.random.default_rng(1).normal(size=(400, 3))
     ripple = np.stack([deviation[:, 0] ** 2, -deviation[:, 1]], axis=1)
     found = rank_correlation(deviation, ripple)
     assert found[0, 0] == pytest.approx(1.0) and found[1, 1] == pytest.approx(-1.0)
     assert np.abs(found[2]).max() < 0.2
+    with pytest.raises(InputError, match="at least one width"):
+        Tolerances()
 
 
 @pytest.mark.parametrize("distribution", ["normal", "uniform"])
@@ -125,6 +105,128 @@ def test_parts_lie_within_their_tolerances(distribution: Any) -> None:
     assert np.abs(np.corrcoef(drawn.T)[0, 1]) < 0.03
 
 
-def test_no_tolerance_is_no_study() -> None:
-    with pytest.raises(InputError, match="at least one width"):
-        Tolerances()
+SWEPT_TORQUES, RELIEFS = (60.0, 120.0, 200.0), (0.0, 10e-6, 30e-6)
+AXES = (SweepAxis("torque", SWEPT_TORQUES), SweepAxis("tip_relief", RELIEFS))
+
+
+def request(pair: GearPair, axes: tuple[SweepAxis, ...] = AXES, **options: Any) -> SweepRequest:
+    return SweepRequest(pair, axes, OperatingPoint(torque=200.0), AnalysisOptions(**{**DRAFT, **options}))
+
+
+@pytest.fixture(scope="module")
+def swept() -> Sweep:
+    return sweep(request(LONG_RELIEFS))
+
+
+def by_name(result: Sweep, name: str) -> Any:
+    return next(quantity for quantity in result.quantities if quantity.name == name)
+
+
+def test_every_point_is_the_pair_analyzed_alone(swept: Sweep) -> None:
+    ripple = by_name(swept, "peak_to_peak")
+    for k in (1, 5, 6):
+        torque, relief = swept.point[k]
+        flanks = {"pinion.tip_relief": relief, "wheel.tip_relief": relief}
+        table = analyze(
+            modified(LONG_RELIEFS, flanks),
+            torques=[torque, 210.0],
+            positions=192,
+            effects={"corner_contact": "on"},
+            **DRAFT,
+        )
+        alone = table.peak_to_peak(torque=torque)
+        assert abs(ripple.value[k] - alone.value) < 0.1 * (ripple.error[k] + alone.error)
+        assert by_name(swept, "harmonic_1").value[k] == pytest.approx(
+            table.harmonics(torque=torque)[0].value, rel=0.02
+        )
+        largest = np.nanmax(table.max_pressure[:, 0])
+        assert by_name(swept, "max_pressure").value[k] == pytest.approx(largest, rel=0.02)
+
+
+def test_the_errors_cover_a_finer_mesh(swept: Sweep) -> None:
+    fine = sweep(request(LONG_RELIEFS, level="standard"))
+    for name in ("peak_to_peak", "harmonic_1", "max_pressure"):
+        here, there = by_name(swept, name), by_name(fine, name)
+        rounding = 8.0 * np.spacing(np.abs(here.value))  # where one pair carries all, meshes agree but for it
+        assert np.all(np.abs(here.value - there.value) <= here.error + there.error + rounding), name
+        assert np.all(here.error < 0.5 * here.value.max()), "an error that says something"
+
+
+def test_the_order_of_the_axes_does_not_matter(swept: Sweep) -> None:
+    other = sweep(request(LONG_RELIEFS, AXES[::-1]))
+    np.testing.assert_array_equal(
+        other.point[:, ::-1].reshape(3, 3, 2).swapaxes(0, 1), swept.point.reshape(3, 3, 2)
+    )
+    for quantity in swept.quantities:
+        turned = by_name(other, quantity.name).value.reshape(3, 3).T.ravel()
+        np.testing.assert_array_equal(turned, quantity.value)
+    assert "face_load_factor" not in {quantity.name for quantity in swept.quantities}
+
+
+def test_a_gear_alone_is_not_both(swept: Sweep) -> None:
+    alone = sweep(request(LONG_RELIEFS, (AXES[0], SweepAxis("pinion.tip_relief", RELIEFS))))
+    both, one = (by_name(each, "peak_to_peak").value.reshape(3, 3) for each in (swept, alone))
+    np.testing.assert_array_equal(both[:, 0], one[:, 0])  # without relief they are alike
+    assert np.all(np.abs(both[:, 1:] - one[:, 1:]) > 1e-9)
+
+
+def test_a_misaligned_pair_is_computed_over_the_face() -> None:
+    narrow = replace(
+        PAIR, pinion=replace(PAIR.pinion, face_width=8e-3), wheel=replace(PAIR.wheel, face_width=8e-3)
+    )
+    axis = SweepAxis("misalignment", (-20e-6, 0.0, 20e-6))
+    found = sweep(request(narrow, (axis,), model="auto"))
+    factor = by_name(found, "face_load_factor")
+    assert factor.value[0] == pytest.approx(factor.value[2], rel=1e-3)  # a spur pair has no hand
+    assert factor.value[1] < factor.value[0] - factor.error[0]
+    assert found.held == {"torque": 200.0, "center_distance_change": 0.0}
+
+
+@pytest.mark.parametrize(
+    ("axes", "name"),
+    [
+        ((), "one or two"),
+        ((AXES[0], AXES[0]), "one axis"),
+        ((AXES[1], SweepAxis("wheel.tip_relief", RELIEFS)), "one axis"),
+        ((SweepAxis("torque", (100.0,)),), "at least two"),
+        ((SweepAxis("helix_angle", (0.1, 0.2)),), "tip_relief"),
+        ((SweepAxis("torque", tuple(np.linspace(10.0, 20.0, 5000))),), "4096"),
+    ],
+)
+def test_what_makes_no_map_is_refused(axes: tuple[SweepAxis, ...], name: str) -> None:
+    with pytest.raises(InputError, match=name):
+        _ = request(PAIR, axes).checked
+
+
+def test_a_relief_without_a_length_is_refused() -> None:
+    with pytest.raises(InputError, match="tip_relief_length"):
+        _ = request(PAIR).checked
+
+
+@dataclass(frozen=True)
+class Breaking:
+    """Workers that are interrupted after some tasks."""
+
+    after: int
+    done: list[int] = field(default_factory=list)
+
+    @property
+    def cost(self) -> RunCost:
+        return RunCost()
+
+    def run(self, function: Callable[..., Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
+        for item in items:
+            if len(self.done) == self.after:
+                raise KeyboardInterrupt
+            self.done.append(1)
+            yield function(shared, item)
+
+
+def test_an_interrupted_sweep_goes_on_where_it_was(swept: Sweep, tmp_path: Path) -> None:
+    first, second = Breaking(2), Breaking(9)
+    with pytest.raises(KeyboardInterrupt):
+        sweep(request(LONG_RELIEFS), Run(Remembering(first, tmp_path, "1")))
+    resumed = sweep(request(LONG_RELIEFS), Run(Remembering(second, tmp_path, "1")))
+    assert len(second.done) == len(RELIEFS) - 2
+    for quantity in swept.quantities:
+        np.testing.assert_array_equal(by_name(resumed, quantity.name).value, quantity.value)

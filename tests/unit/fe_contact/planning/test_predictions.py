@@ -30,12 +30,8 @@ def condensed_once() -> None:
 
 
 def pair(helix: float = 0.0, width: float = 8e-3, teeth: int = 20) -> GearPair:
-    gear = Gear(
-        teeth=teeth, normal_module=2e-3, face_width=width, bore_diameter=teeth * 1e-3, helix_angle=helix
-    )
-    mate = Gear(
-        teeth=teeth, normal_module=2e-3, face_width=width, bore_diameter=teeth * 1e-3, helix_angle=-helix
-    )
+    gear = Gear(teeth, 2e-3, width, teeth * 1e-3, helix_angle=helix)
+    mate = Gear(teeth, 2e-3, width, teeth * 1e-3, helix_angle=-helix)
     return GearPair(gear, mate, teeth * 2e-3 / math.cos(helix))
 
 
@@ -47,32 +43,22 @@ def options(model: float = 0.0, **meshes: float) -> list[MeshOption]:
     ]
 
 
-def test_a_tolerance_takes_the_cheapest_mesh_that_meets_it():
+def test_a_tolerance_takes_the_cheapest_mesh_or_slices_that_meet_it():
     known = options(draft=0.02, standard=0.005, fine=0.001)
     for turned in (known, known[::-1]):
         chosen = [_mesh_for_tolerance(AllowedError(t), turned) for t in (0.1, 0.01, 0.002)]
         assert [choice.level for choice in chosen] == list(LEVELS)
         assert all(choice.met for choice in chosen)
-
-
-def test_slices_are_taken_instead_of_a_mesh_where_they_are_cheaper():
     few = MeshOption("draft", 15, ExpectedError(2e-3, 0.05, 0.0), 1.0)
     many = MeshOption("draft", 61, ExpectedError(2e-3, 0.005, 0.0), 2.0)
     fine = MeshOption("fine", 31, ExpectedError(1e-3, 0.007, 0.0), 20.0)
     assert _mesh_for_tolerance(AllowedError(0.01), [few, many, fine]).option is many
     assert _mesh_for_tolerance(AllowedError(0.1), [few, many, fine]).option is few
-
-
-def test_a_tolerance_that_no_mesh_meets_is_said():
     beyond = _mesh_for_tolerance(AllowedError(1e-4), options(draft=3e-3, standard=2e-3, fine=1e-3))
     assert (beyond.level, beyond.met) == ("fine", False)
     flat = _mesh_for_tolerance(AllowedError(1e-2), options(3e-2, draft=2e-2, standard=5e-3, fine=1e-3))
     assert (flat.level, flat.met) == ("standard", False)
     assert "model 3 %" in flat.reason
-
-
-def test_a_time_takes_the_most_exact_mesh_that_fits():
-    known = options(draft=0.02, standard=0.005, fine=0.001)
     seconds = {"draft": 1.0, "standard": 3.0, "fine": 10.0}
     found = [_mesh_for_time(t, known, lambda o: seconds[o.level]).level for t in (1.5, 5.0, 50.0)]
     assert found == list(LEVELS)
@@ -185,9 +171,7 @@ def test_a_plan_tells_the_error_that_its_mesh_is_chosen_by(relief):
     relieved = FlankModification(tip_relief=relief, tip_relief_length=1e-3 if relief else 0.0)
     gear = replace(helical.pinion, modification=relieved)
     found = plan_run(
-        replace(helical, pinion=gear),
-        TableAxes(torques=[20.0, 60.0]),
-        AnalysisOptions(tolerance=AllowedError(0.05)),
+        replace(helical, pinion=gear), *table_request(torques=[20.0, 60.0], tolerance=AllowedError(0.05))
     )
     assert found.chosen.error == found.choice.option.error
 
@@ -211,7 +195,10 @@ def test_memory_grows_with_meshes_positions_and_slices():
 
 
 def test_kept_compliances_take_the_memory_of_their_files(tmp_path, monkeypatch):
-    """Nothing is factorised then: every gear and mesh counts with the bytes that are read."""
+    assert kept_size(None, "key") == kept_size(tmp_path, "key") == 0
+    (tmp_path / "compliance-key.npz").write_bytes(bytes(17))
+    assert kept_size(tmp_path, "key") == 17
+    # Nothing is factorised then: every gear and mesh counts with the bytes that are read.
     gears = pair(helix=0.3)
     fresh = predicted_memory(gears, tmp_path)
     monkeypatch.setattr(cost_model, "solid_kept", lambda *_: 3_000_000)
@@ -222,9 +209,3 @@ def test_kept_compliances_take_the_memory_of_their_files(tmp_path, monkeypatch):
     alike = 2 * 3_000_000  # gears alike but for the hand are read once, the mesh and the coarse one
     assert kept == int(cost_model.PROCESS_BYTES + _contact_bytes(gears, plan) + alike)
     assert kept < fresh
-
-
-def test_the_size_of_what_is_kept_is_that_of_its_file(tmp_path):
-    assert kept_size(None, "key") == kept_size(tmp_path, "key") == 0
-    (tmp_path / "compliance-key.npz").write_bytes(bytes(17))
-    assert kept_size(tmp_path, "key") == 17

@@ -18,25 +18,9 @@ from fe_contact.ste.fields import DIMENSIONS
 
 EXPONENT = 1.1
 CONTACT_RATIO = 1.5568
-FACTS = PairFacts(
-    teeth=(20, 20),
-    base_radius=(37.588e-3, 37.588e-3),
-    base_pitch=11.809e-3,
-    base_helix_angle=0.0,
-    center_distance=80e-3,
-    working_pressure_angle=np.radians(20.0),
-    face_width=25e-3,
-    helix_hand=0,
-)
+FACTS = PairFacts((20, 20), (37.588e-3, 37.588e-3), 11.809e-3, 0.0, 80e-3, np.radians(20.0), 25e-3, 0)
 HELICAL = PairFacts(
-    teeth=(39, 40),
-    base_radius=(60.3e-3, 61.9e-3),
-    base_pitch=9.0e-3,
-    base_helix_angle=np.radians(24.0),
-    center_distance=134.5e-3,
-    working_pressure_angle=np.radians(22.0),
-    face_width=25e-3,
-    helix_hand=1,
+    (39, 40), (60.3e-3, 61.9e-3), 9.0e-3, np.radians(24.0), 134.5e-3, np.radians(22.0), 25e-3, 1
 )
 
 

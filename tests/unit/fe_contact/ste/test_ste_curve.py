@@ -1,22 +1,36 @@
-"""Curves: mean, peak-to-peak, harmonics, load shares, and their error bands."""
+"""Curves: mean, peak-to-peak, harmonics, load shares, error bands, and errors by source."""
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
+import h5netcdf
 import numpy as np
 import pytest
 
-from fe_contact.errors import InputError, SolveError
+from fe_contact.errors import DatabaseError, InputError, SolveError
+from fe_contact.ste.curve import AT_NODES, SOURCES
+from fe_contact.ste.curve_quantities import (
+    FIRST_HARMONIC,
+    MEAN,
+    PEAK_TO_PEAK,
+    QUANTITIES,
+    missed_peaks,
+    quantity_changes,
+)
+from fe_contact.ste.database import SteDatabase
 from fe_contact.types import Status
 
 AMPLITUDES = np.array([2e-6, 5e-7, 3e-7])
 PHASES = np.array([0.4, 2.0, 5.0])
-MEAN = 1e-5
+LEVEL = 1e-5
 
 
 def wave(position):
     """A transmission error of three known harmonics."""
     n = np.arange(1, 4)
-    return MEAN + (AMPLITUDES * np.cos(2 * np.pi * n * position[:, None] + PHASES)).sum(axis=1)
+    return LEVEL + (AMPLITUDES * np.cos(2 * np.pi * n * position[:, None] + PHASES)).sum(axis=1)
 
 
 @pytest.fixture(scope="module")
@@ -36,19 +50,23 @@ def harmonic(make):
     )
 
 
-def test_mean_and_harmonics_of_a_known_wave_on_uneven_knots(harmonic):
+def test_a_known_wave_has_its_mean_swing_and_harmonics_and_their_bands(harmonic):
     curve = harmonic.curve(force=2000.0)
     sizes = [float(estimate) for estimate in curve.harmonics]
-    assert float(curve.mean) == pytest.approx(MEAN, rel=1e-6)
+    assert float(curve.mean) == pytest.approx(LEVEL, rel=1e-6)
     assert sizes[:3] == pytest.approx(AMPLITUDES, rel=3e-4)
     assert curve.harmonic_phases[:3] == pytest.approx(PHASES, abs=1e-3)
     assert max(sizes[3:]) < 1e-4 * AMPLITUDES[0]
     assert len(sizes) >= 10
-
-
-def test_peak_to_peak_is_that_of_the_knots(harmonic):
     stored = harmonic.static_transmission_error[:, 1, 0, 0]
     assert float(harmonic.peak_to_peak(force=2000.0)) == pytest.approx(np.ptp(stored), rel=1e-12)
+    # A constant band e bounds: mean e, peak-to-peak 2 e, each harmonic 2 e.
+    curve = harmonic.curve(torque=float(harmonic.torque[1]))
+    assert curve.error == pytest.approx(np.full(400, 2e-9))
+    assert curve.mean.error == pytest.approx(2e-9)
+    assert curve.peak_to_peak.error == pytest.approx(4e-9)
+    assert {estimate.unit for estimate in (curve.mean, curve.peak_to_peak, *curve.harmonics)} == {"m"}
+    assert all(estimate.error == pytest.approx(4e-9) for estimate in curve.harmonics)
 
 
 @pytest.mark.parametrize("n", [1, 2, 7])
@@ -61,16 +79,6 @@ def test_harmonics_are_fourier_integrals_of_the_curve(spur, n):
     turned = spur.ste(x, 2660.0) * np.exp(2j * np.pi * n * x)
     expected = 2.0 * abs((half[:, None] * weights * turned).sum())
     assert float(spur.harmonics(force=2660.0)[n - 1]) == pytest.approx(expected, rel=2e-5)
-
-
-def test_error_bands(harmonic):
-    """A constant band e bounds: mean e, peak-to-peak 2 e, each harmonic 2 e."""
-    curve = harmonic.curve(torque=float(harmonic.torque[1]))
-    assert curve.error == pytest.approx(np.full(400, 2e-9))
-    assert curve.mean.error == pytest.approx(2e-9)
-    assert curve.peak_to_peak.error == pytest.approx(4e-9)
-    assert {estimate.unit for estimate in (curve.mean, curve.peak_to_peak, *curve.harmonics)} == {"m"}
-    assert all(estimate.error == pytest.approx(4e-9) for estimate in curve.harmonics)
 
 
 def test_the_bands_hold_for_any_error_inside_the_pointwise_band(make):
@@ -106,60 +114,35 @@ def test_torque_and_force_name_the_same_curve(helical):
     assert np.array_equal(by_torque.ste, by_force.ste)
     assert by_torque.torque == pytest.approx(helical.torque[2], rel=1e-14)
     assert np.array_equal(by_torque.ste, helical.static_transmission_error[:, 2, 0, 0])
-
-
-def test_a_torque_between_the_loads_is_converted(helical):
     curve = helical.curve(torque=200.0)
     expected = helical.ste(helical.position, 200.0 / (60.3e-3 * np.cos(np.radians(24.0))))
     assert curve.ste == pytest.approx(expected, rel=1e-13)
 
 
-def test_mean_peak_to_peak_harmonics_are_those_of_the_curve(spur):
+def test_figures_are_those_of_the_curve_wherever_it_is_asked(spur):
     curve = spur.curve(force=3000.0)
     assert spur.mean(force=3000.0) == curve.mean
     assert spur.peak_to_peak(force=3000.0) == curve.peak_to_peak
     assert spur.harmonics(force=3000.0) == curve.harmonics
-
-
-def test_summary_figures_do_not_depend_on_where_the_curve_is_asked(spur):
     everywhere, somewhere = spur.curve(force=2660.0), spur.curve(force=2660.0, at=[0.1, 0.2])
     assert somewhere.ste.shape == (2,)
     assert (somewhere.mean, somewhere.peak_to_peak) == (everywhere.mean, everywhere.peak_to_peak)
 
 
-class TestLoadShare:
-    @pytest.mark.parametrize("force", [100.0, 266.0, 4000.0, 10640.0])
-    def test_shares_sum_to_one(self, spur, force):
-        curve = spur.curve(force=force, at=np.linspace(-1.5, 2.5, 777))
-        assert np.all(curve.load_share >= 0.0)
-        assert curve.load_share.sum(axis=1) == pytest.approx(np.ones(777), abs=1e-14)
-
-    def test_shares_of_three_pairs_sum_to_one(self, make):
-        """Three curves interpolated one by one need the division; two mirror each other."""
-        shares = np.random.default_rng(4).dirichlet([0.4, 0.4, 0.4], (64, 5, 1, 1))
-        curve = make(pair=[-1, 0, 1], load_share=shares).curve(force=3000.0, at=np.linspace(0, 1, 500))
-        assert curve.load_share.sum(axis=1) == pytest.approx(np.ones(500), abs=1e-14)
-
-    def test_stored_shares_come_back(self, spur):
-        curve = spur.curve(force=2660.0)
-        assert curve.pair.tolist() == spur.pair.tolist()
-        assert curve.load_share == pytest.approx(spur.load_share[:, 2, 0, 0], abs=1e-14)
-
-    def test_a_column_follows_one_pair_of_teeth_across_the_seam(self, spur):
-        """Pair j at position 1 is pair j + 1 at position 0."""
-        curve = spur.curve(force=2660.0, at=[-0.3, 0.7])
-        column = {int(pair): curve.load_share[:, i] for i, pair in enumerate(curve.pair)}
-        assert column[0][0] == pytest.approx(column[-1][1], abs=1e-14)
-        assert column[1][0] == pytest.approx(column[0][1], abs=1e-14)
-        assert column[0][0] > 0.4
-
-    def test_shares_are_continuous_across_the_seam(self, spur):
-        curve = spur.curve(force=2660.0, at=np.linspace(0.9, 1.1, 2001))
-        assert np.abs(np.diff(curve.load_share, axis=0)).max() < 5e-3
-
-    def test_the_middle_of_double_contact_is_shared_evenly(self, spur):
-        curve = spur.curve(force=2660.0, at=[0.5])
-        assert curve.load_share[0, curve.pair == 0] == pytest.approx(0.5, abs=1e-12)
+def test_stored_shares_come_back_and_follow_a_pair_across_the_seam(spur):
+    curve = spur.curve(force=2660.0)
+    assert curve.pair.tolist() == spur.pair.tolist()
+    assert curve.load_share == pytest.approx(spur.load_share[:, 2, 0, 0], abs=1e-14)
+    # Pair j at position 1 is pair j + 1 at position 0.
+    curve = spur.curve(force=2660.0, at=[-0.3, 0.7])
+    column = {int(pair): curve.load_share[:, i] for i, pair in enumerate(curve.pair)}
+    assert column[0][0] == pytest.approx(column[-1][1], abs=1e-14)
+    assert column[1][0] == pytest.approx(column[0][1], abs=1e-14)
+    assert column[0][0] > 0.4
+    curve = spur.curve(force=2660.0, at=np.linspace(0.9, 1.1, 2001))
+    assert np.abs(np.diff(curve.load_share, axis=0)).max() < 5e-3
+    curve = spur.curve(force=2660.0, at=[0.5])
+    assert curve.load_share[0, curve.pair == 0] == pytest.approx(0.5, abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -194,3 +177,111 @@ def test_a_table_with_failed_points_answers_only_on_request(make):
     curve = failed.curve(force=2660.0, allow_failed=True)
     assert curve.position.size == 63
     assert float(curve.mean) == pytest.approx(float(whole.mean(force=2660.0)), rel=1e-3)
+
+
+X = np.arange(64) / 64
+TWO_WAVES = (8e-6 + 2e-6 * np.cos(2.0 * np.pi * X) + 0.5e-6 * np.cos(6.0 * np.pi * X))[:, None]
+
+
+def test_changes_are_measured_by_quantity() -> None:
+    assert not quantity_changes(X, TWO_WAVES, TWO_WAVES, 1).any()
+    change = quantity_changes(X, TWO_WAVES, TWO_WAVES + 1e-7, 1)[:, 0]
+    assert change[MEAN] == pytest.approx(1e-7, rel=1e-9)
+    assert change[1:].max() < 1e-19
+    bend = 1e-8 * np.cos(2.0 * np.pi * X)[:, None]
+    one = quantity_changes(X, TWO_WAVES, TWO_WAVES + bend, 1)
+    three = quantity_changes(X, TWO_WAVES, TWO_WAVES + 3.0 * bend, 1)
+    assert three[:3] == pytest.approx(3.0 * one[:3], rel=1e-6, abs=1e-18)
+    assert one[FIRST_HARMONIC, 0] == pytest.approx(1e-8, rel=1e-3)
+    assert one[PEAK_TO_PEAK, 0] == pytest.approx(2e-8, rel=1e-2)
+    moved = (8e-6 + 2e-6 * np.cos(2.0 * np.pi * (X - 0.01)))[:, None]
+    still = (8e-6 + 2e-6 * np.cos(2.0 * np.pi * X))[:, None]
+    change = quantity_changes(X, still, moved, 1)[FIRST_HARMONIC, 0]
+    assert change == pytest.approx(2e-6 * 2.0 * math.sin(0.01 * math.pi), rel=1e-2)
+    moved = TWO_WAVES + 1e-8 * np.sin(2.0 * np.pi * X)[:, None]
+    change = quantity_changes(X, TWO_WAVES, moved, 1)[PEAK_TO_PEAK, 0]
+    assert change == pytest.approx(1e-8, rel=1e-2)
+
+
+def test_rows_that_failed_are_left_out_and_too_few_are_unknown() -> None:
+    holed = np.tile(TWO_WAVES, 2)
+    holed[5, 0] = np.nan
+    holed[4:, 1] = np.nan
+    change = quantity_changes(X, np.tile(TWO_WAVES, 2), holed + 1e-7, 1)
+    assert change[MEAN, 0] == pytest.approx(1e-7, rel=1e-9)
+    assert np.isnan(change[:, 1]).all()
+
+
+@pytest.mark.parametrize("apex", [0.3 / 64, 0.5 / 64, 0.5 + 0.8 / 64])
+def test_the_peak_of_a_tent_between_two_knots_is_found(apex: float) -> None:
+    tent = np.abs((X - apex + 0.5) % 1.0 - 0.5)[:, None]
+    missed = 0.5 - np.ptp(tent)
+    assert missed > 1e-3
+    assert missed_peaks(X, tent, 1)[0] == pytest.approx(missed, rel=1e-9)
+    assert missed_peaks(X, -tent, 1)[0] == pytest.approx(missed, rel=1e-9)
+
+
+def test_a_step_between_flat_parts_misses_nothing() -> None:
+    step = np.where((X > 0.2) & (X < 0.7), 1.0, 0.0)[:, None]
+    assert missed_peaks(X, step, 1)[0] == 0.0
+
+
+def test_harmonics_of_a_longer_period_are_those_of_the_mesh() -> None:
+    position = np.arange(192) / 64
+    other = np.tile(TWO_WAVES, (3, 1)) + 1e-8 * np.cos(2.0 * np.pi * position)[:, None]
+    change = quantity_changes(position, np.tile(TWO_WAVES, (3, 1)), other, 3)[:, 0]
+    assert change[FIRST_HARMONIC] == pytest.approx(1e-8, rel=1e-3)
+    assert change[FIRST_HARMONIC + 1 :].max() < 1e-10
+
+
+@pytest.fixture
+def assessed(spur: SteDatabase) -> SteDatabase:
+    """The fake table with errors of every source: source number in nm, times the load's number."""
+    shape = spur.static_transmission_error.shape[1:]
+    errors = np.zeros((len(SOURCES), QUANTITIES, *shape))
+    errors[:5] = np.arange(1, 6).reshape(5, 1, 1, 1, 1) * 1e-9
+    errors *= np.arange(1, shape[0] + 1)[:, None, None]
+    errors[SOURCES.index("force"), :, :-1] = 7e-9
+    return replace(spur, curve_error=errors)
+
+
+def test_stated_errors_join_their_sources(assessed: SteDatabase) -> None:
+    for k, force in enumerate(assessed.force):
+        curve = assessed.curve(force=float(force))
+        for found in (curve.mean, curve.peak_to_peak, *curve.harmonics):
+            assert found.error == pytest.approx(math.sqrt(55.0) * 1e-9 * (k + 1), rel=1e-12, abs=0.0)
+    middle = 0.5 * float(assessed.force[0] + assessed.force[1])
+    expected = math.hypot(1.5 * math.sqrt(55.0), 7.0) * 1e-9
+    assert assessed.mean(force=middle).error == pytest.approx(expected, rel=1e-9, abs=0.0)
+    errors = assessed.curve_error.copy()
+    errors[1] = np.nan
+    assert math.isnan(
+        replace(assessed, curve_error=errors).peak_to_peak(force=float(assessed.force[0])).error
+    )
+    with pytest.raises(DatabaseError, match="curve_error must be >= 0"):
+        replace(assessed, curve_error=-assessed.curve_error)
+    with pytest.raises(DatabaseError, match="curve_error must have the dimensions"):
+        replace(assessed, curve_error=assessed.curve_error[:, :, :1])
+
+
+def test_files_keep_the_errors_of_every_schema(assessed: SteDatabase, spur, tmp_path) -> None:
+    assessed.to_netcdf(tmp_path / "new.nc")
+    spur.to_netcdf(tmp_path / "old.nc")
+    assert SteDatabase.from_netcdf(tmp_path / "new.nc").identical(assessed)
+    old = SteDatabase.from_netcdf(tmp_path / "old.nc")
+    assert old.curve_error.size == 0
+    assert old.mean(force=float(old.force[0])) == spur.mean(force=float(old.force[0]))
+    assert not assessed.identical(spur)
+    source = AT_NODES.index("model")
+    before = replace(assessed, curve_error=np.delete(assessed.curve_error, source, axis=0))
+    before.to_netcdf(tmp_path / "one.nc")
+    found = SteDatabase.from_netcdf(tmp_path / "one.nc")
+    assert not found.curve_error[source].any()
+    assert np.array_equal(np.delete(found.curve_error, source, axis=0), before.curve_error)
+    found.to_netcdf(tmp_path / "again.nc")
+    assert SteDatabase.from_netcdf(tmp_path / "again.nc").identical(found)
+    assessed.to_netcdf(tmp_path / "ste.nc")
+    with h5netcdf.File(tmp_path / "ste.nc", "a") as file:
+        file.variables["curve_error"][0, 0, 0, 0, 0] = 1.0
+    with pytest.raises(DatabaseError, match="checksum"):
+        SteDatabase.from_netcdf(tmp_path / "ste.nc")

@@ -1,28 +1,29 @@
-"""What a database accepts, and what it says about itself."""
+"""What a database accepts and says of itself, its repair, its error against another, its content hash."""
 
 from __future__ import annotations
 
+import hashlib
 import math
 from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
 import pytest
+from held_out import held_out_error
 
-from fe_contact.errors import DatabaseError
+from fe_contact.errors import DatabaseError, InputError, SolveError
 from fe_contact.ste import Metadata, PairFacts
+from fe_contact.ste.database import _without_failed
+from fe_contact.ste.facts import content_hash
 from fe_contact.ste.fields import DIMENSIONS
 from fe_contact.types import Status
 
 
-def test_arrays_and_fields_cannot_be_changed(spur):
+def test_arrays_and_fields_cannot_be_changed(spur, make):
     for name in DIMENSIONS:
         with pytest.raises(ValueError, match="read-only"):
             getattr(spur, name)[...] = 0
     with pytest.raises(FrozenInstanceError):
         spur.force = np.ones(5)
-
-
-def test_the_callers_arrays_stay_his_own(make):
     mine = np.full((64, 5, 1, 1), 1e-9)
     database = make(error_estimate=mine)
     mine[0] = 5.0
@@ -85,20 +86,14 @@ def failed_at(database, *places):
     return replace(database, static_transmission_error=ste, status=status)
 
 
-def test_a_converged_table_says_so(spur):
+def test_a_table_says_which_points_failed(spur):
     assert spur.n_failed == 0
     assert "all points converged" in spur.summary()
-
-
-def test_failed_points_are_loud(spur):
     database = failed_at(spur, (5, 1), (6, 2))
     assert database.n_failed == 2
     assert "WARNING: 2 of 320 points FAILED" in database.summary()
     assert "position 0.078125, force 1330 N" in database.summary()
     assert "ITERATION_LIMIT" in database.summary()
-
-
-def test_many_failed_points_are_counted_not_listed(spur):
     message = failed_at(spur, slice(0, 4)).failure_message()
     assert "20 of 320" in message
     assert "and 15 more" in message
@@ -113,44 +108,179 @@ def test_identical_looks_at_every_bit(make, spur):
     assert not spur.identical(replace(spur, metadata=replace(spur.metadata, content_hash="1")))
 
 
-class TestFacts:
-    def test_round_trip_through_json(self, helical_facts):
-        assert PairFacts.from_json(helical_facts.to_json()) == helical_facts
+def test_facts_come_back_from_json_and_carry_the_torque(helical_facts):
+    assert PairFacts.from_json(helical_facts.to_json()) == helical_facts
+    expected = 100.0 / 60.3e-3 / math.cos(math.radians(24.0))
+    assert helical_facts.normal_force(100.0) == pytest.approx(expected, rel=1e-15)
+    content = helical_facts.to_json()
+    del content["base_pitch"]
+    with pytest.raises(DatabaseError, match="base_pitch"):
+        PairFacts.from_json(content)
 
-    def test_normal_force_carries_the_torque_at_the_base_helix(self, helical_facts):
-        expected = 100.0 / 60.3e-3 / math.cos(math.radians(24.0))
-        assert helical_facts.normal_force(100.0) == pytest.approx(expected, rel=1e-15)
 
-    @pytest.mark.parametrize(
-        ("name", "value"),
-        [
-            ("base_pitch", 0.0),
-            ("base_radius", (0.03, -1.0)),
-            ("base_helix_angle", 1.6),
-            ("helix_hand", 2),
-            ("internal", 1),
-            ("face_width", math.nan),
-        ],
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("base_pitch", 0.0),
+        ("base_radius", (0.03, -1.0)),
+        ("base_helix_angle", 1.6),
+        ("helix_hand", 2),
+        ("internal", 1),
+        ("face_width", math.nan),
+    ],
+)
+def test_nonsense_is_refused(helical_facts, name, value):
+    with pytest.raises(DatabaseError, match=f"pair fact {name}"):
+        replace(helical_facts, **{name: value})
+
+
+def test_content_is_copied():
+    case = {"pair": {"teeth": [20, 20]}}
+    metadata = Metadata(case=case)
+    case["pair"]["teeth"][0] = 7
+    assert metadata.case == {"pair": {"teeth": [20, 20]}}
+
+
+@pytest.mark.parametrize("content", [{"x": math.nan}, {"x": {1, 2}}, {"x": np.float32(1.0)}])
+def test_only_plain_json(content):
+    with pytest.raises(DatabaseError, match=r"metadata\.receipt is not plain JSON"):
+        Metadata(receipt=content)
+
+
+def test_failed_points_go_as_whole_rows(spur, four_axes):
+    assert _without_failed(spur) is spur
+    rest = _without_failed(failed_at(spur, np.s_[:, 4]))
+    assert rest.force.tolist() == spur.force[:4].tolist()
+    assert rest.position.size == 64
+    rest = _without_failed(failed_at(spur, (3, 0), (17, 4)))
+    assert rest.position.tolist() == np.delete(spur.position, [3, 17]).tolist()
+    assert rest.force.size == 5
+    rest = _without_failed(failed_at(four_axes, np.s_[:, :, 3]))
+    assert rest.misalignment.tolist() == four_axes.misalignment[:3].tolist()
+    assert np.array_equal(rest.load_share, four_axes.load_share[:, :, :3])
+    assert np.array_equal(rest.no_load_transmission_error, four_axes.no_load_transmission_error[:, :3])
+    with pytest.raises(SolveError, match="No complete row remains"):
+        _without_failed(failed_at(spur, np.s_[:]))
+
+
+def noisy(make, size, seed=2):
+    """A table with closely spaced loads and noise of `size` meters."""
+    database = make(force=2660.0 * (1.0 + 0.01 * np.arange(8)))
+    noise = np.random.default_rng(seed).normal(scale=size, size=(64, 8, 1, 1))
+    return replace(database, static_transmission_error=database.static_transmission_error + noise)
+
+
+def test_noise_is_refused_and_repaired_on_request(make):
+    database = noisy(make, 5e-8)
+    with pytest.raises(DatabaseError, match="monotone_repaired"):
+        database.force_table()
+    repaired, report = database.monotone_repaired()
+    assert np.all(np.diff(repaired.force_table().deflection, axis=-1) > 0.0)
+    assert report.curves > 30
+    change = np.abs(repaired.static_transmission_error - database.static_transmission_error)
+    i, k = (
+        int(np.searchsorted(database.position, report.position)),
+        int(np.searchsorted(database.force, report.force)),
     )
-    def test_nonsense_is_refused(self, helical_facts, name, value):
-        with pytest.raises(DatabaseError, match=f"pair fact {name}"):
-            replace(helical_facts, **{name: value})
+    assert report.largest_change == pytest.approx(change.max(), rel=1e-9)
+    assert change[i, k, 0, 0] == change.max()
+    assert repaired.metadata.receipt["monotone_repair"]["largest_change"] == report.largest_change
+    repaired, _ = database.monotone_repaired()
+    change = np.abs(repaired.static_transmission_error - database.static_transmission_error)
+    assert repaired.error_estimate == pytest.approx(database.error_estimate + change, rel=1e-9)
+    truth = make(force=2660.0 * (1.0 + 0.01 * np.arange(8))).static_transmission_error
+    before = np.sqrt(np.mean((database.static_transmission_error - truth) ** 2))
+    assert np.sqrt(np.mean((repaired.static_transmission_error - truth) ** 2)) < before
 
-    def test_missing_facts_are_refused(self, helical_facts):
-        content = helical_facts.to_json()
-        del content["base_pitch"]
-        with pytest.raises(DatabaseError, match="base_pitch"):
-            PairFacts.from_json(content)
+
+def test_lift_off_is_not_moved_nor_series_in_order(make, spur):
+    """The no-load transmission error is geometry; a first load below it is what has to yield."""
+    database = make()
+    ste = database.static_transmission_error.copy()
+    ste[7, 0] = -1e-7
+    repaired, report = replace(database, static_transmission_error=ste).monotone_repaired()
+    assert report.curves == 1
+    moved = repaired.no_load_transmission_error - database.no_load_transmission_error
+    assert np.abs(moved).max() < 1e-12
+    assert repaired.static_transmission_error[7, 0, 0, 0] > 0.0
+    repaired, report = database.monotone_repaired()
+    assert report.curves == 0
+    assert report.largest_change == 0.0
+    assert np.array_equal(repaired.static_transmission_error, database.static_transmission_error)
+    with pytest.raises(SolveError, match="1 of 320"):
+        failed_at(spur, (1, 1)).monotone_repaired()
 
 
-class TestMetadata:
-    def test_content_is_copied(self):
-        case = {"pair": {"teeth": [20, 20]}}
-        metadata = Metadata(case=case)
-        case["pair"]["teeth"][0] = 7
-        assert metadata.case == {"pair": {"teeth": [20, 20]}}
+OFFSET = (np.arange(64) + 0.5) / 64
 
-    @pytest.mark.parametrize("content", [{"x": math.nan}, {"x": {1, 2}}, {"x": np.float32(1.0)}])
-    def test_only_plain_json(self, content):
-        with pytest.raises(DatabaseError, match=r"metadata\.receipt is not plain JSON"):
-            Metadata(receipt=content)
+
+def test_a_known_difference_is_found_where_it_is(spur, make):
+    result = held_out_error(spur, spur)
+    assert result.maximum == 0.0
+    assert result.relative_rms == 0.0
+    other = make(position=spur.position[::4], force=spur.force[1:4])
+    shifted = other.static_transmission_error.copy()
+    shifted[5, 2] += 1e-8
+    result = held_out_error(spur, replace(other, static_transmission_error=shifted))
+    assert result.maximum == pytest.approx(1e-8, rel=1e-6)
+    assert (result.position, result.force) == (other.position[5], other.force[2])
+    assert result.rms == pytest.approx(1e-8 / np.sqrt(16 * 3), rel=1e-6)
+    swing = np.ptp(shifted[:, 2])
+    assert result.relative_maximum == pytest.approx(1e-8 / swing, rel=1e-6)
+    assert result.relative_rms == pytest.approx(1e-8 / 4 / swing, rel=1e-6)
+
+
+def test_position_error_falls_with_the_spacing(make):
+    """At the stored loads; the curves have kinks, so the largest error falls with the first power."""
+    force = [500.0, 2000.0, 8000.0]
+    truth = make(position=(np.arange(97) + 0.31) / 97, force=force)
+    results = [held_out_error(make(position=np.arange(n) / n, force=force), truth) for n in (64, 256, 1024)]
+    assert results[1].maximum < 0.35 * results[0].maximum
+    assert results[2].maximum < 0.35 * results[1].maximum
+    assert results[2].relative_rms < 0.05 * results[0].relative_rms
+
+
+def test_load_error_alone_falls_fast(make):
+    """At the stored positions only the load direction is interpolated."""
+    truth = make(force=[500.0, 2000.0, 8000.0])
+    coarse = held_out_error(make(force=np.geomspace(266.0, 10640.0, 6)), truth)
+    fine = held_out_error(make(force=np.geomspace(266.0, 10640.0, 24)), truth)
+    assert fine.maximum < 0.2 * coarse.maximum
+
+
+def test_points_outside_or_failed_are_refused(make, spur):
+    with pytest.raises(InputError, match=r"other\.force.*from 266 to 10640"):
+        held_out_error(spur, make(force=[100.0]))
+    with pytest.raises(InputError, match="two or more positions"):
+        held_out_error(spur, make(position=[0.5]))
+    ste, status = spur.static_transmission_error.copy(), spur.status.copy()
+    ste[0, 0], status[0, 0] = np.nan, Status.SINGULAR
+    with pytest.raises(SolveError, match="1 of 320"):
+        held_out_error(spur, replace(spur, static_transmission_error=ste, status=status))
+
+
+def test_the_content_hash_is_sha256_of_the_canonical_text():
+    """RFC 8785: keys sorted, no white space, numbers as ECMAScript writes them."""
+    text = '{"case":{"a":[56,0.00001,1e+30],"b":"\\u20ac"},"schema_version":1,"solver_version":"0.1.0"}'
+    case = {"b": "\u20ac", "a": [56.0, 1e-5, 1e30]}
+    assert (
+        content_hash(case, "0.1.0", 1)
+        == hashlib.sha256(text.replace("\\u20ac", "\u20ac").encode()).hexdigest()
+    )
+    one = content_hash({"teeth": 20, "load": {"torque": 100, "kind": "x"}}, "0.1.0", 1)
+    assert one == content_hash({"load": {"kind": "x", "torque": 1e2}, "teeth": 20.0}, "0.1.0", 1)
+    assert content_hash({"x": 0.1}, "", 1) != content_hash({"x": math.nextafter(0.1, 1.0)}, "", 1)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [({"teeth": 21}, "0.1.0", 1), ({"teeth": 20}, "0.1.1", 1), ({"teeth": 20}, "0.1.0", 2), ({}, "0.1.0", 1)],
+)
+def test_everything_that_decides_a_result_changes_it(other):
+    assert content_hash(*other) != content_hash({"teeth": 20}, "0.1.0", 1)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, np.array([1.0]), {1}, 2**60, object()])
+def test_what_is_not_json_is_refused(value):
+    with pytest.raises(InputError, match="case = 'dict': must be plain JSON"):
+        content_hash({"x": value}, "0.1.0", 1)

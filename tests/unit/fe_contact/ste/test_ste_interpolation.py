@@ -1,10 +1,12 @@
-"""Laws of the position interpolation: exact at knots, periodic, C1, no overshoot, order kept."""
+"""Interpolation along one axis and of levels over several: exact at knots, C1, no overshoot, order kept."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from fe_contact.ste import force_table as level_grid
+from fe_contact.ste.force_table import deflection_grid, monotone_stiffness, stiffness_grid
 from fe_contact.ste.interpolation import Axis, interpolate, monotone_slopes, ordered_slopes
 
 FINE = np.linspace(-0.5, 1.5, 4001)
@@ -37,21 +39,6 @@ def test_no_value_leaves_its_interval(values):
     high = np.maximum(values[at.left], values[at.right])
     assert np.all(curve >= low - 1e-15 * np.abs(low))
     assert np.all(curve <= high + 1e-15 * np.abs(high))
-
-
-def test_square_wave_keeps_flat_tops():
-    curve = interpolate(Axis(UNEVEN, 1.0), SQUARE, FINE)
-    assert curve.max() <= 7.8 * (1.0 + 4 * EPSILON)
-    assert curve.min() >= 5.1 * (1.0 - 4 * EPSILON)
-
-
-def test_period_is_one():
-    axis, values = Axis(UNEVEN, 1.0), RNG.normal(size=23)
-    query = RNG.uniform(0.0, 1.0, 200)
-    for turns in (-3, 1, 1000):
-        assert np.allclose(
-            interpolate(axis, values, query + turns), interpolate(axis, values, query), atol=1e-9
-        )
 
 
 @pytest.mark.parametrize("at", [UNEVEN, UNEVEN[:1] + 1.0, UNEVEN[-1:]])
@@ -87,13 +74,10 @@ def test_error_falls_with_the_second_power_of_the_spacing():
         assert worst == pytest.approx(cut, rel=0.02)
 
 
-def test_straight_lines_are_reproduced_on_open_axes():
+def test_open_axes_reproduce_lines_and_hold_their_end_values():
     axis = Axis(UNEVEN)
     query = np.linspace(UNEVEN[0], UNEVEN[-1], 301)
     assert np.allclose(interpolate(axis, 2.0 - 3.0 * UNEVEN, query), 2.0 - 3.0 * query, rtol=0, atol=1e-14)
-
-
-def test_open_axes_hold_their_end_values():
     axis = Axis(np.array([1.0, 2.0, 4.0]))
     assert interpolate(axis, np.array([5.0, 6.0, 9.0]), np.array([-7.0, 40.0])).tolist() == [5.0, 9.0]
 
@@ -107,16 +91,13 @@ def test_few_knots(count, period):
     assert curve.max() <= values.max() + 1e-15
 
 
-def test_square_wave_steps_are_as_sharp_as_their_knots():
+def test_steps_and_corners_stay_between_their_knots():
     """Between flat knots the curve is flat: the step does not leak into its neighbors."""
     knots = np.arange(20) / 20
     values = np.where(knots < 0.5, 1.0, 0.0)
     quiet = np.linspace(0.05, 0.45, 101)
     assert np.all(np.abs(interpolate(Axis(knots, 1.0), values, quiet) - 1.0) <= 4 * EPSILON)
-
-
-def test_a_corner_between_knots_stays_between_them():
-    """Akima's slopes: two straight flanks are exact up to the interval that hides their corner."""
+    # Akima's slopes: two straight flanks are exact up to the interval that hides their corner.
     knots = np.array([0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.7, 0.85, 1.0])
     corner = np.maximum(knots - 0.37, 0.0) + 0.2 * knots
     query = np.linspace(0.0, 1.0, 401)
@@ -136,17 +117,11 @@ def family(seed, count=17, curves=6):
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_family_keeps_its_order_between_knots(seed):
+def test_a_family_keeps_its_order_and_does_not_overshoot(seed):
     axis, levels = family(seed)
     curves = with_slopes(axis, levels, ordered_slopes(axis, levels))
     assert np.all(np.diff(curves, axis=1) > 0.0)
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_a_family_does_not_overshoot(seed):
-    axis, levels = family(seed)
     at = axis.stencil(FINE)
-    curves = with_slopes(axis, levels, ordered_slopes(axis, levels))
     assert np.all(curves >= np.minimum(levels[at.left], levels[at.right]) - 1e-14)
     assert np.all(curves <= np.maximum(levels[at.left], levels[at.right]) + 1e-14)
 
@@ -173,3 +148,125 @@ def with_slopes(axis, levels, slopes):
     weights = at.weights[..., None]
     left = weights[0, 0] * levels[at.left] + weights[0, 1] * slopes[at.left]
     return left + weights[1, 0] * levels[at.right] + weights[1, 1] * slopes[at.right]
+
+
+SEEDS = range(8)
+
+
+def axes(rng):
+    """Position (periodic), misalignment, center distance."""
+    return (
+        Axis(np.sort(rng.uniform(0, 1, 7)), 1.0),
+        Axis(np.cumsum(rng.uniform(0.1, 1.0, 4))),
+        Axis(np.cumsum(rng.uniform(0.1, 1.0, 3))),
+    )
+
+
+def slopes(rule, grid, values):
+    """Slopes by one rule along every axis."""
+    return tuple(np.moveaxis(rule(axis, np.moveaxis(values, i, 0)), 0, i) for i, axis in enumerate(grid))
+
+
+def wild(seed):
+    """Deflections whose gaps jump over four decades from knot to knot, and stiffnesses as wild."""
+    rng = np.random.default_rng(seed)
+    grid = axes(rng)
+    shape = tuple(len(axis.knots) for axis in grid)
+    levels = np.cumsum(10.0 ** rng.uniform(-4.0, 0.0, (*shape, 4)), axis=-1)
+    stiffness = 10.0 ** rng.uniform(-2.0, 3.0, (*shape, 4))
+    stiffness[..., 0] = 0.0
+    deflections = deflection_grid(grid, levels, slopes(ordered_slopes, grid, levels))
+    return deflections, stiffness_grid(grid, stiffness, slopes(monotone_slopes, grid, stiffness)), rng
+
+
+def sampled(grid, rng, count=4000):
+    """All levels at random points."""
+    at = tuple(axis.stencil(rng.uniform(axis.knots[0], axis.knots[-1], count)) for axis in grid.axes)
+    columns = np.broadcast_to(np.arange(4), (count, 4))
+    return at, grid.value(at, columns), columns
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_order_sign_and_bounds_hold_over_three_axes(seed):
+    deflections, _, rng = wild(seed)
+    assert np.all(np.diff(deflections.control_net(), axis=-1) > 0.0)
+    assert np.all(np.diff(sampled(deflections, rng)[1], axis=1) > 0.0)
+    _, stiffnesses, rng = wild(seed)
+    assert np.all(stiffnesses.control_net()[..., 1:] >= 0.0)
+    assert np.all(sampled(stiffnesses, rng)[1][:, 1:] > 0.0)
+    # Bernstein coefficients enclose; the corners of a cell are values themselves.
+    deflections, _, rng = wild(seed)
+    net, values = deflections.control_net(), sampled(deflections, rng)[1]
+    assert values.max() <= net.max() * (1.0 + 1e-12)
+    assert values.min() >= net.min() * (1.0 - 1e-12)
+    assert np.array_equal(net[0, 0, 0][:, :3, :2], deflections.nodal[(0, 0, 0)][:, :3, :2])
+    # Stiffness times gap is at most three times the force step, on both sides of every level.
+    deflections, stiffnesses, rng = wild(seed)
+    level = np.array([0.0, 1.0, 5.0, 6.0])
+    limited = monotone_stiffness(stiffnesses, deflections, level)
+    at, d, columns = sampled(deflections, rng)
+    k, gaps = limited.value(at, columns), np.diff(d, axis=1)
+    assert np.all(k[:, :-1] * gaps <= 3.0 * np.diff(level))
+    assert np.all(k[:, 1:] * gaps <= 3.0 * np.diff(level))
+    assert np.any(stiffnesses.value(at, columns)[:, 1:] * gaps > 3.0 * np.diff(level))
+
+
+def test_mixed_derivatives_of_zero_would_lose_the_order():
+    """What the multiplicative ones are for."""
+    lost = 0
+    for seed in SEEDS:
+        deflections, _, _ = wild(seed)
+        for order, entry in deflections.nodal.items():
+            if sum(order) > 1:
+                entry[...] = 0.0
+        lost += np.any(np.diff(deflections.control_net(), axis=-1) <= 0.0)
+    assert lost == len(SEEDS)
+
+
+def test_what_is_within_the_bound_is_not_touched():
+    rng = np.random.default_rng(1)
+    grid = axes(rng)
+    shape = tuple(len(axis.knots) for axis in grid)
+    levels = np.broadcast_to(np.arange(4.0), (*shape, 4)) + 0.2 * rng.uniform(size=(*shape, 1))
+    stiffness = rng.uniform(0.8, 1.5, (*shape, 4))
+    deflections = deflection_grid(grid, levels, slopes(ordered_slopes, grid, levels))
+    stiffnesses = stiffness_grid(grid, stiffness, slopes(monotone_slopes, grid, stiffness))
+    limited = monotone_stiffness(stiffnesses, deflections, np.arange(4.0))
+    assert all(np.array_equal(limited.nodal[order], stiffnesses.nodal[order]) for order in stiffnesses.nodal)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_slope_is_that_of_the_value(seed):
+    deflections, _, rng = wild(seed)
+    x = rng.uniform(0.0, 1.0, 500)
+    rest = tuple(
+        axis.stencil(rng.uniform(axis.knots[0], axis.knots[-1], 500)) for axis in deflections.axes[1:]
+    )
+    columns = np.broadcast_to(np.arange(4), (500, 4))
+
+    def value(moved):
+        return deflections.value((deflections.axes[0].stencil(x + moved), *rest), columns)
+
+    slope = deflections.slope((deflections.axes[0].stencil(x), *rest), columns)
+    assert np.abs((value(1e-7) - value(-1e-7)) / 2e-7 - slope).max() < 1e-3 * np.abs(slope).max()
+
+
+def test_the_bound_by_largest_factors_spares_work_and_changes_no_bit(monkeypatch):
+    """Cells that it passes are those whose share would be 1."""
+    formed = []
+
+    def counting(net, gaps, dims):
+        formed.append(net[(0,) * dims].size)
+        return largest(net, gaps, dims)
+
+    largest = level_grid._largest_product
+    monkeypatch.setattr(level_grid, "_largest_product", counting)
+    for seed in SEEDS:
+        deflections, stiffnesses, rng = wild(seed)
+        net, gaps = stiffnesses.control_net()[..., 1:], np.diff(deflections.control_net(), axis=-1)
+        product = largest(net, gaps, 3)
+        room = 10.0 ** rng.uniform(-1.0, 1.0, product.shape[-1]) * np.median(product)
+        every = np.minimum((1.0 - 1e-12) * room / np.maximum(product, 1e-300), 1.0)
+        assert np.array_equal(level_grid._share_allowed(net, gaps, room, 3), every)
+        assert 0 < formed[-1] < product.size
+        assert 0 < np.count_nonzero(every < 1.0) <= formed[-1]

@@ -20,13 +20,10 @@ def without_kinks(make, **case):
     return make(**case, pairs_in_contact=np.ones(database.status.shape))
 
 
-def test_no_levels_are_added_without_a_kink(make):
+def test_levels_are_added_only_to_steps_with_a_kink(make):
     table = without_kinks(make).force_table()
     assert table.level.tolist() == [0.0, *COARSE]
-
-
-def test_levels_are_added_only_to_steps_with_a_kink(make):
-    """The pairs change between the second and third load only."""
+    # The pairs change between the second and third load only.
     pairs = np.ones((64, 5, 1, 1))
     pairs[:, 2:] = 2
     level = make(pairs_in_contact=pairs).force_table().level
@@ -34,10 +31,7 @@ def test_levels_are_added_only_to_steps_with_a_kink(make):
     assert added.size > 10
     assert added.min() > 1330.0
     assert added.max() < 2660.0
-
-
-def test_away_from_kinks_the_force_is_the_same_cubic(make):
-    """Cutting a cubic into parts does not change it."""
+    # Cutting a cubic into parts does not change it.
     refined, plain = make(), without_kinks(make)
     changing = np.any(np.diff(refined.pairs_in_contact[:, :, 0, 0], axis=1) != 0, axis=1)
     x = refined.position[~changing]

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 from analysis_requests import table_request
+from spur_gears import GEAR
 
-from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, Shaft, analyze
+from fe_contact import FlankModification, GearPair, PitchDeviation, Shaft, analyze
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run
@@ -17,7 +18,6 @@ from fe_contact.effects import EFFECTS
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.types import Json
 
-GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 FULL = replace(
     GEAR,
     modification=FlankModification(tip_relief=5e-6, tip_relief_length=1e-3, helix_crowning=5e-6),

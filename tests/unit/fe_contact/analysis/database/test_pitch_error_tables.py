@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from analysis_requests import table_request
+from analysis_requests import point_request, table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
 from fe_contact.analysis.estimates.position_errors import _measured_nodes
@@ -14,7 +14,7 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import _adaptive_nodes, _assessed_windows
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.errors import InputError
-from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
+from fe_contact.options import Run, TableAxes
 from fe_contact.planning.plan import NodeRule
 
 TORQUES = (30.0, 100.0)
@@ -22,18 +22,7 @@ RNG = np.random.default_rng(21)
 
 
 def gear(teeth, deviation=()):
-    return Gear(
-        teeth=teeth,
-        normal_module=4e-3,
-        face_width=25e-3,
-        bore_diameter=40e-3,
-        pitch_deviation=PitchDeviation(tuple(deviation)),
-    )
-
-
-@pytest.fixture(scope="module")
-def cache(tmp_path_factory):
-    return tmp_path_factory.mktemp("compliance")
+    return Gear(teeth, 4e-3, 25e-3, 40e-3, pitch_deviation=PitchDeviation(tuple(deviation)))
 
 
 @pytest.fixture(scope="module")
@@ -42,24 +31,19 @@ def pair():
 
 
 @pytest.fixture(scope="module")
-def table(pair, cache):
-    return analyze(pair, torques=[100.0], level="draft", cache=cache)
+def table(pair):
+    return analyze(pair, torques=[100.0], level="draft")
 
 
-def test_one_erring_gear_has_the_period_of_its_teeth(table):
+def test_one_erring_gear_has_the_period_of_its_teeth_and_is_right_between(table, pair):
     assert table.period == 20
     assert table.position.size % 20 == 0
     assert table.metadata.receipt["predicted"]["pitches"] == 20
     per_pitch = table.position.reshape(20, -1)
     assert per_pitch - np.arange(20)[:, None] == pytest.approx(np.tile(per_pitch[0], (20, 1)), abs=1e-14)
-
-
-def test_the_table_is_right_between_its_positions_within_its_own_estimate(pair, table, cache):
-    """At positions all over the period, solved one by one as flank results."""
+    # At positions all over the period, solved one by one as flank results.
     position = RNG.uniform(0.0, 20.0, 400)
-    exact = flank_results(
-        pair, OperatingPoint(torque=100.0), AnalysisOptions(level="draft"), Run(cache=cache), at=position
-    ).deflection
+    exact = flank_results(pair, *point_request(torque=100.0, level="draft"), Run(), at=position).deflection
     error = np.abs(table.ste(position, pair.normal_force(100.0)) - exact)
     stated = table.metadata.receipt["error_by_source"]["table_interpolation_m"][0]
     assert np.ptp(exact) > 5e-6
@@ -68,10 +52,10 @@ def test_the_table_is_right_between_its_positions_within_its_own_estimate(pair, 
     assert np.mean(error <= stated) > 0.99
 
 
-def test_the_curve_of_a_long_period_shows_orders_between_the_mesh_harmonics(cache):
+def test_the_curve_of_a_long_period_shows_orders_between_the_mesh_harmonics():
     """An eccentric pinion is its order 1, and leaves the mesh harmonic as it is."""
     eccentric = GearPair(gear(20, 5e-6 * np.sin(2 * np.pi * np.arange(20) / 20 + 0.4)), gear(23))
-    options = {"torques": [100.0], "level": "draft", "positions": 32, "cache": cache}
+    options = {"torques": [100.0], "level": "draft", "positions": 32}
     table, perfect = (analyze(p, **options) for p in (eccentric, GearPair(gear(20), gear(23))))
     spectrum = table.spectrum(torque=100.0)
     assert spectrum.pinion_order[:3] == pytest.approx([1.0, 2.0, 3.0])
@@ -83,10 +67,10 @@ def test_the_curve_of_a_long_period_shows_orders_between_the_mesh_harmonics(cach
     )
 
 
-def test_load_shares_follow_the_early_tooth(cache):
+def test_load_shares_follow_the_early_tooth():
     """A tooth 20 um early carries all, wherever it is in mesh; pairs count from each whole pitch."""
     early = GearPair(gear(20, np.where(np.arange(20) == 4, 20e-6, 0.0)), gear(23))
-    table = analyze(early, torques=[30.0], level="draft", positions=16, cache=cache)
+    table = analyze(early, torques=[30.0], level="draft", positions=16)
     curve = table.curve(torque=30.0, at=[3.8, 4.0, 4.2])
     pair = [int(curve.pair[k]) for k in curve.load_share.argmax(axis=1)]
     assert pair == [-1, 0, 0]
@@ -94,9 +78,9 @@ def test_load_shares_follow_the_early_tooth(cache):
 
 
 @pytest.mark.law
-def test_both_gears_repeat_after_the_hunting_cycle_or_the_pitches_asked_for(cache):
+def test_both_gears_repeat_after_the_hunting_cycle_or_the_pitches_asked_for():
     both = GearPair(gear(20, RNG.normal(0.0, 3e-6, 20)), gear(22, RNG.normal(0.0, 3e-6, 22)))
-    options = {"torques": [100.0], "level": "draft", "positions": 8, "cache": cache}
+    options = {"torques": [100.0], "level": "draft", "positions": 8}
     cycle, part = analyze(both, **options), analyze(both, **options, pitches=30)
     assert (cycle.period, part.period) == (220, 30)
     # away from its seam the part is the cycle

@@ -54,7 +54,7 @@ def helical() -> Decided:
     return ran(pair(0.3), "standard", 15)
 
 
-def test_the_source_that_dominates_is_refined(helical):
+def test_the_source_that_dominates_is_refined_and_the_rest_kept(helical):
     """And nothing else where that is predicted to be enough."""
     mesh = refined(helical, discretisation=1.5, slices=0.3, position=0.2)
     assert (mesh.source, mesh.steps) == ("discretisation", ("mesh standard -> fine",))
@@ -63,19 +63,6 @@ def test_the_source_that_dominates_is_refined(helical):
     positions = refined(helical, discretisation=0.3, slices=0.3, position=2.0)
     assert positions.source == "position"
     assert positions.steps == ("positions 0.5 -> 0.12 % of the ripple",)
-
-
-def test_what_is_small_is_refined_where_nothing_larger_can_be(helical):
-    """The finest mesh takes 0.98 of the tolerance, positions what is beyond it; alone they would be left."""
-    finest = ran(pair(0.3), "fine", 31)
-    made = refined(finest, discretisation=0.98, position=0.25)
-    assert [step.split()[0] for step in made.steps] == ["positions"]
-    assert made.expected < 1.0
-    larger = refined(helical, discretisation=1.5, position=0.25)
-    assert larger.steps == ("mesh standard -> fine",)
-
-
-def test_the_next_pass_has_what_was_refined_and_keeps_the_rest(helical):
     plan = helical.plan
     mesh, slices, positions = (
         refined(helical, **{source: 1.5}).decided.plan for source in ("discretisation", "slices", "position")
@@ -89,32 +76,37 @@ def test_the_next_pass_has_what_was_refined_and_keeps_the_rest(helical):
     assert refined(helical, slices=1.5).decided.checked == helical.checked
 
 
-def test_a_source_is_refined_as_far_as_is_predicted_to_be_needed(helical):
+def test_what_is_small_is_refined_where_nothing_larger_can_be(helical):
+    """The finest mesh takes 0.98 of the tolerance, positions what is beyond it; alone they would be left."""
+    finest = ran(pair(0.3), "fine", 31)
+    made = refined(finest, discretisation=0.98, position=0.25)
+    assert [step.split()[0] for step in made.steps] == ["positions"]
+    assert made.expected < 1.0
+    larger = refined(helical, discretisation=1.5, position=0.25)
+    assert larger.steps == ("mesh standard -> fine",)
+
+
+def test_sources_are_refined_as_far_and_as_many_as_needed(helical):
     few, many = (refined(helical, slices=share) for share in (1.2, 3.3))
     assert few.decided.mesh.slices == 23
     assert (many.decided.plan.level, many.decided.mesh.slices) == ("fine", 27)  # all that layers resolve
     assert many.expected == pytest.approx(3.3 * (15 / 27) ** SLICE_ORDER)
     assert max(few.expected, many.expected) < AIM
     assert not any("positions" in step for step in many.steps)  # they take nothing
-
-
-def test_a_pass_refines_several_sources_where_one_is_not_enough(helical):
     made = refined(helical, discretisation=1.5, slices=1.4)
     assert made.steps == ("mesh standard -> fine", "slices 15 -> 23")
     assert made.expected == pytest.approx(
         math.hypot(1.5 * MESH_STEP["face"]["standard"], 1.4 * (15 / 23) ** SLICE_ORDER)
     )
+    between = refined(helical, discretisation=1.5, force=90.0, misalignment=90.0)
+    assert told(between) == told(refined(helical, discretisation=1.5))
 
 
-def test_a_pass_goes_up_one_mesh_level_at_most():
+def test_a_pass_goes_up_one_mesh_level_for_elements_or_layers():
     draft = ran(pair(0.3), "draft", 15)
     made = refined(draft, discretisation=3.0)
     assert made.decided.plan.level == "standard"
     assert made.expected == pytest.approx(3.0 * MESH_STEP["face"]["draft"])
-
-
-def test_more_slices_than_the_layers_resolve_take_the_mesh_with_more_layers():
-    draft = ran(pair(0.3), "draft", 15)
     assert draft.mesh.slices == 12
     made = refined(draft, slices=1.3)
     assert made.decided.plan.level == "standard"
@@ -137,15 +129,12 @@ def test_what_no_refinement_brings_ends_with_its_reason(helical, by_source, said
     assert said in reason
 
 
-def test_the_finest_is_tried_where_it_may_be_enough_and_not_twice(helical):
+def test_the_finest_is_tried_where_it_may_be_enough(helical):
     """Predictions are right within a factor 2: 1.3 predicted is worth a pass, 1.3 measured is the end."""
     assert refined(helical, discretisation=2.9).expected == pytest.approx(2.9 * 0.45)
     fine = ran(pair(0.3), "fine", 31)
     assert "mesh fine is the finest" in _next_pass(fine, shares(discretisation=1.3))
-
-
-def test_what_stays_leaves_room_for_the_rest_or_ends_it(helical):
-    """0.97 measured and 0.6 left of the mesh, at best 0.3, are too much; 0.9 and 0.3 may do."""
+    # 0.97 measured and 0.6 left of the mesh, at best 0.3, are too much; 0.9 and 0.3 may do.
     assert "no refinement reduces" in _next_pass(helical, shares(contact_solver=0.97, discretisation=1.34))
     assert refined(helical, contact_solver=0.9, discretisation=1.34).steps == ("mesh standard -> fine",)
 
@@ -154,11 +143,6 @@ def test_positions_that_were_asked_for_stay():
     fixed = ran(pair(0.3), "standard", 15, positions=16)
     reason = _next_pass(fixed, shares(position=3.0, discretisation=0.5))
     assert "16 positions were requested" in reason
-
-
-def test_what_lies_between_the_nodes_of_the_axes_is_the_callers(helical):
-    between = refined(helical, discretisation=1.5, force=90.0, misalignment=90.0)
-    assert told(between) == told(refined(helical, discretisation=1.5))
 
 
 def test_three_dimensions_replace_a_correction_only_where_they_are_expected_to_err_less():

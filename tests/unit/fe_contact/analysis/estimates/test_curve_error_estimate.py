@@ -7,23 +7,19 @@ import math
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.estimates.assessed_table import HARMONIC_SHARE
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.options import LEVELS, AnalysisOptions, Run, TableAxes
+from fe_contact.options import LEVELS, Run
 from fe_contact.planning.plan import SLICE_ORDER, face_discretization
 from fe_contact.ste.curve import SOURCES
 from fe_contact.ste.fields import DIMENSIONS
 
 FORCE = 3000.0
-
-
-@pytest.fixture(scope="module")
-def cache(tmp_path_factory):
-    return tmp_path_factory.mktemp("compliance")
 
 
 def spur(**modification: float) -> GearPair:
@@ -33,13 +29,7 @@ def spur(**modification: float) -> GearPair:
 
 
 def helical() -> GearPair:
-    pinion = Gear(
-        teeth=18,
-        normal_module=3e-3,
-        face_width=15e-3,
-        bore_diameter=25e-3,
-        helix_angle=math.radians(20.0),
-    )
+    pinion = Gear(18, 3e-3, 15e-3, 25e-3, helix_angle=math.radians(20.0))
     wheel = dataclasses.replace(pinion, helix_angle=-pinion.helix_angle)
     return GearPair(pinion, wheel, 18 * 3e-3 / math.cos(pinion.helix_angle))
 
@@ -58,20 +48,20 @@ def figures(table, **place):
         (spur(profile_crowning=8e-6), {"model": "plane_strain", "positions": 64}),
     ],
 )
-def test_the_estimate_covers_the_true_error(pair, how, cache):
+def test_the_estimate_covers_the_true_error(pair, how):
     """Against a mesh more than three times as fine, positions where the curve bends, and the finite width."""
-    rough = analyze(pair, normal_forces=[FORCE], level="draft", cache=cache, **how)
+    rough = analyze(pair, normal_forces=[FORCE], level="draft", **how)
     model = how.get("model", "auto").replace("plane_strain", "auto")
-    truth = analyze(pair, normal_forces=[FORCE], level="fine", cache=cache, model=model)
+    truth = analyze(pair, normal_forces=[FORCE], level="fine", model=model)
     for found, exact in zip(figures(rough), figures(truth), strict=True):
         true = abs(found.value - exact.value)
         assert true <= found.error < max(0.05 * found.value, 2.0 * true)
 
 
 @pytest.mark.law
-def test_slices_of_a_helical_pair_are_a_source_of_ripple(cache):
+def test_slices_of_a_helical_pair_are_a_source_of_ripple():
     """The estimate must see what slices do to the ripple, also where the mesh is exact: a little."""
-    table = analyze(helical(), normal_forces=[FORCE], level="draft", positions=32, cache=cache)
+    table = analyze(helical(), normal_forces=[FORCE], level="draft", positions=32)
     slices = table.curve_error[SOURCES.index("slices"), :, 0, 0, 0]
     ripple = float(table.peak_to_peak(force=FORCE))
     assert 1e-4 * ripple < slices[1] < 0.02 * ripple
@@ -84,7 +74,7 @@ def test_slices_of_a_helical_pair_are_a_source_of_ripple(cache):
 
 
 @pytest.mark.law
-def test_what_few_slices_change_is_carried_on_along_the_curve(cache):
+def test_what_few_slices_change_is_carried_on_along_the_curve():
     """The table with the error that is left taken off: of its peak-to-peak, and half that of the error.
 
     An overlap of one: half the slices ripple more than the table, by far more than they leave in it.
@@ -93,13 +83,11 @@ def test_what_few_slices_change_is_carried_on_along_the_curve(cache):
         *(dataclasses.replace(gear, face_width=27.55e-3) for gear in (helical().pinion, helical().wheel)),
         helical().center_distance,
     )
-    checked = check_request(
-        quiet, TableAxes(normal_forces=[FORCE]), AnalysisOptions(level="draft", positions=32)
-    )
+    checked = check_request(quiet, *table_request(normal_forces=[FORCE], level="draft", positions=32))
     decided = decide(checked)
     made = decided.plan.discretization
     table, few = (
-        compute_database(checked, {}, Run(cache=cache), decided.in_slices(count))
+        compute_database(checked, {}, Run(), decided.in_slices(count))
         for count in (made.slices, made.coarse_slices)
     )
     own, sliced = (one.static_transmission_error[:, 0, 0, 0] for one in (table, few))
@@ -111,8 +99,8 @@ def test_what_few_slices_change_is_carried_on_along_the_curve(cache):
     assert stated[0] == pytest.approx(abs(left.mean()), rel=1e-3)
 
 
-def test_no_harmonic_of_a_helical_pair_errs_by_less_than_its_share(cache):
-    table = analyze(helical(), normal_forces=[FORCE], level="draft", positions=32, cache=cache)
+def test_no_harmonic_of_a_helical_pair_errs_by_less_than_its_share():
+    table = analyze(helical(), normal_forces=[FORCE], level="draft", positions=32)
     for name in ("slices", "discretisation"):
         errors = table.curve_error[SOURCES.index(name), :, 0, 0, 0]
         share = HARMONIC_SHARE * errors[1] / np.sqrt(np.arange(1, errors.size - 1))
@@ -134,23 +122,17 @@ def test_what_a_coarse_mesh_leaves_follows_the_layers_it_has():
                 assert recipe.layers // recipe.layer_group >= 6  # below a helical tooth
 
 
-def test_a_finer_level_states_a_smaller_error(cache):
+def test_sources_make_up_the_error_which_falls_with_the_level():
     errors = [
-        [found.error for found in figures(analyze(spur(), normal_forces=[FORCE], level=level, cache=cache))]
+        [found.error for found in figures(analyze(spur(), normal_forces=[FORCE], level=level))]
         for level in ("draft", "standard", "fine")
     ]
     assert np.all(np.diff(errors, axis=0) < 0.0)
-
-
-def test_a_source_that_does_not_act_is_zero(cache):
-    plane = analyze(spur(), normal_forces=[FORCE], level="draft", cache=cache)
+    plane = analyze(spur(), normal_forces=[FORCE], level="draft")
     for name in ("slices", "force", "misalignment", "center_distance_change"):
         assert not plane.curve_error[SOURCES.index(name)].any()
     assert plane.curve_error[SOURCES.index("discretisation")].any()
-
-
-def test_the_receipt_tells_the_sources_that_make_up_the_numbers(cache):
-    table = analyze(spur(), normal_forces=[1500.0, FORCE], level="draft", cache=cache)
+    table = analyze(spur(), normal_forces=[1500.0, FORCE], level="draft")
     by_source = table.metadata.receipt["curve_error"]
     assert set(by_source) == set(SOURCES)
     assert not table.metadata.receipt["not_estimated"]
@@ -161,8 +143,8 @@ def test_the_receipt_tells_the_sources_that_make_up_the_numbers(cache):
 
 
 @pytest.mark.parametrize("positions", [None, 32])
-def test_a_minimal_receipt_changes_no_result_and_says_what_is_unknown(positions, cache):
-    how = {"normal_forces": [1500.0, FORCE], "level": "draft", "positions": positions, "cache": cache}
+def test_a_minimal_receipt_changes_no_result_and_says_what_is_unknown(positions):
+    how = {"normal_forces": [1500.0, FORCE], "level": "draft", "positions": positions}
     full, minimal = analyze(spur(), **how), analyze(spur(), receipt="minimal", **how)
     for name in DIMENSIONS:
         if name != "error_estimate":

@@ -17,17 +17,12 @@ CHANGES = (0.0, 2e-4, 4e-4)
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory):
-    return tmp_path_factory.mktemp("compliance")
-
-
-@pytest.fixture(scope="module")
-def made(cache):
+def made():
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 
     def make(**options):
         arguments = {"torques": TORQUES, "level": "draft", "positions": 32, "model": "plane_strain"} | options
-        return analyze(GearPair(gear, gear, 80e-3), cache=cache, **arguments)
+        return analyze(GearPair(gear, gear, 80e-3), **arguments)
 
     return make
 
@@ -50,21 +45,21 @@ def missed(table, truth):
     return np.abs(table.ste(*place) - truth.static_transmission_error[..., 0, 0]).max(axis=0)
 
 
-def test_axes_of_one_node_have_no_error(made):
+def test_axes_of_one_node_have_no_error_and_more_nodes_less(made, coarse):
     assert made(torques=[100.0]).metadata.receipt["held_out"] == {}
     assert set(made().metadata.receipt["held_out"]) == {"force"}
+    dense = made(center_distance_changes=np.linspace(0.0, 4e-4, 17))
+    few, many = (stated(table, "center_distance_change")[1].max() for table in (coarse, dense))
+    assert many < 0.5 * few
 
 
-def test_the_points_fake_the_middle_of_every_interval(coarse):
+def test_the_points_are_the_middles_and_the_error_what_is_missed_there(coarse, made):
     assert stated(coarse, "center_distance_change")[0] == pytest.approx([1e-4, 3e-4])
     at, error = stated(coarse, "force")
     assert at == pytest.approx(np.sqrt(coarse.force[:-1] * coarse.force[1:]))
     assert error.shape == (2, 1)
     assert stated(coarse, "center_distance_change")[1].shape == (2, 3)
-
-
-def test_the_error_is_the_difference_to_a_table_computed_there(coarse, made):
-    """Another way to the same number: of the 32 positions half are assessed, the telling ones."""
+    # Another way to the same number: of the 32 positions half are assessed, the telling ones.
     for k, change in enumerate((1e-4, 3e-4)):
         error = stated(coarse, "center_distance_change")[1][k]
         everywhere = missed(coarse, made(center_distance_changes=[change]))
@@ -90,12 +85,6 @@ def test_the_estimate_between_loads_covers_the_true_error(coarse, made):
     probed = np.max([truths[part] for part in (0.25, 0.5, 0.75)], axis=0)
     assert error[:, 0] == pytest.approx(probed, rel=1e-6)
     assert np.max([truths[0.4], truths[0.6]]) <= 1.5 * error.max()
-
-
-def test_more_nodes_leave_less_error(coarse, made):
-    dense = made(center_distance_changes=np.linspace(0.0, 4e-4, 17))
-    few, many = (stated(table, "center_distance_change")[1].max() for table in (coarse, dense))
-    assert many < 0.5 * few
 
 
 def test_misalignment_in_three_dimensions(made):

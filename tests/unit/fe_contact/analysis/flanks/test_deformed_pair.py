@@ -10,7 +10,7 @@ from typing import Any
 import meshlane
 import numpy as np
 import pytest
-from analysis_requests import table_request
+from analysis_requests import point_request, table_request
 
 from fe_contact import Gear, GearPair, deformed_pairs
 from fe_contact.analysis.flanks.deformed_pair import mesh_angles
@@ -25,7 +25,7 @@ from fe_contact.contact import (
 )
 from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, RingGear, Toothing, tooth_profile
-from fe_contact.options import AnalysisOptions, OperatingPoint, Run
+from fe_contact.options import OperatingPoint, Run
 from fe_contact.stage_clock import StageClock
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
@@ -42,13 +42,7 @@ def spur_pair() -> GearPair:
 
 
 def helical_pair(hand: float = 1.0, **fields: Any) -> GearPair:
-    pinion = Gear(
-        teeth=19,
-        normal_module=3e-3,
-        face_width=16e-3,
-        bore_diameter=30e-3,
-        helix_angle=hand * math.radians(20.0),
-    )
+    pinion = Gear(19, 3e-3, 16e-3, 30e-3, helix_angle=hand * math.radians(20.0))
     return GearPair(pinion, dataclasses.replace(pinion, teeth=26, helix_angle=-pinion.helix_angle), **fields)
 
 
@@ -57,10 +51,10 @@ def internal_pair(hand: float = 0.0, **fields: Any) -> InternalGearPair:
     helix = hand * math.radians(15.0)
     pinion = Gear(teeth=18, normal_module=2e-3, face_width=12e-3, bore_diameter=15e-3, helix_angle=helix)
     ring = RingGear(
-        teeth=48,
-        normal_module=2e-3,
-        face_width=12e-3,
-        rim_diameter=(118e-3 if hand else 114e-3),
+        48,
+        2e-3,
+        12e-3,
+        118e-3 if hand else 114e-3,
         helix_angle=helix,
         cutter_teeth=25,
         addendum_coefficient=0.7,
@@ -156,6 +150,10 @@ def test_placed_flanks_touch_on_every_contact_line(pair: GearPair | InternalGear
 
 def test_a_base_pitch_later_the_next_teeth_stand_there() -> None:
     assert mesh_angles(spur_pair(), 3.25) == pytest.approx(mesh_angles(spur_pair(), 0.25), abs=1e-12)
+    with pytest.raises(InputError, match="beside = -1"):
+        deformed_pairs(spur_pair(), OperatingPoint(torque=10.0), beside=-1)
+    with pytest.raises(InputError, match=r"at = \[\]"):
+        deformed_pairs(spur_pair(), OperatingPoint(torque=10.0), at=[])
 
 
 def flank_point(gear: Toothing, tooth: int, angle: float, roll: float, along: float) -> np.ndarray:
@@ -171,8 +169,7 @@ def flank_point(gear: Toothing, tooth: int, angle: float, roll: float, along: fl
 def found(cache: Path) -> Any:
     return deformed_pairs(
         helical_pair(),
-        OperatingPoint(normal_force=2000.0, misalignment=15e-6),
-        AnalysisOptions(level="draft"),
+        *point_request(normal_force=2000.0, misalignment=15e-6, level="draft"),
         Run(cache=cache),
         at=[0.0, 0.45],
     )
@@ -197,7 +194,7 @@ def test_files_come_back_as_they_were(found: Any, tmp_path: Path) -> None:
     assert lag == pytest.approx(one.wheel_lag, abs=1e-18)
 
 
-def test_the_wheel_lags_by_the_transmission_error_along_the_line_of_action(found: Any) -> None:
+def test_the_wheel_lags_by_the_transmission_error_and_flanks_give_way(found: Any) -> None:
     pair, one = helical_pair(), found[0]
     alpha = pair.working_pressure_angle
     along = np.array([math.cos(alpha), math.sin(alpha), 0.0])
@@ -206,10 +203,7 @@ def test_the_wheel_lags_by_the_transmission_error_along_the_line_of_action(found
     expected = -one.deflection * distance / pair.wheel.base_radius
     assert one.wheel_lag @ along == pytest.approx(expected, abs=1e-15)
     assert one.deflection > 1e-6
-
-
-def test_loaded_flanks_move_towards_each_others_bodies(found: Any) -> None:
-    """Elastic displacement opens the mesh: the pinion's teeth give way against the line of action."""
+    # Elastic displacement opens the mesh: the pinion's teeth give way against the line of action.
     alpha = helical_pair().working_pressure_angle
     along = np.array([math.cos(alpha), math.sin(alpha), 0.0])
     for one in found:
@@ -218,21 +212,13 @@ def test_loaded_flanks_move_towards_each_others_bodies(found: Any) -> None:
             assert sense * (gear.displacement[largest] @ along) > 0.0
 
 
-def test_what_cannot_be_shown_is_refused() -> None:
-    with pytest.raises(InputError, match="beside = -1"):
-        deformed_pairs(spur_pair(), OperatingPoint(torque=10.0), beside=-1)
-    with pytest.raises(InputError, match=r"at = \[\]"):
-        deformed_pairs(spur_pair(), OperatingPoint(torque=10.0), at=[])
-
-
 @pytest.mark.parametrize("hand", [1.0, -1.0])
 def test_meshes_of_pinion_and_ring_meet_where_the_load_is(hand: float, cache: Path) -> None:
     """Under a load at one end of the face both are stressed most there, and there the other mesh is near."""
     pair = internal_pair(hand)
     (found,) = deformed_pairs(
         pair,
-        OperatingPoint(normal_force=500.0, misalignment=100e-6),
-        AnalysisOptions(level="draft"),
+        *point_request(normal_force=500.0, misalignment=100e-6, level="draft"),
         Run(cache=cache),
         at=0.2,
         beside=0,

@@ -1,29 +1,25 @@
 """Flank results on disk: every bit comes back, what follows is there for others, damage is refused."""
 
+from __future__ import annotations
+
 from dataclasses import fields
 from pathlib import Path
 
 import h5netcdf
 import numpy as np
 import pytest
+from analysis_requests import point_request
+from spur_gears import GEAR, PAIR
 
-from fe_contact import Gear, GearPair, LoadDistribution, contact_pattern, flank_results
+from fe_contact import GearPair, LoadDistribution, contact_pattern, flank_results
 from fe_contact.errors import DatabaseError
-from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.ste import Metadata
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory) -> LoadDistribution:
-    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-    return flank_results(
-        GearPair(gear, gear, 80e-3),
-        OperatingPoint(torque=100.0, center_distance_change=5e-5),
-        AnalysisOptions(level="draft", model="plane_strain"),
-        Run(cache=tmp_path_factory.mktemp("compliance")),
-        at=np.arange(8) / 8,
-        case={"name": "spur"},
-    )
+def found() -> LoadDistribution:
+    asked = {"torque": 100.0, "center_distance_change": 5e-5, "level": "draft", "model": "plane_strain"}
+    return flank_results(PAIR, *point_request(**asked), at=np.arange(8) / 8, case={"name": "spur"})
 
 
 @pytest.fixture
@@ -32,7 +28,9 @@ def file(found: LoadDistribution, tmp_path: Path) -> Path:
     return tmp_path / "flanks.nc"
 
 
-def test_every_bit_comes_back(found: LoadDistribution, file: Path) -> None:
+def test_every_bit_comes_back_and_what_follows_is_there_for_others(
+    found: LoadDistribution, file: Path
+) -> None:
     back = LoadDistribution.from_netcdf(file)
     assert np.any(np.isinf(found.gap))
     for entry in fields(found):
@@ -42,9 +40,6 @@ def test_every_bit_comes_back(found: LoadDistribution, file: Path) -> None:
             assert np.array_equal(one, other), entry.name
         else:
             assert one == other, entry.name
-
-
-def test_what_follows_is_there_for_other_readers(found: LoadDistribution, file: Path) -> None:
     import xarray  # noqa: PLC0415
 
     with xarray.open_dataset(file, engine="h5netcdf") as table:
@@ -57,9 +52,8 @@ def test_what_follows_is_there_for_other_readers(found: LoadDistribution, file: 
         assert table.attrs["mean_face_load_factor"] == found.mean_face_load_factor
 
 
-def test_the_scene_names_load_alignment_and_marks(found: LoadDistribution) -> None:
-    scene, gear = found.scene, Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-    here = GearPair(gear, gear, 80.05e-3)
+def test_scene_and_making_are_recorded(found: LoadDistribution) -> None:
+    scene, here = found.scene, GearPair(GEAR, GEAR, 80.05e-3)
     assert scene.torque == pytest.approx(100.0, rel=1e-12)
     assert scene.center_distance_change == 5e-5
     assert scene.path_of_contact == here.path_of_contact.points
@@ -68,9 +62,6 @@ def test_the_scene_names_load_alignment_and_marks(found: LoadDistribution) -> No
         assert both[0] == pytest.approx(both[1], rel=1e-12)
     assert scene.start_of_active_profile[1] + scene.tip[0] == pytest.approx(here.common_tangent, rel=1e-12)
     assert 2.0 * scene.pitch_point[0] == pytest.approx(here.common_tangent, rel=1e-12)
-
-
-def test_the_making_is_recorded_and_the_hash_is_of_what_decides(found: LoadDistribution) -> None:
     metadata = found.metadata
     assert metadata.case == {"name": "spur"}
     assert set(metadata.receipt["stages"]) == {"compliance", "contact", "assumptions"}
@@ -97,13 +88,10 @@ def test_damage_and_strangers_are_refused(file: Path, tmp_path: Path) -> None:
         LoadDistribution.from_netcdf(file)
 
 
-def test_a_missing_part_is_named(found: LoadDistribution, tmp_path: Path) -> None:
+def test_a_missing_part_is_named_and_missing_metadata_is_not(found: LoadDistribution, tmp_path: Path) -> None:
     found.to_xarray().drop_vars("gap").to_netcdf(tmp_path / "part.nc", engine="h5netcdf")
     with pytest.raises(DatabaseError, match="without gap"):
         LoadDistribution.from_netcdf(tmp_path / "part.nc")
-
-
-def test_results_made_without_metadata_still_come_back(found: LoadDistribution, tmp_path: Path) -> None:
     from dataclasses import replace  # noqa: PLC0415
 
     replace(found, metadata=Metadata()).to_netcdf(tmp_path / "bare.nc")

@@ -10,17 +10,11 @@ from numpy.typing import ArrayLike
 
 from fe_contact import FlankModification, Gear, GearPair, analyze, contact_pattern, flank_results
 from fe_contact.hertz import contact_modulus, relative_radius
-from fe_contact.options import Run
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 
 FORCE = 2000.0
 NO_CORNERS = {"corner_contact": "off"}
-
-
-@pytest.fixture(scope="module")
-def cache(tmp_path_factory):
-    return tmp_path_factory.mktemp("compliance")
 
 
 def spur(**changes: object) -> Gear:
@@ -33,33 +27,31 @@ def spur_pair(**modification: float) -> GearPair:
 
 
 def helical_pair() -> GearPair:
-    pinion = Gear(
-        teeth=19, normal_module=3e-3, face_width=20e-3, bore_diameter=30e-3, helix_angle=math.radians(20.0)
-    )
+    pinion = Gear(19, 3e-3, 20e-3, 30e-3, helix_angle=math.radians(20.0))
     return GearPair(pinion, dataclasses.replace(pinion, teeth=26, helix_angle=-pinion.helix_angle))
 
 
-def solved(pair: GearPair, cache, at: ArrayLike | None = None, **options: object):
+def solved(pair: GearPair, at: ArrayLike | None = None, **options: object):
     options = {"normal_force": FORCE, "model": "3d", "level": "draft"} | options
-    return flank_results(pair, *point_request(**options), run=Run(cache=cache), at=at)
+    return flank_results(pair, *point_request(**options), at=at)
 
 
-def test_the_line_load_along_the_contact_lines_is_the_force(cache):
+def test_the_line_load_along_the_contact_lines_is_the_force():
     """Integral of F' over the length dz / cos(beta_b), on the line of action; torque at the tip edges."""
     pair = helical_pair()
-    found = solved(pair, cache, misalignment=20e-6, effects=NO_CORNERS)
+    found = solved(pair, misalignment=20e-6, effects=NO_CORNERS)
     length = found.slice_width / math.cos(pair.base_helix_angle)
     assert (found.line_load * length).sum(axis=(1, 2)) == pytest.approx(FORCE, rel=1e-9)
     assert found.face_load.mean(axis=1) * pair.face_width == pytest.approx(FORCE, rel=1e-9)
-    corners = solved(pair, cache, misalignment=20e-6)
+    corners = solved(pair, misalignment=20e-6)
     assert (corners.force * corners.lever).sum(axis=(1, 2)) == pytest.approx(FORCE, rel=1e-9)
     assert np.any(corners.lever[corners.force > 0.0] != 1.0)
 
 
-def test_the_pressure_is_hertz_of_the_line_load(cache):
+def test_the_pressure_is_hertz_of_the_line_load_on_the_line_of_action():
     """p0^2 = F' E* / (pi R) with R in the normal section from the roll lengths of both flanks."""
     pair = helical_pair()
-    found = solved(pair, cache, effects=NO_CORNERS)
+    found = solved(pair, effects=NO_CORNERS)
     radius = relative_radius(found.roll_length_1, found.roll_length_2) / math.cos(pair.base_helix_angle)
     modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
     path, reach = pair.path_of_contact, 0.5 * found.slice_width * abs(math.tan(pair.base_helix_angle))
@@ -71,19 +63,14 @@ def test_the_pressure_is_hertz_of_the_line_load(cache):
     assert found.pressure[whole] ** 2 == pytest.approx(expected[whole], rel=1e-9)
     assert np.all(found.pressure[carried] ** 2 >= expected[carried] * (1.0 - 1e-9))
     assert np.all(found.pressure[~carried] == 0.0)
-
-
-def test_roll_lengths_lie_on_the_line_of_action(cache):
-    pair = helical_pair()
-    found = solved(pair, cache, effects=NO_CORNERS)
     both = (found.roll_length_1 + found.roll_length_2)[found.on_path]
     assert both == pytest.approx(pair.common_tangent, rel=1e-12)
     assert np.all(found.force[~found.on_path] == 0.0)
 
 
-def test_it_is_the_same_solution_as_the_table(cache):
+def test_it_is_the_same_solution_as_the_table():
     pair, skew = helical_pair(), 15e-6
-    found = solved(pair, cache, misalignment=skew, at=np.arange(16) / 16)
+    found = solved(pair, misalignment=skew, at=np.arange(16) / 16)
     table = analyze(
         pair,
         normal_forces=[FORCE],
@@ -91,7 +78,6 @@ def test_it_is_the_same_solution_as_the_table(cache):
         model="3d",
         level="draft",
         positions=16,
-        cache=cache,
     )
     assert found.deflection == pytest.approx(table.static_transmission_error[:, 0, 0, 0], rel=1e-12, abs=0.0)
     assert found.load_centroid == pytest.approx(table.face_centroid[:, 0, 0, 0], rel=1e-9, abs=1e-15)
@@ -101,32 +87,29 @@ def test_it_is_the_same_solution_as_the_table(cache):
     assert found.pressure.max(axis=(1, 2)) == pytest.approx(np.maximum(clear, edge), rel=1e-12)
 
 
-def test_an_aligned_spur_pair_carries_alike_on_both_sides(cache):
-    found = solved(spur_pair(), cache)
+def test_an_aligned_spur_pair_carries_alike_on_both_sides():
+    found = solved(spur_pair())
     assert found.force == pytest.approx(found.force[:, :, ::-1], rel=1e-6, abs=1e-9 * FORCE)
     assert found.load_centroid == pytest.approx(0.0, abs=1e-9)
 
 
-def test_the_gap_closes_where_load_is_carried_and_nowhere_else(cache):
-    found = solved(spur_pair(helix_crowning=60e-6), cache, misalignment=30e-6)
+def test_the_gap_closes_where_load_is_carried_and_far_ends_stay_rigid():
+    found = solved(spur_pair(helix_crowning=60e-6), misalignment=30e-6)
     carried = found.force > 0.0
     assert np.all(found.gap[carried] == 0.0)
     assert np.all(found.gap[~carried] > 0.0)
     assert np.any(np.isfinite(found.gap[~carried]))
-
-
-def test_the_gap_of_a_far_end_is_the_rigid_gap_with_the_bending_small(cache):
-    """A hundredth of the load bends little: the flanks stay apart by crowning less the STE."""
-    found = solved(spur_pair(helix_crowning=100e-6), cache, normal_force=20.0, at=0.0)
+    # A hundredth of the load bends little: the flanks stay apart by crowning less the STE.
+    found = solved(spur_pair(helix_crowning=100e-6), normal_force=20.0, at=0.0)
     alone = int(np.flatnonzero(found.pair == 0)[0])
     rigid = 100e-6 * (2.0 * found.face_position / 25e-3) ** 2
     expected = rigid[[0, -1]] - found.deflection[0]
     assert found.gap[0, alone, [0, -1]] == pytest.approx(expected, rel=0.01)
 
 
-def test_face_load_factors_of_equal_load_are_one(cache):
+def test_face_load_factors_are_one_of_equal_load_and_grow_with_misalignment():
     """A slice twice as loaded as it would be is what the factor says."""
-    found = solved(spur_pair(), cache, at=[0.0])
+    found = solved(spur_pair(), at=[0.0])
     even = dataclasses.replace(found, force=np.where(found.on_path, 1.0, 0.0))
     assert even.face_load_factor == pytest.approx(1.0, rel=1e-12)
     assert even.mean_face_load_factor == pytest.approx(1.0, rel=1e-12)
@@ -138,24 +121,21 @@ def test_face_load_factors_of_equal_load_are_one(cache):
     uneven[:, :, 0] *= 2.0
     doubled = dataclasses.replace(even, force=uneven)
     assert doubled.face_load_factor == pytest.approx(2.0 * slices / (slices + 1), rel=1e-12)
-
-
-def test_misalignment_raises_the_face_load_factors_and_moves_the_load(cache):
-    """Its sign: the gap grows with the face position, so the load moves to the other side."""
-    found = [solved(helical_pair(), cache, misalignment=skew) for skew in (0.0, 10e-6, 20e-6, 40e-6)]
+    # Its sign: the gap grows with the face position, so the load moves to the other side.
+    found = [solved(helical_pair(), misalignment=skew) for skew in (0.0, 10e-6, 20e-6, 40e-6)]
     factors = [one.mean_face_load_factor for one in found]
     assert factors[0] < 1.25
     assert np.all(np.diff(factors) > 0.1)
     assert np.all(np.diff([one.line_load_factor.mean() for one in found]) > 0.0)
     assert np.all(np.diff([one.load_centroid.mean() for one in found]) < 0.0)
-    mirrored = solved(spur_pair(), cache, misalignment=-20e-6)
-    straight = solved(spur_pair(), cache, misalignment=20e-6)
+    mirrored = solved(spur_pair(), misalignment=-20e-6)
+    straight = solved(spur_pair(), misalignment=20e-6)
     assert mirrored.face_load_factor == pytest.approx(straight.face_load_factor, rel=1e-6)
 
 
-def test_the_contact_pattern_holds_the_largest_pressures(cache):
+def test_the_contact_pattern_holds_the_largest_pressures():
     pair = spur_pair()
-    found = solved(pair, cache, misalignment=15e-6)
+    found = solved(pair, misalignment=15e-6)
     for gear, roll in (("pinion", found.roll_length_1), ("wheel", found.roll_length_2)):
         pattern = contact_pattern(found, gear)
         assert pattern.pressure.max() == found.pressure.max()
@@ -166,24 +146,18 @@ def test_the_contact_pattern_holds_the_largest_pressures(cache):
         half = 0.5 * (pattern.roll_length[1] - pattern.roll_length[0])
         assert pattern.roll_length[0] - half <= reached.min() * (1.0 + 1e-12)
         assert pattern.roll_length[-1] + half >= reached.max() * (1.0 - 1e-12)
-
-
-def test_tip_relief_clears_the_tip_of_the_contact_pattern(cache):
     relieved = solved(
-        spur_pair(tip_relief=40e-6, tip_relief_length=1.5e-3), cache, effects=NO_CORNERS, normal_force=500.0
+        spur_pair(tip_relief=40e-6, tip_relief_length=1.5e-3), effects=NO_CORNERS, normal_force=500.0
     )
     pattern = contact_pattern(relieved)
     assert np.all(pattern.pressure[-1] == 0.0)
     assert np.all(pattern.pressure[len(pattern.roll_length) // 2] > 0.0)
 
 
-def test_the_plane_model_is_one_slice(cache):
-    found = solved(spur_pair(), cache, model="plane_strain")
+def test_the_plane_model_is_one_slice_whose_single_contact_is_one_cell():
+    found = solved(spur_pair(), model="plane_strain")
     assert found.face_position.size == 1
     assert found.face_load_factor == pytest.approx(1.0, rel=1e-12)
-
-
-def test_a_single_contact_has_a_pattern_of_one_cell(cache):
-    found = solved(spur_pair(), cache, model="plane_strain", at=0.0)
+    found = solved(spur_pair(), model="plane_strain", at=0.0)
     pattern = contact_pattern(found)
     assert pattern.pressure == pytest.approx(np.array([[found.pressure.max()]]))

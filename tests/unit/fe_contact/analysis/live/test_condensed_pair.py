@@ -92,14 +92,6 @@ def test_crowned_and_misaligned_flanks_carry_what_they_carry_in_results_of_their
     assert quick.mean_face_load_factor > 1.5
 
 
-def test_what_is_assembled_once_serves_all_flanks(cache: Path) -> None:
-    pair = condensed(PAIR, cache)
-    pair.table(PAIR, TORQUES)
-    kept = dict(pair.contact._problems)
-    pair.table(with_flank(PAIR, RELIEF), np.array([0.7]))
-    assert pair.contact._problems == kept and len(kept) == 1
-
-
 def test_another_center_distance_has_the_curve_of_its_own_analysis(cache: Path) -> None:
     pair = condensed(PAIR, cache)
     for change in (1e-5, 3e-5, 2e-5):
@@ -123,16 +115,12 @@ def test_a_center_distance_at_which_more_teeth_touch_is_refused(
     assert not pair._apart
 
 
-def test_a_plane_holds_nothing_across_the_face(cache: Path) -> None:
+def test_what_bodies_or_plane_cannot_hold_is_refused(cache: Path) -> None:
     pair = condensed(PAIR, cache)
     with pytest.raises(InputError, match=r"pinion\.modification"):
         pair.table(with_flank(PAIR, FlankModification(helix_crowning=2e-6)), TORQUES)
     with pytest.raises(InputError, match="misalignments"):
         pair.table(PAIR, TORQUES, misalignment=5e-6)
-
-
-def test_other_bodies_and_loads_beyond_the_patches_are_refused(cache: Path) -> None:
-    pair = condensed(PAIR, cache)
     with pytest.raises(InputError, match="gears and the center distance"):
         pair.table(replace(PAIR, center_distance=20.01e-3), TORQUES)
     with pytest.raises(InputError, match="at most 2: 2 times"):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,14 +22,7 @@ LOADS = [400.0, 1600.0]
 
 
 def pair(helix: float = 0.0, width: float = 16e-3, **modification: float) -> GearPair:
-    gear = Gear(
-        teeth=20,
-        normal_module=2e-3,
-        face_width=width,
-        bore_diameter=20e-3,
-        helix_angle=helix,
-        modification=FlankModification(**modification),
-    )
+    gear = Gear(20, 2e-3, width, 20e-3, helix_angle=helix, modification=FlankModification(**modification))
     mate = dataclasses.replace(gear, helix_angle=-helix, modification=FlankModification())
     return GearPair(gear, mate, 40e-3 / math.cos(helix))
 
@@ -128,9 +122,7 @@ def test_a_small_ripple_asks_for_more():
 def test_the_choice_knows_neither_host_nor_cache(tmp_path, monkeypatch):
     before = decided(pair(0.3), tolerance=0.01).to_json()
     monkeypatch.setattr("fe_contact.planning.cost_model.host_slowness", lambda _: 40.0)
-    asked = check_request(
-        pair(0.3), TableAxes(normal_forces=LOADS), AnalysisOptions(tolerance=AllowedError(0.01))
-    )
+    asked = check_request(pair(0.3), *table_request(normal_forces=LOADS, tolerance=AllowedError(0.01)))
     assert decide(asked, tmp_path).to_json() == before
 
 
@@ -152,3 +144,24 @@ def test_a_plane_states_what_it_leaves_out_whoever_chose_it():
     row = SOURCES.index("finite_width")
     assert np.all(found.curve_error[row, :2] > 0.0)
     assert np.array_equal(named.curve_error[row], found.curve_error[row])
+
+
+GEAR = Gear(teeth=25, normal_module=3e-3, face_width=18e-3, bore_diameter=37.5e-3)
+WHEEL = replace(GEAR, teeth=31, bore_diameter=46.5e-3)
+CROWNED = replace(GEAR, modification=FlankModification(profile_crowning=8e-6))
+RATED = [2700.0]
+
+
+def finite_width(pinion: Gear, tolerance: float) -> bool:
+    """Whether the decided model has it."""
+    asked = check_request(
+        GearPair(pinion, WHEEL), *table_request(normal_forces=RATED, tolerance=AllowedError.given(tolerance))
+    )
+    return decide(asked).checked.model.finite_width
+
+
+def test_a_ripple_made_small_by_crowning_keeps_the_finite_width() -> None:
+    """Without it peak-to-peak of the crowned pair is 6.9 % off at the rated load, of the plain one 3 %."""
+    assert not finite_width(GEAR, 0.05)
+    assert finite_width(CROWNED, 0.05)
+    assert not finite_width(CROWNED, 0.2)

@@ -1,45 +1,40 @@
-"""Effects toggled one by one: the changes are those of the tables, beside their estimates."""
+"""Effects toggled one by one and deviations varied: the figures of single tables, and what changes."""
 
 from __future__ import annotations
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from analysis_requests import table_request
+from spur_gears import GEAR
 
-from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, ablate, analyze
+from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, ablate, analyze, study_sensitivity
 from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Ablation
+from fe_contact.analysis.studies.sensitivity import RippleCurve
 from fe_contact.errors import InputError
-from fe_contact.options import Run, TableAxes
+from fe_contact.options import TableAxes
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.ablate.run import RUN
 
-GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 RELIEVED = replace(GEAR, modification=FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3))
 PAIR = GearPair(RELIEVED, GEAR)
 ASKED = {"normal_forces": [800.0, 2500.0], "level": "draft", "positions": 64}
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("compliance")
-
-
-@pytest.fixture(scope="module")
-def made(cache: Path) -> Ablation:
+def made() -> Ablation:
     only = ["tooth_coupling", "corner_contact", "profile_modification", "finite_width", "misalignment"]
-    return ablate(PAIR, *table_request(**ASKED), run=Run(cache=cache), only=only)  # type: ignore[arg-type]
+    return ablate(PAIR, *table_request(**ASKED), only=only)  # type: ignore[arg-type]
 
 
-def test_a_change_is_that_of_two_tables(made: Ablation, cache: Path) -> None:
+def test_a_change_is_that_of_two_tables(made: Ablation) -> None:
     effects = {"tooth_coupling": "off"}
-    whole, without = (analyze(PAIR, **ASKED, effects=e, cache=cache) for e in ({}, effects))  # type: ignore[arg-type]
+    whole, without = (analyze(PAIR, **ASKED, effects=e) for e in ({}, effects))  # type: ignore[arg-type]
     entry = next(one for one in made.effects if one.name == "tooth_coupling")
     assert entry.on
     for k, force in enumerate(whole.force):
@@ -62,18 +57,21 @@ def test_estimates_are_within_a_factor_of_two(made: Ablation) -> None:
                 assert 0.5 < ratio < 2.0, (entry.name, ratio)
 
 
-def test_what_the_scene_does_not_hold_is_left_out_by_name(made: Ablation) -> None:
+def test_what_is_left_out_is_named_and_an_unknown_effect_refused(made: Ablation) -> None:
     assert made.left_out == {"misalignment": "the gears are aligned"}
     assert [entry.name for entry in made.effects] == [
         "tooth_coupling", "corner_contact", "profile_modification", "finite_width",
     ]  # fmt: skip
+    written = json.loads(json.dumps(RUN.figures(made), allow_nan=False))
+    assert written["effects"][0]["estimate"]["mean_um"] == made.effects[0].estimate.mean / 1e-6
+    with pytest.raises(InputError, match="only"):
+        ablate(PAIR, TableAxes(normal_forces=[1000.0]), only=["windage"])
 
 
-def test_an_effect_that_is_off_is_switched_on(cache: Path, made: Ablation) -> None:
+def test_an_effect_that_is_off_is_switched_on(made: Ablation) -> None:
     off = ablate(
         PAIR,
         *table_request(effects={"tooth_coupling": "off"}, **ASKED),
-        run=Run(cache=cache),
         only=["tooth_coupling"],
     )  # type: ignore[arg-type]
     (entry,) = off.effects
@@ -83,35 +81,23 @@ def test_an_effect_that_is_off_is_switched_on(cache: Path, made: Ablation) -> No
     np.testing.assert_array_equal(off.nominal.mean, usual.without_effect.mean)
 
 
-def test_longer_periods_cost_more(cache: Path) -> None:
+def test_longer_periods_cost_more() -> None:
     early = PitchDeviation((3e-6, *([0.0] * 19)))
     pair = GearPair(replace(GEAR, pitch_deviation=early), GEAR)
-    (entry,) = ablate(pair, *table_request(**ASKED), run=Run(cache=cache), only=["pitch_error"]).effects  # type: ignore[arg-type]
+    (entry,) = ablate(pair, *table_request(**ASKED), only=["pitch_error"]).effects  # type: ignore[arg-type]
     # twenty base pitches to solve instead of one, over the same finite elements
     assert entry.with_effect.predicted_cpu_seconds > entry.without_effect.predicted_cpu_seconds + 0.01
     assert entry.cost_ratio > 1.0
 
 
-def test_what_no_plane_holds_stays_in(cache: Path) -> None:
+def test_what_no_plane_holds_stays_in() -> None:
     asked = ASKED | {"misalignments": [10e-6], "positions": 16}
-    made = ablate(
-        GearPair(GEAR, GEAR), *table_request(**asked), run=Run(cache=cache), only=["face_load_distribution"]
-    )  # type: ignore[arg-type]
+    made = ablate(GearPair(GEAR, GEAR), *table_request(**asked), only=["face_load_distribution"])  # type: ignore[arg-type]
     assert made.effects == ()
     assert "misalignments" in made.left_out["face_load_distribution"]
 
 
-def test_the_result_is_plain_json(made: Ablation) -> None:
-    written = json.loads(json.dumps(RUN.figures(made), allow_nan=False))
-    assert written["effects"][0]["estimate"]["mean_um"] == made.effects[0].estimate.mean / 1e-6
-
-
-def test_an_unknown_effect_is_refused() -> None:
-    with pytest.raises(InputError, match="only"):
-        ablate(PAIR, TableAxes(normal_forces=[1000.0]), only=["windage"])
-
-
-def test_a_tolerance_chooses_one_mesh_for_all_tables(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_tolerance_chooses_one_mesh_for_all_tables(monkeypatch: pytest.MonkeyPatch) -> None:
     made = []
 
     def noted(checked: Checked, *further: object) -> SteDatabase:
@@ -120,6 +106,75 @@ def test_a_tolerance_chooses_one_mesh_for_all_tables(cache: Path, monkeypatch: p
 
     monkeypatch.setattr(ablation, "compute_database", noted)
     asked = {"normal_forces": [2500.0], "tolerance": 0.05, "positions": 16}
-    found = ablate(PAIR, *table_request(**asked), run=Run(cache=cache), only=["tooth_coupling"])
+    found = ablate(PAIR, *table_request(**asked), only=["tooth_coupling"])
     assert len(found.effects) == 1
     assert made == [("draft", None)] * 2
+
+
+FORCE = 2000.0
+
+
+@pytest.fixture(scope="module")
+def pair():
+    gear = Gear(20, 4e-3, 25e-3, 40e-3, thickness_allowance=60e-6)
+    return GearPair(gear, gear, 80e-3)
+
+
+def sensitivity(pair, **options):
+    options = {"misalignments": [30e-6], "center_distance_changes": [-50e-6, 80e-6]} | options
+    return study_sensitivity(
+        pair,
+        *table_request(normal_forces=[FORCE], level="draft", positions=16, **options),
+    )
+
+
+@pytest.fixture(scope="module")
+def plain(pair):
+    return sensitivity(pair)
+
+
+@pytest.mark.parametrize("corners", [False, True])
+def test_the_curves_are_those_of_tables(pair, plain, corners):
+    found = plain[corners]
+    assert found.corner_contact is corners
+    effects = {"corner_contact": "on" if corners else "off"}
+    options = {
+        "level": "draft",
+        "positions": 16,
+        "model": "3d",
+        "effects": effects,
+    }
+    skewed = analyze(pair, normal_forces=[FORCE], misalignments=[30e-6], **options).peak_to_peak(force=FORCE)
+    wide = analyze(pair, normal_forces=[FORCE], center_distance_changes=[80e-6], **options)
+    apart = wide.peak_to_peak(force=FORCE, center_distance_change=80e-6)
+    assert found.misalignment.peak_to_peak[-1] == pytest.approx(skewed.value, rel=1e-9, abs=0.0)
+    assert found.center_distance_change.peak_to_peak[-1] == pytest.approx(apart.value, rel=1e-9, abs=0.0)
+    # the worst interpolation of the assessed operating points stands for all of them
+    assert found.center_distance_change.error[-1] >= apart.error * (1.0 - 1e-6)
+
+
+def test_both_curves_pass_through_the_nominal_pair(plain):
+    for found in plain:
+        skew, distance = found.misalignment, found.center_distance_change
+        assert skew.deviation == pytest.approx([0.0, 30e-6])
+        assert distance.deviation == pytest.approx([-50e-6, 0.0, 80e-6])
+        assert distance.peak_to_peak[1] == pytest.approx(skew.peak_to_peak[0], rel=1e-9, abs=0.0)
+        assert skew.relative_change[0] == 0.0
+        assert distance.relative_change[1] == 0.0
+    curve = RippleCurve(np.array([-1e-5, 0.0, 2e-5]), np.array([3e-6, 2e-6, 8e-6]), np.zeros(3))
+    assert curve.relative_change == pytest.approx([0.5, 0.0, 3.0])
+
+
+def test_a_case_may_choose_other_effects(pair, plain):
+    loose, _ = sensitivity(pair, effects={"tooth_coupling": "off", "corner_contact": "on"})
+    assert loose.corner_contact is False
+    assert loose.misalignment.peak_to_peak[0] > 1.05 * plain[0].misalignment.peak_to_peak[0]
+
+
+def test_what_a_study_cannot_vary_is_named(pair):
+    with pytest.raises(InputError) as caught:
+        sensitivity(pair, model="plane_strain")
+    assert caught.value.field == "misalignments"
+    with pytest.raises(InputError, match="teeth jam") as caught:
+        sensitivity(pair, center_distance_changes=[-2e-3])
+    assert caught.value.field == "center_distance_changes[0]"

@@ -1,4 +1,4 @@
-"""Patch test over the face, and laws of the condensed bodies, on extruded blocks."""
+"""Patch test over the face, laws of the condensed bodies, and the elimination that condenses them."""
 
 from __future__ import annotations
 
@@ -10,10 +10,16 @@ import scipy.sparse as sp
 from contact_blocks import DEPTH, WIDTH, block
 from scipy.sparse.linalg import spsolve
 
-from fe_contact.full_contact.condensation.contact_model import _condensed_body, freedoms
+from fe_contact.errors import SolveError
+from fe_contact.full_contact.condensation.contact_model import _condensed_body, dissected, freedoms
 from fe_contact.full_contact.condensation.linearized_contact import ContactSystem, solve_active_set
 from fe_contact.full_contact.condensation.weak_gap import FlankCurve, WeakGap, weak_gap
-from fe_contact.full_contact.over_face.extruded_body import ExtrudedBody, extruded_body
+from fe_contact.full_contact.over_face.extruded_body import (
+    ExtrudedBody,
+    _ColumnMatrix,
+    _schur_complement,
+    extruded_body,
+)
 from fe_contact.full_contact.over_face.extruded_stiffness import (
     Layers,
     X,
@@ -27,6 +33,7 @@ from fe_contact.types import FloatArray
 
 FACE, FORCE = 8e-3, 2e3  # m, N
 LAYERS = graded_layers(FACE, 3)
+
 # without lateral contraction a block clamped at its back is strained evenly
 SOFT, STIFF = Material(70e9, 0.0), Material(210e9, 0.0)
 STEEL = Material(206e9, 0.3)
@@ -69,7 +76,7 @@ def pressed(slave: int, layers: int = 3, skew: float = 0.0) -> tuple[_FaceGap, C
 
 
 @pytest.mark.parametrize("slave", [0, 1])
-def test_a_flat_contact_carries_one_pressure(slave: int) -> None:
+def test_a_flat_contact_carries_one_pressure_and_action_is_reaction(slave: int) -> None:
     _, system = pressed(slave)
     solution = solve_active_set(system, FORCE)
     assert solution.status.usable
@@ -77,11 +84,7 @@ def test_a_flat_contact_carries_one_pressure(slave: int) -> None:
     np.testing.assert_allclose(solution.pressure, FORCE / area, rtol=1e-10, atol=0.0)
     modulus = 1.0 / (1.0 / SOFT.youngs_modulus + 1.0 / STIFF.youngs_modulus)
     assert solution.lag == pytest.approx(FORCE / area * DEPTH / modulus, rel=1e-11)
-
-
-@pytest.mark.parametrize("slave", [0, 1])
-def test_action_is_reaction(slave: int) -> None:
-    """All over the face, and about mid-face: the moment of the halves is opposite."""
+    # All over the face, and about mid-face: the moment of the halves is opposite.
     gap, _ = pressed(slave)
     pressure = np.random.default_rng(5).uniform(1.0, 2.0, len(gap.gap))
     functions = 2 * LAYERS.count + 1
@@ -169,3 +172,38 @@ def test_a_wide_block_is_in_plane_strain_in_its_middle() -> None:
     middle = (body.even @ forces).reshape(-1, 2, 2 * wide.count + 1)[:, :, 0].ravel()
     expected = plane.compliance @ line
     np.testing.assert_allclose(middle, expected, rtol=0.0, atol=2e-3 * np.abs(expected).max())
+
+
+GRID_SIDE, KEPT = 9, 7
+
+
+def columns(shift: float = 0.0) -> tuple[_ColumnMatrix, FloatArray]:
+    """A grid of nodes with 1 to 4 unknowns each, its last nodes kept; the matrix dense too."""
+    rng = np.random.default_rng(2)
+    nodes = np.arange(GRID_SIDE * GRID_SIDE).reshape(GRID_SIDE, GRID_SIDE)
+    pairs = [(nodes[:-1], nodes[1:]), (nodes[:, :-1], nodes[:, 1:]), (nodes[:-1, :-1], nodes[1:, 1:])]
+    rows, others = (np.concatenate([pair[k].ravel() for pair in pairs]) for k in range(2))
+    graph = sp.coo_array((np.ones(len(rows)), (rows, others)), shape=(GRID_SIDE**2, GRID_SIDE**2))
+    graph = sp.csr_array(graph + graph.T + sp.eye_array(GRID_SIDE**2))
+    order = np.concatenate([dissected(graph, np.arange(GRID_SIDE**2 - KEPT)), nodes.ravel()[-KEPT:]])
+    graph = sp.csr_array(graph[order][:, order])
+    counts = rng.integers(1, 5, GRID_SIDE**2)
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    owner = np.repeat(np.arange(GRID_SIDE**2), counts)
+    dense = rng.normal(size=(starts[-1], starts[-1])) * (graph.toarray()[np.ix_(owner, owner)] > 0.0)
+    dense = dense + dense.T
+    dense += (np.abs(dense).sum(axis=1).max() - shift) * np.eye(len(dense))
+    return _ColumnMatrix(sp.csc_array(np.tril(dense)), starts, graph), dense
+
+
+def test_it_is_that_of_dense_algebra() -> None:
+    matrix, dense = columns()
+    first = matrix.starts[-1 - KEPT]
+    inner, across, outer = dense[:first, :first], dense[:first, first:], dense[first:, first:]
+    expected = outer - across.T @ np.linalg.solve(inner, across)
+    found = _schur_complement(matrix, KEPT)
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
+    assert np.array_equal(found, found.T)
+    matrix, _ = columns(shift=100.0)
+    with pytest.raises(SolveError, match="over the face"):
+        _schur_complement(matrix, KEPT)

@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from spur_gears import GEAR, PAIR
 
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
 from fe_contact.errors import InputError
@@ -21,8 +22,6 @@ from fe_contact.full_contact.condensation.contact_model import softness
 from fe_contact.full_contact.over_face.extruded_stiffness import graded_layers
 from fe_contact.full_contact.over_face.solve import _WholeFace
 
-GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-PAIR = GearPair(GEAR, GEAR, center_distance=80e-3)
 SLOPE, TORQUE, POSITION = 20e-6, 150.0, 0.1
 CROWNED = FlankModification(helix_crowning=6e-6, helix_slope=SLOPE)
 COARSE = Resolution(1.5, 1.0, 1)
@@ -77,7 +76,7 @@ def test_it_is_a_little_softer_than_plane_strain() -> None:
     assert np.all(ratio < 1.04)
 
 
-def test_layers_are_finest_at_the_face() -> None:
+def test_layers_are_finest_at_the_face_and_springs_size_the_mesh() -> None:
     layers = graded_layers(25e-3, 5)
     thickness = np.diff(layers.planes)
     assert thickness.sum() == pytest.approx(12.5e-3)
@@ -87,10 +86,7 @@ def test_layers_are_finest_at_the_face() -> None:
     assert ones @ mass @ ones == pytest.approx(12.5e-3)
     np.testing.assert_allclose(ones @ mixed, 0.0, atol=1e-12)
     np.testing.assert_allclose(steep @ ones, 0.0, atol=1e-9)
-
-
-def test_the_load_of_springs_side_by_side_sizes_the_mesh() -> None:
-    """Of a gap that opens by the mean deflection to either side: 1.5 times the mean; of twice as much: 2."""
+    # Of a gap that opens by the mean deflection to either side: 1.5 times the mean; of twice as much: 2.
     mean = 1e5
     deflection = mean * softness(PAIR)
     for opened, factor in ((1.0, 1.5), (2.0, 2.0), (8.0, 4.0)):

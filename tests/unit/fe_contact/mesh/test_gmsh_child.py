@@ -1,4 +1,4 @@
-"""The gmsh child: what it returns, and what its failures become."""
+"""The gmsh child: triangles and blocks of quadrilaterals, and what its failures become."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import MeshError
+from fe_contact.mesh.quad_sector import _Block, _fill_blocks
 from fe_contact.mesh.triangulation import WORKER, _Region, _triangulate
 
 SQUARE = _Region((np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),))
@@ -22,8 +23,6 @@ RING = _Region(
         )
     )
 )
-
-
 SQUARE_SIDES = [
     (np.array(a), np.array(b))
     for a, b in (
@@ -45,14 +44,11 @@ def polygon_area(loop: np.ndarray) -> float:
     return float(0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
 
 
-def test_fills_the_polygon_without_its_hole_counter_clockwise() -> None:
+def test_fills_the_polygon_and_keeps_its_points_bit_for_bit() -> None:
     (mesh,) = _triangulate([RING], 1.0)
     areas = area(mesh.points, mesh.triangles)
     assert areas.min() > 0.0
     assert areas.sum() == pytest.approx(sum(polygon_area(loop) for loop in RING.loops), rel=1e-12)
-
-
-def test_keeps_the_given_points_bit_for_bit_and_their_edges_whole() -> None:
     (mesh,) = _triangulate([RING], 1e-3)
     given = np.concatenate(RING.loops)
     assert np.array_equal(mesh.points[: len(given)], given)
@@ -70,13 +66,10 @@ def test_is_deterministic_and_free_of_scale() -> None:
     assert scaled.points == pytest.approx(1024.0 * first.points, rel=1e-14)
 
 
-def test_growth_thins_the_interior_out() -> None:
+def test_growth_thins_the_interior_out_and_clockwise_triangles_are_turned() -> None:
     square = np.concatenate([np.linspace(a, b, 40, endpoint=False) for a, b in SQUARE_SIDES])
     slow, fast = (len(_triangulate([_Region((square,))], 1.0, growth=g)[0].triangles) for g in (0.05, 0.5))
     assert fast < 0.6 * slow
-
-
-def test_clockwise_triangles_are_turned() -> None:
     code = """print('{"regions": [{"points": [[0,0],[1,0],[1,1],[0,1]], "triangles": [[0,2,1],[0,2,3]]}]}')"""
     (mesh,) = _triangulate([SQUARE], 1.0, command=(sys.executable, "-c", code))
     assert area(mesh.points, mesh.triangles) == pytest.approx([0.5, 0.5])
@@ -102,19 +95,13 @@ def test_a_failing_child_becomes_a_mesh_error_with_the_reason(code: str, complai
         _triangulate([SQUARE], 1.0, command=(sys.executable, "-c", code))
 
 
-def test_a_child_that_hangs_is_ended() -> None:
+def test_a_child_that_hangs_is_missing_or_refuses_is_a_mesh_error(tmp_path: Path) -> None:
     with pytest.raises(MeshError, match=r"no answer within 0\.2 s"):
         _triangulate(
             [SQUARE], 1.0, seconds=0.2, command=(sys.executable, "-c", "import time; time.sleep(60)")
         )
-
-
-def test_a_missing_program_is_a_mesh_error(tmp_path: Path) -> None:
     with pytest.raises(MeshError, match="cannot be started"):
         _triangulate([SQUARE], 1.0, command=(str(tmp_path / "absent"),))
-
-
-def test_gmsh_refuses_a_boundary_that_crosses_itself() -> None:
     crossed = _Region((np.array([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]),))
     with pytest.raises(MeshError, match="gmsh"):
         _triangulate([crossed], 1.0)
@@ -137,3 +124,63 @@ def test_the_worker_leaves_signal_handlers_as_they_were() -> None:
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
+
+
+U, V = np.linspace(0.0, 1.0, 6) ** 1.3, np.linspace(0.0, 1.0, 4)
+
+
+def bent(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    return np.stack([u + 0.2 * v**2, v + 0.3 * u * (1.0 - u)], axis=-1)
+
+
+BENT = _Block(bent(U, 0.0 * U), bent(1.0 + 0.0 * V, V), bent(U, 1.0 + 0.0 * U), bent(0.0 * V, V))
+SQUARE_BLOCK = _Block(
+    *(
+        np.array(side, float)
+        for side in ([[0, 0], [1, 0]], [[1, 0], [1, 1]], [[0, 1], [1, 1]], [[0, 0], [0, 1]])
+    )
+)
+
+
+def arc_share(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    lengths = sum(np.cumsum(np.linalg.norm(np.diff(side, axis=0), axis=1)) for side in (first, second))
+    return np.concatenate([[0.0], lengths / lengths[-1]])
+
+
+def test_is_the_transfinite_interpolation_of_the_sides_bit_for_bit() -> None:
+    (found,) = _fill_blocks([BENT], 1.0)
+    u = arc_share(BENT.bottom, BENT.top)[None, :, None]
+    v = arc_share(BENT.left, BENT.right)[:, None, None]
+    low = (1 - u) * BENT.bottom[0] + u * BENT.bottom[-1]
+    high = (1 - u) * BENT.top[0] + u * BENT.top[-1]
+    rows, columns = (
+        (1 - v) * BENT.bottom + v * BENT.top,
+        (1 - u) * BENT.left[:, None] + u * BENT.right[:, None],
+    )
+    assert found == pytest.approx(rows + columns - (1 - v) * low - v * high, abs=1e-14)
+    found, small = _fill_blocks([BENT, SQUARE_BLOCK], 0.7)
+    assert np.array_equal(found[0], BENT.bottom)
+    assert np.array_equal(found[-1], BENT.top)
+    assert np.array_equal(found[:, 0], BENT.left)
+    assert np.array_equal(found[:, -1], BENT.right)
+    assert small.shape == (2, 2, 2)
+    turned = _Block(BENT.bottom[::-1], BENT.left, BENT.top[::-1], BENT.right)
+    one, other = _fill_blocks([BENT, turned], 1.0)
+    assert other == pytest.approx(one[:, ::-1], abs=1e-14)
+    uneven = _Block(BENT.bottom, BENT.right, BENT.top[[0, -1]], BENT.left)
+    with pytest.raises(MeshError):
+        _fill_blocks([uneven], 1.0)
+
+
+@pytest.mark.parametrize(
+    ("answer", "cause"),
+    [
+        ('{"blocks": [[[[0, 0], [1, 0]]]]}', "unusable"),
+        ('{"blocks": []}', "unusable"),
+        ("{}", "unusable"),
+        ('{"error": "no surface"}', "no surface"),
+    ],
+)
+def test_a_useless_answer_is_a_mesh_error(answer: str, cause: str) -> None:
+    with pytest.raises(MeshError, match=cause):
+        _fill_blocks([SQUARE_BLOCK], 1.0, command=(sys.executable, "-c", f"print('{answer}')"))

@@ -1,7 +1,8 @@
-"""The compiled evaluation is that of the database to the last bit, wherever the question lies."""
+"""Tables over all axes: joined, compiled to the same bits, and where the load slides."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,8 +10,51 @@ import pytest
 from sliced_face import sliced_database
 from small_table import small_table
 
-from fe_contact.errors import SolveError
+from fe_contact.errors import DatabaseError, SolveError
 from fe_contact.ste.compiled_force import CompiledForce
+from fe_contact.ste.database import joined_over_misalignment
+from fe_contact.ste.extraction import SMOOTHING, _sliding
+
+M = (-20e-6, 0.0, 15e-6)
+
+
+def test_joined_tables_are_the_table_over_all_misalignments() -> None:
+    single = [sliced_database((m,), positions=8) for m in M]
+    assert joined_over_misalignment(single).identical(sliced_database(M, positions=8))
+
+
+def test_misalignments_that_do_not_increase_are_refused() -> None:
+    single = [sliced_database((m,), positions=8) for m in reversed(M)]
+    with pytest.raises(DatabaseError):
+        joined_over_misalignment(single)
+
+
+def test_a_single_pair_slides_by_its_distance_from_the_pitch_point():
+    """It approaches before x = 0 (pair -1 just before the next whole pitch) and recedes after."""
+    database = sliced_database((0.0,), (0.0,), positions=40)
+    for pair, sign in ((0, 1.0), (-1, -1.0)):
+        direction, arm = (a[:, 0, 0, 0] for a in _sliding(replace(database, pair=np.array([pair]))))
+        y = (database.position + pair) * database.facts.base_pitch
+        far = np.abs(y) > 0.1 * database.facts.base_pitch
+        np.testing.assert_allclose(direction[far], sign, atol=0.5 * (SMOOTHING / 0.1) ** 2)
+        np.testing.assert_allclose(arm[far], np.abs(y[far]), rtol=0.5 * (SMOOTHING / 0.1) ** 2)
+        assert np.all(arm >= 0.0)
+    assert _sliding(replace(database, pair=np.array([0])))[0][0, 0, 0, 0] == 0.0  # at the pitch point
+
+
+@pytest.mark.parametrize("angle", [1e-4, 0.2, 0.5])
+def test_helical_teeth_have_the_mean_over_their_line_of_contact(angle):
+    database = sliced_database((0.0,), (0.0,), positions=8)
+    facts = replace(database.facts, base_helix_angle=angle, helix_hand=1)
+    torque = database.torque * math.cos(angle)
+    found = _sliding(replace(database, facts=facts, torque=torque, pair=np.array([0])))
+    along = np.linspace(-0.5, 0.5, 20001) * facts.face_width * math.tan(angle)
+    y = database.position[:, None] * facts.base_pitch + along
+    sign = y / np.sqrt(y**2 + (SMOOTHING * facts.base_pitch) ** 2)
+    for values, exact in zip(found, (sign, sign * y), strict=True):
+        mean = np.trapezoid(exact, dx=1.0 / (along.size - 1), axis=1)
+        np.testing.assert_allclose(values[:, 0, 0, 0], mean, rtol=1e-5, atol=1e-5 * np.abs(mean).max())
+
 
 COUNT = 4000
 TABLES = {
