@@ -19,13 +19,17 @@ from service.access.keyring import AccessKey, KeyFile, Keyring, Scope
 from service.settings import Settings
 
 
+@pytest.fixture
+def file(tmp_path: Path) -> KeyFile:
+    return KeyFile(tmp_path / "keys.json")
+
+
 def a_key(limit: int | None, name: str = "bench") -> AccessKey:
     digest = name.encode().hex().ljust(64, "0")
     return AccessKey(name=name, sha256=digest, created="2026-01-01T00:00:00Z", requests_per_minute=limit)
 
 
-def test_a_key_opens_and_is_nowhere_on_disk(tmp_path: Path) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_a_key_opens_and_is_nowhere_on_disk(file: KeyFile) -> None:
     secret = file.add("bench", requests_per_minute=60)
     assert len(secret) >= 43, "256 bits"
     assert secret not in file.path.read_text()
@@ -34,8 +38,7 @@ def test_a_key_opens_and_is_nowhere_on_disk(tmp_path: Path) -> None:
     assert (holder.name, holder.requests_per_minute, holder.unfinished_jobs) == ("bench", 60, None)
 
 
-def test_only_its_owner_reads_the_file_whatever_the_mask(tmp_path: Path) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_only_its_owner_reads_the_file_whatever_the_mask(tmp_path: Path, file: KeyFile) -> None:
     file.add("a")
     file.add("b")
     assert stat.S_IMODE(file.path.stat().st_mode) == 0o600
@@ -45,14 +48,12 @@ def test_only_its_owner_reads_the_file_whatever_the_mask(tmp_path: Path) -> None
 @pytest.mark.parametrize(
     "change", [lambda k: k[:-1], lambda k: k + "A", str.upper, lambda k: "", lambda k: k[4:]]
 )
-def test_anything_but_the_key_is_nobody(tmp_path: Path, change) -> None:  # type: ignore[no-untyped-def]
-    file = KeyFile(tmp_path / "keys.json")
+def test_anything_but_the_key_is_nobody(file: KeyFile, change) -> None:  # type: ignore[no-untyped-def]
     assert Keyring(file).holder(change(file.add("bench"))) is None
 
 
-def test_every_key_is_compared_whichever_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_key_is_compared_whichever_it_is(file: KeyFile, monkeypatch: pytest.MonkeyPatch) -> None:
     """How long an answer takes must not tell which keys there are."""
-    file = KeyFile(tmp_path / "keys.json")
     secrets = [file.add(f"k{number}") for number in range(5)]
     keyring = Keyring(file)
     seen: list[str] = []
@@ -68,8 +69,7 @@ def test_every_key_is_compared_whichever_it_is(tmp_path: Path, monkeypatch: pyte
         assert len(seen) == 5
 
 
-def test_a_key_taken_back_opens_no_more_and_a_new_one_at_once(tmp_path: Path) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_a_key_taken_back_opens_no_more_and_a_new_one_at_once(file: KeyFile) -> None:
     old = file.add("old")
     keyring = Keyring(file)
     new = file.add("new")
@@ -79,8 +79,7 @@ def test_a_key_taken_back_opens_no_more_and_a_new_one_at_once(tmp_path: Path) ->
     assert keyring.holder(new) is not None
 
 
-def test_a_file_spoilt_meanwhile_opens_nothing_and_shuts_nobody_out(tmp_path: Path) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_a_file_spoilt_meanwhile_opens_nothing_and_shuts_nobody_out(file: KeyFile) -> None:
     secret = file.add("bench")
     keyring = Keyring(file)
     file.path.write_text("{")
@@ -113,8 +112,7 @@ def test_a_name_that_would_spoil_a_log_is_refused(tmp_path: Path, name: str) -> 
         KeyFile(tmp_path / "keys.json").add(name)
 
 
-def test_names_are_taken_once_and_limits_allow_something(tmp_path: Path) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_names_are_taken_once_and_limits_allow_something(file: KeyFile) -> None:
     file.add("a")
     with pytest.raises(BadInput, match="must be new"):
         file.add("a")
@@ -169,8 +167,7 @@ def rewritten(file: KeyFile, name: str, **changes: object) -> None:
     file.path.write_text(json.dumps(content))
 
 
-def test_a_key_of_before_there_were_scopes_may_do_what_it_did(tmp_path: Path) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_a_key_of_before_there_were_scopes_may_do_what_it_did(file: KeyFile) -> None:
     secret = file.add("old")
     entry = json.loads(file.path.read_text())["keys"][0]
     former = {name: entry[name] for name in ("name", "sha256", "created", "requests_per_minute")}
@@ -193,8 +190,7 @@ def test_a_key_of_before_there_were_scopes_may_do_what_it_did(tmp_path: Path) ->
         ({"connections": -1}, "at least 1"),
     ],
 )
-def test_rights_that_are_none_are_refused(tmp_path: Path, rights: dict[str, Any], named: str) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_rights_that_are_none_are_refused(file: KeyFile, rights: dict[str, Any], named: str) -> None:
     with pytest.raises(BadInput, match=named):
         file.add("bench", **rights)
     assert file.read() == ()
@@ -203,8 +199,7 @@ def test_rights_that_are_none_are_refused(tmp_path: Path, rights: dict[str, Any]
 @pytest.mark.parametrize(
     "spoilt", [{"scopes": ["all"]}, {"project": "../x"}, {"expires": "2026-01-01T00:00:00"}, {"expires": "x"}]
 )
-def test_a_right_that_cannot_be_read_is_not_left_out(tmp_path: Path, spoilt: dict[str, object]) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_a_right_that_cannot_be_read_is_not_left_out(file: KeyFile, spoilt: dict[str, object]) -> None:
     file.add("bench")
     rewritten(file, "bench", **spoilt)
     with pytest.raises(BadInput, match="keys_file"):
@@ -212,8 +207,7 @@ def test_a_right_that_cannot_be_read_is_not_left_out(tmp_path: Path, spoilt: dic
 
 
 @pytest.mark.parametrize(("text", "hours"), [("12h", 12), ("90d", 2160), ("2w", 336)])
-def test_a_key_ends_after_the_time_it_was_made_for(tmp_path: Path, text: str, hours: int) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_a_key_ends_after_the_time_it_was_made_for(file: KeyFile, text: str, hours: int) -> None:
     file.add("bench", expires=text)
     (key,) = file.read()
     end = datetime.fromisoformat(key.created) + timedelta(hours=hours)
@@ -222,8 +216,7 @@ def test_a_key_ends_after_the_time_it_was_made_for(tmp_path: Path, text: str, ho
     assert not key.expired
 
 
-def test_rotation_leaves_the_old_key_the_overlap_and_the_new_one_all_rights(tmp_path: Path) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_rotation_leaves_the_old_key_the_overlap_and_the_new_one_all_rights(file: KeyFile) -> None:
     old = file.add("bench", project="axle", scopes=["read"], expires="90d", streams=3)
     new = file.rotate("bench", overlap="7d")
     keyring = Keyring(file)
@@ -237,8 +230,7 @@ def test_rotation_leaves_the_old_key_the_overlap_and_the_new_one_all_rights(tmp_
     assert file.read() == ()
 
 
-def test_rotation_without_an_overlap_ends_the_old_key(tmp_path: Path) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_rotation_without_an_overlap_ends_the_old_key(file: KeyFile) -> None:
     old = file.add("bench")
     new = file.rotate("bench")
     assert Keyring(file).holder(old) is None
@@ -246,8 +238,7 @@ def test_rotation_without_an_overlap_ends_the_old_key(tmp_path: Path) -> None:
     assert [key.expires for key in file.read()] == [None]
 
 
-def test_rotation_makes_no_key_live_longer(tmp_path: Path) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_rotation_makes_no_key_live_longer(file: KeyFile) -> None:
     file.add("bench", expires="1h")
     end = file.read()[0].expires
     file.rotate("bench", overlap="7d", expires="90d")
@@ -264,8 +255,7 @@ def test_both_keys_of_a_rotation_share_one_rate(tmp_path: Path) -> None:
     assert [limits.wait_s(keys[n % 2]) == 0 for n in range(5)] == [True, True, True, False, False]
 
 
-def test_a_key_that_ends_soon_is_mentioned_once_a_day(tmp_path: Path) -> None:
-    file = KeyFile(tmp_path / "keys.json")
+def test_a_key_that_ends_soon_is_mentioned_once_a_day(file: KeyFile) -> None:
     soon, later = file.add("soon", expires="6d"), file.add("later", expires="8d")
     keyring = Keyring(file)
     with structlog.testing.capture_logs() as lines:

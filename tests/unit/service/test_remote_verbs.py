@@ -6,12 +6,12 @@ import json
 from pathlib import Path
 from typing import Any
 
+import command_line
 import pytest
 from small_table import small_table
 from stored_jobs import state
-from typer.testing import CliRunner, Result
+from typer.testing import Result
 
-from lineofaction.cli.commands import app
 from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.client import Result as Reference
 from lineofaction.gearbox.problems import ResultNotReady
@@ -23,7 +23,7 @@ KEY = "ab" * 32
 
 
 def loa(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [*map(str, arguments), "--service", ADDRESS])
+    return command_line.loa(*arguments, "--service", ADDRESS)
 
 
 def job(identifier: str, status: str, **facts: Any) -> JobState:

@@ -16,14 +16,18 @@ RESULT = Result(KEY, "database", f"/v1/results/{KEY}")
 ADDRESS = "http://127.0.0.1:8321"
 
 
+@pytest.fixture
+def cache(tmp_path: Path) -> ResultCache:
+    return ResultCache(tmp_path)
+
+
 def keep(cache: ResultCache, content: bytes, key: str = KEY) -> Path:
     with cache.incoming() as file:
         file.write(content)
         return cache.keep("database", key, file, hashlib.sha256(content).hexdigest())
 
 
-def test_what_was_kept_is_given(tmp_path: Path) -> None:
-    cache = ResultCache(tmp_path)
+def test_what_was_kept_is_given(cache: ResultCache) -> None:
     file = keep(cache, b"table")
     assert cache.get("database", KEY) == file
     assert file.read_bytes() == b"table" and file.suffix == ".nc"
@@ -32,8 +36,7 @@ def test_what_was_kept_is_given(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("damaged", [b"tabel", b""], ids=["changed", "cut short"])
-def test_a_damaged_file_is_set_aside_for_a_person_to_look_at(tmp_path: Path, damaged: bytes) -> None:
-    cache = ResultCache(tmp_path)
+def test_a_damaged_file_is_set_aside_for_a_person_to_look_at(cache: ResultCache, damaged: bytes) -> None:
     file = keep(cache, b"table")
     file.write_bytes(damaged)
     assert cache.get("database", KEY) is None
@@ -41,9 +44,7 @@ def test_a_damaged_file_is_set_aside_for_a_person_to_look_at(tmp_path: Path, dam
     assert keep(cache, b"table") == cache.get("database", KEY)
 
 
-def test_what_is_not_kept_leaves_nothing(tmp_path: Path) -> None:
-    cache = ResultCache(tmp_path)
-
+def test_what_is_not_kept_leaves_nothing(tmp_path: Path, cache: ResultCache) -> None:
     def breaks() -> None:
         with cache.incoming() as file:
             file.write(b"half")
@@ -87,8 +88,7 @@ def test_a_name_cannot_lead_out_of_the_cache(tmp_path: Path) -> None:
     assert cache.get("database", "../../outside") == file
 
 
-def test_a_request_is_remembered_by_service_process_and_inputs(tmp_path: Path) -> None:
-    cache = ResultCache(tmp_path)
+def test_a_request_is_remembered_by_service_process_and_inputs(cache: ResultCache) -> None:
     keep(cache, b"table")
     cache.remember(ADDRESS, "analyze", {"case": {"a": 1, "b": 2}}, RESULT)
     assert cache.recall(ADDRESS, "analyze", {"case": {"b": 2, "a": 1}}) == RESULT
@@ -97,16 +97,14 @@ def test_a_request_is_remembered_by_service_process_and_inputs(tmp_path: Path) -
     assert cache.recall("http://other:8321", "analyze", {"case": {"a": 1, "b": 2}}) is None
 
 
-def test_a_request_whose_file_is_damaged_is_not_remembered(tmp_path: Path) -> None:
-    cache = ResultCache(tmp_path)
+def test_a_request_whose_file_is_damaged_is_not_remembered(cache: ResultCache) -> None:
     cache.remember(ADDRESS, "analyze", {}, RESULT)
     assert cache.recall(ADDRESS, "analyze", {}) is None
     keep(cache, b"table").write_bytes(b"tabel")
     assert cache.recall(ADDRESS, "analyze", {}) is None
 
 
-def test_notes_that_cannot_be_read_are_as_good_as_none(tmp_path: Path) -> None:
-    cache = ResultCache(tmp_path)
+def test_notes_that_cannot_be_read_are_as_good_as_none(tmp_path: Path, cache: ResultCache) -> None:
     keep(cache, b"table")
     cache.remember(ADDRESS, "analyze", {}, RESULT)
     (note,) = (tmp_path / "requests").iterdir()
