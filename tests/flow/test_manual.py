@@ -1,13 +1,18 @@
-"""Tutorials and how-to guides run as they stand, show what comes out, and answer newcomers in two clicks."""
+"""README, tutorials and how-to guides run as they stand, show what comes out, and answer newcomers."""
 
 from __future__ import annotations
 
 import importlib.util
+import os
 import re
+import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from condensed_once import find_condensed
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -67,3 +72,83 @@ def test_a_question_is_answered_within_two_clicks(question: str, answer: Path) -
     front, list_of_questions = DOCS / "index.md", DOCS / "questions.md"
     doors = links(front) - {list_of_questions}
     assert answer in doors | {page for door in doors for page in links(door)}, question
+
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+WRITE_CASE = """
+import json, pathlib, subprocess, sys
+sys.path.insert(0, {example!r})
+from gear_case import housing_of, seats_of
+import lineofaction as loa
+import warnings
+warnings.simplefilter("ignore")
+from lineofaction.gearbox.from_rexs.opened import unit_files
+import tomllib
+scene = unit_files(loa.open_unit("unit.rexs"))["scene.toml"]
+pathlib.Path("scene.toml").write_text(scene)
+subprocess.run([sys.executable, {example!r} + "/gear_case.py", "scene.toml", "gear_case.step"], check=True)
+case = housing_of(seats_of(tomllib.loads(scene)), "gear_case.step", modes=10, element_size_mm=40.0)
+pathlib.Path("housings.json").write_text(json.dumps([case]))
+"""
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
+
+
+def run_python(code: str, folder: Path, warnings: str = "error") -> subprocess.CompletedProcess[str]:
+    done = subprocess.run(
+        [sys.executable, "-W", warnings, "-c", code],
+        cwd=folder,
+        env=os.environ | {"OMP_NUM_THREADS": "1", "XDG_CACHE_HOME": str(folder / "cache")},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done
+
+
+@pytest.mark.law
+def test_the_helical_example_has_five_lines_and_runs(tmp_path: Path, condensed_bodies: Path) -> None:
+    find_condensed(condensed_bodies, tmp_path / "cache" / "lineofaction")
+    code = blocks("python")[0]
+    assert len([line for line in code.splitlines() if line]) == 5
+    value, error = map(float, re.findall(r"=([\d.e-]+)", run_python(code, tmp_path).stdout))
+    assert value == pytest.approx(0.56e-6, abs=error)  # docs/tutorials/helical-ev-pair.md
+    assert error < 0.2 * value
+
+
+@pytest.mark.nightly
+def test_a_unit_sounds_in_six_lines_without_a_server(tmp_path: Path) -> None:
+    example = ROOT / "examples" / "two_stage"
+    shutil.copyfile(example / "two_stage.rexs", tmp_path / "unit.rexs")
+    run_python(WRITE_CASE.format(example=str(example)), tmp_path)
+    code = blocks("python")[1]
+    assert len([line for line in code.splitlines() if line and not line.startswith("import")]) <= 6
+    assert "level" in run_python(code, tmp_path, "default").stdout
+
+
+def test_a_new_user_finds_the_program_and_the_examples() -> None:
+    shell = "".join(blocks("sh"))
+    assert shell.index("./scripts/run") < shell.index("source .venv/bin/activate") < shell.index("loa ")
+    named = re.findall(r"examples/\S+\.toml", shell)
+    assert len(named) >= 3 and [name for name in named if not (ROOT / name).is_file()] == []
+
+
+def test_the_page_is_short() -> None:
+    assert len(README.splitlines()) <= 120
+
+
+def test_links_and_pictures_lead_somewhere() -> None:
+    targets = re.findall(r"\]\(([^)#]+)\)", README)
+    assert len(targets) > 5
+    missing = [t for t in targets if not t.startswith("https://") and not (ROOT / t).exists()]
+    assert missing == []
+
+
+def test_commands_named_in_the_readme_exist() -> None:
+    scripts = set(re.findall(r"\./(scripts/[a-z-]+)", README))
+    assert scripts >= {"scripts/run", "scripts/test", "scripts/bench"}
+    for script in scripts:
+        assert os.access(ROOT / script, os.X_OK), script

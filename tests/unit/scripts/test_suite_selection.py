@@ -99,7 +99,7 @@ def test_a_test_rests_on_what_it_and_its_fakes_import() -> None:
 
 
 def test_a_test_that_starts_processes_rests_on_all_houses() -> None:
-    assert rests_on(TESTS / "flow" / "test_readme.py")[1] == set(suite_selection.structure.HOUSES)
+    assert rests_on(TESTS / "flow" / "test_manual.py")[1] == set(suite_selection.structure.HOUSES)
 
 
 def test_the_digest_follows_every_file_of_a_house(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
