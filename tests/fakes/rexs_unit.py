@@ -138,6 +138,20 @@ def pulled(shaft: int = INPUT, cases: Iterable[Mapping[str, float]] = (), **valu
     }
 
 
+BEVEL: dict[int, tuple[str, dict[str, Any]]] = {
+    6: ("shaft", {"support_vector": (180.0, 0.0, 0.0), "u_axis_vector": (0.0, 1.0, 0.0)}),
+    15: ("bevel_gear", {"number_of_teeth": 36, "u_coordinate_on_shaft": 150.0}),
+    16: ("bevel_gear", {"number_of_teeth": 12, "u_coordinate_on_shaft": 0.0}),
+    23: ("bevel_stage", {}),
+}
+"""A shaft across, on which a bevel stage drives the input shaft."""
+BEVEL_RELATIONS = [
+    relation(2901, "assembly", assembly=INPUT, part=15),
+    relation(2902, "assembly", assembly=6, part=16),
+    relation(2903, "stage", stage=23, gear_1=16, gear_2=15),
+]
+
+
 def antiparallel(shaft: int, length: float, **further: Any) -> Document:
     parts = {INPUT: (11, 31, 32, 130, 131, MOTOR, BELT), MIDDLE: (12, 13, 33, 34, 140, 141)}
     on_shaft, turned = parts[shaft], ["rotational_speed"]

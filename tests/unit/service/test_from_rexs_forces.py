@@ -22,6 +22,8 @@ from tests.fakes.opened_unit import deflection_of_unit, scene_of
 from tests.fakes.rexs_stage import relation
 from tests.fakes.rexs_unit import (
     BELT,
+    BEVEL,
+    BEVEL_RELATIONS,
     CARRIER,
     INPUT,
     MOTOR,
@@ -192,17 +194,8 @@ def test_every_component_of_a_force_is_accounted_for_in_every_case() -> None:
 def test_a_force_that_no_scene_can_have_is_refused_with_its_reason() -> None:
     nowhere = {**pulled(**VALUES, cases=[VALUES]), "further": []}
     apart = pulled(6, **VALUES)
-    apart["more"] |= {
-        6: ("shaft", {"support_vector": (180.0, 0.0, 0.0), "u_axis_vector": (0.0, 1.0, 0.0)}),
-        15: ("bevel_gear", {"number_of_teeth": 36, "u_coordinate_on_shaft": 150.0}),
-        16: ("bevel_gear", {"number_of_teeth": 12, "u_coordinate_on_shaft": 0.0}),
-        23: ("bevel_stage", {}),
-    }
-    apart["further"] += [
-        relation(2901, "assembly", assembly=INPUT, part=15),
-        relation(2902, "assembly", assembly=6, part=16),
-        relation(2903, "stage", stage=23, gear_1=16, gear_2=15),
-    ]
+    apart["more"] |= BEVEL
+    apart["further"] += BEVEL_RELATIONS
     for loads, reason in ((nowhere, "acts on no shaft"), (apart, "acts on a shaft that the scene has not")):
         assert forces_of(two_stages(**loads)) == {}
         lines = lines_of(opened(two_stages(**loads)), BELT)

@@ -14,6 +14,8 @@ from lineofaction.gearbox.rexs.model import Document
 from tests.fakes.opened_unit import content, said, scene_of
 from tests.fakes.rexs_stage import relation
 from tests.fakes.rexs_unit import (
+    BEVEL,
+    BEVEL_RELATIONS,
     CARRIER,
     CENTER_DISTANCES,
     GEARS,
@@ -221,22 +223,11 @@ def test_planets_may_begin_at_any_angle() -> None:
 
 
 def test_a_bevel_stage_is_cut_off_and_its_torque_is_a_load() -> None:
-    more = {
-        6: ("shaft", {"support_vector": (180.0, 0.0, 0.0), "u_axis_vector": (0.0, 1.0, 0.0)}),
-        15: ("bevel_gear", {"number_of_teeth": 36, "u_coordinate_on_shaft": 150.0}),
-        16: ("bevel_gear", {"number_of_teeth": 12, "u_coordinate_on_shaft": 0.0}),
-        23: ("bevel_stage", {}),
-    }
-    roles = [
-        ("assembly", {"assembly": INPUT, "part": 15}),
-        ("assembly", {"assembly": 6, "part": 16}),
-        ("assembly", {"assembly": 6, "part": 43}),
-        ("stage", {"stage": 23, "gear_1": 16, "gear_2": 15}),
-    ]
-    more[43] = ("external_load", {"u_coordinate_on_shaft": 0.0, "torque_around_u_axis": NORMAL_LOAD / 3.0})
+    load = {"u_coordinate_on_shaft": 0.0, "torque_around_u_axis": NORMAL_LOAD / 3.0}
+    more = BEVEL | {43: ("external_load", load)}
     changes = {MOTOR: {"torque_around_u_axis": None}, INPUT: {"rotational_speed": None}}
     changes[6] = {"rotational_speed": 3.0 * NORMAL_SPEED}
-    further = [relation(2000 + n, kind, **row) for n, (kind, row) in enumerate(roles)]
+    further = [*BEVEL_RELATIONS, relation(2000, "assembly", assembly=6, part=43)]
     scene = scene_of(two_stages(changes, more=more, further=further))
     assert [shaft.name for shaft in scene.shafts] == ["shaft 3", "shaft 4", "shaft 5"]
     assert abs(scene.drives[0].speed_rpm[0]) == pytest.approx(NORMAL_SPEED, rel=1e-11)  # type: ignore[index]

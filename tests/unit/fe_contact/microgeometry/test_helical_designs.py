@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -9,9 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 from analysis_requests import design_request
-from helical_pairs import helical
 
-from fe_contact import GearPair, analyze
+from fe_contact import Gear, GearPair, analyze
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.evaluator import Evaluator
@@ -32,6 +32,15 @@ from fe_contact.microgeometry.variables import DesignVariable, modified
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.stage_clock import StageClock
 from lineofaction.gearbox.studies.optimize.run import RUN
+
+
+def helical(hand: int) -> GearPair:
+    """Overlap ratio 0.87, the pinion right-handed if `hand` is 1."""
+    sizes: dict[str, Any] = {"normal_module": 3e-3, "face_width": 24e-3, "bore_diameter": 30e-3}
+    angle = hand * math.radians(20.0)
+    pinion, wheel = (Gear(teeth=20, helix_angle=beta, **sizes) for beta in (angle, -angle))
+    return GearPair(pinion, wheel, 2.0 * pinion.reference_radius)
+
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 HELICAL = helical(1)
