@@ -6,6 +6,7 @@ import json
 import re
 import tempfile
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -60,8 +61,13 @@ def schemas(part: Any) -> Iterator[dict[str, Any]]:
             yield from schemas(inner)
 
 
+@cache
+def validator(schema: str) -> Any:
+    return jsonschema_rs.validator_for({"components": DESCRIPTION["components"], **json.loads(schema)})
+
+
 def conforms(example: Any, schema: dict[str, Any]) -> None:
-    jsonschema_rs.validate({"components": DESCRIPTION["components"], **schema}, example)
+    validator(json.dumps(schema)).validate(example)
 
 
 def test_every_reference_leads_somewhere() -> None:
@@ -93,8 +99,8 @@ def test_every_answer_has_an_example_of_its_schema() -> None:
 def test_every_field_has_examples_of_its_schema() -> None:
     examples = [(field, example) for field in schemas(DESCRIPTION) for example in field.get("examples", [])]
     assert len(examples) > 400
-    for field, example in examples:
-        conforms(example, field)
+    fields, told = ({str(n): pair[part] for n, pair in enumerate(examples)} for part in (0, 1))
+    conforms(told, {"properties": fields})
 
 
 def test_every_array_says_what_its_items_are() -> None:
