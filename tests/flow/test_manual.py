@@ -30,8 +30,8 @@ def folder() -> Iterator[Path]:
 
 # Ten seconds and more, but for the tutorials and for pages whose files others read.
 LONG = {
-    *("deflect", "from-rexs-to-dba", "hear-a-gearbox", "planetary-stage", "quiet-flanks-by-search"),
-    *("ripple-map", "tolerances", "vibration"),
+    *("complaint", "deflect", "from-rexs-to-dba", "hear-a-gearbox", "planetary-stage"),
+    *("quiet-flanks-by-search", "ripple-map", "tolerances", "vibration"),
 }
 PAGES = [
     pytest.param(page, id=page.stem, marks=[pytest.mark.nightly] * (page.stem in LONG))
