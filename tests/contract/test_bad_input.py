@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,21 +22,12 @@ from lineofaction.gearbox.convert.case import check_case
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
-from service.app import create_app
-from service.settings import Settings
 
 Bad = BadInput | BadScene
 
 
 def names(bad: tuple[Bad, ...]) -> Any:
     return pytest.mark.parametrize("bad", bad, ids=[each.name.replace(" ", "_") for each in bad])
-
-
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("data")))) as found:
-        yield found
-        assert found.get("/v1/jobs").json()["jobs"] == []
 
 
 def children() -> set[str]:

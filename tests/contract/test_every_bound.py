@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 from bad_scenes import good_scene
 from bound_walk import HIGH, LONGEST_CHAIN, LOW, Trial, chains, dotted, is_field, next_typed
+from changed_scenes import DROP, changed
 from fastapi.testclient import TestClient
 from toml_text import toml_text
 
@@ -37,9 +38,7 @@ from lineofaction.gearbox.problems import BadInput, Fault
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.declared import figures
 from lineofaction.gearbox.schemas.scene import SceneInput
-from service.app import create_app
 from service.schemas.examples import SCENE
-from service.settings import Settings
 
 Table = dict[str, Any]
 GEAR: Table = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
@@ -291,17 +290,8 @@ def test_http_says_the_same(name: str, client: TestClient) -> None:
         assert answer.json()["errors"][0] == trial.fault.as_json()
 
 
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("data")))) as found:
-        yield found
-        assert found.get("/v1/jobs").json()["jobs"] == []
-
-
 def test_a_table_in_a_list_is_told_both_ends_and_what_the_field_is() -> None:
-    table = copy.deepcopy(TABLES["flexible"])
-    table["shafts"][0]["sections"][1]["length_mm"] = -1.0
-    fault = refusal(table)
+    fault = refusal(changed(TABLES["flexible"], {"shafts[0].sections[1].length_mm": -1.0}))
     assert fault is not None
     assert (fault.bound, fault.suggestion) == (
         "above 0 and at most 1e+06",
@@ -310,9 +300,7 @@ def test_a_table_in_a_list_is_told_both_ends_and_what_the_field_is() -> None:
 
 
 def test_a_thin_web_is_told_its_bound_in_mm() -> None:
-    table = copy.deepcopy(EXTERNAL)
-    table["pair"]["pinion"]["blank"]["web_thickness_mm"] = 0.3
-    fault = refusal(table)
+    fault = refusal(changed(EXTERNAL, {"pair.pinion.blank.web_thickness_mm": 0.3}))
     assert fault is not None
     assert str(fault).startswith(
         "pair.pinion.blank.web_thickness_mm = 0.3: must be from 0.5 mm to the face width 25 mm"
@@ -320,9 +308,7 @@ def test_a_thin_web_is_told_its_bound_in_mm() -> None:
 
 
 def test_advice_on_a_foundation_is_in_its_unit() -> None:
-    table = copy.deepcopy(EXTERNAL)
-    table["pair"]["pinion"]["seat"].pop("tangential_foundation_n_per_mm3")
-    fault = refusal(table)
+    fault = refusal(changed(EXTERNAL, {"pair.pinion.seat.tangential_foundation_n_per_mm3": DROP}))
     assert fault is not None and fault.field == "pair.pinion.seat.tangential_foundation_n_per_mm3"
     assert fault.suggestion == "About G / h for a key of height h: 10000 N/mm^3 for 8 mm of steel."
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import copy
 import re
 import types
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Union, get_args, get_origin
 
+from changed_scenes import changed
 from drawn_cases import drawn_part
 from pydantic import BaseModel
 
@@ -81,15 +81,6 @@ def _model_in(annotation: Any) -> type[BaseModel] | None:
     return next(filter(None, map(_model_in, get_args(annotation))), None)
 
 
-def changed(table: Table, place: Place, value: float) -> Table:
-    other = copy.deepcopy(table)
-    inner: Any = other
-    for part in place[:-1]:
-        inner = inner[part]
-    inner[place[-1]] = value
-    return other
-
-
 def chains(
     model: type[BaseModel], table: Table, refusal: Refusal, leave_out: str = ""
 ) -> Iterator[list[Trial]]:
@@ -125,7 +116,7 @@ def _chain(
 
 
 def trial(table: Table, place: Place, value: float, refusal: Refusal) -> Trial:
-    typed = changed(table, place, value)
+    typed = changed(table, {dotted(place): value})
     return Trial(place, value, refusal(typed), typed)
 
 
