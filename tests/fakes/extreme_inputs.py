@@ -61,7 +61,7 @@ def extreme_inputs(process: str, draw: Random) -> Json:
             extreme(inputs["scene"], draw)
     for case in _cases(inputs):
         for extreme in draw.sample(CASE_EXTREMES, draw.randint(0, 2)):
-            extreme(case, draw)
+            case.update(extreme(case, draw))
     return renamed(inputs, draw) if "scene" in inputs else inputs
 
 
@@ -116,29 +116,18 @@ def _cases(inputs: Json) -> list[Json]:
     ]
 
 
-def _one_torque(case: Json, draw: Random) -> None:
-    case["load"] = {"torque_n_m": [draw.choice((0.5, 1e-6, 50.0))]}
+def _one_torque(_case: Json, draw: Random) -> Json:
+    return {"load": {"torque_n_m": [draw.choice((0.5, 1e-6, 50.0))]}}
 
 
-def _center_distances(case: Json, _draw: Random) -> None:
-    case["errors"] = {"center_distance_change_mm": [0.0, 0.02]}
-
-
-def _few_positions(case: Json, _draw: Random) -> None:
-    case["accuracy"] = case["accuracy"] | {"positions": 8}
-
-
-def _full_receipt(case: Json, _draw: Random) -> None:
-    case["accuracy"] = case["accuracy"] | {"receipt": "full"}
-
-
-CASE_EXTREMES: tuple[Callable[[Json, Random], None], ...] = (
+CASE_EXTREMES: tuple[Callable[[Json, Random], Json], ...] = (
     _one_torque,
     _one_torque,
-    _center_distances,
-    _few_positions,
-    _full_receipt,
+    lambda _case, _draw: {"errors": {"center_distance_change_mm": [0.0, 0.02]}},
+    lambda case, _draw: {"accuracy": case["accuracy"] | {"positions": 8}},
+    lambda case, _draw: {"accuracy": case["accuracy"] | {"receipt": "full"}},
 )
+"""Fields of a case in place of its own."""
 
 
 def _shortest(scene: Json, draw: Random) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -214,14 +215,10 @@ def test_a_force_that_is_no_size_is_refused_by_its_component(value: float) -> No
     ("shaft", "taken"), [(SUN, True), (RING, True), (CARRIER, True), (PLANETS[0], False)]
 )
 def test_forces_on_a_planetary_set_act_on_its_axis_alone(shaft: int, taken: bool) -> None:
-    document = planetary()
-    load = component(BELT, "external_load", {"u_coordinate_on_shaft": 10.0, **VALUES})
-    model = document.model
-    changed = {
-        "components": (*model.components, load),
-        "relations": (*model.relations, relation(2900, "assembly", assembly=shaft, part=BELT)),
-    }
-    document = Document(type(model)(**{**vars(model), **changed}))
+    model, load = planetary().model, {"u_coordinate_on_shaft": 10.0, **VALUES}
+    components = (*model.components, component(BELT, "external_load", load))
+    relations = (*model.relations, relation(2900, "assembly", assembly=shaft, part=BELT))
+    document = Document(replace(model, components=components, relations=relations))
     found = forces_of(document)
     assert bool(found) == taken
     if taken:

@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -137,15 +138,11 @@ def _without(document: Document, seed: int) -> Document:
         if kind == 1:
             values.pop(at)
         elif kind == 2:
-            values[at] = type(values[at])(**{**vars(values[at]), "unit": "kW"})
+            values[at] = replace(values[at], unit="kW")
         else:
-            value = bent[int(random.integers(len(bent)))]
-            values[at] = type(values[at])(**{**vars(values[at]), "value": value})
-        components[index] = type(components[index])(
-            **{**vars(components[index]), "attributes": tuple(values)}
-        )
-    changed = {**vars(model), "relations": tuple(relations), "components": tuple(components)}
-    return Document(type(model)(**changed))
+            values[at] = replace(values[at], value=bent[int(random.integers(len(bent)))])
+        components[index] = replace(components[index], attributes=tuple(values))
+    return Document(replace(model, relations=tuple(relations), components=tuple(components)))
 
 
 @pytest.mark.law

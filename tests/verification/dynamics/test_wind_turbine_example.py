@@ -42,12 +42,11 @@ def wind_turbine(change: Change = lambda _table: None) -> Scene:
     table["run"]["on_violation"] = "report"
     change(table)
     small = small_table()
-    fields = {name: getattr(small, name) for name in small.__dataclass_fields__}
     databases = {}
     for mesh in table["meshes"]:
         facts = PairFacts.of(check_case(read_model(Case, EXAMPLES / mesh["case_file"])))
         torque = small.force * math.cos(facts.base_helix_angle) * facts.base_radius[0]
-        databases[mesh["name"]] = type(small)(**fields | {"facts": facts, "torque": torque})
+        databases[mesh["name"]] = replace(small, facts=facts, torque=torque)
     return dynamic_scene(validated(SceneInput, table), databases)
 
 
