@@ -117,34 +117,20 @@ def test_facts_come_back_from_json_and_carry_the_torque(helical_facts):
     with pytest.raises(DatabaseError, match="base_pitch"):
         PairFacts.from_json(content)
 
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("base_pitch", 0.0),
-        ("base_radius", (0.03, -1.0)),
-        ("base_helix_angle", 1.6),
-        ("helix_hand", 2),
-        ("internal", 1),
-        ("face_width", math.nan),
-    ],
-)
-def test_nonsense_is_refused(helical_facts, name, value):
-    with pytest.raises(DatabaseError, match=f"pair fact {name}"):
-        replace(helical_facts, **{name: value})
+    wrong = {"base_pitch": 0.0, "base_radius": (0.03, -1.0), "base_helix_angle": 1.6}
+    for name, value in {**wrong, "helix_hand": 2, "internal": 1, "face_width": math.nan}.items():
+        with pytest.raises(DatabaseError, match=f"pair fact {name}"):
+            replace(helical_facts, **{name: value})
 
 
-def test_content_is_copied():
+def test_content_is_copied_and_plain_json():
     case = {"pair": {"teeth": [20, 20]}}
     metadata = Metadata(case=case)
     case["pair"]["teeth"][0] = 7
     assert metadata.case == {"pair": {"teeth": [20, 20]}}
-
-
-@pytest.mark.parametrize("content", [{"x": math.nan}, {"x": {1, 2}}, {"x": np.float32(1.0)}])
-def test_only_plain_json(content):
-    with pytest.raises(DatabaseError, match=r"metadata\.receipt is not plain JSON"):
-        Metadata(receipt=content)
+    for value in (math.nan, {1, 2}, np.float32(1.0)):
+        with pytest.raises(DatabaseError, match=r"metadata\.receipt is not plain JSON"):
+            Metadata(receipt={"x": value})
 
 
 def test_failed_points_go_as_whole_rows(spur, four_axes):
@@ -178,15 +164,10 @@ def test_noise_is_refused_and_repaired_on_request(make):
     assert np.all(np.diff(repaired.force_table().deflection, axis=-1) > 0.0)
     assert report.curves > 30
     change = np.abs(repaired.static_transmission_error - database.static_transmission_error)
-    i, k = (
-        int(np.searchsorted(database.position, report.position)),
-        int(np.searchsorted(database.force, report.force)),
-    )
+    i, k = np.searchsorted(database.position, report.position), np.searchsorted(database.force, report.force)
     assert report.largest_change == pytest.approx(change.max(), rel=1e-9)
     assert change[i, k, 0, 0] == change.max()
     assert repaired.metadata.receipt["monotone_repair"]["largest_change"] == report.largest_change
-    repaired, _ = database.monotone_repaired()
-    change = np.abs(repaired.static_transmission_error - database.static_transmission_error)
     assert repaired.error_estimate == pytest.approx(database.error_estimate + change, rel=1e-9)
     truth = make(force=2660.0 * (1.0 + 0.01 * np.arange(8))).static_transmission_error
     before = np.sqrt(np.mean((database.static_transmission_error - truth) ** 2))
@@ -253,10 +234,8 @@ def test_points_outside_or_failed_are_refused(make, spur):
         held_out_error(spur, make(force=[100.0]))
     with pytest.raises(InputError, match="two or more positions"):
         held_out_error(spur, make(position=[0.5]))
-    ste, status = spur.static_transmission_error.copy(), spur.status.copy()
-    ste[0, 0], status[0, 0] = np.nan, Status.SINGULAR
     with pytest.raises(SolveError, match="1 of 320"):
-        held_out_error(spur, replace(spur, static_transmission_error=ste, status=status))
+        held_out_error(spur, failed_at(spur, (0, 0)))
 
 
 def test_the_content_hash_is_sha256_of_the_canonical_text():
@@ -271,16 +250,8 @@ def test_the_content_hash_is_sha256_of_the_canonical_text():
     assert one == content_hash({"load": {"kind": "x", "torque": 1e2}, "teeth": 20.0}, "0.1.0", 1)
     assert content_hash({"x": 0.1}, "", 1) != content_hash({"x": math.nextafter(0.1, 1.0)}, "", 1)
 
-
-@pytest.mark.parametrize(
-    "other",
-    [({"teeth": 21}, "0.1.0", 1), ({"teeth": 20}, "0.1.1", 1), ({"teeth": 20}, "0.1.0", 2), ({}, "0.1.0", 1)],
-)
-def test_everything_that_decides_a_result_changes_it(other):
-    assert content_hash(*other) != content_hash({"teeth": 20}, "0.1.0", 1)
-
-
-@pytest.mark.parametrize("value", [math.nan, math.inf, np.array([1.0]), {1}, 2**60, object()])
-def test_what_is_not_json_is_refused(value):
-    with pytest.raises(InputError, match="case = 'dict': must be plain JSON"):
-        content_hash({"x": value}, "0.1.0", 1)
+    asked = ({"teeth": 20}, "0.1.0", 1), ({"teeth": 21}, "0.1.0", 1), ({"teeth": 20}, "0.1.1", 1)
+    assert len({content_hash(*each) for each in (*asked, ({"teeth": 20}, "0.1.0", 2), ({}, "0.1.0", 1))}) == 5
+    for value in (math.nan, math.inf, np.array([1.0]), {1}, 2**60, object()):
+        with pytest.raises(InputError, match="case = 'dict': must be plain JSON"):
+            content_hash({"x": value}, "0.1.0", 1)
