@@ -71,5 +71,20 @@ def test_lines_and_cells_are_short(page: Path) -> None:
     assert [cell for row in rows for cell in row.split("|") if len(cell) > CELL] == []
 
 
+SITE = [
+    page for page in ALL_PAGES if page.parent.name in ("docs", "how-to", "theory", "tutorials", "reference")
+]
+
+
+@pytest.mark.parametrize("page", SITE, ids=lambda page: str(page.relative_to(ROOT)))
+def test_a_formula_is_closed_in_its_item(page: Path) -> None:
+    """A line that begins with a minus inside a formula is an item of a list to Markdown."""
+    prose = re.sub(
+        r"^```.*?^```|\$\$.*?\$\$|`[^`\n]*`|^    .*?$", "", page.read_text("utf-8"), flags=re.M | re.S
+    )
+    items = re.split(r"\n\n|\n(?= *(?:[-+*]|\d+\.) )", prose)
+    assert [item for item in items if item.count("$") % 2] == []
+
+
 def test_pages_are_found() -> None:
     assert len(ALL_PAGES) > 80
