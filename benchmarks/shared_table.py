@@ -17,8 +17,8 @@ import numpy as np
 
 from benchmarks.figures import Figure
 from fe_contact import FlankModification, Gear, GearPair, analyze
-from fe_contact.workers import ByExecutor, InProcess, Workers
-from fe_contact.workers.executor import RunCost
+from model_studies.workers import ByExecutor, InProcess, Workers
+from model_studies.workers.executor import RunCost
 
 SUBJECT = "a helical table of 10 alignments, gears in the cache"
 TARGET = 0.6

@@ -7,7 +7,6 @@
     |  `- InfeasibleGeometry  the numbers are legal one by one, but no such gear or pair exists
     |- MeshError              gmsh failed, or a mesh missed its quality limits
     |- SolveError             a solve did not converge; carries the partial result
-    |- WorkersLost            nobody is left to do the tasks of a study
     `- DatabaseError          a file is no STE database, or of another schema, or damaged
 
 Inner solvers return a `Status` with residuals; only `analyze` and the readers raise.
@@ -59,10 +58,6 @@ class SolveError(FeContactError):
     def __init__(self, message: str, partial: object = None) -> None:
         super().__init__(message)
         self.partial = partial
-
-
-class WorkersLost(FeContactError):
-    """Nobody is left to do the tasks of a study: a cluster without workers, a pool that broke."""
 
 
 class DatabaseError(FeContactError):

@@ -11,8 +11,8 @@ from fe_contact.allowed_error import RELATIVE, AllowedError
 from fe_contact.errors import InputError, increasing, integer, positive, within
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, Json
-from fe_contact.workers import InProcess, Workers
 from model_studies import Progress, silent
+from model_studies.workers import InProcess, Workers
 
 # Axes of a table as they are requested: its loads, misalignments and changes of the center distance.
 

@@ -8,9 +8,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from fe_contact.types import Json
-from fe_contact.workers.executor import RunCost
 from host import children_peak_memory, cpu_seconds, peak_memory
 from model_studies.progress import Progress, silent
+from model_studies.workers.executor import RunCost
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,7 @@ class Unavailable(OSError):
 
 
 MODULES = {
+    "dask": ("distributed",),
     "analysis": ("gmsh", "matplotlib", "meshlane", "numba", "plotly", "pymetis", "skfem"),
     "service": (
         "alembic",

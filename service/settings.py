@@ -129,7 +129,7 @@ class Settings(BaseSettings):
         How long a scheduler holds a computation without a sign of life.
     attempts : int
         How often a computation whose worker died is started.
-    dask_scheduler : str or None
+    scheduler : str or None
         Address of a Dask scheduler whose workers share the work of jobs; None: each is done by one process.
     keys_file : Path or None
         The file of access keys; None: ``keys.json`` in the data directory.
@@ -161,7 +161,7 @@ class Settings(BaseSettings):
     memory_limit_mb: int | None = Field(None, ge=LEAST_MEMORY_MB, le=1_000_000_000)
     lease_s: float = Field(60.0, ge=1.0, le=86_400.0)
     attempts: int = Field(2, ge=1, le=10)
-    dask_scheduler: str | None = None
+    scheduler: str | None = None
     keys_file: Annotated[Path, AfterValidator(absolute)] | None = None
     webhook_origins: str = ""
     webhook_secret: SecretStr | None = Field(None, validate_default=True)
@@ -209,7 +209,7 @@ class Settings(BaseSettings):
         """The key of the signatures; raises ValueError without a secret."""
         return secret_bytes("" if self.webhook_secret is None else self.webhook_secret.get_secret_value())
 
-    @field_validator("dask_scheduler")
+    @field_validator("scheduler")
     @classmethod
     def _reachable_scheduler(cls, address: str | None) -> str | None:
         """Refuse what cannot be an address; an empty variable is none."""

@@ -178,7 +178,7 @@ class Scenes(Protocol):
 
 
 class Workers(Protocol):
-    """Runs independent tasks, yields their results in order; see `fe_contact.workers`, which conform."""
+    """Runs independent tasks, yields their results in order; see `model_studies.workers`, which conform."""
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
         """Yield ``function(shared, item)`` of every item."""

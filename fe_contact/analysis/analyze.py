@@ -16,8 +16,8 @@ from fe_contact.options import AnalysisOptions, Levels, Run, TableAxes
 from fe_contact.plausibility import unexpected
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json
-from fe_contact.workers import InProcess, Workers
 from model_studies import Progress, silent
+from model_studies.workers import InProcess, Workers
 
 
 def analyze(

@@ -35,8 +35,8 @@ from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
-from fe_contact.workers import InProcess
 from model_studies.progress import Report, by_cost, unreported
+from model_studies.workers import InProcess
 
 # Positions of the database: equally spaced, or denser where the curves bend.
 

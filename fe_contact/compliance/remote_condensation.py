@@ -18,8 +18,8 @@ from fe_contact.compliance.plane_elasticity import PlaneHypothesis
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.mesh.sector_grid import BoreSupport, PlaneStrain, bore_support
-from fe_contact.workers import InProcess, Remembering, Workers
 from model_studies.progress import Report, unreported
+from model_studies.workers import InProcess, Remembering, Workers
 
 # Size of the part of a compliance that is cached: it is not computed, and takes as much memory.
 

@@ -36,7 +36,7 @@ from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray
-from fe_contact.workers import InProcess
+from model_studies.workers import InProcess
 
 # Assessed designs on disk: a search that was killed, or may use more evaluations, continues.
 

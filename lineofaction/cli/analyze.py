@@ -12,7 +12,6 @@ from bounds.types import Json
 from fe_contact.analysis.run_plan import PlannedLevel, RunPlan
 from fe_contact.planning.cost_model import STAGES
 from fe_contact.ste import SteDatabase
-from fe_contact.workers import InProcess, Workers
 from host.directories import cache_home
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import (
@@ -37,9 +36,10 @@ from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.subjects import scene_of
-from lineofaction.gearbox.tabled_scene import ExecutorChoice, database_of, open_executor
+from lineofaction.gearbox.tabled_scene import database_of, open_executor
 from lineofaction.gearbox.units import MM, NM, UM
 from lineofaction.report.ste.page import static_headlines
+from model_studies.workers import InProcess, Workers
 
 
 def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCase:
@@ -129,11 +129,11 @@ def _pass(number: int, entry: Json) -> str:
 _SHOWN_HARMONICS = 3
 
 
-def run_analyze(file: InputFile, output: Path, processes: int, dask: str | None, *, as_json: bool) -> None:
+def run_analyze(file: InputFile, output: Path, executor: tuple[int, str | None], *, as_json: bool) -> None:
     """Compute, write, print."""
     case = assessed_case(file)
     check_netcdf_output(output)
-    with open_executor(ExecutorChoice(processes, dask)) as workers, progress_bar() as report:
+    with open_executor(*executor) as workers, progress_bar() as report:
         database = analyzed(case, report, workers)
     warn([*database.metadata.warnings, *_tolerance_warnings(database.metadata.receipt)])
     database.to_netcdf(output)

@@ -27,8 +27,13 @@ TableService = Annotated[
 TaskWorkers = Annotated[
     int, typer.Option("--workers", min=1, max=256, help="Local processes that share the tasks.")
 ]
-DaskScheduler = Annotated[
-    str | None, typer.Option("--dask", help="Address of a Dask scheduler whose workers run the tasks.")
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        "--scheduler",
+        envvar="LOA_SCHEDULER",
+        help="Dask scheduler whose workers share the tasks: its address, or its file.",
+    ),
 ]
 
 

@@ -34,10 +34,11 @@ from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.stages import staged
 from lineofaction.gearbox.subjects import MeshTables, finished
-from lineofaction.gearbox.tabled_scene import ComputedTables
+from lineofaction.gearbox.tabled_scene import ComputedTables, open_executor
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.page import Headline
+from model_studies.workers import InProcess, Workers
 
 # The main figures of a run: how far its forces swing.
 
@@ -59,7 +60,13 @@ def _run_headlines(peaks: Mapping[str, Any]) -> tuple[Headline, ...]:
     return tuple(headlines)
 
 
-def tabled_scene(scene: SceneInput, folder: Path, service: str | None, report: Report) -> TabledScene:
+def tabled_scene(
+    scene: SceneInput,
+    folder: Path,
+    service: str | None,
+    report: Report,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+) -> TabledScene:
     """Return the scene with its tables and with its cases written out; its files are relative to `folder`."""
     cases, source, run = CheckedCases(), None, finished
 
@@ -71,7 +78,7 @@ def tabled_scene(scene: SceneInput, folder: Path, service: str | None, report: R
         if service is not None:
             client = stack.enter_context(LineOfActionClient(service, progress=watch))
             source, run = ServiceTables(client), client.driver.run
-        here = ComputedTables(lambda case: analyzed(cases.of(case), report))
+        here = ComputedTables(lambda case: analyzed(cases.of(case), report, workers))
         tables = MeshTables(folder, source or here)
 
         def table_of(index: int, mesh: MeshInput) -> SteDatabase:
@@ -83,15 +90,23 @@ def tabled_scene(scene: SceneInput, folder: Path, service: str | None, report: R
 # ``loa simulate``.
 
 
-def run_simulate(file: InputFile, output: Path, service: str | None, *, resume: bool, as_json: bool) -> None:
+def run_simulate(
+    file: InputFile,
+    output: Path,
+    executor: tuple[int, str | None],
+    service: str | None,
+    *,
+    resume: bool,
+    as_json: bool,
+) -> None:
     """Gather the tables, integrate here into the file, print."""
     scene, folder = assessed_scene(file)
     check_netcdf_output(output)
     if resume and not interrupted_run(output).is_dir():
         advice = "There is none. Omit --resume to start a run."
         raise BadInput.of("--resume", str(output), "the file of a run that was interrupted", advice)
-    with progress_bar() as report:
-        _run(tabled_scene(scene, folder, service, report).scene, output, report, resume=resume)
+    with open_executor(*executor) as workers, progress_bar() as report:
+        _run(tabled_scene(scene, folder, service, report, workers).scene, output, report, resume=resume)
     stamp(output, warnings_so_far())
     facts = {"file": str(output), **run_json(output)}
     if as_json:

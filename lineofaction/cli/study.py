@@ -13,8 +13,6 @@ from typing import Any
 from bounds import engineering
 from bounds.types import Json
 from fe_contact.solver_version import SOLVER_VERSION
-from fe_contact.workers import Remembering, Workers
-from fe_contact.workers.remembering import content_digest
 from host import cpu_seconds
 from host.directories import cache_home
 from lineofaction.cli.analyze import assessed_scene
@@ -41,10 +39,12 @@ from lineofaction.gearbox.schemas.model import BoundaryModel, item_type, spellin
 from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.tabled_scene import ExecutorChoice, open_executor
+from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.document import read_run, write_whole
 from lineofaction.report.drawing.image import png
 from lineofaction.report.presentation import presentation_of
+from model_studies.workers import Remembering, Workers
+from model_studies.workers.remembering import content_digest
 from service.version import solver_version
 
 # Studies that go on where they were: what their tasks found is kept in the user's cache until they end.
@@ -87,23 +87,24 @@ def run_study(study: Study, options: Json) -> None:
     targets = _targets(study, options["output"])
     for subject, _ in subjects:
         study.run.check(subject, inputs)
-    executor = ExecutorChoice(options.get("workers", 1), options.get("dask"))
     written = [subject.case if isinstance(subject, CheckedCase) else subject for subject, _ in subjects]
     runs = targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
     stopping = until_interrupted if study.run.interruptible else nullcontext
     with (
-        open_executor(executor) as others,
+        open_executor(options["workers"], options["scheduler"]) as others,
         _resumed_workers(study, written, inputs, others) as workers,
         progress_bar() as report,
         stopping() as cancel,
     ):
         means = Means(cache_home(), report, workers, cancel, runs, run)
         results = [
-            study.run.compute(_made(subject, folder, options.get("service"), report), inputs, means)
+            study.run.compute(_made(subject, folder, options.get("service"), report, workers), inputs, means)
             for subject, folder in subjects
         ]
         interrupted = cancel is not None and cancel()
-    remote_seconds = 0.0 if executor.dask is None else others.cost.cpu_seconds  # else they are our children
+    remote_seconds = (
+        0.0 if options["scheduler"] is None else others.cost.cpu_seconds
+    )  # else they are our children
     result = results[0]
     if study.several:
         result = study.run.joined(dict(zip(_names(study, files), results, strict=True)))
@@ -162,8 +163,12 @@ def _read(study: Study, file: InputFile) -> tuple[CheckedCase | SceneInput, Path
     return CheckedCase(read_model(Case, file)), file.folder
 
 
-def _made(subject: CheckedCase | SceneInput, folder: Path, service: str | None, report: Report) -> Any:
-    return subject if isinstance(subject, CheckedCase) else tabled_scene(subject, folder, service, report)
+def _made(
+    subject: CheckedCase | SceneInput, folder: Path, service: str | None, report: Report, workers: Workers
+) -> Any:
+    if isinstance(subject, CheckedCase):
+        return subject
+    return tabled_scene(subject, folder, service, report, workers)
 
 
 def _names(study: Study, files: Sequence[InputFile]) -> list[str]:

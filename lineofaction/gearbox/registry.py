@@ -44,8 +44,6 @@ class Study:
         Stages of the work, in order, and their shares of the time.
     version : str
         Part of the result's content hash: another one, and stored results are computed again.
-    shared : bool
-        Whether workers can share its tasks.
     folder : str
         Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
     from_file : bool
@@ -71,7 +69,6 @@ class Study:
     kind: str
     stages: tuple[tuple[str, float], ...]
     version: str = "2"
-    shared: bool = False
     folder: str = ""
     from_file: bool = False
     bare: bool = False
@@ -166,7 +163,6 @@ STUDIES: dict[str, Study] = {
             kind="sensitivity",
             stages=(("tables", 1.0),),
             version="3",
-            shared=True,
             folder="sensitivity",
             further=(".csv",),
             several=True,
@@ -194,7 +190,6 @@ STUDIES: dict[str, Study] = {
             kind="optimization",
             stages=(("compliance", 0.2), ("search", 0.6), ("confirmation", 0.2)),
             version="4",
-            shared=True,
             folder="optimum",
             from_file=True,
             further=(".toml",),
@@ -210,7 +205,6 @@ STUDIES: dict[str, Study] = {
             kind="scatter",
             stages=(("compliance", 0.2), ("samples", 0.7), ("confirmation", 0.1)),
             version="3",
-            shared=True,
         ),
         Study(
             "sweep",
@@ -223,7 +217,6 @@ STUDIES: dict[str, Study] = {
             kind="sweep",
             stages=(("compliance", 0.4), ("contact", 0.6)),
             version="1",
-            shared=True,
             further=(".csv",),
         ),
         Study(
@@ -336,7 +329,6 @@ STUDIES: dict[str, Study] = {
             "examples/palermo_scene.toml examples/study_torque_speed.toml -o study",
             kind="study",
             stages=(("analysis", 0.2), ("runs", 0.7), ("worst cases", 0.1)),
-            shared=True,
             folder="study",
             from_file=True,
         ),

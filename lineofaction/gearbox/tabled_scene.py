@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -13,8 +13,8 @@ from typing import Any
 from fe_contact.analysis.analyze import ste_database
 from fe_contact.options import Run
 from fe_contact.ste import PairFacts, SteDatabase
-from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers
 from host import cpu_seconds
+from host.extras import MissingExtra
 from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, boundary_errors, case_json
 from lineofaction.gearbox.convert.housings import housings_in
 from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_for, scene_warnings, within
@@ -25,6 +25,7 @@ from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.subjects import Steps, with_case, with_own_cases, without_modes_files
 from model_studies.progress import Progress, silent
+from model_studies.workers import ByExecutor, InProcess, Workers, WorkersLost, dask_workers
 
 Warn = Callable[[Iterable[dict[str, Any]]], object]
 OnDraft = Callable[[SteDatabase, str], None]
@@ -141,30 +142,41 @@ def _facts(index: int, mesh: MeshInput, table_of: TableOf, cases: CheckedCases, 
 # The workers of a study: those of a job, or of the command line.
 
 
-@dataclass(frozen=True)
-class ExecutorChoice:
-    """A number of processes here, or the address of a Dask scheduler."""
-
-    workers: int = 1
-    dask: str | None = None
-
-
 @contextmanager
-def open_executor(choice: ExecutorChoice) -> Iterator[Workers]:
-    """Provide the workers, and send those of this machine home at the end.
+def open_executor(processes: int = 1, scheduler: str | None = None) -> Iterator[Workers]:
+    """Provide the workers of a study, and send those of this machine home at the end.
+
+    Parameters
+    ----------
+    processes : int
+        Of this machine.
+    scheduler : str, optional
+        Address of a Dask scheduler, or the file in which it left it.
 
     Raises `BadInput`: both are given, or nobody answers at the address.
     """
-    if choice.dask is not None and choice.workers != 1:
-        raise BadInput.of("--workers", choice.workers, "left out with --dask", "The cluster has its own.")
-    if choice.dask is not None:
-        with boundary_errors():
-            cluster = dask_workers(choice.dask)
-        with cluster.client:
+    if scheduler is not None and processes != 1:
+        raise BadInput.of("--workers", processes, "left out with --scheduler", "The cluster has its own.")
+    if scheduler is not None:
+        with _connected(scheduler) as cluster:
             yield cluster
-    elif choice.workers == 1:
+    elif processes == 1:
         yield InProcess()
     else:
         # spawn: compiled code and numerical libraries do not survive a fork
-        with ProcessPoolExecutor(choice.workers, mp_context=get_context("spawn")) as executor:
+        with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as executor:
             yield ByExecutor(executor)
+
+
+@contextmanager
+def _connected(scheduler: str) -> Iterator[Workers]:
+    try:
+        cluster = dask_workers(scheduler)
+    except MissingExtra as error:
+        raise BadInput.of("--scheduler", scheduler, "left out without the extra dask", f"{error}.") from None
+    except WorkersLost as error:
+        bound = "the address of a running Dask scheduler, such as tcp://host:8786, or its file"
+        advice = f"{error} Start one: dask scheduler; and workers: dask worker ADDRESS --nthreads 1"
+        raise BadInput.of("--scheduler", scheduler, bound, advice) from None
+    with cluster.client:
+        yield cluster

@@ -14,8 +14,6 @@ from dynamics.simulation import simulate as run_scene
 from fe_contact import analyze as analyze_pair
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import SteDatabase
-from fe_contact.workers import InProcess, Workers
-from fe_contact.workers.remembering import content_digest
 from host.directories import cache_home
 from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
@@ -36,6 +34,8 @@ from lineofaction.gearbox.subjects import MeshTables, case_of, finished, scene_o
 from lineofaction.gearbox.tabled_scene import ComputedTables, database_of
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from model_studies.progress import Progress, silent
+from model_studies.workers import InProcess, Workers
+from model_studies.workers.remembering import content_digest
 
 if TYPE_CHECKING:
     from lineofaction.gearbox.studies.ablate.run import RUN as ABLATE
@@ -142,7 +142,11 @@ def analyze(subject: ParallelAxes | Subject, **options: Any) -> SteDatabase:
     return database_of(case, cache_home(), **options)
 
 
-def simulate(subject: Scene | Subject, progress: Progress = silent) -> RunResult:
+def simulate(
+    subject: Scene | Subject,
+    progress: Progress = silent,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+) -> RunResult:
     """Run a scene: in SI, or as written, with the tables of its meshes computed first.
 
     Raises
@@ -152,22 +156,26 @@ def simulate(subject: Scene | Subject, progress: Progress = silent) -> RunResult
     JobFailed
         The run ended early; see `dynamics.simulation.simulate` for its states.
     """
-    scene = subject if isinstance(subject, Scene) else tabled(subject, progress).scene
+    scene = subject if isinstance(subject, Scene) else tabled(subject, progress, workers).scene
     run = run_scene(scene)
     if not run.status.usable:
         raise JobFailed(f"The run ended early: {run.status.name.lower().replace('_', ' ')}.")
     return run
 
 
-def tabled(subject: Subject, progress: Progress = silent) -> TabledScene:
+def tabled(
+    subject: Subject,
+    progress: Progress = silent,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+) -> TabledScene:
     """Return a scene with the tables of its meshes, computed here, and its housings reduced."""
-    return _tabled(*_scene(subject), progress)
+    return _tabled(*_scene(subject), progress, workers)
 
 
-def _tabled(scene: SceneInput, folder: Path, progress: Progress) -> TabledScene:
+def _tabled(scene: SceneInput, folder: Path, progress: Progress, workers: Workers) -> TabledScene:
     _warn(left_out_warnings(scene.left_out))
     cases = CheckedCases()
-    here = ComputedTables(lambda case: database_of(cases.of(case), cache_home(), progress))
+    here = ComputedTables(lambda case: database_of(cases.of(case), cache_home(), progress, workers))
     tables = MeshTables(folder, here)
     return scene_by_tables(
         scene,
@@ -235,7 +243,7 @@ class _StudyCall(Generic[Result]):
         stated, files = self._stated(subject)
         chosen = study.run.narrowed(stated, varied)
         study.run.check(chosen, varied)
-        made = chosen if isinstance(chosen, CheckedCase) else self._made(chosen, files, progress)
+        made = chosen if isinstance(chosen, CheckedCase) else self._made(chosen, files, progress, workers)
         means = Means(cache_home(), progress, workers, folder=folder, run=run)
         result: Result = study.run.compute(made, varied, means)
         _warn(study.run.warnings(result) or ())
@@ -243,10 +251,12 @@ class _StudyCall(Generic[Result]):
             raise JobFailed(failure)
         return result
 
-    def _made(self, scene: SceneInput, folder: Path, progress: Progress) -> TabledScene | HousedScene:
+    def _made(
+        self, scene: SceneInput, folder: Path, progress: Progress, workers: Workers
+    ) -> TabledScene | HousedScene:
         """Return a scene with its tables, or only with its housings, as the study takes it."""
         if STUDIES[self.name].run.tables:
-            return _tabled(scene, folder, progress)
+            return _tabled(scene, folder, progress, workers)
         _warn(left_out_warnings(scene.left_out))
         return HousedScene(scene, housings_in(scene, cache_home(), folder, progress))
 

@@ -231,7 +231,7 @@ def _order(settings: Settings, entry: str, claim: Claim) -> WorkOrder:
         results_url=settings.results_url,
         results_keys=settings.results_keys,
         lease_until=claim.asked + USABLE * settings.lease_s,
-        dask_scheduler=settings.dask_scheduler,
+        scheduler=settings.scheduler,
     )
 
 

@@ -9,9 +9,8 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TypeVar
 
-from fe_contact.errors import InputError, WorkersLost
 from fe_contact.solver_version import SOLVER_VERSION
-from fe_contact.workers import ByDask, InProcess, OrHere, Remembering, RunCost, Workers, dask_workers
+from model_studies.workers import ByDask, InProcess, OrHere, Remembering, RunCost, Workers, dask_workers
 from service.version import solver_version
 from service.worker.order import WorkOrder
 
@@ -59,10 +58,10 @@ def cluster_of(order: WorkOrder) -> Iterator[Workers]:
     A job does not fail because a cluster is away: it takes longer, and gives the same bits. What the cluster
     leaves is done in this process; the log says so, with the reason, and the receipt of a table.
     """
-    if order.dask_scheduler is None:
+    if order.scheduler is None:
         yield InProcess()
         return
-    cluster = _WhenNeeded(order.dask_scheduler)
+    cluster = _WhenNeeded(order.scheduler)
     try:
         yield OrHere(cluster, partial(logger.warning, "cluster away, the job goes on here: %s"))
     finally:
@@ -85,7 +84,4 @@ class _WhenNeeded:
 
 
 def _connected(scheduler: str, cost: RunCost) -> ByDask:
-    try:
-        return replace(dask_workers(scheduler), cost=cost)
-    except InputError as error:
-        raise WorkersLost(str(error)) from None
+    return replace(dask_workers(scheduler), cost=cost)

@@ -46,7 +46,7 @@ class WorkOrder:
         Where the files of results are, if not in the data directory.
     results_keys : tuple of str, optional
         Access key and secret of that place; they come here, as workers inherit none.
-    dask_scheduler : str, optional
+    scheduler : str, optional
         Address of the scheduler whose workers do the tasks, if the service has one.
     project : str, optional
         Whose results the work may read.
@@ -64,7 +64,7 @@ class WorkOrder:
     database_url: str | None = None
     results_url: str | None = None
     lease_until: float | None = None
-    dask_scheduler: str | None = None
+    scheduler: str | None = None
     project: str = COMMON
     results_keys: tuple[str, str] | None = None
 

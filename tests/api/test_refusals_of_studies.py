@@ -253,7 +253,7 @@ SAID: dict[str, list[tuple[list[str], str]]] = {
     "steady": [(["--speed-rpm", "0:100:50"], "speed_rpm[0]"), (["--speed-rpm", "a"], "--speed-rpm")],
     "noise": [(["--speed-rpm", "300", "--mesh-damping", "1.1,2"], "mesh_damping"), ([], "speed_rpm")],
     "vibration": [(["--speed-rpm", "300", "--at-order", "0"], "at_order")],
-    "scatter": [(["--workers", "2", "--dask", "tcp://127.0.0.1:9"], "left out with --dask")],
+    "scatter": [(["--workers", "2", "--scheduler", "tcp://127.0.0.1:9"], "left out with --scheduler")],
 }
 """Options, and words of the line that refuses them."""
 

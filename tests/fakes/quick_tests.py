@@ -12,7 +12,7 @@ import pytest
 
 LONG = (
     "fe_contact.analysis", "fe_contact.compliance", "fe_contact.full_contact", "fe_contact.mesh",
-    "fe_contact.microgeometry", "fe_contact.workers", "dynamics.accuracy", "dynamics.engines",
+    "fe_contact.microgeometry", "model_studies.workers", "dynamics.accuracy", "dynamics.engines",
     "dynamics.integrators", "dynamics.periodic", "dynamics.simulation", "service.app",
     "lineofaction.cli", "lineofaction.client", "lineofaction.report.document", "lineofaction.report.drawing",
     "lineofaction.report.run", "lineofaction.report.ste",

@@ -19,10 +19,9 @@ from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, SteDatabase, analyze, study_sensitivity
 from fe_contact.analysis.pairs import contact_lines
-from fe_contact.errors import WorkersLost
 from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, scatter
 from fe_contact.options import AnalysisOptions, Run
-from fe_contact.workers import ByDask, InProcess, OrHere, RunCost, Workers
+from model_studies.workers import ByDask, InProcess, OrHere, RunCost, Workers, WorkersLost
 
 distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
 pytestmark = pytest.mark.filterwarnings("ignore")

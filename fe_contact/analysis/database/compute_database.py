@@ -36,9 +36,9 @@ from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, all_sources
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray, Json, Status
-from fe_contact.workers import InProcess, RunCost
 from model_studies.progress import by_cost
 from model_studies.run_log import record
+from model_studies.workers import InProcess, RunCost
 
 # The contact solver in the receipt: how hard the points were, and which failed.
 

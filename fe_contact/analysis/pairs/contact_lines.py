@@ -23,8 +23,8 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import unit_work
 from fe_contact.planning.plan import Plan
 from fe_contact.types import FloatArray, IntArray
-from fe_contact.workers import InProcess, Workers
 from model_studies.progress import Report, unreported
+from model_studies.workers import InProcess, Workers
 
 # Some positions of a line of the table: the task that workers are given.
 

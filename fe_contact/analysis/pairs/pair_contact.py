@@ -40,8 +40,8 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import condensed_teeth
 from fe_contact.planning.plan import FaceDiscretization, Plan
 from fe_contact.types import FloatArray, IntArray
-from fe_contact.workers import InProcess, Workers
 from model_studies.progress import Report, unreported
+from model_studies.workers import InProcess, Workers
 
 KEPT_PROBLEMS = 2
 """Position sets whose compliance is kept: the table's, while another is tried."""

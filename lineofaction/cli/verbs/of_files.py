@@ -12,10 +12,10 @@ from lineofaction.cli.guard import computing, grouped, guarded
 from lineofaction.cli.options import (
     AsJson,
     CaseFile,
-    DaskScheduler,
     Force,
     PairWishes,
     SceneFile,
+    Scheduler,
     TableService,
     TaskWorkers,
     file_argument,
@@ -89,11 +89,11 @@ def _analyze(
     case: CaseFile,
     output: Annotated[Path, to_file("STE database to write (netCDF).")],
     workers: TaskWorkers = 1,
-    dask: DaskScheduler = None,
+    scheduler: Scheduler = None,
     json: AsJson = False,
 ) -> None:
     """Compute the STE database of a case."""
-    analyze.run_analyze(case, output, workers, dask, as_json=json)
+    analyze.run_analyze(case, output, (workers, scheduler), as_json=json)
 
 
 @verbs.command("geometry", epilog="Example: loa geometry examples/sensitivity_automotive.toml -o pair.html")
@@ -273,6 +273,8 @@ class _HousingOptions:
 def _simulate(
     scene: SceneFile,
     output: Annotated[Path, to_file("Run to write (netCDF).")],
+    workers: TaskWorkers = 1,
+    scheduler: Scheduler = None,
     service: TableService = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue a run that was interrupted or killed.")
@@ -280,7 +282,7 @@ def _simulate(
     json: AsJson = False,
 ) -> None:
     """Run the dynamics of a scene; Ctrl-C stops it, stores the results so far, and --resume continues."""
-    simulate.run_simulate(scene, output, service, resume=resume, as_json=json)
+    simulate.run_simulate(scene, output, (workers, scheduler), service, resume=resume, as_json=json)
 
 
 @verbs.command("listen", epilog="Example: loa listen before.nc after.nc -o sounds")

@@ -14,7 +14,7 @@ from lineofaction.cli.guard import computing, keyword
 from lineofaction.cli.options import (
     AsCsv,
     AsJson,
-    DaskScheduler,
+    Scheduler,
     TableService,
     TaskWorkers,
     file_argument,
@@ -81,9 +81,8 @@ def _parameters(study: Study) -> Iterator[Parameter]:
     names = ("-o", "--output", *study.aliases)
     target = typer.Option(*names, help=f"{place} ending in one of {', '.join(study.endings)}.")
     yield keyword("output", Annotated[Path | None, target], None)
-    if study.shared:
-        yield keyword("workers", TaskWorkers, 1)
-        yield keyword("dask", DaskScheduler, None)
+    yield keyword("workers", TaskWorkers, 1)
+    yield keyword("scheduler", Scheduler, None)
     if study.subject != "case":
         yield keyword("service", TableService, None)
     if ".csv" in study.endings:

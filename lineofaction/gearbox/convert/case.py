@@ -35,6 +35,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.case import Case, ErrorsInput, LoadInput
 from lineofaction.gearbox.schemas.gear import FlankPoint, ToothingInput
 from lineofaction.gearbox.units import MM, NM, UM
+from model_studies.workers import WorkersLost
 
 if TYPE_CHECKING:
     from fe_contact.analysis.request.request import Checked
@@ -64,7 +65,7 @@ def boundary_errors(prefix: str = "") -> Iterator[None]:
     """Turn errors of the libraries into the boundary's."""
     try:
         yield
-    except FeContactError as error:
+    except (FeContactError, WorkersLost) as error:
         known = translated(error)
         if isinstance(known, BadInput) and prefix:
             known = known.within(prefix)

@@ -41,6 +41,7 @@ from lineofaction.gearbox.schemas.faults import field_advice
 from lineofaction.gearbox.schemas.gear import SHARED
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import BY_SUFFIX, MM, as_typed, factor, unit_of
+from model_studies.workers import WorkersLost
 
 # Fields of a case, by the library's name (see fe_contact.geometry and fe_contact.planning).
 _CASE = {figure.name: f"pair.{figure.field}" for figure in (*SHARED, *figures(GearPair))} | {
@@ -228,7 +229,7 @@ def translated(error: Exception) -> ServiceError | None:
         return BadInput([_fault(error, _CaseReader(error.field))])
     if isinstance(error, DynamicsInputError):
         return BadInput([_fault(error, _SceneReader(error.field))])
-    if isinstance(error, FeContactError | DynamicsError | Unavailable):
+    if isinstance(error, FeContactError | DynamicsError | WorkersLost | Unavailable):
         return JobFailed(str(error))
     if isinstance(error, ModuleNotFoundError) and (missing := missing_extra(error)):
         return JobFailed(str(missing))

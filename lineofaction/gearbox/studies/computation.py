@@ -14,7 +14,6 @@ from typing import Any, ClassVar, Generic, TypeVar
 from bounds.types import Json
 from dynamics.results import RunResult
 from dynamics.results.array_file import ArrayFile
-from fe_contact.workers import InProcess, Workers
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.figures import Figures
@@ -23,6 +22,7 @@ from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.figures import figures_of
 from model_studies.record_file import read_record, write_record
+from model_studies.workers import InProcess, Workers
 
 Written = TypeVar("Written")
 Subject = TypeVar("Subject")

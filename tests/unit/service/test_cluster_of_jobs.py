@@ -18,8 +18,8 @@ from structlog.testing import capture_logs
 
 from fe_contact.analysis.pairs import contact_lines
 from fe_contact.ste import SteDatabase
-from fe_contact.workers import RunCost, dask_cluster
 from lineofaction.gearbox.problems import BadInput
+from model_studies.workers import RunCost, dask_cluster
 from service.queue.claims import Claim
 from service.settings import Settings, load_settings
 from service.worker import cluster
@@ -59,7 +59,7 @@ def done(
     given = process.inputs.model_validate_json(json.dumps(inputs))
     prepared = process.prepare(given, NOTHING_STORED)  # type: ignore[arg-type]
     workspace = workspace or Path(mkdtemp(dir=data))
-    order = WorkOrder(process.entry, prepared, "0" * 64, workspace, data, dask_scheduler=scheduler)
+    order = WorkOrder(process.entry, prepared, "0" * 64, workspace, data, scheduler=scheduler)
     module, _, name = process.entry.partition(":")
     (product,) = getattr(import_module(module), name)(order, lambda *_: None)
     return Path(product.file)
@@ -185,12 +185,12 @@ def test_the_address_goes_from_the_environment_to_the_worker(
     from service.queue.attempt import _order  # noqa: PLC0415
 
     monkeypatch.setattr("service.settings.find_spec", lambda _: object())
-    monkeypatch.setenv("LOA_DASK_SCHEDULER", "tcp://gears.example:8786")
+    monkeypatch.setenv("LOA_SCHEDULER", "tcp://gears.example:8786")
     claim = Claim("c", "analyze", "k", {}, 1, "lease")
     order = _order(load_settings(data_directory=tmp_path), "a:b", claim)
-    assert WorkOrder.from_line(order.line()).dask_scheduler == "tcp://gears.example:8786"
-    monkeypatch.setenv("LOA_DASK_SCHEDULER", "")
-    assert load_settings().dask_scheduler is None
+    assert WorkOrder.from_line(order.line()).scheduler == "tcp://gears.example:8786"
+    monkeypatch.setenv("LOA_SCHEDULER", "")
+    assert load_settings().scheduler is None
 
 
 @pytest.mark.parametrize(
@@ -198,14 +198,14 @@ def test_the_address_goes_from_the_environment_to_the_worker(
 )
 def test_what_is_no_address_is_refused_at_the_start(address: str) -> None:
     with pytest.raises(BadInput) as caught:
-        load_settings(dask_scheduler=address)
+        load_settings(scheduler=address)
     (fault,) = caught.value.faults
-    assert (fault.field, fault.value) == ("dask_scheduler", address)
-    assert "tcp://host:8786" in fault.bound and "LOA_DASK_SCHEDULER" in str(fault.suggestion)
+    assert (fault.field, fault.value) == ("scheduler", address)
+    assert "tcp://host:8786" in fault.bound and "LOA_SCHEDULER" in str(fault.suggestion)
 
 
 def test_an_address_without_the_extra_is_refused_at_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("service.settings.find_spec", lambda _: None)
     with pytest.raises(BadInput, match="extra dask"):
-        load_settings(dask_scheduler="tcp://gears.example:8786")
-    assert Settings().dask_scheduler is None
+        load_settings(scheduler="tcp://gears.example:8786")
+    assert Settings().scheduler is None

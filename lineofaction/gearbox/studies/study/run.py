@@ -28,7 +28,6 @@ from dynamics.study import (
     study,
 )
 from fe_contact.microgeometry.tolerance_study import PROCESS_SPREAD, iso1328_tolerances
-from fe_contact.workers.remembering import content_digest
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -46,6 +45,7 @@ from lineofaction.gearbox.studies.study.scenes import (
     with_value,
 )
 from lineofaction.gearbox.units import UM
+from model_studies.workers.remembering import content_digest
 
 
 class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):

@@ -30,8 +30,8 @@ from dynamics.study import (
     responses_of,
     study,
 )
-from fe_contact.workers import ByExecutor, Remembering
 from model_studies import LeftOut
+from model_studies.workers import ByExecutor, Remembering
 
 RESPONSES = (
     Response("bearing_force", "input.left", order=1),

@@ -30,7 +30,7 @@ from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import Estimate, FloatArray
-from fe_contact.workers import InProcess
+from model_studies.workers import InProcess
 
 START = np.array([0.9, 0.1, 0.5])
 BOTTOM = np.array([0.3, 0.6, 0.2])

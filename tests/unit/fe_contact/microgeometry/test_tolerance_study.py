@@ -18,10 +18,10 @@ from fe_contact.microgeometry.sweep import Sweep, SweepAxis, SweepRequest, sweep
 from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, ToleranceStudy, _quantile, scatter
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
-from fe_contact.workers import Remembering, RunCost
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.scatter import QuantileFigures
 from model_studies.spread import rank_correlation
+from model_studies.workers import Remembering, RunCost
 
 TORQUES = [100.0, 200.0]
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}

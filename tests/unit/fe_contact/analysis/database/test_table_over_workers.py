@@ -18,7 +18,7 @@ from fe_contact.analysis.pairs import contact_lines
 from fe_contact.analysis.pairs.contact_lines import _ContactBlock
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.options import Run
-from fe_contact.workers import InProcess, RunCost
+from model_studies.workers import InProcess, RunCost
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 

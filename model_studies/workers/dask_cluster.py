@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from fe_contact.errors import InputError, WorkersLost
-from fe_contact.workers.executor import KEPT, Packed, RunCost, do_task
+from host.extras import require
+from model_studies.workers.executor import KEPT, Packed, RunCost, WorkersLost, do_task
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -136,21 +138,28 @@ def dask_workers(scheduler: str) -> ByDask:
     Parameters
     ----------
     scheduler : str
-        Its address, ``tcp://host:port``; all its workers have this program installed, in this version.
+        Its address, ``tcp://host:port``, or the file in which it left it, as schedulers of batch systems do
+        (``dask scheduler --scheduler-file``); all its workers have this program installed, in this version.
 
     Raises
     ------
-    InputError
-        Dask is not installed, or no scheduler answers there.
+    MissingExtra
+        Dask is not installed.
+    WorkersLost
+        No scheduler answers there.
     """
+    require("dask")
+    from distributed import Client  # noqa: PLC0415 (an extra)
+
     try:
-        from distributed import Client  # noqa: PLC0415 (an extra)
-    except ImportError:
-        advice = "pip install 'lineofaction[dask]'"
-        raise InputError("dask", scheduler, "left out without the extra dask", advice) from None
-    try:
-        client = Client(scheduler, timeout=CONNECT_S, set_as_default=False)  # type: ignore[no-untyped-call]
-        return ByDask(client)
+        address = scheduler if "://" in scheduler else _address_in(Path(scheduler))
+        return ByDask(Client(address, timeout=CONNECT_S, set_as_default=False))  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
-        bound = "the address of a running Dask scheduler, such as tcp://host:8786"
-        raise InputError("dask", scheduler, bound, f"{error}.") from None
+        raise WorkersLost(f"No Dask scheduler answers at {scheduler}: {error}.") from None
+
+
+def _address_in(file: Path) -> str:
+    content = json.loads(file.read_text("utf-8"))
+    if not (isinstance(content, dict) and isinstance(content.get("address"), str)):
+        raise ValueError("the file is not one that a scheduler left")
+    return str(content["address"])

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from fe_contact.workers.executor import RunCost, Workers
+from model_studies.workers.executor import RunCost, Workers
 
 # The hash of what a task is made of, the same in every process that makes the same task.
 

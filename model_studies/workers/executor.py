@@ -16,8 +16,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
-from fe_contact.errors import WorkersLost
 from host import children_cpu_seconds, peak_memory
+
+
+class WorkersLost(Exception):
+    """Nobody is left to do the tasks of a study: a cluster without workers, a pool that broke."""
+
 
 # Arguments that tasks share, pickled once.
 

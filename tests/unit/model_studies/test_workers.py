@@ -21,16 +21,25 @@ from spur_gears import LONG_RELIEFS, PAIR
 
 from fe_contact import Gear, GearPair, PitchDeviation, analyze
 from fe_contact.analysis.pairs import contact_lines
-from fe_contact.errors import InputError, WorkersLost
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.search import NelderMead, Search
 from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, ToleranceStudy, scatter
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Run
-from fe_contact.workers import ByExecutor, InProcess, Remembering, RunCost, Workers, dask_workers
-from fe_contact.workers.executor import Packed, _Done
-from fe_contact.workers.remembering import content_digest
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.tabled_scene import open_executor
+from model_studies.workers import (
+    ByExecutor,
+    InProcess,
+    Remembering,
+    RunCost,
+    Workers,
+    WorkersLost,
+    dask_workers,
+)
+from model_studies.workers.executor import Packed, _Done
+from model_studies.workers.remembering import content_digest
 
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
 SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 5e-6})
@@ -142,11 +151,30 @@ def end(caller: int, _: int) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
 
 
-def test_a_scheduler_that_is_not_there_is_named() -> None:
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [(None, "No such file"), ("{", "Expecting"), ("[]", "not one that"), ('{"address": 5}', "not one that")],
+)
+def test_a_scheduler_that_is_not_there_is_named(tmp_path: Path, content: str | None, reason: str) -> None:
     pytest.importorskip("distributed", reason="the extra dask is not installed")
-    with pytest.raises(InputError) as caught:
-        dask_workers("nowhere")
-    assert caught.value.field == "dask"
+    file = tmp_path / "scheduler.json"
+    if content is not None:
+        file.write_text(content, "utf-8")
+    with pytest.raises(WorkersLost, match=rf"answers at .*scheduler.json: .*{reason}"):
+        dask_workers(str(file))
+
+
+def test_an_address_that_is_none_is_refused_with_what_to_start() -> None:
+    pytest.importorskip("distributed", reason="the extra dask is not installed")
+    refused = pytest.raises(BadInput, match=r"--scheduler.*dask worker ADDRESS")
+    with refused, open_executor(scheduler="nowhere://8786"):
+        raise AssertionError
+
+
+def test_workers_are_of_this_machine_or_of_a_cluster() -> None:
+    refused = pytest.raises(BadInput, match=r"--workers.*left out with --scheduler")
+    with refused, open_executor(2, "tcp://host:8786"):
+        raise AssertionError
 
 
 ASKED: dict[str, Any] = {"torques": [60.0, 150.0], "level": "draft", "positions": 24, "pitches": 1}

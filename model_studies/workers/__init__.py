@@ -1,0 +1,21 @@
+"""Workers for independent tasks: this process, an executor, or a Dask cluster; results do not depend on it.
+
+A task is a plain function of something large that all tasks share and of one small item. Items are fixed by
+the caller, whatever the number of workers, and results come in the order of the items.
+"""
+
+from model_studies.workers.dask_cluster import ByDask, dask_workers
+from model_studies.workers.executor import ByExecutor, InProcess, OrHere, RunCost, Workers, WorkersLost
+from model_studies.workers.remembering import Remembering
+
+__all__ = [
+    "ByDask",
+    "ByExecutor",
+    "InProcess",
+    "OrHere",
+    "Remembering",
+    "RunCost",
+    "Workers",
+    "WorkersLost",
+    "dask_workers",
+]
