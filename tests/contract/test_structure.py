@@ -15,15 +15,15 @@ structure = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(structure)
 
 BUDGETS = {
-    ("fe_contact",): (36_790, 633),
-    ("dynamics",): (39_850, 802),
-    ("lineofaction.gearbox",): (21_710, 523),
-    ("lineofaction.report",): (10_500, 198),
-    ("service",): (14_850, 333),
-    ("lineofaction.client",): (2_820, 55),
-    ("lineofaction.cli",): (4_705, 68),
-    ("lineofaction.hardcases",): (3_850, 35),
-    ("bounds", "host", "model_studies"): (4_040, 139),
+    ("fe_contact",): (36_740, 633),
+    ("dynamics",): (39_615, 802),
+    ("lineofaction.gearbox",): (21_540, 522),
+    ("lineofaction.report",): (10_470, 198),
+    ("service",): (14_760, 333),
+    ("lineofaction.client",): (2_805, 55),
+    ("lineofaction.cli",): (4_660, 68),
+    ("lineofaction.hardcases",): (3_835, 35),
+    ("bounds", "host", "model_studies"): (4_015, 139),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 747
