@@ -3,9 +3,10 @@
 Usage: planted_faults.py COUNT SEED OUTPUT.csv [BUDGET]   in a tree that may be written to and has no changes.
 
 A fault is drawn by seed: a house by its size, a file, a place of it, and one of the kinds below. The
-tests that reach the file by imports run nearest first until one fails: those of every change ("day"),
-then the slow ones that rest on the house ("house"), then the slow ones of others ("night"). BUDGET is the
-wall time (s) that each of the three has. What no test finds is listed too: it may change nothing.
+tests that reach the file by imports, then those that rest on its house, run nearest first until one fails:
+those of every change ("day"), then the slow ones that rest on the house ("house"), then the slow ones of
+others ("night"). BUDGET is the wall time (s) that each of the three has. What no test finds is listed too:
+it may change nothing.
 """
 
 from __future__ import annotations
@@ -166,7 +167,9 @@ def suites(fault: Fault, tests: dict[Path, dict[Path, int]]) -> dict[str, list[s
     """Return the pytest arguments of day, house and night: files, or single tests, nearest first."""
     target = ROOT / fault.file
     near = sorted(
-        (_far(file) + away[target], str(file), file) for file, away in tests.items() if target in away
+        (_far(file) + away.get(target, _BY_PROCESS), str(file), file)
+        for file, away in tests.items()
+        if target in away or fault.house in rests_on(file)[1]
     )
     slow = [test for test, seconds in read_costs().items() if seconds > SLOW]
     of_house: list[str] = []
@@ -175,6 +178,10 @@ def suites(fault: Fault, tests: dict[Path, dict[Path, int]]) -> dict[str, list[s
         own = [test for test in slow if ROOT / test.partition("::")[0] == file]
         (of_house if fault.house in rests_on(file)[1] else of_others).extend(own)
     return {"day": [str(file) for _, _, file in near], "house": of_house, "night": of_others}
+
+
+_BY_PROCESS = 99
+"""Imports to what a test reaches by a process of its own alone, as a service or a reader of files: last."""
 
 
 def _far(file: Path) -> int:

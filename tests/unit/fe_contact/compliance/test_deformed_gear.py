@@ -68,6 +68,18 @@ def test_sections_move_as_compliance_times_force(teeth: int | None) -> None:
     assert found.residual < 1e-10
 
 
+@pytest.mark.parametrize("hypothesis", list(PlaneHypothesis))
+def test_sections_bear_along_their_axis_what_their_hypothesis_says(hypothesis: PlaneHypothesis) -> None:
+    gear = make_gear()
+    recipe = coarse_plane(gear)
+    size = flank_compliance(gear, recipe, hypothesis, teeth=1).s.size
+    (found,) = deformed_sections(gear, recipe, hypothesis, [{0: random_load(size, 1)}])
+    x, y, z = (found.stress[:, axis, axis] for axis in range(3))
+    strain = hypothesis is PlaneHypothesis.PLANE_STRAIN
+    expected = gear.material.poissons_ratio * (x + y) if strain else np.zeros_like(z)
+    assert z == pytest.approx(expected, abs=1e-9 * np.abs(x).max())
+
+
 @SOLIDS
 def test_elements_agree_and_a_linear_displacement_gives_its_constant_stress(gear: Toothing) -> None:
     """At every node of every element, those that hang on coarser ones too."""
