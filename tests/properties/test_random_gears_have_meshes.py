@@ -127,9 +127,7 @@ def test_mesh_of_a_random_ring_gear_is_good(numbers: dict[str, Any], rim: float,
     good_section(gear, getattr(SectorRecipe, level)(gear))
 
 
-@pytest.mark.xfail(
-    raises=MeshError, strict=True, reason="known: roots of thousandths of a module"
-)
+@pytest.mark.xfail(raises=MeshError, strict=True, reason="known: roots of thousandths of a module")
 def test_a_ring_gear_with_a_nearly_sharp_root_has_a_good_mesh() -> None:
     numbers = {"teeth": 30, "normal_module": 31.25e-3, "face_width": 187.5e-3, "cutter_teeth": 13}
     numbers |= {"normal_pressure_angle": 0.4526947747360292, "root_radius_coefficient": 0.00390625}
