@@ -20,7 +20,6 @@ LARGEST_ARC = math.radians(
     12.0
 )  # of one quadratic edge: it leaves its circle by less than 1e-5 of the radius
 COARSE = 201  # samples of the size inside the material, where it changes slowly
-TINY = 1e-6  # rounding of a root land that is not there, in parts of the fillet size
 SNAP = 0.25  # a piece shorter than this part of an element is left to its neighbor
 THINNEST = 0.01  # rim that still limits the element size by its thickness, in normal modules
 
@@ -53,8 +52,8 @@ def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecip
     bottom_radius : float
         Radius of the sector's lower end, away from the tip, m.
     """
-    end = profile.s_form - recipe.flank_margin
-    s_low = end if end > profile.s_root + SNAP * recipe.fillet_size else profile.s_root
+    end, bottom = profile.s_form - recipe.flank_margin, _fillet_end(profile, recipe)
+    s_low = end if end > bottom + SNAP * recipe.fillet_size else bottom
     ends = _flank_divisions(profile, s_low, recipe)
     flank = piece("flank", profile.flank, ends)
     surface = [*_root_pieces(profile, s_low, recipe), flank, _tip_piece(profile, recipe)]
@@ -94,14 +93,17 @@ def _root_pieces(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> lis
         target = np.minimum(recipe.fillet_size, recipe.flank_size + recipe.growth * (s_low - s))
         return np.minimum(target, _rim_limit(profile, recipe, s))
 
-    land = profile.s_root - profile.s_space
-    if s_low <= profile.s_root:
-        return [_land_piece(profile, s_low, recipe)] if land > TINY * recipe.fillet_size else []
-    if land > SNAP * recipe.fillet_size:
-        fillet = piece("fillet", profile.flank, divide(s_low, profile.s_root, size)[::-1])
-        return [_land_piece(profile, s_low, recipe), fillet]
-    # a land too short for an element of its own: the lowest element of the fillet reaches over it
-    return [piece("fillet", profile.flank, divide(s_low, profile.s_space, size)[::-1])]
+    bottom = _fillet_end(profile, recipe)
+    land = [_land_piece(profile, s_low, recipe)] if bottom > profile.s_space else []
+    if s_low <= bottom:
+        return land
+    return [*land, piece("fillet", profile.flank, divide(s_low, bottom, size)[::-1])]
+
+
+def _fillet_end(profile: ToothProfile, recipe: MeshRecipe) -> float:
+    """Return where the fillet ends, s in m: with a land too short for an element of its own, beyond that."""
+    long_enough = profile.s_root - profile.s_space > SNAP * recipe.fillet_size
+    return profile.s_root if long_enough else profile.s_space
 
 
 def _land_piece(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> Piece:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from fe_contact.errors import InputError, MeshError
+from fe_contact.errors import InputError
 from fe_contact.geometry import Gear, RingGear
 from fe_contact.mesh import SectorRecipe, mesh_gear, mesh_quality, quad_sector, swept_sector
 from fe_contact.mesh.quality import quad_quality
@@ -22,7 +22,7 @@ EXTERNAL = {
 INTERNAL = {
     "teeth": st.integers(30, 200),
     "profile_shift_coefficient": st.floats(-0.8, 0.3),
-    "root_radius_coefficient": st.just(0.0) | st.floats(0.02, 0.25),
+    "root_radius_coefficient": st.floats(0.0, 0.25),
     "addendum_coefficient": st.floats(0.5, 1.0),
     "cutter_teeth": st.integers(12, 30),
 }
@@ -127,8 +127,8 @@ def test_mesh_of_a_random_ring_gear_is_good(numbers: dict[str, Any], rim: float,
     good_section(gear, getattr(SectorRecipe, level)(gear))
 
 
-@pytest.mark.xfail(raises=MeshError, strict=True, reason="known: roots of thousandths of a module")
-def test_a_ring_gear_with_a_nearly_sharp_root_has_a_good_mesh() -> None:
+def test_a_root_land_too_short_for_an_element_is_part_of_its_neighbor() -> None:
+    """A nearly sharp root and a margin that reaches down to it: the land is 7 um long, elements 1.5 mm."""
     numbers = {"teeth": 30, "normal_module": 31.25e-3, "face_width": 187.5e-3, "cutter_teeth": 13}
     numbers |= {"normal_pressure_angle": 0.4526947747360292, "root_radius_coefficient": 0.00390625}
     gear = RingGear(**numbers, rim_diameter=1.078125)
