@@ -58,11 +58,8 @@ def with_planets(
         raise InputError("pin_errors", len(pin_errors), f"one for each of the {number} planets")
     offsets = _offsets(scene, solve_kinematics(scene), shaft, turns)
     planet = scene.shaft(shaft)
-    copied = {
-        part.name: [numbered(part.name, index) for index in range(1, number)]
-        for part in scene.planet_bearings
-        if part.shaft == shaft
-    }
+    bearings = planet_parts(scene, shaft)[1]
+    copied = {name: [numbered(name, index) for index in range(1, number)] for name in bearings}
     of_pin = {numbered(shaft, index): error for index, error in enumerate(pin_errors or ())}
     laws: dict[str, Any] = {kind: _on_copies(getattr(scene, kind), copied) for kind in STATED}
     return replace(
@@ -80,6 +77,16 @@ def with_planets(
         meshes=(*scene.meshes, *_mesh_copies(scene, shaft, number, offsets)),
         **laws,
     )
+
+
+def planet_parts(scene: Any, shaft: str) -> tuple[list[str], list[str]]:
+    """Return the names of the meshes and of the bearings of a planet, which its copies have `numbered`.
+
+    `scene` is a `Scene`, or one as it is written: with gears, meshes and planet bearings of these names.
+    """
+    gears = {gear.name for gear in scene.gears if gear.shaft == shaft}
+    meshes = [mesh.name for mesh in scene.meshes if {mesh.driver, mesh.driven} & gears]
+    return meshes, [bearing.name for bearing in scene.planet_bearings if bearing.shaft == shaft]
 
 
 def _carrier(scene: Scene, shaft: str) -> Shaft:
@@ -105,7 +112,8 @@ def _mesh_copies(
     scene: Scene, shaft: str, number: int, offsets: Mapping[str, Sequence[Turn]]
 ) -> list[GearMesh]:
     of_shaft = {gear.name for gear in scene.gears if gear.shaft == shaft}
-    meshes = [mesh for mesh in scene.meshes if {mesh.driver, mesh.driven} & of_shaft]
+    engaged = planet_parts(scene, shaft)[0]
+    meshes = [mesh for mesh in scene.meshes if mesh.name in engaged]
     return [
         _copied_mesh(mesh, of_shaft, index, offsets[mesh.name][index])
         for index in range(1, number)

@@ -136,7 +136,8 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
 
     Raises `BadInput`: there is no database to take the case from, or flank results are there already.
     """
-    from lineofaction.gearbox.studies.flank.run import flanks_of  # noqa: PLC0415 (start-up time)
+    from fe_contact.options import Run  # noqa: PLC0415 (start-up time)
+    from lineofaction.gearbox.studies.flank.run import flanks_of  # noqa: PLC0415
 
     database = read.database
     if "flanks" in read.pages:
@@ -155,7 +156,8 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
         misalignment_um=1e6 * misalignment,
         center_distance_change_mm=1e3 * change,
     )
-    return flanks_of(CheckedCase(case_at(case, point)), cache_home() / "compliance", report)
+    run = Run(cache=cache_home() / "compliance", progress=report)
+    return flanks_of(CheckedCase(case_at(case, point)), run)
 
 
 # ``loa compare``.

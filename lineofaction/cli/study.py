@@ -102,9 +102,8 @@ def run_study(study: Study, options: Json) -> None:
             for subject, folder in subjects
         ]
         interrupted = cancel is not None and cancel()
-    remote_seconds = (
-        0.0 if options["scheduler"] is None else others.cost.cpu_seconds
-    )  # else they are our children
+    # processes of this machine are our children, whose time we know
+    remote_seconds = others.cost.cpu_seconds if options["scheduler"] else 0.0
     result = results[0]
     if study.several:
         result = study.run.joined(dict(zip(_names(study, files), results, strict=True)))

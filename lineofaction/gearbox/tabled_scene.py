@@ -156,7 +156,8 @@ def open_executor(processes: int = 1, scheduler: str | None = None) -> Iterator[
     Raises `BadInput`: both are given, or nobody answers at the address.
     """
     if scheduler is not None and processes != 1:
-        raise BadInput.of("--workers", processes, "left out with --scheduler", "The cluster has its own.")
+        bound = "left out with --scheduler or LOA_SCHEDULER"
+        raise BadInput.of("--workers", processes, bound, "A cluster has its own.")
     if scheduler is not None:
         with _connected(scheduler) as cluster:
             yield cluster

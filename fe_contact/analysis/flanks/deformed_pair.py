@@ -97,7 +97,7 @@ def deformed_pairs(
     options : AnalysisOptions
         `positions`, `receipt` and `on_violation` are ignored.
     run : Run
-        Workers are not used. The fields are not cached: in three dimensions they cost as much as the
+        Workers condense the gears. The fields are not cached: in three dimensions they cost as much as the
         compliances of both gears.
     at : array_like
         Positions in base pitches.

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_contact.analysis.checks.assumptions import check_one_place, settled, with_effects
-from fe_contact.analysis.pairs.pair_contact import operating_points, pair_contact
+from fe_contact.analysis.pairs.pair_contact import operating_points
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
+from fe_contact.analysis.tables import condensed_bodies
 from fe_contact.errors import InputError, SolveError, finite
 from fe_contact.options import Run
 from fe_contact.stage_clock import StageClock
@@ -82,11 +83,7 @@ def solve_operating_point(
         checked = checked_request(request, whole_table=False, neglect=False)
     request = checked.request
     plan = checked.planned(run.cache)
-    run.progress("compliance", 0.0)
-    with clock.stage("compliance"):
-        changes, report = request.center_distance_change, partial(run.progress, "compliance")
-        nominal = pair_contact(request.pair, plan, run.cache, distance_changes=changes, report=report)
-    run.progress("compliance", 1.0)
+    nominal = condensed_bodies(checked, plan, clock, run, report=partial(run.progress, "compliance"))
     with clock.stage("contact"):
         points = operating_points(request.scene, request.choices, nominal)
         (point,) = points.places

@@ -14,6 +14,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 from bounds.types import Json
 from dynamics.results import RunResult
 from dynamics.results.array_file import ArrayFile
+from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.figures import Figures
@@ -101,6 +102,11 @@ class Means:
     cancel: Callable[[], bool] | None = None
     folder: Path | None = None
     run: RunResult | None = None
+
+    @property
+    def analysis(self) -> Run:
+        """How analyses of gear pairs are run: shared by the workers, condensed gears kept."""
+        return Run(self.workers, self.home / "compliance", self.report)
 
 
 class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):

@@ -37,6 +37,16 @@ STUDY = {
     "variables": {"pinion": {"profile_crowning_um": [0.0, 20.0]}},
     "search": {"method": "nelder_mead", "starts": 2, "evaluations": 8, "positions": 16},
 }
+WIDE = {"teeth": 21, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}
+OVER_FACE = {
+    "case": {
+        "pair": CASE["pair"]
+        | {"helix_angle_deg": 12.0, "center_distance_mm": 84.0, "pinion": GEAR, "wheel": WIDE},
+        "load": {"torque_n_m": [40.0]},
+        "accuracy": {"level": "draft"},
+    },
+    "torque_n_m": 40.0,
+}
 DEVIATIONS = {"misalignment_um": [0.0], "center_distance_change_percent": [0.0, 0.1]}
 NOTHING_STORED = SimpleNamespace(find=lambda *_: None)
 
@@ -92,11 +102,14 @@ class Recording:
         (default_registry()["sensitivity"], DEVIATIONS, "_solve_block"),
         (default_registry()["optimize"], STUDY, "_search_one"),
         (default_registry()["scatter"], {"samples": 30}, "_ripple_of_samples"),
+        (default_registry()["ablate"], {"only": ["profile_modification"]}, "_solve_block"),
+        (default_registry()["flank"], OVER_FACE, "condense"),
+        (default_registry()["root-stress"], OVER_FACE, "condense"),
     ],
     ids=lambda given: given.id if isinstance(given, Process) else "",
 )
 def test_these_jobs_give_their_tasks_to_the_cluster(
-    process: Process, further: dict[str, Any], task: str, data: Path, monkeypatch: pytest.MonkeyPatch
+    process: Process, further: dict[str, Any], task: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     recording = Recording()
 
@@ -105,7 +118,7 @@ def test_these_jobs_give_their_tasks_to_the_cluster(
         return recording
 
     monkeypatch.setattr(cluster, "_connected", connected)
-    done(process, {"case": CASE, **further}, data, ADDRESS)
+    done(process, {"case": CASE, **further}, tmp_path, ADDRESS)
     assert task in recording.functions and recording.closed
 
 

@@ -12,7 +12,6 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies.ablation import Ablation, ablate
 from fe_contact.effects import EFFECTS
 from fe_contact.errors import chosen
-from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -44,8 +43,7 @@ class _AblateStudy(
         with boundary_errors():
             if isinstance(subject, TabledScene):
                 return ablate_scene(subject.scene, inputs.only, means.report)
-            run = Run(cache=means.home / "compliance", progress=means.report)
-            return ablate(subject.request(_table, inputs), run=run, only=inputs.only)
+            return ablate(subject.request(_table, inputs), run=means.analysis, only=inputs.only)
 
 
 def _table(case: CheckedCase, _inputs: Inputs) -> Checked:

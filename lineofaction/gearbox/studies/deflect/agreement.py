@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -23,7 +22,6 @@ from fe_contact.ste.database import joined_over_misalignment
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair
 from lineofaction.gearbox.schemas import Case
-from model_studies import Progress
 
 # A mesh on its condensed gears: tables at the alignments that are met, and what happens on its flanks.
 
@@ -80,26 +78,23 @@ class MeshContact:
         return self._tables[misalignment]
 
 
-def mesh_contact(
-    case: Case, database: SteDatabase, torques: Sequence[float], home: Path, report: Progress
-) -> MeshContact:
+def mesh_contact(case: Case, database: SteDatabase, torques: Sequence[float], run: Run) -> MeshContact:
     """Return the contact of a case for loads on its pinion, N m.
 
     A case whose model the planner may choose, and one in three dimensions, is condensed across the face.
     """
-    pair, cache = gear_pair(case), home / "compliance"
-    loads = _distinct(torques)
+    pair, loads = gear_pair(case), _distinct(torques)
     levels = np.array([LOWEST * loads[0], *loads, HIGHEST * loads[-1]])
     across = database
     too_low = loads[-1] > database.torque[-1] * (1.0 + ALIKE)
     if case.accuracy.model not in PLANE and (too_low or database.metadata.receipt["plan"]["model"] in PLANE):
         axes = TableAxes(torques=loads, misalignments=[-FIRST_MISALIGNMENT, FIRST_MISALIGNMENT])
         options = replace(analysis_options(case), receipt="minimal", positions=8)
-        across = ste_database(pair, axes, options, Run(cache=cache, progress=report))
+        across = ste_database(pair, axes, options, run)
     elif too_low:
         options = replace(analysis_options(case), receipt="minimal")
-        across = ste_database(pair, TableAxes(torques=loads), options, Run(cache=cache, progress=report))
-    bodies = condensed_pair(pair, across, dict(case.effects), cache, compute=True)
+        across = ste_database(pair, TableAxes(torques=loads), options, run)
+    bodies = condensed_pair(pair, across, dict(case.effects), run.cache, compute=True)
     assert bodies is not None
     return MeshContact(pair, bodies, levels)
 

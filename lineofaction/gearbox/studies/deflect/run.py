@@ -134,7 +134,7 @@ def _contacts(tabled: TabledScene, cases: tuple[CaseDeflection, ...], means: Mea
     for mesh_input in {known.name: known for known in inputs.values()}.values():
         database, own = tabled.databases[mesh_input.name], torques[mesh_input.name]
         assert isinstance(mesh_input.case, Case)
-        made[mesh_input.name] = mesh_contact(mesh_input.case, database, own, means.home, means.report)
+        made[mesh_input.name] = mesh_contact(mesh_input.case, database, own, means.analysis)
     return {name: made[known.name] for name, known in inputs.items()}
 
 

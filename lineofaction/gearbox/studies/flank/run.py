@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 from bounds.types import Json
 from fe_contact.analysis.flanks.flank_file import FORMAT, flank_results
@@ -15,10 +14,9 @@ from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.studies.computation import Means, PointStudy, ResultFile
 from lineofaction.gearbox.studies.flank import FlankFigures, Inputs
 from lineofaction.gearbox.units import MM, UM, as_typed
-from model_studies import Progress, silent
 
 
-def flanks_of(checked: CheckedCase, cache: Path | None, progress: Progress = silent) -> LoadDistribution:
+def flanks_of(checked: CheckedCase, run: Run) -> LoadDistribution:
     """Return what happens on the flanks of a case of one load and one alignment, over a mesh cycle.
 
     Its warnings are in the fields and units of the case.
@@ -30,7 +28,7 @@ def flanks_of(checked: CheckedCase, cache: Path | None, progress: Progress = sil
     JobFailed
         No mesh, or positions without a solution.
     """
-    run, case, point = Run(cache=cache, progress=progress), checked.case, checked.at_point
+    case, point = checked.case, checked.at_point
     with boundary_errors():
         results = flank_results(point, run=run, case=case_json(case))
     warnings = phrased_for(case, results.metadata.warnings)
@@ -44,7 +42,7 @@ class _FlankStudy(PointStudy[FlankFigures, LoadDistribution]):
     )
 
     def compute(self, case: CheckedCase, _inputs: FlankPoint, means: Means) -> LoadDistribution:
-        return flanks_of(case, means.home / "compliance", means.report)
+        return flanks_of(case, means.analysis)
 
     def _derived(self, flanks: LoadDistribution) -> Json:
         scene, centroid = flanks.scene, flanks.load_centroid

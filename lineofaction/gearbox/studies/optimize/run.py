@@ -25,7 +25,6 @@ from fe_contact.microgeometry.search import (
     never,
 )
 from fe_contact.microgeometry.variables import DesignVariable
-from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.schemas import Case
@@ -71,7 +70,7 @@ class _OptimizeStudy(CaseStudy[Inputs, OptimizeFigures, Optimization]):
         Designs are remembered: another attempt, or another deadline, goes on from them.
         """
         with boundary_errors():
-            run = Run(means.workers, means.home / "compliance", means.report)
+            run = means.analysis
             return optimize(
                 case.request(_library_request, study),
                 run,

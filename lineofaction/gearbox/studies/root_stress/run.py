@@ -12,7 +12,6 @@ from fe_contact.analysis.flanks.root_stress import (
     RootStressHistory,
     root_stress,
 )
-from fe_contact.options import Run
 from fe_contact.plausibility.pair_checks import nominal_root_stresses
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.plausibility import phrased_for
@@ -68,10 +67,9 @@ class _RootStressStudy(PointStudy[RootStressFigures, Roots]):
 
     def compute(self, case: CheckedCase, _inputs: FlankPoint, means: Means) -> Roots:
         """Return the peaks over a mesh cycle, the passage of a tooth of each gear, receipt and warnings."""
-        run, pair = Run(cache=means.home / "compliance", progress=means.report), case.pair
-        checked = case.at_point
+        pair, checked = case.pair, case.at_point
         with boundary_errors():
-            stress = root_stress(checked, run=run)
+            stress = root_stress(checked, run=means.analysis)
         helical = bool(pair.pinion.helix_angle)
         nominal = (None, None) if helical else nominal_root_stresses(pair, stress.normal_force)
         return Roots(

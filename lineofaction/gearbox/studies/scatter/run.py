@@ -10,7 +10,6 @@ from fe_contact.microgeometry.tolerance_study import (
     iso1328_tolerances,
     sampled,
 )
-from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.problems import BadInput
@@ -40,7 +39,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> ToleranceStudy:
         """Sample the pairs of a case; in a plane model helix slopes do not deviate."""
         with boundary_errors():
-            run = Run(means.workers, means.home / "compliance", means.report)
+            run = means.analysis
             return sampled(case.request(_drawn, inputs), run)
 
     def _derived(self, study: ToleranceStudy) -> Json:

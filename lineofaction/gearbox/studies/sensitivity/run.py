@@ -10,7 +10,7 @@ from typing import Any
 from bounds.types import Json
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies.sensitivity import Sensitivity, study_sensitivity
-from fe_contact.options import Run, TableAxes
+from fe_contact.options import TableAxes
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, study_options
 from lineofaction.gearbox.stages import TableFraction
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile
@@ -84,7 +84,7 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         """Study a case at its highest load; its own misalignments and center distances are left aside."""
         gears = case.case.pair
         tables = _TableByTable(means.report)
-        run = Run(means.workers, means.home / "compliance", tables.progress, tables.plan)
+        run = replace(means.analysis, progress=tables.progress, on_plan=tables.plan)
         checked = case.request(_tables, inputs)
         with boundary_errors():
             curves = study_sensitivity(checked, run=run)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from bounds.types import Json
-from dynamics.mechanism.planet_copies import numbered
+from dynamics.mechanism.planet_copies import numbered, planet_parts
 from dynamics.study import (
     Design,
     Factor,
@@ -217,12 +217,10 @@ def _meshes_and_bearings(scene: SceneInput) -> tuple[list[str], list[str]]:
     kinds: tuple[Sequence[Any], ...] = scene.bushings, scene.rolling_bearings, scene.planet_bearings
     bearings: list[str] = [part.name for part in chain.from_iterable(kinds)]
     for planets in scene.planets:
-        gears = {gear.name for gear in scene.gears if gear.shaft == planets.planet}
-        engaged = [mesh.name for mesh in scene.meshes if {mesh.driver, mesh.driven} & gears]
-        pins = [part.name for part in scene.planet_bearings if part.shaft == planets.planet]
+        own = planet_parts(scene, planets.planet)
         for index in range(1, planets.number):
-            meshes += [numbered(name, index) for name in engaged]
-            bearings += [numbered(name, index) for name in pins]
+            meshes += [numbered(name, index) for name in own[0]]
+            bearings += [numbered(name, index) for name in own[1]]
     return meshes, bearings
 
 

@@ -22,7 +22,6 @@ from fe_contact.microgeometry.sweep import (
     sweep,
 )
 from fe_contact.microgeometry.variables import GEARS, figure
-from fe_contact.options import Run
 from fe_contact.types import BoolArray, FloatArray
 from lineofaction.gearbox.convert.case import (
     CheckedCase,
@@ -261,7 +260,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> SweepResult:
         """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero."""
         with boundary_errors():
-            run = Run(means.workers, means.home / "compliance", means.report)
+            run = means.analysis
             result = sweep(case.request(_request, inputs), run)
         known = {quantity.name for quantity in result.quantities}
         return SweepResult(result, tuple(name for name in inputs.show if name in known))
