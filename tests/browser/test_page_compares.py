@@ -8,10 +8,23 @@ import re
 from pathlib import Path
 
 import pytest
-from page_visit import OVER_FACE, Visit, answers, computed, found_inaccessible, moved, opened, shown, unfold
+from page_visit import (
+    CASE,
+    OVER_FACE,
+    Visit,
+    answers,
+    computed,
+    found_inaccessible,
+    moved,
+    opened,
+    shown,
+    unfold,
+)
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
+IN_THE_PLANE = "20/20, module 1 mm, up to 1 N m"
+"""The small case in the list of jobs, which has those of other tests too."""
 ORDINATE = ", transmission error less its mean, µm"
 
 
@@ -129,7 +142,7 @@ def test_two_analyses_of_the_list_are_compared_with_their_errors(visit: Visit, o
     page.reload()
     buttons = page.get_by_role("button", name=re.compile("^Compare analyze"))
     rows = page.get_by_role("row").filter(has=buttons)
-    over_face, others = rows.filter(has_text="20/24"), rows.filter(has_not_text="20/24")
+    over_face, others = rows.filter(has_text="20/24"), rows.filter(has_text=IN_THE_PLANE)
     over_face.first.get_by_role("button", name=re.compile("^Compare")).press("Enter")
     expect(page.locator("#jobs-line")).to_contain_text("Choose another analyze job")
     others.first.get_by_role("button", name=re.compile("^Compare")).press("Enter")
@@ -139,6 +152,20 @@ def test_two_analyses_of_the_list_are_compared_with_their_errors(visit: Visit, o
     expect(shown.locator("[data-figure=ripples] .plot")).to_have_attribute("data-drawn", "yes")
     assert not (told := found_inaccessible(page, "#jobs")), json.dumps(told, indent=1)
     assert visit.complaints == []
+
+
+def test_results_without_a_load_in_common_are_not_compared_and_it_says_why(
+    visit: Visit, address: str
+) -> None:
+    computed(address, case=CASE | {"load": {"torque_n_m": [3.0, 4.0]}})
+    page = visit.page
+    page.reload()
+    rows = page.get_by_role("row")
+    for text in ("up to 4 N m", IN_THE_PLANE):
+        row = rows.filter(has=page.get_by_role("button", name=re.compile("^Compare analyze")), has_text=text)
+        row.first.get_by_role("button", name=re.compile("^Compare")).press("Enter")
+    expect(page.locator("#jobs-line")).to_contain_text("Compute both for the same torques")
+    expect(page.locator("#jobs-result")).to_have_attribute("aria-busy", "false")
 
 
 PLOTS = ("live_pressure", "live_face_load")

@@ -14,7 +14,10 @@ import { soundBlock } from "./sound.js";
 export async function showReport(target, result, { making = false, signal, first }) {
   target.setAttribute("aria-busy", "true");
   const figuresAt = `${result.href}/figures${result.against ? `?against=${result.against}` : ""}`;
-  const report = await patiently(() => get(figuresAt));
+  const report = await patiently(() => get(figuresAt)).catch((problem) => {
+    target.setAttribute("aria-busy", "false");
+    throw problem;
+  });
   if (signal.aborted) return null;
   await first?.(report);
   if (signal.aborted) return null;
