@@ -27,6 +27,8 @@ SERVICES = ("flow", "browser", "api")
 
 RecordFigure = Callable[..., None]
 
+gc.disable()  # until all is collected: next to nothing of that is garbage
+
 __all__ = ["coarse_sectors", "condensed_bodies", "condensed_once"]
 
 # The same examples on every machine with every change; random ones, and more of them, at night.
@@ -81,6 +83,7 @@ def _turn(item: pytest.Item) -> int:
 def pytest_collection_finish() -> None:
     """Spare the collector of garbage what lives as long as the tests: modules, and the tests themselves."""
     gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture

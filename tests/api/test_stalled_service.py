@@ -21,6 +21,7 @@ from running_service import PATIENCE_S
 
 from host import family_cpu_seconds
 
+pytestmark = pytest.mark.chain
 WITHIN_S = 1.0  # the promise of docs/service.md
 BYTES = 3_800_000
 VITAL = ("/health", "/ready")
@@ -132,7 +133,6 @@ def log_lines(service: Process) -> list[dict[str, Any]]:
     return [json.loads(line) for line in service.log.read_text().splitlines() if line.startswith("{")]
 
 
-@pytest.mark.law  # those after it need what it leaves
 @pytest.mark.parametrize("kind", EACH)
 def test_four_bodies_that_cost_much_hold_nobody_up(service: Process, kind: str) -> None:
     path, body = ATTACKS[kind]()

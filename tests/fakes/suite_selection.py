@@ -1,17 +1,21 @@
 """Which tests a run has.
 
-By default: all that are quick, those marked `law`, and of the others, which are slow, those that rest on
-what changed since they last passed. A test rests on its file, on the fakes that file imports, and on the
-houses both import; one that starts processes rests on all houses. `tests/records` holds what each slow test
-costs and what it rested on when it passed; the nightly run renews it. Files that are named on the command
-line run whole, and with `--all` everything does.
+By default: all that are quick, those marked `law` that are not long, and of the others those that rest on
+what changed since they last passed. A test rests on its file, on the fakes that file imports, on the houses
+both import, on what its file names in `RESTS_ON`, and on the versions of packages; one that starts processes
+rests on all houses. Tests marked `chain` go on with what those before them in their file left: they run all
+or none, by the cost of all. `tests/records` holds what each slow test costs and what it rested on when it
+passed; the nightly run renews it. Files that are named on the command line run whole, and with `--all`
+everything does.
 """
 
 from __future__ import annotations
 
+import ast
 import csv
 import hashlib
 import importlib.util
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
@@ -25,6 +29,9 @@ RECORDS = TESTS / "records"
 COSTS, PASSED = RECORDS / "cpu_seconds.csv", RECORDS / "passed.csv"
 SLOW = 1.0
 """CPU seconds of a test from which on it is slow."""
+LONG = 3.0
+"""CPU seconds from which on a law, too, runs only when what it rests on changed."""
+VERSIONS = ROOT / "requirements-dev.lock"
 STARTS_PROCESSES = ("subprocess", "multiprocessing")
 
 
@@ -70,9 +77,14 @@ def select(items: list[pytest.Item], config: pytest.Config) -> None:
 def _of_the_day(items: Sequence[pytest.Item], passed: dict[str, str] | None) -> list[pytest.Item]:
     """Return those that are quick, state a law, or rest on what changed; without `passed` nothing has."""
     costs = read_costs()
+    chains = defaultdict[Path, float](float)
+    for item in items:
+        if item.get_closest_marker("chain"):
+            chains[item.path] += costs.get(item.nodeid, 0.0)
 
     def stays(item: pytest.Item) -> bool:
-        if costs.get(item.nodeid, 0.0) <= SLOW or item.get_closest_marker("law"):
+        cost = chains[item.path] if item.get_closest_marker("chain") else costs.get(item.nodeid, 0.0)
+        if cost <= (LONG if item.get_closest_marker("law") else SLOW):
             return True
         return passed is not None and passed.get(name_of(item.path)) != digest(item.path)
 
@@ -113,8 +125,8 @@ def _rows(file: Path) -> list[tuple[str, str]]:
 @cache
 def digest(file: Path) -> str:
     own, houses = rests_on(file)
-    sums = hashlib.sha256()
-    for path in sorted(own):
+    sums = hashlib.sha256(VERSIONS.read_bytes())
+    for path in sorted({*own, *_named_in(file)}):
         sums.update(path.read_bytes() + b"\0")
     for house in sorted(houses):
         sums.update(_of_house(house))
@@ -137,6 +149,16 @@ def rests_on(file: Path) -> tuple[frozenset[Path], frozenset[str]]:
             elif house := structure.house_of(module):
                 houses.add(house)
     return frozenset(files), frozenset(houses)
+
+
+def _named_in(file: Path) -> Iterator[Path]:
+    """Yield the files that a test file names in `RESTS_ON`, and those in folders it names there."""
+    for statement in ast.parse(file.read_text("utf-8")).body:
+        match statement:
+            case ast.Assign(targets=[ast.Name("RESTS_ON")], value=value):
+                for path in map(ROOT.joinpath, ast.literal_eval(value)):
+                    inner = (part for part in path.rglob("*") if part.is_file())
+                    yield from [path] if path.is_file() else inner
 
 
 def _conftests(file: Path) -> Iterator[Path]:

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 from condensed_once import find_condensed
 
+RESTS_ON = ("README.md", "docs/tutorials", "docs/how-to", "examples", "scripts/manual.py")
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 SPEC = importlib.util.spec_from_file_location("manual", ROOT / "scripts" / "manual.py")
@@ -39,7 +40,7 @@ PAGES = [
 ]
 
 
-@pytest.mark.law  # those after it need what it leaves
+@pytest.mark.chain
 @pytest.mark.parametrize("page", PAGES)
 def test_the_page_runs_and_makes_its_pictures(page: Path, folder: Path) -> None:
     manual.run_page(page)
@@ -109,7 +110,7 @@ def run_python(code: str, folder: Path, warnings: str = "error") -> subprocess.C
     return done
 
 
-@pytest.mark.law
+@pytest.mark.chain  # by the bodies of its tutorial
 def test_the_helical_example_has_five_lines_and_runs(tmp_path: Path, condensed_bodies: Path) -> None:
     find_condensed(condensed_bodies, tmp_path / "cache" / "lineofaction")
     code = blocks("python")[0]

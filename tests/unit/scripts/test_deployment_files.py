@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 import shutil
 import subprocess
@@ -9,9 +10,9 @@ import tomllib
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
-import kubernetes_validate
 import pytest
 import yaml
 from typer.main import get_command
@@ -75,13 +76,19 @@ def variables_of(part: str) -> dict[str, str]:
     return {**settings["data"], **own}
 
 
+@pytest.fixture
+def kubernetes_validate() -> ModuleType:
+    """Its import takes three seconds, of every worker if it stood above."""
+    return importlib.import_module("kubernetes_validate")
+
+
 @pytest.mark.parametrize("part", ["service", "schema"])
-def test_manifests_are_valid(part: str) -> None:
+def test_manifests_are_valid(part: str, kubernetes_validate: ModuleType) -> None:
     for document in documents(part):
         kubernetes_validate.validate(document, "1.34", strict=True)
 
 
-def test_a_manifest_that_is_not_valid_is_found() -> None:
+def test_a_manifest_that_is_not_valid_is_found(kubernetes_validate: ModuleType) -> None:
     wrong = {**next(of_kind("service", "Deployment"))}
     wrong["spec"] = {**wrong["spec"], "replica": 2}
     with pytest.raises(kubernetes_validate.ValidationError):

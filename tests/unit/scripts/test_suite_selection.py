@@ -56,6 +56,24 @@ def test_a_slow_law_runs() -> None:
     assert _left([_item("slow", "law")]) == []
 
 
+def test_a_long_law_runs_when_what_it_rests_on_changed(
+    on_record: dict[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(suite_selection, "read_costs", lambda: {SLOW_TEST: 3.1})
+    assert _left([_item("slow", "law")]) == ["slow"]
+    on_record.clear()
+    assert _left([_item("slow", "law")]) == []
+
+
+def test_a_chain_runs_whole_or_not_at_all(on_record: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(suite_selection, "read_costs", lambda: {SLOW_TEST: 0.9, f"{SLOW_TEST}_too": 0.2})
+    chain = [_item("slow", "chain"), _item("slow_too", "chain"), _item("quick")]
+    assert _left(chain) == ["slow", "slow_too"]
+    assert _left([_item("slow", "chain"), _item("slow_too")]) == []
+    on_record.clear()
+    assert _left(chain) == []
+
+
 @pytest.mark.usefixtures("on_record")
 def test_everything_runs_on_request() -> None:
     assert _left([_item("slow")], all=True) == []
@@ -110,3 +128,21 @@ def test_the_digest_follows_every_file_of_a_house(monkeypatch: pytest.MonkeyPatc
     copied = of_house("bounds")
     (tmp_path / "bounds" / "page.html").write_text("new")
     assert copied == before != of_house("bounds")
+
+
+def test_the_digest_follows_what_a_file_names_and_versions(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(suite_selection, "ROOT", tmp_path)
+    versions, page = tmp_path / "versions", tmp_path / "pages" / "inner" / "page.md"
+    monkeypatch.setattr(suite_selection, "VERSIONS", versions)
+    page.parent.mkdir(parents=True)
+    test = tmp_path / "test_pages.py"
+    test.write_text('RESTS_ON = ("pages", "versions")')
+    monkeypatch.setattr(suite_selection, "rests_on", lambda file: (frozenset({file}), frozenset()))
+    seen = set()
+    for version, text in (("1", "one"), ("1", "two"), ("2", "two")):
+        versions.write_text(version)
+        page.write_text(text)
+        seen.add(digest.__wrapped__(test))
+    assert len(seen) == 3
