@@ -10,6 +10,7 @@ from pathlib import Path
 from benchmarks import (
     bearing_rate,
     client_map,
+    cluster_rate,
     cold_start,
     corrected_plane,
     derivatives,
@@ -85,6 +86,7 @@ SUBJECTS = (
     point_queries,
     event_streams,
     client_map,
+    cluster_rate,
     worker_cost,
     shared_table,
     cold_start,

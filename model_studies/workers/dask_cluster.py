@@ -8,6 +8,8 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
+from functools import partial
+from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -25,6 +27,8 @@ PATIENCE_S = 60.0
 """How long a cluster may be without any worker: those of a nanny come back within seconds."""
 _LOOK_S = 1.0
 """How often it is looked whether there are any."""
+_AT_ONCE = 256
+"""Results that are fetched by one message, at most."""
 CONNECT_S = 10.0
 """How long a scheduler may take to answer."""
 
@@ -54,7 +58,9 @@ class ByDask:
             raise WorkersLost(f"The scheduler {self._address} is gone: 0 of {len(items)} tasks were done.")
         with dask.config.set({"distributed.admin.large-graph-warning-threshold": "1TB"}):
             packed = self._send(shared)
-            futures = [self.client.submit(do_task, function, packed, item, pure=False) for item in items]
+            # one graph: a submission each costs the scheduler as much as the task
+            task = partial(do_task, function)
+            futures = self.client.map(task, items, packed=packed, pure=False)
         return self._in_order(futures)
 
     def _send(self, shared: object) -> Any:
@@ -72,24 +78,28 @@ class ByDask:
 
     def _in_order(self, futures: Sequence[Any]) -> Iterator[Any]:
         """Yield the results; cancel the rest when the caller stops or a task fails."""
+        count = 0
         try:
-            for count, future in enumerate(futures):
-                yield self.cost.add(self._result(future, f"{count} of {len(futures)} tasks were done"))
+            while count < len(futures):
+                for done in self._results(futures, count):
+                    yield self.cost.add(done)
+                    count += 1
         finally:
-            for future in () if self._gone else futures:
-                future.cancel()
+            if not self._gone:
+                self.client.cancel(list(futures))  # type: ignore[no-untyped-call]
 
-    def _result(self, future: Any, so_far: str) -> Any:
-        """Wait for one result as long as there is somebody to make it."""
+    def _results(self, futures: Sequence[Any], first: int) -> list[Any]:
+        """Wait for a result as long as there is somebody to make it; return it with those ready after it."""
         from distributed import KilledWorker  # noqa: PLC0415 (an extra)
 
+        so_far = f"{first} of {len(futures)} tasks were done"
         alone_since = None
         while True:
             try:
-                if self._ended(future):
-                    return future.result(timeout=self.patience)
+                if self._ended(futures[first]):
+                    return self._fetched(futures[first : first + _AT_ONCE])
             except TimeoutError:  # of the task itself, or its result did not come over in time
-                if future.status == "error":
+                if futures[first].status == "error":
                     raise
             except KilledWorker:
                 ended = "A task ended every worker that tried it; they may have run out of memory"
@@ -100,6 +110,13 @@ class ByDask:
             if alone_since is not None and time.monotonic() - alone_since > self.patience:
                 alone = f"The cluster of {self._address} had no worker for {self.patience:g} s"
                 raise WorkersLost(f"{alone}: {so_far}. Start workers there, and run it again.")
+
+    def _fetched(self, futures: Sequence[Any]) -> list[Any]:
+        """Return the result of the first, and of those behind it that are ready, by one message."""
+        ready = list(takewhile(lambda future: future.status == "finished", futures)) or [futures[0]]
+        gather = partial(self.client.gather, asynchronous=True)
+        results: list[Any] = self.client.sync(gather, ready, callback_timeout=self.patience)  # type: ignore[no-untyped-call]
+        return results
 
     def _ended(self, future: Any) -> bool:
         """Whether a task ended while it was looked at."""

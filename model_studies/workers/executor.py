@@ -121,7 +121,7 @@ class _Done(Generic[R]):
     peak_memory_bytes: int
 
 
-def do_task(function: Callable[[Any, Any], R], packed: Packed, item: Any) -> _Done[R]:
+def do_task(function: Callable[[Any, Any], R], item: Any, packed: Packed) -> _Done[R]:
     """Do one task, on a worker."""
     begun = _cpu_seconds()
     result = function(packed.unpacked(), item)
@@ -160,7 +160,7 @@ class ByExecutor:
         """Submit everything, yield in order; what is not yielded any more is cancelled."""
         packed = self._pack(shared)
         try:
-            futures = [self.executor.submit(do_task, function, packed, item) for item in items]
+            futures = [self.executor.submit(do_task, function, item, packed) for item in items]
         except BrokenExecutor as error:
             raise _lost(0, len(items)) from error
         return self._in_order(futures)

@@ -23,7 +23,7 @@ BUDGETS = {
     ("lineofaction.client",): (2_805, 55),
     ("lineofaction.cli",): (4_665, 68),
     ("lineofaction.hardcases",): (3_835, 35),
-    ("bounds", "host", "model_studies"): (4_015, 139),
+    ("bounds", "host", "model_studies"): (4_030, 139),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 747
