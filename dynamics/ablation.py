@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from dynamics.simulation import simulate
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds
 from model_studies import Figures, LeftOut, Progress, in_unit, run_variants, silent
+from model_studies.workers import InProcess, Workers
 
 __all__ = ["Ablation", "EffectAblation", "RunFigures", "ablate"]
 
@@ -118,7 +120,12 @@ class Ablation(model_studies.Ablation[RunFigures, EffectAblation]):
     bearing: tuple[str, ...]
 
 
-def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress = silent) -> Ablation:
+def ablate(
+    scene: Scene,
+    only: Sequence[str] | None = None,
+    progress: Progress = silent,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+) -> Ablation:
     """Toggle each effect of a scene in all its parts and report the change.
 
     Parameters
@@ -129,6 +136,8 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress =
         Effects to toggle; default all.
     progress : callable, optional
         Called with "ablation" and the fraction done.
+    workers : Workers
+        They run an effect each.
 
     Returns
     -------
@@ -151,29 +160,37 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress =
     nominal = _run_figures(result, seconds)
     parts = {name: [e for e in result.effect_ledger["entries"] if e["effect"] == name] for name in names}
 
-    def toggle(name: str) -> EffectAblation:
-        return _toggled(scene, name, parts[name], nominal, influences.get(name))
-
+    toggle = partial(_toggled, scene, parts, nominal, influences)
     effects, left_out = run_variants(
-        "ablation", {name: name for name in names}, toggle, (InputError, SolveError), progress
+        "ablation",
+        {name: name for name in names},
+        toggle,
+        (InputError, SolveError),
+        progress,
+        workers,
+        seconds * sum(any(part["possible"] for part in own) for own in parts.values()),
     )
     return Ablation(nominal, tuple(effects.values()), left_out, result.mesh, result.bearing)
 
 
 def _toggled(
-    scene: Scene, name: str, parts: Sequence[Json], nominal: RunFigures, estimate: Influence | None
+    scene: Scene,
+    parts: Mapping[str, Sequence[Json]],
+    nominal: RunFigures,
+    estimates: Mapping[str, Influence],
+    name: str,
 ) -> EffectAblation:
     """Run with one effect toggled; what is on anywhere goes off everywhere."""
-    able = [part for part in parts if part["possible"]]
+    able = [part for part in parts[name] if part["possible"]]
     if not able:
-        raise LeftOut(parts[0]["reason"] if parts else "no part of the scene has it")
+        raise LeftOut(parts[name][0]["reason"] if parts[name] else "no part of the scene has it")
     on = any(part["on"] for part in able)
     choice = "off" if on else "on"
     other = _run_figures(*_timed(replace(scene, effects={**scene.effects, name: choice})))
     first = next((part for part in able if part["on"] == on), able[0])
     influence = float(np.max([part["influence_m"] for part in able]))
     states = (nominal, other) if on else (other, nominal)
-    return EffectAblation(name, on, first["reason"], *states, estimate, influence)
+    return EffectAblation(name, on, first["reason"], *states, estimates.get(name), influence)
 
 
 def _timed(scene: Scene) -> tuple[RunResult, float]:

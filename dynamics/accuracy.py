@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -26,6 +27,7 @@ from dynamics.scene import Outputs, Scene
 from dynamics.types import FloatArray, IntArray
 from model_studies import Progress, against_finest, in_unit, knee_above, run_fidelities, silent
 from model_studies.frontier import Errors
+from model_studies.workers import InProcess, Workers
 
 MOST_BLOCKS, ORDERS = 6, 5
 LEAST_SAMPLES = 32
@@ -368,6 +370,7 @@ def frontier(
     *,
     fidelities: Sequence[str] | None = None,
     progress: Progress = silent,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> Frontier:
     """Run every fidelity that says something about `scene`, and compare each to the finest.
 
@@ -379,6 +382,8 @@ def frontier(
         Names of fidelities to run; default all.
     progress : callable, optional
         Called with "ladder" and the fraction done.
+    workers : Workers
+        They run a fidelity each.
 
     Raises
     ------
@@ -393,10 +398,11 @@ def frontier(
     outcomes, left_out = run_fidelities(
         [fidelity for fidelity in FIDELITIES if fidelity.name in names],
         scene,
-        lambda valid: _warm_up(scene, valid, blocks),
-        lambda fidelity: fidelity.run(scene, blocks),
+        partial(_warm_up, scene, blocks),
+        partial(_run, scene, blocks),
         (InputError, SolveError),
         progress,
+        workers,
     )
     results = tuple(  # every fidelity against the last, and that one by how the errors fell towards it
         FidelityResult(
@@ -428,7 +434,11 @@ def _chosen_fidelity(scene: Scene, fidelities: Sequence[Fidelity]) -> str | None
     return None
 
 
-def _warm_up(scene: Scene, fidelities: Sequence[Fidelity], blocks: Blocks) -> None:
+def _run(scene: Scene, blocks: Blocks, fidelity: Fidelity) -> Vibration:
+    return fidelity.run(scene, blocks)
+
+
+def _warm_up(scene: Scene, blocks: Blocks, fidelities: Sequence[Fidelity]) -> None:
     """Compile what the fidelities run."""
     short = replace(scene, duration=min(WARM_UP, scene.duration))
     system = assemble(TimeIntegration("warm_up", "", "steps").as_run(short))

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
 from host import cpu_seconds
 from model_studies.progress import Progress
+from model_studies.workers import InProcess, Workers, divided
 
-# Variants of a model, computed one by one; those that cannot be computed are left out with their reason.
+# Variants of a model, each by itself; those that cannot be computed are left out with their reason.
 
 V = TypeVar("V")
 R = TypeVar("R")
@@ -27,8 +29,17 @@ def run_variants(
     compute: Callable[[V], R],
     failures: tuple[type[Exception], ...],
     progress: Progress,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+    seconds: float | None = None,
 ) -> tuple[dict[str, R], dict[str, str]]:
     """Compute every variant; one that fails does not end the study.
+
+    Parameters
+    ----------
+    compute : callable
+        For workers a function of a module, or a `partial` of one with what all variants share.
+    seconds : float, optional
+        Predicted CPU seconds of all, as of `divided`.
 
     Returns
     -------
@@ -38,20 +49,31 @@ def run_variants(
         Name of a variant to the reason why it has no result: `LeftOut`, one of `failures`, no memory.
     """
     results, left_out = {}, {}
-    known: tuple[type[Exception], ...] = (LeftOut, *failures)
-    for count, (name, variant) in enumerate(variants.items()):
+    outcomes = divided(workers, _attempted, (compute, failures), list(variants.values()), seconds)
+    for count, name in enumerate(variants):
         progress(stage, count / len(variants))
-        try:
-            results[name] = compute(variant)
-        except known as error:
-            left_out[name] = str(error)
-        except MemoryError:
-            left_out[name] = "out of memory"
+        result, reason = next(outcomes)
+        if reason is None:
+            results[name] = result
+        else:
+            left_out[name] = reason
     progress(stage, 1.0)
     return results, left_out
 
 
-# Fidelities of a model: run one after the other, each measured against the finest.
+def _attempted(shared: tuple[Callable[[V], R], tuple[type[Exception], ...]], variant: V) -> Any:
+    """Return the result of a variant and None, or None and the reason why it has none: one task."""
+    compute, failures = shared
+    known: tuple[type[Exception], ...] = (LeftOut, *failures)
+    try:
+        return compute(variant), None
+    except known as error:
+        return None, str(error)
+    except MemoryError:
+        return None, "out of memory"
+
+
+# Fidelities of a model: each run and timed by itself, and measured against the finest.
 
 Q = TypeVar("Q")
 Q_contra = TypeVar("Q_contra", contravariant=True)
@@ -83,11 +105,36 @@ F = TypeVar("F", bound=Fidelity[Any])
 
 @dataclass(frozen=True)
 class Outcome(Generic[F, R]):
-    """The result of a fidelity, and its CPU time in this process, s."""
+    """The result of a fidelity, and its CPU time in the process that ran it, s."""
 
     fidelity: F
     result: R
     cpu_seconds: float
+
+
+@dataclass(frozen=True)
+class _Timed(Generic[F, R]):
+    """Runs fidelities, and times them; what they run is loaded beforehand, once in every process."""
+
+    warm_up: Callable[[Sequence[F]], None]
+    compute: Callable[[F], R]
+    fidelities: Sequence[F]
+
+    def __call__(self, fidelity: F) -> Outcome[F, R]:
+        """Run one."""
+        _ = self.warm
+        began = cpu_seconds()
+        result = self.compute(fidelity)
+        return Outcome(fidelity, result, cpu_seconds() - began)
+
+    @cached_property
+    def warm(self) -> None:
+        """Load what they run, in this process."""
+        self.warm_up(self.fidelities)
+
+    def __reduce__(self) -> Any:
+        """Leave behind that this process is warm: another one is not."""
+        return type(self), tuple(getattr(self, field.name) for field in fields(self))
 
 
 def run_fidelities(
@@ -97,6 +144,7 @@ def run_fidelities(
     compute: Callable[[F], R],
     failures: tuple[type[Exception], ...],
     progress: Progress,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> tuple[list[Outcome[F, R]], dict[str, str]]:
     """Run every fidelity that is valid for a request.
 
@@ -104,8 +152,9 @@ def run_fidelities(
     ----------
     fidelities : sequence of Fidelity
         By their usual cost.
-    warm_up : callable
-        Loads and compiles the code of these fidelities beforehand, outside of their time.
+    warm_up, compute : callable
+        As `compute` of `run_variants`. The first loads and compiles the code of these fidelities beforehand,
+        outside of their time.
     failures : tuple of exception types
         Exceptions that omit a fidelity; the last of them is raised with fewer than two results.
 
@@ -117,15 +166,10 @@ def run_fidelities(
     refusals = {fidelity.name: fidelity.refusal(request) for fidelity in fidelities}
     refused = {name: reason for name, reason in refusals.items() if reason is not None}
     valid = [fidelity for fidelity in fidelities if fidelity.name not in refused]
-    warm_up(valid)
-
-    def timed(fidelity: F) -> Outcome[F, R]:
-        began = cpu_seconds()
-        result = compute(fidelity)
-        return Outcome(fidelity, result, cpu_seconds() - began)
-
+    timed = _Timed(warm_up, compute, valid)
+    _ = timed.warm
     by_name = {fidelity.name: fidelity for fidelity in valid}
-    outcomes, failed = run_variants("ladder", by_name, timed, failures, progress)
+    outcomes, failed = run_variants("ladder", by_name, timed, failures, progress, workers)
     left_out = refused | failed
     if len(outcomes) < 2:
         raise failures[-1](f"an error needs two fidelities to compare; left out: {left_out}")

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +23,7 @@ from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.subjects import Steps, with_case, with_own_cases, without_modes_files
 from model_studies.progress import Progress, silent
-from model_studies.workers import ByExecutor, InProcess, Workers, WorkersLost, dask_workers
+from model_studies.workers import InProcess, Workers, WorkersLost, dask_workers, local_processes
 
 Warn = Callable[[Iterable[dict[str, Any]]], object]
 OnDraft = Callable[[SteDatabase, str], None]
@@ -164,9 +162,8 @@ def open_executor(processes: int = 1, scheduler: str | None = None) -> Iterator[
     elif processes == 1:
         yield InProcess()
     else:
-        # spawn: compiled code and numerical libraries do not survive a fork
-        with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as executor:
-            yield ByExecutor(executor)
+        with local_processes(processes) as pool:
+            yield pool
 
 
 @contextmanager

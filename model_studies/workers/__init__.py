@@ -5,7 +5,17 @@ the caller, whatever the number of workers, and results come in the order of the
 """
 
 from model_studies.workers.dask_cluster import ByDask, dask_workers
-from model_studies.workers.executor import ByExecutor, InProcess, OrHere, RunCost, Workers, WorkersLost
+from model_studies.workers.executor import (
+    ByExecutor,
+    InProcess,
+    OrHere,
+    RunCost,
+    Workers,
+    WorkersLost,
+    divided,
+    local_processes,
+    spent,
+)
 from model_studies.workers.remembering import Remembering
 
 __all__ = [
@@ -18,4 +28,7 @@ __all__ = [
     "Workers",
     "WorkersLost",
     "dask_workers",
+    "divided",
+    "local_processes",
+    "spent",
 ]

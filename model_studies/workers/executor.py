@@ -11,12 +11,13 @@ import time
 import weakref
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
-from host import children_cpu_seconds, peak_memory
+from host import children_cpu_seconds, cpu_seconds, peak_memory
 
 
 class WorkersLost(Exception):
@@ -193,6 +194,22 @@ class ByExecutor:
                 future.cancel()
 
 
+@contextmanager
+def local_processes(count: int) -> Iterator[ByExecutor]:
+    """Provide new processes of this machine; if the block fails they end at once, whatever they do."""
+    from concurrent.futures import ProcessPoolExecutor  # noqa: PLC0415 (start-up time)
+    from multiprocessing import get_context  # noqa: PLC0415
+
+    # spawn: compiled code and numerical libraries do not survive a fork
+    with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as executor:
+        try:
+            yield ByExecutor(executor)
+        except BaseException:
+            for process in list((executor._processes or {}).values()):
+                process.kill()
+            raise
+
+
 def _lost(done: int, of: int) -> WorkersLost:
     reason = "A process of the pool ended during the run; it may have run out of memory"
     return WorkersLost(f"{reason}: {done} of {of} tasks were done.")
@@ -269,3 +286,47 @@ class OrHere:
                 self.told(error)
         for item in items[done:]:
             yield function(shared, item)
+
+
+# Which work is divided: what costs more than the start of a process.
+
+START_SECONDS = 5.0
+"""CPU seconds in which a new process has loaded program and compiled code: less work stays in this one."""
+
+
+def divided(
+    workers: Workers,
+    function: Callable[[S, T], R],
+    shared: S,
+    items: Sequence[T],
+    seconds: float | None = None,
+) -> Iterator[R]:
+    """Yield ``function(shared, item)`` of every item, in their order, by the workers if that pays.
+
+    Parameters
+    ----------
+    seconds : float, optional
+        CPU seconds that all items are predicted to take; they go to the workers above `START_SECONDS`. None:
+        they are done here until those left would take more, each as long as the last. The first one tells
+        nothing, it loads code.
+
+    Raises
+    ------
+    WorkersLost
+        As `Workers.run`, and what the function raises.
+    """
+    done = 0
+    while len(items) - done > 1 and (seconds is None or seconds < START_SECONDS):
+        began = cpu_seconds()
+        result = function(shared, items[done])
+        last, done = cpu_seconds() - began, done + 1
+        if seconds is None and done > 1 and last * (len(items) - done) > START_SECONDS:
+            seconds = last * (len(items) - done)
+        yield result
+    left: Workers = workers if len(items) - done > 1 else InProcess()
+    yield from left.run(function, shared, items[done:])
+
+
+def spent(workers: Workers) -> float:
+    """Return the CPU seconds of this process, of its children that have ended, and of tasks by workers."""
+    return cpu_seconds() + workers.cost.cpu_seconds

@@ -15,15 +15,15 @@ structure = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(structure)
 
 BUDGETS = {
-    ("fe_contact",): (36_735, 633),
-    ("dynamics",): (39_620, 803),
-    ("lineofaction.gearbox",): (21_530, 522),
+    ("fe_contact",): (36_754, 633),
+    ("dynamics",): (39_646, 803),
+    ("lineofaction.gearbox",): (21_532, 522),
     ("lineofaction.report",): (10_470, 198),
     ("service",): (14_755, 333),
     ("lineofaction.client",): (2_805, 55),
     ("lineofaction.cli",): (4_665, 68),
     ("lineofaction.hardcases",): (3_835, 35),
-    ("bounds", "host", "model_studies"): (4_030, 139),
+    ("bounds", "host", "model_studies"): (4_148, 142),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 747

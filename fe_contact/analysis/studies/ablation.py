@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -128,7 +129,7 @@ def ablate(
         All tables have the mesh level that the accuracy requires and a minimal receipt; violated assumptions
         are reported.
     run : Run
-        With a cache the gears are condensed once for each body and model.
+        With a cache the gears are condensed once for each body and model. Workers take an effect each.
     only : sequence of str, optional
         Effects to toggle; default all.
 
@@ -150,18 +151,30 @@ def ablate(
     nominal = _figures(checked, run)
     estimates = estimated_influences(checked, names)
 
-    def toggle(entry: LedgerEntry) -> EffectAblation:
-        if entry.verdict.neutral:
-            raise LeftOut(entry.verdict.reason)
-        other = _figures(toggled(checked, entry.name, "off" if entry.on else "on"), run)
-        states = (nominal, other) if entry.on else (other, nominal)
-        return EffectAblation(entry.name, entry.on, entry.verdict.reason, *states, estimates[entry.name])
-
     ledger = {entry.name: entry for entry in checked.ledger if entry.name in names}
-    effects, left_out = run_variants("ablation", ledger, toggle, FAILURES, run.progress)
+    toggle = partial(_toggled, checked, nominal, estimates, run.cache)
+    predicted = nominal.predicted_cpu_seconds * sum(not entry.verdict.neutral for entry in ledger.values())
+    effects, left_out = run_variants(
+        "ablation", ledger, toggle, FAILURES, run.progress, run.workers, predicted
+    )
     request = checked.request
     misalignment = request.whole_scene.largest_misalignment
     return Ablation(nominal, tuple(effects.values()), left_out, request.torque, request.load, misalignment)
+
+
+def _toggled(
+    checked: Checked,
+    nominal: Figures,
+    estimates: Mapping[str, Influence | None],
+    cache: Path | None,
+    entry: LedgerEntry,
+) -> EffectAblation:
+    """Compute the table with one effect toggled."""
+    if entry.verdict.neutral:
+        raise LeftOut(entry.verdict.reason)
+    other = _figures(toggled(checked, entry.name, "off" if entry.on else "on"), Run(cache=cache))
+    states = (nominal, other) if entry.on else (other, nominal)
+    return EffectAblation(entry.name, entry.on, entry.verdict.reason, *states, estimates[entry.name])
 
 
 def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import product
 from typing import Any, Protocol
 
@@ -51,6 +51,7 @@ from model_studies import (
     silent,
 )
 from model_studies.frontier import Errors
+from model_studies.workers import InProcess, Workers
 
 # The accuracy study: ways to the transmission error from a closed form to fine finite elements.
 
@@ -377,6 +378,7 @@ def frontier(
     fidelities: Sequence[str] | None = None,
     full_contact: int | None = None,
     progress: Progress = silent,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> Frontier:
     """Run every fidelity of the accuracy study that is valid for a case, and compare each to the finest.
 
@@ -395,6 +397,8 @@ def frontier(
         Positions, 1 to 64, at which full finite-element contact is run beside it, under all loads: of
         solid spur and internal pairs in plane strain, about 2.5 CPU s each; of external spur pairs in three
         dimensions where `model` is "3d" or flanks vary or are inclined across the face, 70 CPU s each.
+    workers : Workers
+        They compute a fidelity each.
 
     Raises
     ------
@@ -410,10 +414,11 @@ def frontier(
     outcomes, left_out = run_fidelities(
         [fidelity for fidelity in FIDELITIES if fidelity.name in names],
         checked,
-        lambda valid: warm_up(across_face=any(fidelity.name.startswith("3d") for fidelity in valid)),
-        lambda fidelity: _whole_table(fidelity, checked),
+        _warm_up,
+        partial(_whole_table, checked),
         (MeshError, SolveError),
         progress,
+        workers,
     )
     read = [Outcome(outcome.fidelity, _result(outcome), outcome.cpu_seconds) for outcome in outcomes]
     errors = against_finest(read, _errors, _remaining)
@@ -429,7 +434,11 @@ def frontier(
     return study if full_contact is None else _beside(study, checked, full_contact, tables, progress)
 
 
-def _whole_table(fidelity: _Fidelity, checked: Checked) -> SteDatabase:
+def _warm_up(fidelities: Sequence[_Fidelity]) -> None:
+    warm_up(across_face=any(fidelity.name.startswith("3d") for fidelity in fidelities))
+
+
+def _whole_table(checked: Checked, fidelity: _Fidelity) -> SteDatabase:
     table = fidelity.run(checked)
     table.require_complete()
     return table

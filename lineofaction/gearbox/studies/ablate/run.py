@@ -42,7 +42,7 @@ class _AblateStudy(
         """Toggle the effects of a case, at its nominal center distance, or of a scene."""
         with boundary_errors():
             if isinstance(subject, TabledScene):
-                return ablate_scene(subject.scene, inputs.only, means.report)
+                return ablate_scene(subject.scene, inputs.only, means.report, means.workers)
             return ablate(subject.request(_table, inputs), run=means.analysis, only=inputs.only)
 
 

@@ -1,0 +1,184 @@
+"""Work that is divided where that pays: who does it, its errors, its end by a cancel or a kill."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from multiprocessing import active_children
+from typing import Any
+
+import pytest
+from running_service import until
+
+from host import cpu_seconds
+from model_studies import LeftOut, run_fidelities, run_variants
+from model_studies.workers import ByExecutor, InProcess, RunCost, WorkersLost, divided, local_processes, spent
+from model_studies.workers import executor as executors
+
+
+@dataclass(frozen=True)
+class Noting:
+    """Workers that note what they are sent."""
+
+    cost: RunCost = field(default_factory=RunCost)
+    sent: list[Any] = field(default_factory=list)
+
+    def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
+        self.sent.extend(items)
+        return (function(shared, item) for item in items)
+
+
+def burned(_: None, seconds: float) -> float:
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
+    return seconds
+
+
+@pytest.mark.parametrize(
+    ("items", "seconds", "sent"),
+    [
+        ([0.0, 0.0, 0.0], None, 0),  # nothing costs anything
+        ([0.05, 0.0, 0.0], None, 0),  # the first loads code
+        ([0.0, 0.03, 0.03, 0.03, 0.03, 0.03], None, 4),
+        ([0.0, 0.0, 0.0, 0.06, 0.06, 0.06], None, 2),  # where it gets dear
+        ([0.0, 0.0, 0.0, 0.12, 0.12], None, 0),  # a single one left
+        ([0.0, 0.0, 0.0], 0.2, 3),
+        ([0.1, 0.1, 0.1], 0.05, 0),
+        ([0.0], 99.0, 0),
+        ([], 99.0, 0),
+    ],
+)
+def test_only_work_that_takes_longer_than_a_process_starts_is_sent(
+    items: list[float], seconds: float | None, sent: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(executors, "START_SECONDS", 0.1)
+    workers = Noting()
+    assert list(divided(workers, burned, None, items, seconds)) == items
+    assert workers.sent == items[len(items) - sent :]
+
+
+def test_time_of_the_caller_between_results_is_no_time_of_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(executors, "START_SECONDS", 0.1)
+    workers = Noting()
+    for _ in divided(workers, burned, None, [0.0] * 4):
+        burned(None, 0.1)
+    assert not workers.sent
+
+
+def test_what_was_spent_has_the_tasks_of_workers() -> None:
+    with ThreadPoolExecutor(1) as executor:
+        workers, before = ByExecutor(executor), cpu_seconds()
+        assert list(workers.run(burned, None, [0.2])) == [0.2]
+        assert spent(workers) - before > cpu_seconds() - before + 0.15
+    assert spent(InProcess()) == pytest.approx(cpu_seconds(), abs=0.1)
+
+
+# A pool of this machine.
+
+
+@pytest.fixture(autouse=True)
+def always(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Send everything, whatever it costs."""
+    monkeypatch.setattr(executors, "START_SECONDS", 0.0)
+
+
+class Unsolved(Exception):
+    """What a library raises."""
+
+
+def solved(variant: str) -> tuple[str, int]:
+    errors = {"unsolved": Unsolved("no equilibrium"), "said": LeftOut("it is even"), "large": MemoryError()}
+    if variant in errors:
+        raise errors[variant]
+    if variant == "defect":
+        raise ZeroDivisionError("in a task")
+    return variant, os.getpid()
+
+
+def variants(*names: str) -> dict[str, str]:
+    return {name: name for name in names}
+
+
+def test_variants_by_a_pool_have_results_reasons_and_errors_as_here() -> None:
+    names = variants("one", "unsolved", "two", "said", "large", "three")
+    seen: list[tuple[str, float]] = []
+    with local_processes(2) as pool:
+        results, left_out = run_variants(
+            "count", names, solved, (Unsolved,), lambda *step: seen.append(step), pool, 1.0
+        )
+        assert pool.cost.tasks == 6
+        errors = []
+        for workers in (InProcess(), pool):
+            with pytest.raises(ZeroDivisionError) as caught:
+                run_variants("count", variants("one", "defect"), solved, (), lambda *_: None, workers, 1.0)
+            errors.append(caught.value.args)
+    here = run_variants("count", names, solved, (Unsolved,), lambda *_: None)
+    assert [name for name, _ in results.values()] == list(results) == list(here[0]) == ["one", "two", "three"]
+    assert os.getpid() not in [pid for _, pid in results.values()]
+    assert (
+        left_out == here[1] == {"unsolved": "no equilibrium", "said": "it is even", "large": "out of memory"}
+    )
+    assert [fraction for _, fraction in seen] == pytest.approx([k / 6 for k in range(7)])
+    assert errors[0] == errors[1] == ("in a task",)
+
+
+@dataclass(frozen=True)
+class Way:
+    """A fidelity that returns who warmed up for it, and where it ran."""
+
+    name: str
+    title: str = ""
+    family: str = ""
+
+    def refusal(self, _request: float) -> str | None:
+        return None
+
+
+WARMED: dict[int, list[str]] = {}
+
+
+def warm(ways: Sequence[Way]) -> None:
+    WARMED.setdefault(os.getpid(), []).extend(way.name for way in ways)
+
+
+def ran(_way: Way) -> tuple[int, list[str]]:
+    return os.getpid(), WARMED[os.getpid()]
+
+
+def test_every_process_is_warm_before_it_is_timed_and_only_once() -> None:
+    ways = [Way("a"), Way("b"), Way("c"), Way("d"), Way("e"), Way("f")]
+    with local_processes(2) as pool:
+        outcomes, _ = run_fidelities(ways, 1.0, warm, ran, (Unsolved,), lambda *_: None, pool)
+    there = [outcome.result for outcome in outcomes if outcome.result[0] != os.getpid()]
+    assert len(there) == 4  # behind the two whose cost tells that it pays
+    assert all(warmed == [way.name for way in ways] for _, warmed in there)
+
+
+def long(_: None, seconds: float) -> None:
+    time.sleep(seconds)
+
+
+def test_workers_end_at_once_when_the_caller_stops() -> None:
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt), local_processes(2) as pool:
+        for _ in divided(pool, long, None, [0.0, 60.0, 60.0, 60.0], 9.0):
+            raise KeyboardInterrupt
+    assert time.monotonic() - begun < 30.0
+    assert not active_children()
+
+
+def killed(caller: int, item: int) -> int:
+    if item and os.getpid() != caller:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return item
+
+
+def test_a_killed_worker_ends_the_study_and_nothing_hangs() -> None:
+    with pytest.raises(WorkersLost, match="1 of 3 tasks were done"), local_processes(1) as pool:
+        list(divided(pool, killed, os.getpid(), [0, 1, 1], 9.0))
+    until(lambda: not active_children())
