@@ -6,9 +6,10 @@ import hashlib
 import json
 import os
 import tempfile
+import time
 import zipfile
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, fields
 from functools import lru_cache
 from importlib.metadata import version
@@ -21,9 +22,13 @@ from fe_contact.cache_reads import COMPLIANCE_READS
 from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance, FlankCompliance3D
 from fe_contact.compliance.root_stress import RootStressChecks, UnitRootStress
 from fe_contact.types import Json
+from host import lock
 
 KEPT_KEYS = 64
 """Hashes of what was requested last, kept in memory."""
+PATIENCE_S = 600.0
+"""How long another process may take for a result before it is computed here too: it may have been stopped."""
+_LOOK_S = 0.05
 NOT_ARRAYS = ("facts", "checksum")
 Kept = TypeVar("Kept", FlankCompliance, FlankCompliance3D, UnitRootStress)
 Result = TypeVar("Result")
@@ -41,13 +46,60 @@ def content_hash(content: Json) -> str:
 
 
 def kept_or_computed(directory: Path | None, key: str, kind: type[Kept], compute: Callable[[], Kept]) -> Kept:
-    """Return the result kept under `key`, or compute it and keep it; without a directory just compute."""
-    result = read_compliance(directory, key, kind) if directory is not None else None
-    if result is None:
-        result = compute()
-        if directory is not None:
+    """Return the result kept under `key`, or compute it and keep it; without a directory just compute.
+
+    Of all processes that share the directory one computes; the others wait for it.
+    """
+    if directory is None:
+        return compute()
+    result = read_compliance(directory, key, kind)
+    if result is not None:
+        return result
+    with _alone(directory, key):
+        result = _read(directory, key, kind)
+        if result is None:
+            result = compute()
             write_compliance(directory, key, result)
     return result
+
+
+@contextmanager
+def _alone(directory: Path, key: str) -> Iterator[None]:
+    """Keep others from computing the same; after `PATIENCE_S`, or where nothing can be locked, do not wait.
+
+    The lock ends with its process. Its file goes while it is held: who waited for it finds the result first.
+    """
+    file = directory / f"compliance-{key}.lock"
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(file, os.O_CREAT | os.O_RDWR, 0o600)
+    except OSError:
+        yield
+        return
+    try:
+        held = _locked(descriptor)
+        yield
+    finally:
+        if held:
+            with suppress(OSError):
+                file.unlink()
+        os.close(descriptor)
+
+
+def _locked(descriptor: int) -> bool:
+    """Wait for a lock; say whether it is ours."""
+    deadline = time.monotonic() + PATIENCE_S
+    while True:
+        try:
+            lock(descriptor)
+        except BlockingIOError:
+            if time.monotonic() > deadline:
+                return False
+            time.sleep(_LOOK_S)
+        except OSError:  # a file system without locks
+            return False
+        else:
+            return True
 
 
 def once_each(keys: Sequence[str], compute: Callable[[int], Result]) -> tuple[Result, ...]:

@@ -48,36 +48,40 @@ class ByDask:
     client: Client
     patience: float = PATIENCE_S
     cost: RunCost = field(default_factory=RunCost, compare=False)
-    _sent: dict[int, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)
+    _sent: dict[int, tuple[object, str, Any]] = field(default_factory=dict, compare=False, repr=False)
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Submit everything, yield in order; what is not yielded any more is cancelled."""
+        """Submit everything, yield in order; what is not yielded any more is left.
+
+        A task is named by its content: what several callers want at the same time is done once.
+        """
         import dask  # noqa: PLC0415 (an extra)
 
         if self._gone:
             raise WorkersLost(f"The scheduler {self._address} is gone: 0 of {len(items)} tasks were done.")
         with dask.config.set({"distributed.admin.large-graph-warning-threshold": "1TB"}):
-            packed = self._send(shared)
+            digest, packed = self._send(shared)
+            name = f"{function.__module__}.{function.__qualname__}"
+            keys = [f"{name}-{digest}-{Packed.of(item).digest}" for item in items]
             # one graph: a submission each costs the scheduler as much as the task
-            task = partial(do_task, function)
-            futures = self.client.map(task, items, packed=packed, pure=False)
+            futures = self.client.map(partial(do_task, function), items, packed=packed, key=keys)
         return self._in_order(futures)
 
-    def _send(self, shared: object) -> Any:
-        """Return the future of what is shared, sent unless it was before."""
+    def _send(self, shared: object) -> tuple[str, Any]:
+        """Return digest and future of what is shared, sent unless it was before."""
         known = self._sent.get(id(shared))
-        if known is not None and known[1].status != "cancelled":
-            return known[1]
-        self._sent.pop(id(shared), None)
-        while len(self._sent) >= KEPT:
-            self._sent.pop(next(iter(self._sent)))
-        # a task of its own, not scattered data: the scheduler makes it again where its worker died
-        future = self.client.submit(_itself, Packed.of(shared), pure=False)
-        self._sent[id(shared)] = (shared, future)
-        return future
+        if known is None or known[2].status == "cancelled":
+            self._sent.pop(id(shared), None)
+            while len(self._sent) >= KEPT:
+                self._sent.pop(next(iter(self._sent)))
+            packed = Packed.of(shared)
+            # a task of its own, not scattered data: the scheduler makes it again where its worker died
+            future = self.client.submit(_itself, packed, key=f"shared-{packed.digest}")
+            known = self._sent[id(shared)] = (shared, packed.digest, future)
+        return known[1:]
 
     def _in_order(self, futures: Sequence[Any]) -> Iterator[Any]:
-        """Yield the results; cancel the rest when the caller stops or a task fails."""
+        """Yield the results; let go of the rest when the caller stops or a task fails."""
         count = 0
         try:
             while count < len(futures):
@@ -85,8 +89,8 @@ class ByDask:
                     yield self.cost.add(done)
                     count += 1
         finally:
-            if not self._gone:
-                self.client.cancel(list(futures))  # type: ignore[no-untyped-call]
+            for future in () if self._gone else futures:
+                future.release()
 
     def _results(self, futures: Sequence[Any], first: int) -> list[Any]:
         """Wait for a result as long as there is somebody to make it; return it with those ready after it."""

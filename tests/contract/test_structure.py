@@ -15,15 +15,15 @@ structure = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(structure)
 
 BUDGETS = {
-    ("fe_contact",): (36_754, 633),
+    ("fe_contact",): (36_806, 633),
     ("dynamics",): (39_646, 803),
     ("lineofaction.gearbox",): (21_532, 522),
     ("lineofaction.report",): (10_470, 198),
-    ("service",): (14_755, 333),
-    ("lineofaction.client",): (2_805, 55),
-    ("lineofaction.cli",): (4_665, 68),
-    ("lineofaction.hardcases",): (3_835, 35),
-    ("bounds", "host", "model_studies"): (4_148, 142),
+    ("service",): (14_754, 333),
+    ("lineofaction.client",): (2_803, 55),
+    ("lineofaction.cli",): (4_661, 68),
+    ("lineofaction.hardcases",): (3_834, 35),
+    ("bounds", "host", "model_studies"): (4_152, 142),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 747

@@ -183,6 +183,21 @@ def test_a_monte_carlo_of_two_workers_one_of_which_is_killed(cluster: Cluster, c
     assert there.quantiles[1].value.tolist() == here.quantiles[1].value.tolist()
 
 
+@pytest.mark.law
+def test_what_two_callers_want_at_once_is_done_once(cluster: Cluster, tmp_path: Path) -> None:
+    cluster.at_least(1)
+    links = [str(tmp_path / str(number)) for number in range(12)]
+    with distributed.Client(cluster.address, set_as_default=False) as other:
+        first, second, third = (
+            ByDask(client).run(os.symlink, "nowhere", links)  # a second one of the same name fails
+            for client in (cluster.client, other, cluster.client)
+        )
+        next(third)
+        third.close()  # type: ignore[attr-defined]
+        assert list(first) == list(second) == [None] * len(links)
+    assert sorted(map(os.readlink, links)) == ["nowhere"] * len(links)
+
+
 def test_what_a_cluster_leaves_whose_last_worker_is_killed_is_done_here(
     cluster: Cluster, cache: Path, alone: SteDatabase
 ) -> None:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from threading import Barrier
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +21,7 @@ from fe_contact.compliance import (
     FlankCompliance,
     FlankCompliance3D,
     PlaneHypothesis,
+    cache,
     default_cache_directory,
     flank_compliance,
     flank_compliance_3d,
@@ -27,6 +31,7 @@ from fe_contact.compliance import (
 from fe_contact.geometry import Gear
 from fe_contact.material import Material
 from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe
+from host import lock
 
 
 @pytest.fixture
@@ -67,6 +72,50 @@ def test_second_call_reads_the_same_bits(tmp_path: Path, counted: list[Gear]) ->
     assert replace(before, hits=before.hits + 1, misses=before.misses + 1) == COMPLIANCE_READS
     assert same(first, second)
     assert [p.suffix for p in (tmp_path / "deep" / "cache").iterdir()] == [".npz"]
+
+
+@pytest.mark.law
+def test_who_wants_a_body_that_is_being_condensed_waits_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, counted: list[Gear]
+) -> None:
+    gear, all_missed = make_gear(), Barrier(4)
+    recipe, read = coarse_plane(gear), cache.read_compliance
+
+    def missed(*arguments: Any) -> Any:
+        result = read(*arguments)
+        all_missed.wait(60.0)
+        return result
+
+    monkeypatch.setattr(cache, "read_compliance", missed)
+    with ThreadPoolExecutor(4) as pool:
+        runs = [pool.submit(flank_compliance, gear, recipe, cache=tmp_path) for _ in range(4)]
+        results = [run.result() for run in runs]
+    assert len(counted) == 1
+    assert sorted(result.from_cache for result in results) == [False, True, True, True]
+    assert all(same(result, results[0]) for result in results)
+    assert [file.suffix for file in tmp_path.iterdir()] == [".npz"]
+
+
+def test_a_process_that_does_not_come_back_is_not_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, counted: list[Gear]
+) -> None:
+    gear, tries = make_gear(), []
+    recipe, strain = coarse_plane(gear), PlaneHypothesis.PLANE_STRAIN
+    key = flow.compliance_key(gear, recipe, strain, flow.condensed_teeth(gear, recipe, 1))
+
+    def counting(descriptor: int) -> None:
+        tries.append(descriptor)
+        lock(descriptor)
+
+    monkeypatch.setattr(cache, "PATIENCE_S", 0.2)
+    monkeypatch.setattr(cache, "lock", counting)
+    held = tmp_path / f"compliance-{key}.lock"
+    with held.open("w") as stream:
+        lock(stream.fileno())
+        assert not flank_compliance(gear, recipe, teeth=1, cache=tmp_path).from_cache
+    assert len(tries) > 1
+    assert held.exists()  # it is another's
+    assert len(counted) == 1
 
 
 @pytest.mark.parametrize("damage", ["flipped bit", "truncated", "empty", "foreign", "another result"])
