@@ -1,4 +1,4 @@
-"""Flexible couplings: torque, frequency, energy, matrices, what is refused."""
+"""Couplings, gravity, idle rattle, and matrices that are sparse."""
 
 from __future__ import annotations
 
@@ -7,18 +7,31 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from geared_scenes import gear_pair_scene, spring_table
+from flexible_scenes import flexible_pair
+from geared_scenes import gear_pair_scene, spring_table, square_wave_table, with_mesh
+from planetary_scenes import driven_scene, published_set
 
+from benchmarks.stages import stages
+from dynamics.arrays.sparse_rows import subtract_resistance
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
+from dynamics.integrators.implicit_step import invert
 from dynamics.joints import Coupling, ImposedRotation
-from dynamics.linearize import natural_modes
+from dynamics.kernels.by_address import by_address
+from dynamics.kernels.compiled import compiled
+from dynamics.linearize import modal_analysis, natural_modes
 from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.mechanism.kinematics import solve_kinematics
+from dynamics.meshes import CoastFlank
+from dynamics.results.mesh_figures import dynamic_factor
+from dynamics.scene import Scene
 from dynamics.shafts import Inertia, Shaft
 from dynamics.simulation import simulate
+
+# Flexible couplings: torque, frequency, energy, matrices, what is refused.
+
 
 LOAD_INERTIA = 0.02
 TORSION = 5e4
@@ -143,3 +156,169 @@ def test_a_bearing_between_shafts_carries_weight_and_leaves_their_speeds_alone()
     strains = np.einsum("cki,i->ck", system.freedoms.keep(system.couplings.motion), at_rest)
     assert strains[:, 1] == pytest.approx(np.full(2, 0.5 * weight / radial), rel=1e-9)
     assert strains[:, 0] == pytest.approx(np.zeros(2), abs=1e-12)
+
+
+# Gravity: bearings carry the weight, nothing else changes; dampers to the ground.
+
+
+DOWN = (2.0, -9.81, 0.5)
+EVERY = {"lateral": "on", "axial": "on", "tilt": "on"}
+
+
+@pytest.mark.parametrize("make", [gear_pair_scene, flexible_pair], ids=["rigid", "flexible"])
+def test_the_bearings_carry_the_weight_and_only_that_changes(make) -> None:
+    scene = make(effects=EVERY)
+    heavy, light = (assemble(replace(scene, gravity=g)) for g in (DOWN, (0.0, 0.0, 0.0)))
+    forces = [
+        np.sum(system.bearing_stiffness[:, :3] @ static_equilibrium(system).displacement, axis=0)
+        for system in (heavy, light)
+    ]
+    mass = sum(rotor.inertia.mass for rotor in heavy.rotors)
+    np.testing.assert_allclose(forces[0] - forces[1], mass * np.array(DOWN), rtol=1e-6)
+    for name in ("mass", "stiffness", "damping", "direction"):
+        np.testing.assert_array_equal(getattr(heavy.arrays, name), getattr(light.arrays, name))
+
+
+def test_a_run_starts_at_rest_under_gravity_and_its_energy_balances() -> None:
+    scene = gear_pair_scene(effects=EVERY, gravity=DOWN, duration=0.02)
+    run = simulate(scene)
+    assert run.energy.relative < 1e-3
+    bare = simulate(replace(scene, gravity=(0.0, 0.0, 0.0)))
+    mass = sum(rotor.inertia.mass for rotor in assemble(scene).rotors)
+    carried = np.sum(run.bearing_force - bare.bearing_force, axis=0)[:3]
+    np.testing.assert_allclose(np.mean(carried, axis=-1), mass * np.array(DOWN), rtol=1e-2)
+
+
+def test_gravity_across_a_rotating_frame_is_refused() -> None:
+    scene = driven_scene(published_set(3))
+    replace(scene, gravity=(0.0, 0.0, -9.81))
+    with pytest.raises(InputError) as caught:
+        replace(scene, gravity=(0.0, -9.81, 0.0))
+    assert caught.value.field == "gravity"
+
+
+def test_a_bushing_may_be_a_damper_alone() -> None:
+    scene = gear_pair_scene(effects=EVERY)
+    damper = Bushing("damper", "input", 0.1, radial_damping=500.0)
+    damped, bare = (assemble(replace(scene, bushings=b)) for b in ((*scene.bushings, damper), scene.bushings))
+    x = bare.freedoms.name.index("input.x")
+    np.testing.assert_allclose(damped.arrays.stiffness, bare.arrays.stiffness, rtol=1e-14)
+    fixed = [replace(b, radial_damping=0.0, axial_damping=0.0) for b in scene.bushings]
+    alone = assemble(replace(scene, bushings=(*fixed, damper)))
+    assert alone.arrays.damping[x, x] == pytest.approx(500.0, rel=1e-12)
+
+
+# Gears that nothing loads: they rattle between their flanks as the drive's speed swings.
+
+
+BACKLASH = 20e-6
+SWING = TimeLaw((0.0, 0.005, 0.01, 0.015, 0.02), (80.0, 81.0, 79.0, 81.0, 80.0), "smooth")
+
+
+def idle(speed: TimeLaw = SWING, **changes: object) -> Scene:
+    """A pair on a table that a line contact makes: no stiffness at lift-off."""
+    scene = gear_pair_scene(square_wave_table(16), torque=0.0, duration=0.02, speed=speed)
+    return with_mesh(scene, coast=CoastFlank(BACKLASH, thickness=0.48), **changes)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("loads", ["zero", "none"])
+def test_idle_gears_rattle_between_both_flanks(loads):
+    scene = idle()
+    run = simulate(replace(scene, loads=()) if loads == "none" else scene)
+    assert run.nominal_force[0] == 0.0
+    assert run.mesh_force.max() > 1.0
+    assert run.coast_force.max() > 1.0
+    assert not np.any(run.contact == 3.0)
+    assert 0.1 < np.mean(run.contact == 0.0) < 0.99
+    assert run.energy.meshes > 0.0
+    assert run.energy.relative < 1e-2
+    deflection = run.dynamic_transmission_error
+    assert deflection.min() > -BACKLASH - 1e-6
+
+
+@pytest.mark.filterwarnings("error")
+def test_an_idle_mesh_has_stiffness_and_damping_of_the_lowest_load_of_its_table():
+    table = square_wave_table(16)
+    flanks = assemble(idle()).flanks
+    expected = float(np.mean(table.stiffness[0, 0, :, 1]))
+    assert flanks.mean_stiffness[0] == pytest.approx(expected, rel=1e-9)
+    assert np.all(flanks.law.damping > 0.0)
+    assert modal_analysis(assemble(idle())).natural_frequency.size > 0
+
+
+def test_a_constant_torque_of_none_is_refused_and_says_what_to_do():
+    with pytest.raises(InputError, match=r"nominal_force, or use .variable_torque.") as caught:
+        simulate(idle(technique="constant_torque"))
+    assert caught.value.field == "meshes[0].technique"
+    assert simulate(idle(technique="constant_torque", nominal_force=1000.0)).coast_force.max() > 1.0
+    with pytest.raises(InputError, match="An idle mesh has no dynamic factor"):
+        dynamic_factor(simulate(idle()), pitches=1)
+
+
+# Matrices by their entries: nothing of them is lost, and they grow with the parts of a scene alone.
+
+
+SPAN = 1e-5
+
+
+@compiled
+def resistance_left(sparse, q, v, force):
+    subtract_resistance(sparse, q, v, force)
+
+
+def _arrays(count):
+    return assemble(stages(spring_table(3e8), count, 0.1, TimeLaw.constant(50.0))).arrays
+
+
+def _dense(rows, columns):
+    row = np.repeat(np.arange(rows.first.size - 1), np.diff(rows.first))
+    matrix = np.zeros((rows.first.size - 1, columns))
+    matrix[row, rows.column] = rows.weight
+    return matrix
+
+
+def test_entries_are_those_of_the_matrices():
+    arrays = _arrays(2)
+    size = arrays.mass.shape[0]
+    for name in ("damping", "stiffness", "direction", "turn"):
+        np.testing.assert_array_equal(_dense(getattr(arrays.sparse, name), size), getattr(arrays, name))
+    moved = _dense(arrays.sparse.mobility, size) @ arrays.mass
+    np.testing.assert_allclose(moved, np.eye(size), atol=1e-14)
+
+
+def test_couplings_hold_every_entry_of_the_inverse_of_a_stage():
+    arrays = _arrays(3)
+    stage = arrays.mass + SPAN * (arrays.damping + SPAN * arrays.stiffness)
+    inverse = stage.copy()
+    invert(inverse)
+    np.testing.assert_allclose(inverse @ stage, np.eye(stage.shape[0]), atol=1e-12)
+    joined = _dense(arrays.sparse.coupling, stage.shape[0]) != 0.0
+    assert not np.all(joined)
+    assert not np.any(inverse[~joined])
+
+
+def test_entries_grow_in_proportion_to_the_stages():
+    """So that the cost of a step grows with the meshes, not with meshes times freedoms."""
+    few, many = (_arrays(count).sparse for count in (3, 6))
+    for rows in ("direction", "stiffness", "mobility"):
+        assert getattr(many, rows).column.size <= 2 * getattr(few, rows).column.size + 8
+
+
+def test_changed_matrices_take_their_entries_along():
+    arrays = _arrays(1)
+    changed = arrays.with_matrices(damping=2.0 * arrays.damping)
+    np.testing.assert_array_equal(_dense(changed.sparse.damping, arrays.mass.shape[0]), 2.0 * arrays.damping)
+
+
+def test_dampers_and_springs_act_by_both_matrices_wherever_either_has_entries():
+    arrays = _arrays(2)
+    size, rng = arrays.mass.shape[0], np.random.default_rng(2)
+    arrays = arrays.with_matrices(
+        damping=np.where(rng.random((size, size)) < 0.2, rng.random((size, size)), 0.0),
+        stiffness=np.where(rng.random((size, size)) < 0.2, rng.random((size, size)), 0.0),
+    )
+    q, v, force = rng.random(size), rng.random(size), rng.random(size)
+    left = force.copy()
+    resistance_left(by_address(arrays.sparse), q, v, left)
+    np.testing.assert_allclose(left, force - arrays.damping @ v - arrays.stiffness @ q, rtol=1e-13)

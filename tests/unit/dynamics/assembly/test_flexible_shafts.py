@@ -1,4 +1,4 @@
-"""Flexible shafts at rest: closed forms of bending, twist and bearing forces."""
+"""Flexible shafts of a scene: statics, modes, and whole runs."""
 
 from __future__ import annotations
 
@@ -15,14 +15,24 @@ from flexible_scenes import (
     shear_stiffness,
     torsional_stiffness,
 )
-from geared_scenes import with_gear
+from geared_scenes import RPM, spring_table, with_bushings, with_gear, with_mesh
+from sliced_face import sliced_database
 
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing
-from dynamics.integrators import static_equilibrium
+from dynamics.integrators import integrate, static_equilibrium
 from dynamics.joints import Coupling
+from dynamics.loads import TimeLaw
+from dynamics.mechanism.line_of_action import common_face_width, misalignment_gradient
+from dynamics.meshes import CoastFlank
 from dynamics.motion.force_balance import force_balance
+from dynamics.results import EnergyAudit
+from dynamics.scene import Integration, Outputs
 from dynamics.shafts import BeamSection, Inertia, Shaft
+from dynamics.simulation import simulate
+
+# Flexible shafts at rest: closed forms of bending, twist and bearing forces.
+
 
 STIFF = 1e8
 HOLLOW = BeamSection(0.2, 0.05, 0.02)
@@ -140,3 +150,119 @@ def test_torque_winds_a_shaft_up_between_its_two_gears_and_passes_its_coupling()
     assert abs(joint) == pytest.approx(100.0 / 1e4, rel=1e-8, abs=0.0)
     assert wound * joint > 0.0
     assert turned("output", 0.14) == pytest.approx(turned("output", 0.2), rel=1e-9)  # nothing passes there
+
+
+# Flexible shafts in time: energy, momentum, both integrators, the tilt that a mesh reads.
+
+
+def run_up(duration=0.05, **changes):
+    """Torque in at one end, out at the other, gears off the middle."""
+    scene = flexible_pair(gear=0.07, speed=TimeLaw.ramp(0.0, 2000.0 * RPM, duration), duration=duration)
+    load = replace(scene.loads[0], position=0.2)
+    return replace(scene, loads=(load,), **changes)
+
+
+@pytest.mark.law
+def test_no_energy_comes_from_shafts_that_spin_and_bend():
+    """Undamped and thrown: what does not balance is at most 2 % of the energy of the throw in a second."""
+    duration = 2e-3
+    scene = with_mesh(
+        with_bushings(flexible_pair(gear=0.07, table=spring_table(4e8)), damping_ratio=0.0), damping=0.0
+    )
+    shafts = tuple(replace(shaft, damping_ratio=0.0) for shaft in scene.shafts)
+    effects = {**scene.effects, "gyroscopic": "on"}
+    drive = replace(scene.drives[0], speed=TimeLaw.constant(2000.0))
+    system = assemble(replace(scene, shafts=shafts, effects=effects, drives=(drive,), duration=duration))
+    start, rng = static_equilibrium(system), np.random.default_rng(7)
+    velocity = 1e-3 * rng.normal(size=start.displacement.size) / system.arrays.scale
+    run = integrate(system, start, Integration(tolerance=1e-12), velocity=velocity)
+    assert run.status.usable
+    audit = EnergyAudit.from_arrays(run.work, run.stored)
+    thrown = 0.5 * velocity @ system.arrays.mass @ velocity
+    assert abs(audit.residual) < 0.02 * duration * thrown
+    assert abs(audit.stored_bushings) > 1e-2 * thrown
+
+
+@pytest.mark.parametrize("rigid", [True, False])
+def test_the_drives_power_where_it_turns_the_shaft_closes_the_balance(rigid):
+    """Imposed at the end of a shaft that winds up, rigidly or through a spring there."""
+    scene = run_up()
+    drive = scene.drives[0] if rigid else replace(scene.drives[0], stiffness=1e6, damping=10.0)
+    run = simulate(replace(scene, drives=(drive,), integration=Integration(tolerance=1e-11)))
+    assert run.energy.relative_to_throughput < 2e-7  # as with rigid shafts
+    assert run.energy.bushings > 0.0
+    given = np.trapezoid(
+        run.drive_torque[0] * drive.speed(run.time), run.time
+    )  # of the drive, not of the shaft
+    assert given == pytest.approx(run.energy.drive, rel=1e-3)
+
+
+def test_the_mass_of_each_shaft_moves_as_mesh_and_bearings_push():
+    """Momentum: m x'' of the center of mass is the mesh force less what the bearings carry."""
+    outputs = Outputs(sample_rate=5e3, displacements=True, accelerations=True)
+    run = simulate(run_up(outputs=outputs))
+    system = assemble(run_up(outputs=outputs))
+    line = system.lines[0].force
+    for shaft, sign in (("input", -1.0), ("output", 1.0)):
+        mass = system.rotors[system.scene.shaft_index(shaft)].inertia.mass
+        own = [row for row, name in enumerate(run.bearing) if name.startswith(shaft)]
+        for axis, kind in enumerate("xy"):
+            taken = mass * run.acceleration[run.freedom.index(f"{shaft}.{kind}")]
+            pushed = sign * run.mesh_force[0] * line[axis] - run.bearing_force[own, axis].sum(axis=0)
+            np.testing.assert_allclose(taken, pushed, atol=1e-7 * np.max(run.mesh_force))
+            assert np.max(np.abs(taken)) > 1.0
+
+
+def test_both_integrators_agree():
+    runs = [
+        simulate(run_up(0.02, integration=Integration(method, 1e-11))) for method in ("implicit", "explicit")
+    ]
+    first, second = (run.dynamic_transmission_error[0] for run in runs)
+    assert np.sqrt(np.mean((first - second) ** 2)) < 2e-11
+    assert np.ptp(first) > 1e-6
+
+
+@pytest.mark.parametrize("helix", [0.0, 0.15])
+def test_a_mesh_reads_the_tilt_of_its_gears_and_not_that_of_their_shafts(helix):
+    """m = s b (tilt_1 - tilt_2) . (z x n) with the tilts of the sections that carry the gears."""
+    scene = flexible_pair(gear=0.17, bearings=(0.0, 0.12), section=replace(STEEL, outer_diameter=0.03))
+    scene = with_gear(with_gear(scene, 0, base_helix_angle=helix), 1, base_helix_angle=-helix)
+    system = assemble(scene)
+    q = static_equilibrium(system).displacement
+    sense, line = system.kinematics.mesh_sense[0], system.lines[0]
+    row = misalignment_gradient(scene, system.rotors, 0, line, sense)
+    across = np.cross([0.0, 0.0, 1.0], line.force * [1.0, 1.0, 0.0]) * sense * common_face_width(scene, 0)
+    tilts = [section_motion(system, shaft, 0.17, q)[3:] for shaft in ("input", "output")]
+    here = float(system.freedoms.keep(row) @ q)
+    assert here == pytest.approx(float((tilts[0] - tilts[1]) @ across), rel=1e-12, abs=0.0)
+    middle = [section_motion(system, shaft, 0.0, q)[3:] for shaft in ("input", "output")]
+    assert abs(here) > 1.5 * abs(float((middle[0] - middle[1]) @ across))
+
+
+@pytest.mark.law
+def test_a_run_with_all_effects_of_the_mesh_closes_its_balance_and_reads_the_local_tilt():
+    """Misalignment, center distance, moving application point, friction and backlash on flexible shafts."""
+    table = sliced_database((-60e-6, 0.0, 60e-6), (-1e-4, 0.0, 1e-4), positions=12).force_table()
+    names = (
+        "dynamic_misalignment",
+        "dynamic_center_distance",
+        "moving_application_point",
+        "backlash",
+        "gyroscopic",
+    )
+    scene = flexible_pair(
+        gear=0.06,
+        table=table,
+        speed=TimeLaw.constant(900.0 * RPM),
+        duration=0.01,
+        effects=dict.fromkeys(names, "on"),
+    )
+    back = CoastFlank(80e-6, 0.49)
+    run = simulate(replace(with_mesh(scene, coast=back), outputs=Outputs(displacements=True)))
+    assert run.energy.relative_to_throughput < 1e-6
+    assert {e["effect"] for e in run.effect_ledger["entries"] if e["on"]} >= {*names, "flexible_shafts"}
+    system = assemble(with_mesh(scene, coast=back))
+    line, sense = system.lines[0], system.kinematics.mesh_sense[0]
+    row = system.freedoms.keep(misalignment_gradient(scene, system.rotors, 0, line, sense))
+    np.testing.assert_allclose(run.misalignment[0], row @ run.displacement, rtol=1e-9, atol=1e-15)
+    assert np.max(np.abs(run.misalignment)) > 1e-7

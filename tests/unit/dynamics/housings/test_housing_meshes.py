@@ -1,10 +1,12 @@
-"""Meshes of housings from files and from STEP: the same by every format, one clear error for a bad one."""
+"""Meshes of housings: made here, of other programs, and their surfaces."""
 
 from __future__ import annotations
 
+import builtins
 import re
 import subprocess
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +14,8 @@ from typing import Any
 import meshlane
 import numpy as np
 import pytest
+from foreign_meshes import FOREIGN_MESHES
+from foreign_netcdf import SECRET, write_canary
 from lattice_meshes import box, tube
 
 from dynamics.errors import InputError, SolveError
@@ -27,11 +31,16 @@ from dynamics.housings import (
     SeatBore,
     mesh_step,
     read_mesh,
+    write_surface,
 )
 from dynamics.housings.assembled_housing import _mass_and_stiffness
 from dynamics.housings.mesh_files import _element_shape
 from dynamics.housings.reduction import reduce_housing
+from dynamics.solid_housing import check_mesh_content
 from host import missing_protections
+
+# Meshes of housings from files and from STEP: the same by every format, one clear error for a bad one.
+
 
 MESH = tube(0.12, 0.08, 0.1, (8, 1, 2))
 MILLIMETERS = 1000.0 * MESH.points
@@ -296,3 +305,94 @@ def test_a_reader_that_is_led_elsewhere_reaches_nothing(
     with pytest.raises((InputError, SolveError)) as refused:
         command(*arguments)
     assert "canary" not in str(refused.value)
+
+
+# Meshes that lead to other files are refused where they are read and where they are sent.
+
+
+LATER = ("pieces in other files", "a mesh of another program", "geometry in place of a mesh")
+"""Those that name files where their reader looks for none."""
+
+
+@pytest.fixture
+def opened(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The files that are opened from here on."""
+    files: list[str] = []
+    plain = builtins.open
+
+    def recorded(file: Any, *options: Any, **others: Any) -> Any:
+        files.append(str(file))
+        return plain(file, *options, **others)
+
+    monkeypatch.setattr(builtins, "open", recorded)
+    return files
+
+
+@pytest.mark.parametrize("name", FOREIGN_MESHES)
+def test_it_is_refused_unread(tmp_path: Path, opened: list[str], name: str) -> None:
+    """The refusal tells neither the other file, nor a folder, nor the words of a parser."""
+    canary = write_canary(tmp_path)
+    suffix, content = FOREIGN_MESHES[name]
+    file = tmp_path / f"housing{suffix}"
+    file.write_bytes(content(canary))
+    caught: list[Exception] = []
+
+    def read() -> None:
+        with pytest.raises(InputError) as refusal:
+            read_mesh(file, "mm")
+        caught.append(refusal.value)
+
+    reading = threading.Thread(target=read, daemon=True)
+    reading.start()
+    reading.join(5.0)
+    assert str(canary) not in opened
+    (refusal,) = caught
+    assert (refusal.field, refusal.value) == ("mesh_file", file.name)
+    assert SECRET.decode() not in str(refusal) and str(tmp_path) not in str(refusal)
+
+
+@pytest.mark.parametrize("name", [name for name in FOREIGN_MESHES if name not in LATER])
+def test_its_content_tells_before_it_is_read(tmp_path: Path, name: str) -> None:
+    suffix, content = FOREIGN_MESHES[name]
+    with pytest.raises(InputError, match=r"other files|document type|ENDDATA"):
+        check_mesh_content(f"housing{suffix}", content(tmp_path))
+
+
+def test_words_that_look_like_it_are_no_matter(tmp_path: Path) -> None:
+    """Comments and names; a text in Latin-1."""
+    text = "** INCLUDE in a comment, \xfc\n*HEADING\nincluded\n*NODE\n1, 0, 0, 0\n*NSET, NSET=INCLUDE\n1\n"
+    check_mesh_content("a.inp", text.encode("latin-1"))
+    check_mesh_content("a.bdf", b"BEGIN BULK\n$ INCLUDE 'a'\nGRID,1,,0.,0.,0.\nENDDATA\n")
+    (tmp_path / "a.inp").write_bytes(text.encode("latin-1"))
+    with pytest.raises(InputError, match="tetrahedra"):  # it is read, and has none
+        read_mesh(tmp_path / "a.inp", "mm")
+
+
+# Files of a housing's surface, as other programs read them.
+
+
+def test_a_reader_finds_quadratic_triangles_with_their_fields(tmp_path: Path) -> None:
+    mesh = box((0.3, 0.2, 0.1), (2, 2, 1))
+    nodes, triangles = np.unique(mesh.surface, return_inverse=True)
+    points, triangles = mesh.points[nodes], triangles.reshape(-1, 6)
+    file = tmp_path / "mode.vtu"
+    write_surface(file, points, triangles, {"motion": 2.0 * points, "size": points[:, 0]})
+    found = meshlane.read(file)
+    (cells,) = found.cells
+    assert cells.type == "triangle6"
+    np.testing.assert_array_equal(found.points, points)
+    np.testing.assert_array_equal(found.point_data["motion"], 2.0 * points)
+    np.testing.assert_array_equal(found.point_data["size"], points[:, 0])
+    for corner, middle in enumerate((3, 4, 5)):  # VTK: mid-side nodes of edges 01, 12, 20
+        ends = found.points[cells.data[:, [corner, (corner + 1) % 3]]].mean(axis=1)
+        np.testing.assert_allclose(found.points[cells.data[:, middle]], ends, atol=1e-12)
+    assert [each.name for each in tmp_path.iterdir()] == ["mode.vtu"]
+    (plain := tmp_path / "plain").write_text("made as every file")
+    assert file.stat().st_mode == plain.stat().st_mode
+
+
+def test_what_cannot_be_written_leaves_no_file(tmp_path: Path) -> None:
+    mesh = box((0.3, 0.2, 0.1), (1, 1, 1))
+    with pytest.raises(ValueError, match="len"):
+        write_surface(tmp_path / "mode.vtu", mesh.points, mesh.surface, {"motion": np.zeros((2, 3))})
+    assert list(tmp_path.iterdir()) == []

@@ -1,4 +1,4 @@
-"""Whirl: closed forms of a disc on bearings, the same from a fixed and from a rotating frame."""
+"""Whirl, terms of speed, modes left out, and motions that stiffness excites."""
 
 from __future__ import annotations
 
@@ -7,15 +7,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from geared_scenes import gear_pair_scene, spring_table
-from planetary_scenes import driven_scene, published_set
+from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
+from housed_pair import ON, housed_pair
+from planetary_scenes import driven_scene, planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing
 from dynamics.joints import Coupling
-from dynamics.linearize import natural_modes, whirl_modes
+from dynamics.linearize import harmonic_response, linearize, natural_modes, steady_vibration, whirl_modes
+from dynamics.linearize.campbell import terms_at
+from dynamics.linearize.harmonic_response import extremes, parametric_response
+from dynamics.linearize.operating_speeds import law_speeds
+from dynamics.linearize.steady_vibration import _modal_elimination, excited, gyroscopic_terms, swept_vibration
 from dynamics.loads import TimeLaw
+from dynamics.scene import Integration, Outputs
 from dynamics.shafts import Inertia, Shaft
+from dynamics.simulation import simulate
+
+# Whirl: closed forms of a disc on bearings, the same from a fixed and from a rotating frame.
+
 
 SPIN = 300.0  # rad/s
 DISC = Inertia(4.0, 0.02, 0.0104)
@@ -92,3 +102,131 @@ def test_speed_splits_the_double_modes_of_a_planetary_set():
     carrier = 2000.0 * 27 / 126 / (2.0 * math.pi)
     lowest = np.sort(rotating)[:2]
     assert lowest[1] - lowest[0] > 0.2 * carrier
+
+
+# Gyroscopic and frame terms over speed, from those at two speeds.
+
+
+def test_terms_at_every_speed_are_those_of_that_speed_alone() -> None:
+    system = assemble(planetary_scene(published_set(3), duration=0.01))
+    speeds = np.array([3.0, -40.0, 250.0])
+    for speed, (damping, stiffness) in zip(speeds, gyroscopic_terms(system, speeds), strict=True):
+        gyroscopic, stiffening = terms_at(system, law_speeds(system, abs(float(speed))))
+        assert np.abs(gyroscopic).max() > 0.0 < np.abs(stiffening).max()
+        np.testing.assert_allclose(damping, gyroscopic, rtol=1e-12, atol=1e-12 * np.abs(gyroscopic).max())
+        scale = np.abs(stiffening).max()
+        np.testing.assert_allclose(stiffness, stiffening, rtol=1e-10, atol=1e-10 * scale)
+
+
+# Modal freedoms eliminated from forced vibration: the response of the whole matrices, or none.
+
+
+@pytest.mark.parametrize("gyroscopic", ["off", "on"])
+def test_a_response_with_the_modes_eliminated_is_that_of_the_whole_matrices(monkeypatch, gyroscopic):
+    table = spring_table(4e8, amplitude=1e-6)
+    scene = housed_pair(effects=ON | {"gyroscopic": gyroscopic})
+    system = assemble(replace(scene, meshes=gear_pair_scene(table).meshes))
+    speeds = np.linspace(50.0, 400.0, 40)
+    small = harmonic_response(system, speeds)
+    eliminated = steady_vibration._modal_elimination
+    seen = []
+    monkeypatch.setattr(
+        steady_vibration, "_modal_elimination", lambda *given: seen.append(eliminated(*given))
+    )
+    whole = harmonic_response(system, speeds)
+    assert all(part is not None for part in seen) and seen
+    for name in ("dynamic_transmission_error", "bearing_force", "displacement"):
+        ours, theirs = getattr(small, name), getattr(whole, name)
+        np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=1e-11 * np.max(np.abs(theirs)), err_msg=name)
+    assert small.residual < 1e-10
+
+
+def test_gyroscopic_terms_turn_what_is_left():
+    """Without them the same response is another one: they are not left out with the modes."""
+    table, speeds = spring_table(4e8, amplitude=1e-6), np.linspace(50.0, 400.0, 10)
+    answers = []
+    for gyroscopic in ("off", "on"):
+        scene = housed_pair(effects=ON | {"gyroscopic": gyroscopic})
+        system = assemble(replace(scene, meshes=gear_pair_scene(table).meshes))
+        answers.append(harmonic_response(system, speeds).displacement)
+    without, turning = answers
+    assert np.max(np.abs(turning - without)) > 1e-6 * np.max(np.abs(without))
+
+
+def test_what_the_rows_of_elements_do_not_explain_is_not_eliminated():
+    system = assemble(housed_pair())
+    linear, modal = linearize(system), system.arrays.sparse.modal
+    unit = np.ones(linear.scale.size)
+    assert _modal_elimination(modal, unit, linear.stiffness, linear.damping, linear.mass) is not None
+    coupled = linear.stiffness.copy()
+    coupled[-1, -2] = coupled[-2, -1] = 1e-6 * np.max(np.abs(coupled))
+    assert _modal_elimination(modal, unit, coupled, linear.damping, linear.mass) is None
+    twice = modal._replace(shape=np.repeat(modal.shape[:1], len(modal.shape), axis=0))
+    assert _modal_elimination(twice, unit, linear.stiffness, linear.damping, linear.mass) is None
+
+
+# Response with a stiffness that varies along the pitch: linear limit, time domain, swept resonances.
+
+
+MEAN_STIFFNESS, RIPPLE = 4e8, 1e-7
+MASS = 1.1344291072112745e-3 / BASE_RADIUS**2
+NATURAL = np.sqrt(MEAN_STIFFNESS / MASS)
+
+
+def test_a_constant_stiffness_leaves_the_harmonic_response():
+    system = assemble(gear_pair_scene(spring_table(MEAN_STIFFNESS, RIPPLE)))
+    speed = np.array([60.0, 300.0])
+    found, shift = parametric_response(excited(system, 0.0, 4), speed, np.zeros(2), 4)
+    plain = harmonic_response(system, speed, 4)
+    first = found.dynamic_transmission_error[:, :, :1]
+    largest = np.max(np.abs(plain.dynamic_transmission_error))
+    np.testing.assert_allclose(first, plain.dynamic_transmission_error, atol=1e-9 * largest, rtol=0.0)
+    np.testing.assert_allclose(shift, 0.0, atol=1e-9 * largest)
+    np.testing.assert_allclose(found.bearing_force[..., :1], plain.bearing_force, rtol=1e-6)
+
+
+@pytest.mark.parametrize("rpm", [700.0, 2300.0, 6000.0])
+def test_a_varying_stiffness_is_that_of_the_time_domain(rpm):
+    """The 20/20 pair, one or two teeth in contact; with the mean stiffness alone it is far off."""
+    scene = gear_pair_scene(
+        square_wave_table(), speed=TimeLaw.constant(rpm * RPM), duration=0.3, on_violation="report"
+    )
+    scene = with_mesh(scene, damping_ratio=0.1)
+    at = excited(assemble(scene), 0.0, 24, 256)
+    found, shift = parametric_response(at, np.array([rpm * RPM]), np.zeros(1), 24)
+    least, most = extremes(found.dynamic_transmission_error, found.order)
+    outputs = Outputs(sample_rate=1e5, energy_audit=False, receipt="minimal")
+    run = simulate(replace(scene, outputs=outputs, integration=Integration(tolerance=1e-10)))
+    error = run.dynamic_transmission_error[0, run.time.size // 2 :]
+    assert (most - least)[0, 0] == pytest.approx(np.ptp(error), rel=0.05)
+    mean = np.mean(at.cycles[0].static_error) + shift[0, 0]
+    assert mean == pytest.approx(np.mean(error), rel=2e-3)
+    force = run.bearing_force[0, 1, run.time.size // 2 :]
+    low, high = extremes(found.bearing_force[:1, 1], found.order)
+    assert (high - low)[0, 0] == pytest.approx(np.ptp(force), rel=0.1)
+    assert found.least_mesh_force[0, 0] == pytest.approx(
+        np.min(run.mesh_force[0, run.time.size // 2 :]), abs=0.06 * 2660.0
+    )
+
+
+def test_a_swept_resonance_is_as_high_as_it_can_grow():
+    """One freedom hardly damped, driven through its resonance in 0.4 s (Lewis, 1932)."""
+    top = 2.0 * NATURAL / 20
+    scene = replace(
+        gear_pair_scene(spring_table(MEAN_STIFFNESS, RIPPLE), duration=0.4), bushings=(), effects={}
+    )
+    scene = with_mesh(scene, damping=2e-4 * MASS * NATURAL)
+    scene = replace(
+        scene,
+        drives=(replace(scene.drives[0], speed=TimeLaw((0.0, 0.4), (0.02 * top, top))),),
+        outputs=Outputs(sample_rate=1e5, energy_audit=False, receipt="minimal"),
+    )
+    run = simulate(scene)
+    swing = np.ptp(run.dynamic_transmission_error[0]) / 2.0
+    speed, rate = np.array([NATURAL / 20]), np.array([0.98 * top / 0.4])
+    at = excited(assemble(scene), 0.0, 4)
+    found = swept_vibration(at, speed, rate, np.array([1]))
+    amplitude = np.abs(found.displacement @ at.system.arrays.direction[0])[0, 0]
+    assert amplitude == pytest.approx(swing, rel=0.15)
+    standing = swept_vibration(at, speed, np.zeros(1), np.array([1]))
+    assert np.abs(standing.displacement @ at.system.arrays.direction[0])[0, 0] > 4.0 * amplitude

@@ -1,13 +1,30 @@
-"""Elastic coordinates of a shaft: closed forms, orthogonality to rigid motion, and the stated errors."""
+"""Elastic shafts: stiffness, inertia, conical sections."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
+from scipy.optimize import brentq
+from scipy.special import iv, jv, kv, yv
 
-from dynamics.shafts import BeamSection, Disc, Inertia, PointOfApplication, elastic_shaft, hollow_cylinder
+from dynamics.errors import InputError
+from dynamics.shafts import (
+    BeamSection,
+    Disc,
+    Inertia,
+    PointOfApplication,
+    Shaft,
+    elastic_shaft,
+    hollow_cylinder,
+    timoshenko_beam,
+)
+
+# Elastic coordinates of a shaft: closed forms, orthogonality to rigid motion, and the stated errors.
+
 
 SHAFT = (BeamSection(0.3, 0.04),)
 STEPPED = (BeamSection(0.1, 0.03), BeamSection(0.12, 0.05, 0.02), BeamSection(0.08, 0.025))
@@ -109,3 +126,174 @@ def test_both_planes_bend_alike():
     np.testing.assert_array_equal(rows[0, :b], rows[1, b : 2 * b])
     np.testing.assert_array_equal(rows[4, :b], -rows[3, b : 2 * b])
     assert np.any(rows[0, :b] != 0.0)
+
+
+# Inertia of cylinders against the closed forms, by subtraction and by slicing.
+
+
+def test_a_solid_steel_cylinder():
+    part = hollow_cylinder(0.1, 0.2, density=7850.0)
+    mass = 7850.0 * math.pi * 0.05**2 * 0.2
+    assert part.mass == pytest.approx(mass)
+    assert part.polar == pytest.approx(0.5 * mass * 0.05**2)
+    assert part.transverse == pytest.approx(mass * (0.05**2 / 4 + 0.2**2 / 12))
+
+
+def test_a_bore_takes_away_its_own_cylinder():
+    hollow, solid, core = (hollow_cylinder(*a) for a in ((0.1, 0.03, 0.04), (0.1, 0.03), (0.04, 0.03)))
+    for name in ("mass", "polar", "transverse"):
+        assert getattr(hollow, name) == pytest.approx(getattr(solid, name) - getattr(core, name))
+
+
+@pytest.mark.parametrize(
+    "sizes", [(0.0, 0.1, 0.0), (0.1, -0.1, 0.0), (0.1, 0.1, 0.1), (0.1, 0.1, -0.01), (math.nan, 0.1, 0.0)]
+)
+def test_impossible_sizes_are_refused(sizes):
+    with pytest.raises(InputError):
+        hollow_cylinder(*sizes)
+
+
+def test_negative_inertia_is_refused():
+    with pytest.raises(InputError, match=r"^polar"):
+        Inertia(1.0, -1e-9, 0.0)
+
+
+# Conical sections of shafts: closed forms of a cantilever cone, its body, its frequency, bad input.
+
+
+LENGTH, DIAMETER = 0.3, 0.05
+KINDS = ((jv, -1.0, 1.0), (yv, -1.0, 1.0), (iv, 1.0, 1.0), (kv, -1.0, -1.0))
+RATIOS = [0.05, 0.5, 0.9, 2.0, 20.0]
+
+
+def cone(ratio: float, **other: float) -> BeamSection:
+    """Return a solid cone, at its right end `ratio` times as thick."""
+    return BeamSection(LENGTH, DIAMETER, end_outer_diameter=ratio * DIAMETER, **other)
+
+
+def tip_motion(section: BeamSection, freedom: int, load: float) -> np.ndarray:
+    """Return the motion of the right end under a load there, clamped at the left end."""
+    stiffness = timoshenko_beam([section]).stiffness[6:, 6:]
+    force = np.zeros(stiffness.shape[0])
+    force[freedom - 6] = load
+    return np.linalg.solve(stiffness, force)[-6:]
+
+
+@pytest.mark.parametrize("r", RATIOS)
+def test_a_cantilever_cone_moves_as_the_closed_form_says(r: float) -> None:
+    """Integrals of (1 - x)^2, 1 - x and 1 over (1 + (r - 1) x)^4, and of 1 over its square."""
+    section = cone(r)
+    bent = section.youngs_modulus * math.pi / 64.0 * DIAMETER**4
+    area = math.pi / 4.0 * DIAMETER**2
+    shear = section.shear_coefficient * section.shear_modulus * area
+    moved = tip_motion(section, 0, 1e3)
+    assert moved[0] == pytest.approx(1e3 * (LENGTH**3 / (3.0 * bent) + LENGTH / shear) / r, rel=1e-9)
+    assert moved[4] == pytest.approx(1e3 * LENGTH**2 / bent * (2.0 * r + 1.0) / (6.0 * r**2), rel=1e-9)
+    twisted = LENGTH / (section.shear_modulus * math.pi / 32.0 * DIAMETER**4)
+    assert tip_motion(section, 5, 7.0)[5] == pytest.approx(
+        7.0 * twisted * (r * r + r + 1) / (3 * r**3), rel=1e-9
+    )
+    stretched = LENGTH / (section.youngs_modulus * area * r)
+    assert tip_motion(section, 2, 5e4)[2] == pytest.approx(5e4 * stretched, rel=1e-9)
+
+
+@pytest.mark.parametrize("bores", [(0.0, None), (0.01, 0.03), (0.03, 0.01)])
+def test_as_a_rigid_body_it_is_a_frustum_less_its_bore(bores: tuple[float, float | None]) -> None:
+    section = replace(cone(1.6), bore_diameter=bores[0], end_bore_diameter=bores[1])
+    outer = frustum(DIAMETER, 1.6 * DIAMETER)
+    bore = frustum(bores[0], bores[0] if bores[1] is None else bores[1])
+    mass, moment, second, polar = (section.density * (a - b) for a, b in zip(outer, bore, strict=True))
+    body, center = section.body
+    assert body.mass == pytest.approx(mass, rel=1e-12)
+    assert center == pytest.approx(moment / mass, rel=1e-12)
+    assert body.polar == pytest.approx(polar, rel=1e-12)
+    assert body.transverse == pytest.approx(second + 0.5 * polar - moment**2 / mass, rel=1e-11)
+    beam = timoshenko_beam([section], longest=0.05)
+    z = beam.position - center
+    rigid = np.tile(np.eye(6), (z.size, 1, 1))
+    rigid[:, 0, 4], rigid[:, 1, 3] = z, -z
+    rigid = rigid.reshape(-1, 6)
+    assert np.max(np.abs(beam.stiffness @ rigid)) < 1e-10 * np.max(np.abs(beam.stiffness))
+    expected = np.diag([body.mass] * 3 + [body.transverse] * 2 + [body.polar])
+    np.testing.assert_allclose(rigid.T @ beam.mass @ rigid, expected, rtol=1e-11, atol=1e-12)
+
+
+def frustum(left: float, right: float) -> tuple[float, float, float, float]:
+    """Volume, its first and second moment along the axis from the left end, and its polar moment."""
+    a, b, length = left / 2.0, right / 2.0, LENGTH
+    return (
+        math.pi * length / 3.0 * (a * a + a * b + b * b),
+        math.pi * length**2 / 12.0 * (a * a + 2.0 * a * b + 3.0 * b * b),
+        math.pi * length**3 / 30.0 * (a * a + 3.0 * a * b + 6.0 * b * b),
+        math.pi * length / 10.0 * (a**4 + a**3 * b + a * a * b * b + a * b**3 + b**4),
+    )
+
+
+def clamped_frequency(r: float) -> float:
+    """First root of Kirchhoff's equation (1880) in sqrt(E I/(rho A))/L^2, I and A of the clamped base.
+
+    With x from the apex, 1 at the base, (x^4 y'')'' = p^2 x^2 y has the solutions x^-1 Z_2(2 sqrt(p x)),
+    Z the Bessel functions J, Y, I, K; y = y' = 0 at x = 1, y'' = (x^4 y'')' = 0 at x = r.
+    """
+
+    def determinant(p: float) -> float:
+        base, tip = 2.0 * math.sqrt(p), 2.0 * math.sqrt(p * r)
+        rows = [[f(2, base), s * f(3, base), f(4, tip), t * f(3, tip)] for f, s, t in KINDS]
+        return float(np.linalg.det(rows))
+
+    grid = np.linspace(2.0, 40.0, 400)
+    values = [determinant(p) for p in grid]
+    first = next(k for k in range(399) if values[k] * values[k + 1] < 0.0)
+    return float(brentq(determinant, grid[first], grid[first + 1])) * (1.0 - r) ** 2
+
+
+@pytest.mark.parametrize("r", [0.1, 0.5])
+def test_a_slender_cone_clamped_at_its_base_vibrates_at_the_closed_form(r: float) -> None:
+    section = BeamSection(1.0, 0.005, end_outer_diameter=r * 0.005)
+    beam = timoshenko_beam([section], longest=0.02)
+    plane = [i for i in range(6, beam.mass.shape[0]) if i % 6 in (0, 4)]
+    own = np.ix_(plane, plane)
+    square = eigh(beam.stiffness[own], beam.mass[own], eigvals_only=True)[0]
+    unit = math.sqrt(section.youngs_modulus * section.second_moment / (section.density * section.area))
+    assert math.sqrt(square) / unit == pytest.approx(clamped_frequency(r), rel=2e-5)
+
+
+def test_many_steps_come_to_the_cone() -> None:
+    """The frequencies of a shaft of n cylinders approach those of the cone with 1/n^2."""
+    ends = (
+        PointOfApplication(0.0, True, True, True, True),
+        PointOfApplication(LENGTH, True, True, True, True),
+    )
+
+    def first(sections: tuple[BeamSection, ...]) -> float:
+        return float(elastic_shaft(sections, (), ends, 4e3, 0.0).bending.frequency[0])
+
+    def stepped(count: int) -> tuple[BeamSection, ...]:
+        middles = (np.arange(count) + 0.5) / count
+        return tuple(BeamSection(LENGTH / count, DIAMETER * (1.0 - 0.4 * x)) for x in middles)
+
+    exact = first((cone(0.6),))
+    coarse, fine = (abs(first(stepped(count)) / exact - 1.0) for count in (8, 16))
+    assert coarse < 5e-3
+    assert fine < 0.35 * coarse + 1e-4
+
+
+def test_a_shaft_of_two_cones_weighs_what_they_do_and_lies_on_their_centroid() -> None:
+    shaft = Shaft("shaft", 0.6, sections=(cone(2.0), replace(cone(1.0), outer_diameter=2.0 * DIAMETER)))
+    (first, z), (second, there) = shaft.bodies
+    assert second.mass == pytest.approx(first.mass, rel=1e-12)
+    assert z + there == pytest.approx(0.6, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("field", "sizes"),
+    [
+        ("end_bore_diameter", {"end_bore_diameter": 0.05}),
+        ("end_bore_diameter", {"bore_diameter": 0.03, "end_outer_diameter": 0.02}),
+        ("end_outer_diameter", {"end_outer_diameter": 0.0}),
+    ],
+)
+def test_what_is_no_cone_is_named(field: str, sizes: dict[str, float]) -> None:
+    with pytest.raises(InputError) as caught:
+        BeamSection(LENGTH, **{"outer_diameter": DIAMETER, **sizes})
+    assert caught.value.field == field

@@ -1,4 +1,4 @@
-"""Torques by speed: curves, terminal speed, run-up against closed forms, power."""
+"""Laws of loads: over angle, time and speed."""
 
 from __future__ import annotations
 
@@ -9,13 +9,123 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table
 
+from dynamics.arrays.arrays import revolutions, slope
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.forces import SpeedTorque
-from dynamics.joints import FreeRotation
-from dynamics.loads import SpeedCurve, TimeLaw
+from dynamics.joints import FreeRotation, ImposedRotation
+from dynamics.loads import AngleLaw, SpeedCurve, TimeLaw
+from dynamics.motion.observation import observe_laws
 from dynamics.scene import Integration
 from dynamics.simulation import simulate
+
+# An angle over time: its speed, acceleration, and what a run makes of it.
+
+
+TIME = tuple(np.linspace(0.0, 0.1, 41).tolist())
+ANGLE = tuple(50.0 * t + 0.2 * np.sin(2 * np.pi * 30.0 * t) for t in TIME)
+
+
+def test_speed_and_acceleration_are_those_of_the_angle():
+    law = AngleLaw(TIME, ANGLE)
+    middle = np.linspace(0.02, 0.08, 61)
+    speed = 50.0 + 0.2 * 2 * np.pi * 30.0 * np.cos(2 * np.pi * 30.0 * middle)
+    np.testing.assert_allclose(law(middle), speed, rtol=2e-3)
+    between = 0.0507  # of two knots
+    rise = (law(between + 1e-7) - law(between - 1e-7)) / 2e-7
+    assert slope(law, np.array([between]))[0] == pytest.approx(rise, rel=1e-4)
+    assert law(0.2) == law(0.1)
+    errors = []
+    for points in (21, 41, 81):
+        t = np.linspace(0.0, 0.1, points)
+        found = AngleLaw(tuple(t), tuple(np.sin(2 * np.pi * 30.0 * t)))(middle)
+        errors.append(np.max(np.abs(found - 2 * np.pi * 30.0 * np.cos(2 * np.pi * 30.0 * middle))))
+    assert np.log2(errors[0] / errors[2]) / 2.0 == pytest.approx(3.0, abs=0.4)  # order of a spline's slope
+
+
+def test_the_reference_turns_through_the_given_angles():
+    scene = gear_pair_scene(duration=0.1)
+    scene = replace(scene, drives=(ImposedRotation("d", "input", AngleLaw(TIME, ANGLE)),))
+    whole, fraction, speed, _ = observe_laws(assemble(scene).arrays, np.array(TIME))
+    turned = 2.0 * np.pi * (whole[0] + fraction[0])
+    np.testing.assert_allclose(turned - turned[0], np.array(ANGLE) - ANGLE[0], atol=1e-12)
+    result = simulate(scene)
+    assert result.energy.relative_to_throughput < 1e-6
+    fine = simulate(replace(scene, integration=Integration(tolerance=1e-12)))
+    assert fine.energy.relative < 1e-3
+    np.testing.assert_allclose(result.speed[0, ::50], AngleLaw(TIME, ANGLE)(result.time[::50]), rtol=1e-12)
+    assert speed[0, -1] == pytest.approx(result.speed[0, -1])
+
+
+@pytest.mark.parametrize(
+    ("time", "angle", "field"),
+    [
+        ((0.0, 1.0, 2.0), (0.0, 1.0, 2.0), "time"),
+        ((0.0, 1.0, 1.0, 2.0), (0.0,) * 4, "time"),
+        ((0.0, 1.0, 2.0, 3.0), (0.0,) * 3, "angle"),
+        ((0.0, 1.0, 2.0, 3.0), (0.0, 1.0, np.nan, 2.0), "angle[2]"),
+    ],
+)
+def test_bad_tables_are_refused(time, angle, field):
+    with pytest.raises(InputError) as caught:
+        AngleLaw(time, angle)
+    assert caught.value.field == field
+
+
+# Laws of time: values, exact integrals, refusals.
+
+
+LAWS = [
+    TimeLaw.constant(7.0),
+    TimeLaw.ramp(0.0, 100.0, 5.0),
+    TimeLaw.ramp(-20.0, 80.0, 2.0, begin=1.0, shape="smooth"),
+    TimeLaw((-1.0, 0.5, 2.0, 4.0), (3.0, -5.0, 40.0, 0.0)),
+]
+
+
+def test_a_ramp_runs_straight_and_holds():
+    law = TimeLaw.ramp(10.0, 30.0, 4.0, begin=1.0)
+    np.testing.assert_allclose(law(np.array([-9.0, 1.0, 3.0, 5.0, 99.0])), [10, 10, 20, 30, 30])
+
+
+def test_a_smooth_ramp_has_no_corner():
+    law = TimeLaw.ramp(0.0, 1.0, 1.0, shape="smooth")
+    step = 1e-5
+    for knot in (0.0, 1.0):
+        slopes = [(law(knot + step) - law(knot)) / step, (law(knot) - law(knot - step)) / step]
+        np.testing.assert_allclose(slopes, 0.0, atol=1e-4)
+    assert law(0.5) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_revolutions_are_the_integral_from_time_zero(law):
+    whole, fraction = revolutions(law)
+    start, _ = law.polynomials()
+    for piece, begin in enumerate(start):
+        grid = np.linspace(0.0, begin, 400_001)
+        angle = np.trapezoid(law(grid), grid)
+        assert whole[piece] + fraction[piece] == pytest.approx(angle / (2 * math.pi), abs=1e-8)
+    assert np.all((fraction >= 0.0) & (fraction < 1.0))
+
+
+@pytest.mark.parametrize(
+    ("time", "value", "shape", "field"),
+    [
+        ((1.0, 1.0), (0.0, 1.0), "linear", "time"),
+        ((0.0, 1.0), (0.0,), "linear", "value"),
+        ((0.0, 1.0), (0.0, math.nan), "linear", "value[1]"),
+        ((0.0, 1.0), (0.0, 1.0), "cubic", "shape"),
+        ((), (), "linear", "time"),
+    ],
+)
+def test_bad_laws_are_refused_by_name(time, value, shape, field):
+    with pytest.raises(InputError) as caught:
+        TimeLaw(time, value, shape)
+    assert caught.value.field == field
+
+
+# Torques by speed: curves, terminal speed, run-up against closed forms, power.
+
 
 DRY = SpeedCurve.constant(1.0, 1.0)
 
@@ -97,8 +207,8 @@ def test_on_an_imposed_shaft_it_is_a_load_of_the_drive():
 def test_a_rising_curve_damps_and_a_falling_one_feeds():
     """The slope dT/dw at the speed of operation acts as a damper: it leaves the energy's balance closed."""
     swing = {}
-    for slope in (-2.0, 2.0):
-        curve = SpeedCurve.table([0.0, 200.0], [50.0 - 40.0 * slope, 50.0 + 160.0 * slope])
+    for rise in (-2.0, 2.0):
+        curve = SpeedCurve.table([0.0, 200.0], [50.0 - 40.0 * rise, 50.0 + 160.0 * rise])
         load = SpeedTorque("load", "output", curve)
         scene = scene_by_speed(
             load, speed=TimeLaw.constant(40.0), table=spring_table(4e8, 1e-6), duration=0.01
@@ -106,7 +216,7 @@ def test_a_rising_curve_damps_and_a_falling_one_feeds():
         scene = replace(scene, meshes=(replace(scene.meshes[0], damping=0.0),))
         result = simulate(replace(scene, integration=Integration(tolerance=1e-11)))
         error = result.dynamic_transmission_error[0]
-        swing[slope] = np.ptp(error[result.time > 0.008])
+        swing[rise] = np.ptp(error[result.time > 0.008])
     assert swing[-2.0] > 2.0 * swing[2.0]
 
 

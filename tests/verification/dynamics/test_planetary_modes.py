@@ -1,10 +1,4 @@
-"""Structure of the modes of helical planetary sets: T. Eritenel and R. G. Parker, Modal properties of
-three-dimensional helical planetary gears, Journal of Sound and Vibration 325 (2009), 397-420.
-
-With planets alike and equally spaced, central members alike in all directions and six freedoms per body,
-there are 12 single rotational-axial modes (all planets do the same), 12 pairs of translational-tilting modes,
-and 6 planet modes (central members are at rest) of N - 3 fold.
-"""
+"""Planetary sets: modes in the plane and of helical sets, and shares of the load."""
 
 from __future__ import annotations
 
@@ -13,11 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from planetary_scenes import planetary_scene, published_set
+from planetary_scenes import BEARING_STIFFNESS, MESH_STIFFNESS, PRESSURE_ANGLE, planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import BearingStiffness
+from dynamics.integrators import static_equilibrium
 from dynamics.linearize import natural_modes
+
+# Structure of the modes of helical planetary sets: T. Eritenel and R. G. Parker, Modal properties of three-
+# dimensional helical planetary gears, Journal of Sound and Vibration 325 (2009), 397-420. With planets
+# alike and equally spaced, central members alike in all directions and six freedoms per body, there are 12
+# single rotational-axial modes (all planets do the same), 12 pairs of translational-tilting modes, and 6
+# planet modes (central members are at rest) of N - 3 fold.
+
 
 KINDS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
 CENTRAL = ("sun", "ring", "carrier")
@@ -119,3 +121,105 @@ def test_the_helix_joins_plane_and_axial_motion():
     _, shapes = helical_modes(3)
     out_of, in_plane = (np.max(np.abs(shapes[:, :, at]), axis=(1, 2)) for at in ([2, 3, 4], [0, 1, 5]))
     assert np.count_nonzero((out_of > 0.05) & (in_plane > 0.05)) > 18
+
+
+# Natural frequencies of the planetary set of Lin and Parker (1999), plane model, three freedoms per body.
+
+
+RING_TORSION = 1e9  # N/m on the ring's base circle
+
+# Hz; recomputed independently for the data of the 1999 example
+ROTATIONAL = {
+    3: [0.0, 1475.75, 1930.35, 2658.32, 7462.80, 11775.27],
+    5: [0.0, 1567.40, 2006.08, 2614.80, 8065.39, 14253.09],
+}
+TRANSLATIONAL = {
+    3: [743.16, 1102.42, 1896.02, 2276.38, 6986.30, 9647.91],
+    5: [710.05, 1072.01, 1888.08, 2425.30, 7382.38, 11172.31],
+}
+PLANET = {3: [], 5: [1808.18, 5963.76, 6981.71]}
+
+
+def modes_of(planets):
+    gears = published_set(planets)
+    system = assemble(planetary_scene(gears, ring_support=RING_TORSION * gears.base_radius[2] ** 2))
+    return natural_modes(system)
+
+
+@pytest.mark.parametrize("planets", [3, 5])
+def test_natural_frequencies_are_the_published_ones(planets, record_figure):
+    modes = modes_of(planets)
+    expected = sorted([*ROTATIONAL[planets], *2 * TRANSLATIONAL[planets], *(planets - 3) * PLANET[planets]])
+    assert modes.frequency.size == 3 * (planets + 3) == len(expected)
+    assert modes.frequency[0] == 0.0
+    error = np.abs(modes.frequency[1:] / np.array(expected[1:]) - 1.0)
+    record_figure(
+        f"natural frequencies, {planets} planets",
+        float(np.max(error)),
+        "at most 1e-4",
+        "1",
+        "Lin and Parker 1999",
+    )
+    assert np.max(error) < 1e-4
+
+
+# Load sharing of planets with one displaced pin: static equilibrium against the closed form.
+
+
+ERROR = 20e-6  # m, the pin of planet 1 against the carrier's motion
+SUN_FORCE = 8000.0  # N, torque over base radius
+FLOATING = 1.0  # N/m
+
+# rigid carrier, ring held; recomputed independently to the digits shown
+PUBLISHED = {
+    (4, "floating"): [0.280661, 0.219339, 0.280661, 0.219339],
+    (5, "fixed"): [0.298114, 0.175471, 0.175471, 0.175471, 0.175471],
+}
+
+
+def shares(planets, sun, error=ERROR):
+    """Share of each planet in the load of the sun."""
+    gears = published_set(
+        planets,
+        sun_stiffness=None if sun == "fixed" else FLOATING,
+        ring_stiffness=None,
+        carrier_stiffness=None,
+        pin_errors=((0.0, -error), *[(0.0, 0.0)] * (planets - 1)),
+    )
+    solution = static_equilibrium(
+        assemble(planetary_scene(gears, sun_torque=SUN_FORCE * gears.base_radius[0]))
+    )
+    assert solution.status.usable
+    return solution.mesh_force[::2] / SUN_FORCE, solution.mesh_force[1::2] / SUN_FORCE
+
+
+def closed_form(planets, sun):
+    """L_i = 1/N + X (delta_i1 - w_i/N), w_i = 1 + 2 cos(psi_i) with a floating and 1 with a fixed sun."""
+    cosine = math.cos(PRESSURE_ANGLE)
+    stiffness = 1.0 / (2.0 / MESH_STIFFNESS + 4.0 * cosine**2 / BEARING_STIFFNESS)
+    gain = 2.0 * cosine * stiffness * ERROR / SUN_FORCE
+    assert gain == pytest.approx(0.122643, abs=5e-7)
+    angle = 2.0 * np.pi * np.arange(planets) / planets
+    weight = 1.0 + (2.0 * np.cos(angle) if sun == "floating" else 0.0)
+    return 1.0 / planets + gain * ((np.arange(planets) == 0) - weight / planets)
+
+
+@pytest.mark.parametrize("sun", ["fixed", "floating"])
+@pytest.mark.parametrize("planets", [3, 4, 5])
+def test_one_displaced_pin(planets, sun, record_figure):
+    found, at_the_ring = shares(planets, sun)
+    expected = closed_form(planets, sun)
+    if (planets, sun) in PUBLISHED:
+        np.testing.assert_allclose(expected, PUBLISHED[planets, sun], atol=1e-6)
+    error = float(np.max(np.abs(found - expected)))
+    record_figure(
+        f"planet load sharing, {planets} planets, {sun} sun", error, "at most 1e-4", "1", "closed form"
+    )
+    assert error < 1e-4
+    np.testing.assert_allclose(found, at_the_ring, rtol=1e-9)  # each planet passes on what it gets
+
+
+def test_a_floating_sun_centers_itself_between_three_planets():
+    found, _ = shares(3, "floating")
+    np.testing.assert_allclose(found, 1.0 / 3.0, atol=1e-6)
+    assert abs(shares(3, "fixed")[0][0] - 1.0 / 3.0) > 0.05
