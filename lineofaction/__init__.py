@@ -14,6 +14,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from lineofaction.gearbox import registry
+
 if TYPE_CHECKING:
     from dynamics.bearings.rolling_bearing import RollingBearing
     from dynamics.bearings.seat import Bushing
@@ -40,31 +42,10 @@ if TYPE_CHECKING:
     from lineofaction.client import LineOfActionClient as Client
     from lineofaction.gearbox.from_rexs.opened import OpenedUnit as Unit
     from lineofaction.gearbox.problems import BadInput, JobFailed
+    from lineofaction.gearbox.registry import *  # noqa: F403 (its __all__)
     from lineofaction.gearbox.schemas import Case
     from lineofaction.gearbox.schemas.scene import SceneInput as Scene
-    from lineofaction.gearbox.workbench import (
-        InputWarning,
-        ablate,
-        analyze,
-        deflect,
-        flank,
-        frontier,
-        listen,
-        modes,
-        noise,
-        open_unit,
-        optimize,
-        read,
-        response,
-        root_stress,
-        scatter,
-        sensitivity,
-        simulate,
-        steady,
-        study,
-        sweep,
-        vibration,
-    )
+    from lineofaction.gearbox.workbench import InputWarning, analyze, open_unit, read, simulate
     from lineofaction.report.document import facts, write
 
 _HOME = {
@@ -100,7 +81,7 @@ _HOME = {
     "Unit": ("lineofaction.gearbox.from_rexs.opened", "OpenedUnit"),
     "write": ("lineofaction.report.document", "write"),
 }
-"""Of the names that are not of the workbench: module, and name there."""
+"""Of the names that are neither studies nor of the workbench: module, and name there."""
 
 __all__ = [
     "AsyncClient",
@@ -133,36 +114,22 @@ __all__ = [
     "TimeLaw",
     "Tolerances",
     "Unit",
-    "ablate",
     "analyze",
-    "deflect",
     "facts",
-    "flank",
-    "frontier",
-    "listen",
-    "modes",
-    "noise",
     "open_unit",
-    "optimize",
     "read",
-    "response",
-    "root_stress",
-    "scatter",
-    "sensitivity",
     "simulate",
-    "steady",
-    "study",
-    "sweep",
-    "vibration",
     "write",
 ]
+__all__ += registry.__all__
 
 
 def __getattr__(name: str) -> object:
     """Load a name on first use."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module, own = _HOME.get(name, ("lineofaction.gearbox.workbench", name))
+    home = "lineofaction.gearbox.registry" if name in registry.__all__ else "lineofaction.gearbox.workbench"
+    module, own = _HOME.get(name, (home, name))
     value = globals()[name] = getattr(import_module(module), own)
     return value
 

@@ -18,10 +18,10 @@ from lineofaction.cli.analyze import assessed_case
 from lineofaction.cli.guard import messages, warn
 from lineofaction.cli.output import Report, check_writable, console, print_json, progress_bar, table
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
-from lineofaction.gearbox.convert.result_files import stamped
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.units import UM

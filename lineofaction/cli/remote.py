@@ -20,10 +20,10 @@ from host.extras import MissingExtra
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, print_result, table
 from lineofaction.client import JobState, LineOfActionClient, Result, Watch
-from lineofaction.gearbox.convert.result_files import stamped
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, ResultNotReady
 from lineofaction.gearbox.registry import studies_of
+from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_table, validated
 from lineofaction.gearbox.subjects import scene_inputs
 

@@ -26,10 +26,10 @@ from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.client.client import ServiceTables
 from lineofaction.gearbox.convert.case import CheckedCases
 from lineofaction.gearbox.convert.effects import model_lines
-from lineofaction.gearbox.convert.result_files import run_json, stamp
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.result_files import run_json, stamp
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.stages import staged

@@ -30,15 +30,15 @@ from lineofaction.cli.output import (
 from lineofaction.cli.simulate import tabled_scene
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.plausibility import case_warnings
-from lineofaction.gearbox.convert.result_files import stamp
 from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
-from lineofaction.gearbox.registry import Study
+from lineofaction.gearbox.result_files import stamp
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.model import BoundaryModel, item_type, spelling_of
 from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.document import read_run, write_whole
 from lineofaction.report.drawing.image import png
@@ -133,9 +133,9 @@ def _tell(
 
 
 def _inputs(study: Study, options: Json) -> Any:
-    if study.from_file and options["study"] is not None:
+    if study.takes.from_file and options["study"] is not None:
         return read_model(study.inputs, options["study"])
-    return validated(study.inputs, {} if study.from_file else _fields(study, options))
+    return validated(study.inputs, {} if study.takes.from_file else _fields(study, options))
 
 
 def _fields(study: Study, options: Json) -> Json:
@@ -157,7 +157,7 @@ def _fields(study: Study, options: Json) -> Json:
 
 
 def _read(study: Study, file: InputFile) -> tuple[CheckedCase | SceneInput, Path]:
-    if study.subject == "scene" or (study.subject != "case" and "shafts" in read_table(file)):
+    if study.takes.subject == "scene" or (study.takes.subject != "case" and "shafts" in read_table(file)):
         return assessed_scene(file)
     return CheckedCase(read_model(Case, file)), file.folder
 

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO, cast
 
 from lineofaction.client.status import Result
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas.result_kinds import SUFFIX
+from lineofaction.gearbox.registry import SUFFIX
 
 FIGURES = ".json"
 """Ending of the figures of results."""

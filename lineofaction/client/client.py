@@ -20,9 +20,8 @@ from lineofaction.client.cache import ResultCache
 from lineofaction.client.exchange import Exchange
 from lineofaction.client.job import AsyncJob, Job
 from lineofaction.client.job_calls import JobCalls
-from lineofaction.client.offers import ANALYZE, libraries, reader_of, subject_inputs
-from lineofaction.client.process import obtained
-from lineofaction.client.processes import Processes
+from lineofaction.client.offers import ANALYZE, SIMULATE, libraries, offers, reader_of, subject_inputs
+from lineofaction.client.process import AsyncProcess, Offered, Process, obtained
 from lineofaction.client.result_calls import ResultCalls
 from lineofaction.client.status import Watch
 from lineofaction.client.steps import Steps
@@ -37,15 +36,20 @@ from lineofaction.client.surface import (
 )
 from lineofaction.gearbox import schemas
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.registry import Studies
+from lineofaction.gearbox.study import F, P, StudyOf
+from lineofaction.gearbox.study import T as Answer
 from service.origin import is_loopback
 from service.version import solver_version
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
+    from dynamics.results import RunResult
     from dynamics.scene import Scene
     from fe_contact.ste import SteDatabase
     from lineofaction.gearbox.schemas import Case
+    from lineofaction.gearbox.schemas.figures import RunFigures, TableFigures
     from lineofaction.gearbox.subjects import CaseLike, SceneLike
     from service.schemas.answers import EffectBody, ExampleBody, UnitBody
 
@@ -247,7 +251,7 @@ def _host(base_url: str) -> str:
     return url.host
 
 
-class Client(Processes, JobCalls, ResultCalls, _LookupCalls, _SceneCalls):
+class Client(Studies, JobCalls, ResultCalls, _LookupCalls, _SceneCalls):
     """All calls of a client.
 
     Parameters
@@ -275,6 +279,9 @@ class Client(Processes, JobCalls, ResultCalls, _LookupCalls, _SceneCalls):
     BadInput
         The address is none.
     """
+
+    analyze: Offered[[CaseLike], SteDatabase, TableFigures] = Offered(ANALYZE)
+    simulate: Offered[[SceneLike], RunResult, RunFigures] = Offered(SIMULATE)
 
     def __init__(
         self,
@@ -329,6 +336,10 @@ class LineOfActionClient(Client, Blocking):
     def _connect(self, transport: httpx2.BaseTransport | None, options: dict[str, Any]) -> None:
         self.driver = BlockingDriver(transport, options)
 
+    def process(self, study: StudyOf[P, Answer, F]) -> Process[P, Answer, F]:
+        """Return the process of a study: the attribute of its name."""
+        return Process(self, offers()[study.name])
+
     def __enter__(self) -> Self:
         return self
 
@@ -357,6 +368,10 @@ class AsyncLineOfActionClient(Client, Awaiting):
 
     def _connect(self, transport: httpx2.AsyncBaseTransport | None, options: dict[str, Any]) -> None:
         self.driver = AwaitingDriver(transport, options)
+
+    def process(self, study: StudyOf[P, Answer, F]) -> AsyncProcess[P, Answer, F]:
+        """Return the process of a study: the attribute of its name."""
+        return AsyncProcess(self, offers()[study.name])
 
     async def __aenter__(self) -> Self:
         return self

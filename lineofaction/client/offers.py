@@ -11,7 +11,8 @@ from inspect import Parameter, Signature
 from pathlib import Path
 from typing import Any
 
-from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.study import Study
 
 _SUBJECTS: Callable[[], Any] = partial(import_module, "lineofaction.gearbox.subjects")
 """Loads what declares the fields of a case, with the first call."""
@@ -96,8 +97,10 @@ def _signature(subject: str, *further: Parameter) -> Signature:
 
 def _study_offer(study: Study) -> Offer:
     varied = (
-        Parameter("study", Parameter.POSITIONAL_OR_KEYWORD, default={} if study.bare else Parameter.empty)
-        if study.from_file
+        Parameter(
+            "study", Parameter.POSITIONAL_OR_KEYWORD, default={} if study.takes.bare else Parameter.empty
+        )
+        if study.takes.from_file
         else Parameter("options", Parameter.VAR_KEYWORD)
     )
 
@@ -107,7 +110,7 @@ def _study_offer(study: Study) -> Offer:
         return stored.read(file)
 
     signature = _signature(study.argument, varied)
-    return Offer(study.name, study.description, signature, study.subject, read)
+    return Offer(study.name, study.description, signature, study.takes.subject, read)
 
 
 _DATABASE = partial(_read, "fe_contact.ste", "SteDatabase")

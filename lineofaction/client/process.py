@@ -6,7 +6,7 @@ import uuid
 from collections.abc import AsyncIterator, Callable, Iterable, Iterator
 from contextlib import aclosing, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, ParamSpec, TypeVar, overload
+from typing import Any, Generic, overload
 
 from lineofaction.client.batch import AsyncBatch, Batch
 from lineofaction.client.job import AsyncJob, Job
@@ -17,13 +17,8 @@ from lineofaction.client.status import JobState, Result, note_continuing, outlas
 from lineofaction.client.steps import Steps
 from lineofaction.client.surface import Awaiting, Blocking, Surface
 from lineofaction.gearbox.problems import BadInput, ServiceError
+from lineofaction.gearbox.study import F, P, T
 
-if TYPE_CHECKING:
-    from lineofaction.gearbox.schemas.figures import Figures
-
-P = ParamSpec("P")
-T = TypeVar("T")
-F = TypeVar("F", bound="Figures")
 CONCURRENCY = 8
 """Jobs of a `map` that are under way at once."""
 

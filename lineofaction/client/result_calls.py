@@ -14,8 +14,7 @@ from lineofaction.client.steps import Items, Steps
 from lineofaction.client.surface import Session, Surface, listing, operation
 from lineofaction.gearbox import schemas
 from lineofaction.gearbox.problems import DamagedFile, NotFound
-from lineofaction.gearbox.registry import JSON, NETCDF
-from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX, figures_model
+from lineofaction.gearbox.registry import JSON, NETCDF, RESULT_KINDS, RESULTS, SUFFIX, figures_model
 
 if TYPE_CHECKING:
     import xarray
@@ -89,7 +88,7 @@ class ResultCalls(Surface):
         key : str
             Its content hash.
         kind : str
-            A name of `lineofaction.gearbox.schemas.result_kinds.RESULT_KINDS`.
+            A name of `lineofaction.gearbox.registry.RESULT_KINDS`.
         """
         file = yield from ResultCalls.fetch_file(self, key, kind)
         with libraries():

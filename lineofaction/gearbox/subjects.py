@@ -14,6 +14,7 @@ from lineofaction.gearbox.problems import BadInput
 
 if TYPE_CHECKING:
     from fe_contact.ste import SteDatabase
+    from lineofaction.gearbox.from_rexs.opened import OpenedUnit
     from lineofaction.gearbox.schemas import Case
     from lineofaction.gearbox.schemas.meshes import MeshInput
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 CaseLike: TypeAlias = "schemas.Case | Mapping[str, Any] | Path | InputFile"
 SceneLike: TypeAlias = "schemas.SceneInput | Mapping[str, Any] | Path | InputFile"
 StudyLike: TypeAlias = "Mapping[str, Any] | Path | InputFile"
+Subject: TypeAlias = "schemas.Case | schemas.SceneInput | OpenedUnit | Mapping[str, Any] | Path | str"
 
 
 def case_of(case: CaseLike) -> schemas.Case:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from inspect import currentframe
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import Any
 
 from dynamics.results import RunResult
 from dynamics.scene import Scene
@@ -23,40 +24,19 @@ from lineofaction.gearbox.from_rexs.account import Assumption
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
 from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.problems import BadInput, JobFailed
-from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.files import READERS, beside, written_out
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.computation import Computation, Means
-from lineofaction.gearbox.subjects import MeshTables, case_of, finished, scene_of, with_own_files
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.study import Study
+from lineofaction.gearbox.subjects import MeshTables, Subject, case_of, finished, scene_of, with_own_files
 from lineofaction.gearbox.tabled_scene import ComputedTables, database_of
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from model_studies.progress import Progress, silent
 from model_studies.workers import InProcess, Workers
 from model_studies.workers.remembering import content_digest
-
-if TYPE_CHECKING:
-    from lineofaction.gearbox.studies.ablate.run import RUN as ABLATE
-    from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
-    from lineofaction.gearbox.studies.flank.run import RUN as FLANK
-    from lineofaction.gearbox.studies.frontier.run import RUN as FRONTIER
-    from lineofaction.gearbox.studies.listen.run import RUN as LISTEN
-    from lineofaction.gearbox.studies.modes.run import RUN as MODES
-    from lineofaction.gearbox.studies.noise.run import RUN as NOISE
-    from lineofaction.gearbox.studies.optimize.run import RUN as OPTIMIZE
-    from lineofaction.gearbox.studies.response.run import RUN as RESPONSE
-    from lineofaction.gearbox.studies.root_stress.run import RUN as ROOT_STRESS
-    from lineofaction.gearbox.studies.scatter.run import RUN as SCATTER
-    from lineofaction.gearbox.studies.sensitivity.run import RUN as SENSITIVITY
-    from lineofaction.gearbox.studies.steady.run import RUN as STEADY
-    from lineofaction.gearbox.studies.study.run import RUN as STUDY
-    from lineofaction.gearbox.studies.sweep.run import RUN as SWEEP
-    from lineofaction.gearbox.studies.vibration.run import RUN as VIBRATION
-
-Subject = Case | SceneInput | OpenedUnit | Mapping[str, Any] | Path | str
-Result = TypeVar("Result")
 
 
 class InputWarning(UserWarning):
@@ -188,86 +168,48 @@ def _tabled(scene: SceneInput, folder: Path, progress: Progress, workers: Worker
     )
 
 
-@dataclass(frozen=True)
-class _StudyCall(Generic[Result]):
-    """A study as a function; `name` is its row of `lineofaction.gearbox.registry`."""
+def studied(
+    study: Study,
+    subject: Subject,
+    inputs: Mapping[str, Any],
+    *,
+    run: RunResult | None,
+    workers: Workers | None,
+    progress: Progress | None,
+    folder: Path | None,
+) -> Any:
+    """Return the result of a study, as its function does; raises `BadInput`, `JobFailed`."""
+    work, named = study.run, {} if run is None else {"run": content_digest(run)}
+    varied = validated(study.inputs, {**named, **inputs})
+    stated, files = _stated(study, subject)
+    chosen = work.narrowed(stated, varied)
+    work.check(chosen, varied)
+    workers = InProcess() if workers is None else workers
+    means = Means(cache_home(), progress or silent, workers, folder=folder, run=run)
+    made = chosen if isinstance(chosen, CheckedCase) else _made(study, chosen, files, means)
+    result = work.compute(made, varied, means)
+    _warn(work.warnings(result) or ())
+    if failure := work.failure(result):
+        raise JobFailed(failure)
+    return result
 
-    name: str
 
-    @property
-    def __doc__(self) -> str:  # type: ignore[override]
-        """What the study does, and its inputs."""
-        study = STUDIES[self.name]
-        fields = study.inputs.model_fields.items()
-        inputs = "".join(f"\n{name}: {field.description or ''}" for name, field in fields)
-        return f"{study.description}\n{inputs}"
+def _stated(study: Study, subject: Subject) -> tuple[CheckedCase | SceneInput, Path]:
+    """Return what is studied as written, and the folder of its files."""
+    kind = study.takes.subject
+    if kind == "scene" or (kind != "case" and _has_shafts(subject)):
+        return _scene(subject)
+    case = CheckedCase(case_of(_source(subject)))
+    _warn(case_warnings(case))
+    return case, Path()
 
-    def __call__(
-        self,
-        subject: Subject,
-        inputs: Mapping[str, Any] | None = None,
-        *,
-        run: RunResult | None = None,
-        workers: Workers = InProcess(),  # noqa: B008 (frozen)
-        progress: Progress = silent,
-        folder: Path | None = None,
-        **fields: Any,
-    ) -> Result:
-        """Study a case, a scene or a unit.
 
-        Parameters
-        ----------
-        inputs, fields
-            What is varied, in the units of the names; `help` of the function lists it.
-        run : RunResult, optional
-            Whose bearing forces a study of housings takes.
-        workers : Workers
-            Who does the tasks.
-        progress : callable
-            Called as progress(stage, fraction).
-        folder : Path, optional
-            Where to put the runs that a study keeps.
-
-        Returns
-        -------
-        object
-            The result of the study, with errors and cost; `lineofaction.report` draws it.
-
-        Raises
-        ------
-        BadInput, JobFailed
-        """
-        study = STUDIES[self.name]
-        named = {} if run is None else {"run": content_digest(run)}
-        varied = validated(study.inputs, {**named, **(inputs or {}), **fields})
-        stated, files = self._stated(subject)
-        chosen = study.run.narrowed(stated, varied)
-        study.run.check(chosen, varied)
-        made = chosen if isinstance(chosen, CheckedCase) else self._made(chosen, files, progress, workers)
-        means = Means(cache_home(), progress, workers, folder=folder, run=run)
-        result: Result = study.run.compute(made, varied, means)
-        _warn(study.run.warnings(result) or ())
-        if failure := study.run.failure(result):
-            raise JobFailed(failure)
-        return result
-
-    def _made(
-        self, scene: SceneInput, folder: Path, progress: Progress, workers: Workers
-    ) -> TabledScene | HousedScene:
-        """Return a scene with its tables, or only with its housings, as the study takes it."""
-        if STUDIES[self.name].run.tables:
-            return _tabled(scene, folder, progress, workers)
-        _warn(left_out_warnings(scene.left_out))
-        return HousedScene(scene, housings_in(scene, cache_home(), folder, progress))
-
-    def _stated(self, subject: Subject) -> tuple[CheckedCase | SceneInput, Path]:
-        """Return what is studied as written, and the folder of its files."""
-        kind = STUDIES[self.name].subject
-        if kind == "scene" or (kind != "case" and _has_shafts(subject)):
-            return _scene(subject)
-        case = CheckedCase(case_of(_source(subject)))
-        _warn(case_warnings(case))
-        return case, Path()
+def _made(study: Study, scene: SceneInput, folder: Path, means: Means) -> TabledScene | HousedScene:
+    """Return a scene with its tables, or only with its housings, as the study takes it."""
+    if study.run.tables:
+        return _tabled(scene, folder, means.report, means.workers)
+    _warn(left_out_warnings(scene.left_out))
+    return HousedScene(scene, housings_in(scene, cache_home(), folder, means.report))
 
 
 def _scene(subject: Any) -> tuple[SceneInput, Path]:
@@ -300,30 +242,9 @@ def _source(subject: Any) -> Any:
 
 
 def _warn(findings: Iterable[Mapping[str, Any]]) -> None:
-    """Warn of what is implausible, each once."""
+    """Warn of what is implausible, each once, where the caller's own code stands."""
+    frame, level = currentframe(), 0
+    while frame and frame.f_globals["__name__"].startswith("lineofaction."):
+        frame, level = frame.f_back, level + 1
     for warning in findings:
-        warnings.warn(warning["message"], InputWarning, stacklevel=4)
-
-
-if TYPE_CHECKING:
-
-    def _function(study: Computation[Any, Any, Any, Any, Result]) -> _StudyCall[Result]: ...
-
-    flank = _function(FLANK)
-    ablate = _function(ABLATE)
-    frontier = _function(FRONTIER)
-    sensitivity = _function(SENSITIVITY)
-    root_stress = _function(ROOT_STRESS)
-    optimize = _function(OPTIMIZE)
-    scatter = _function(SCATTER)
-    sweep = _function(SWEEP)
-    modes = _function(MODES)
-    response = _function(RESPONSE)
-    noise = _function(NOISE)
-    vibration = _function(VIBRATION)
-    listen = _function(LISTEN)
-    steady = _function(STEADY)
-    deflect = _function(DEFLECT)
-    study = _function(STUDY)
-else:
-    globals().update({study.package: _StudyCall(name) for name, study in STUDIES.items()})
+        warnings.warn(warning["message"], InputWarning, stacklevel=level + 1)

@@ -15,9 +15,10 @@ from dynamics.results import RunResult
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
 from host.directories import whole_file
-from lineofaction.gearbox.convert.result_files import stamped
 from lineofaction.gearbox.problems import BadInput, DamagedFile
-from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.result_files import stamped
+from lineofaction.gearbox.study import Study
 from lineofaction.report.drawing.figure import Figure, Table
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.interactive import plotly_figure

@@ -13,7 +13,7 @@ from typing import Any
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.effects import model_lines, run_lines
 from lineofaction.gearbox.loading import LOADING
-from lineofaction.gearbox.registry import Study
+from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table
 from lineofaction.report.drawing.page import Headline, Page, Part, Section

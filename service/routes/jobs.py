@@ -22,8 +22,7 @@ from lineofaction.gearbox.problems import (
     ResultNotReady,
     ServiceError,
 )
-from lineofaction.gearbox.registry import NETCDF
-from lineofaction.gearbox.schemas.result_kinds import RESULTS
+from lineofaction.gearbox.registry import NETCDF, RESULTS
 from service.access.keyring import Scope
 from service.queue.job import Job, JobFilter, subject_of
 from service.queue.terms import Delivery, Transmission, delivery

@@ -15,9 +15,8 @@ from starlette.responses import FileResponse, JSONResponse, Response
 
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import BadInput, DamagedFile, LiveUnavailable, NotFound, QueueFull
-from lineofaction.gearbox.registry import NETCDF
+from lineofaction.gearbox.registry import NETCDF, RESULT_KINDS, RESULTS, SUFFIX
 from lineofaction.gearbox.schemas.model import HASH
-from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, RESULTS, SUFFIX
 from service.access.keyring import Scope
 from service.live.order import LiveOrder
 from service.routes.context import Context, Ctx
@@ -81,8 +80,8 @@ _FIGURES_OR_FILE = answer(
 )
 _NETCDF_FILE = answer("The netCDF file", *OF_RESULT, "Content-Digest", content={NETCDF: {"schema": FILE}})
 _UNMODIFIED, _UNMODIFIED_ANSWER = answer("Not modified", *OF_RESULT), answer("Not modified", *_VERSION)
-case_of_file = on_demand("lineofaction.gearbox.convert.result_files:case_of_file")
-figures_of = on_demand("lineofaction.gearbox.convert.result_files:figures_of")
+case_of_file = on_demand("lineofaction.gearbox.result_files:case_of_file")
+figures_of = on_demand("lineofaction.gearbox.result_files:figures_of")
 metadata_json = on_demand("lineofaction.gearbox.convert.answers:metadata_json")
 
 router = APIRouter(tags=["results"], route_class=ScopedRoute)

@@ -13,7 +13,7 @@ HEAVY = (
     "service.worker.preparations",
     "lineofaction.gearbox.convert.answers",
     "lineofaction.gearbox.convert.live",
-    "lineofaction.gearbox.convert.result_files",
+    "lineofaction.gearbox.result_files",
     "service.worker.study_work",
     "fe_contact.ste.compiled_force",
 )

@@ -6,8 +6,8 @@ from base64 import b64encode
 from typing import Any
 from zlib import compress
 
-from lineofaction.gearbox.registry import STUDIES, Study
-from lineofaction.gearbox.schemas.result_kinds import RESULTS
+from lineofaction.gearbox.registry import RESULTS, STUDIES
+from lineofaction.gearbox.study import Study
 from service.version import solver_version
 
 Json = dict[str, Any]
@@ -70,7 +70,7 @@ HOUSED_SCENE: Json = SCENE | {
 def _example(study: Study) -> Json:
     """Return inputs of a study: every field that has an example."""
     scene = HOUSED_SCENE if study.housed else SCENE
-    subject = {"scene": scene} if study.subject == "scene" else {"case": CASE}
+    subject = {"scene": scene} if study.takes.subject == "scene" else {"case": CASE}
     fields = study.inputs.model_fields.items()
     return subject | {name: field.examples[0] for name, field in fields if field.examples}
 

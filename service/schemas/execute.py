@@ -7,11 +7,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field, create_model, model_validator
 
-from lineofaction.gearbox.registry import JSON, NETCDF, Study
+from lineofaction.gearbox.registry import JSON, NETCDF
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import CaseOrScene
+from lineofaction.gearbox.study import Study
 from service.schemas.answers import JobStatus, ProblemBody, ResultReference, Subscriber, class_name
 
 Title = Annotated[str, Field(max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")]
@@ -47,7 +48,7 @@ _SUBJECTS: dict[str, type[BoundaryModel]] = {
 
 def study_inputs(study: Study) -> type[BoundaryModel]:
     """Return the model of the inputs of a study's process: what is studied, and what is varied."""
-    bases = (study.inputs, _SUBJECTS[study.subject])
+    bases = (study.inputs, _SUBJECTS[study.takes.subject])
     text = f"Inputs of the process {study.name}."
     return create_model(f"{class_name(study.name)}Inputs", __base__=bases, __doc__=text)
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Protocol
 
 from fe_contact.cache_reads import CacheReads
-from lineofaction.gearbox.schemas.result_kinds import SUFFIX
+from lineofaction.gearbox.registry import SUFFIX
 from service.project import COMMON, PROJECT, address_of
 
 _DIGEST_LENGTH = 16

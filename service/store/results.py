@@ -84,7 +84,7 @@ class IndexLine:
     key : str
         Hash of the input: the resource's name.
     kind : str
-        One of `lineofaction.gearbox.schemas.result_kinds`.
+        One of `lineofaction.gearbox.registry`.
     sha256 : str
         Digest of the file's bytes, hexadecimal.
     size : int

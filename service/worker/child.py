@@ -34,7 +34,7 @@ from service.worker.usage import BYTES_PER_MB, begin_work, hold_to, machine_memo
 
 _NICENESS = 10
 _SHORTEST_INTERVAL_S = 0.1
-stamp = on_demand("lineofaction.gearbox.convert.result_files:stamp")
+stamp = on_demand("lineofaction.gearbox.result_files:stamp")
 translated = on_demand("lineofaction.gearbox.convert.errors:translated")
 warnings_of_case = on_demand("service.worker.preparations:warnings_of_case")
 

@@ -12,9 +12,10 @@ import rfc8785
 
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import NoSuchProcess
-from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.stages import Stage
+from lineofaction.gearbox.study import Study
 from service.schemas.execute import AnalyzeInputs, SimulateInputs, study_inputs
 from service.version import solver_version
 
@@ -154,7 +155,7 @@ def _study_process(study: Study) -> Process:
         kind=study.kind,
         prepare=partial(on_demand("service.worker.study_work:prepare"), study),
         entry=f"service.worker.study_work:{study.name}",
-        stages=stages if study.subject == "case" else _of_scene(*stages),
+        stages=stages if study.takes.subject == "case" else _of_scene(*stages),
         action=study.action,
     )
 

@@ -9,10 +9,10 @@ from typing import Any
 
 from dynamics.results import RunResult
 from lineofaction.gearbox.convert.housings import HousedScene
-from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES, SUFFIX
 from lineofaction.gearbox.schemas.plan import left_out_warnings
-from lineofaction.gearbox.schemas.result_kinds import SUFFIX
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.study import Study
 from service.store.results import ResultStore
 from service.worker.cluster import cluster_of, table_workers
 from service.worker.order import Product, Progress, WorkOrder

@@ -14,8 +14,7 @@ from httpx2 import Response
 from running_service import until
 from served_app import served
 
-from lineofaction.gearbox.registry import NETCDF
-from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS
+from lineofaction.gearbox.registry import NETCDF, RESULT_KINDS
 from service.access.keyring import KeyFile
 from service.app import create_app
 from service.settings import Settings

@@ -37,8 +37,7 @@ from typer.testing import CliRunner
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.commands import app
 from lineofaction.gearbox import workbench
-from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.schemas.result_kinds import figures_model
+from lineofaction.gearbox.registry import STUDIES, figures_model
 from lineofaction.gearbox.stages import PacedFraction
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing import surface_view
@@ -75,7 +74,7 @@ def verb_writes(runs: StudyRuns) -> None:
 
 def test_every_study_has_a_row_for_each_of_its_subjects() -> None:
     rows = {(row.study, row.subject) for row in ROWS}
-    assert rows == {(s.name, subject) for s in STUDIES.values() for subject in s.subject.split(" or ")}
+    assert rows == {(s.name, subject) for s in STUDIES.values() for subject in s.takes.subject.split(" or ")}
     csv_rows = {row.study for row in ROWS if row.columns is not None}
     assert csv_rows == {study.name for study in STUDIES.values() if ".csv" in study.endings}
 
@@ -279,7 +278,7 @@ def test_the_help_says_what_every_option_is_and_has_an_example(runs: StudyRuns) 
         if option.param_type_name == "option":
             assert all(name in text for name in option.opts)
             assert option.help and "".join(option.help.split())[:60] in told, option.name
-    if not runs.study.from_file and runs.study.name != "listen":
+    if not runs.study.takes.from_file and runs.study.name != "listen":
         for name, field in runs.study.inputs.model_fields.items():
             assert field.description and "".join(field.description.split())[:60] in told, name
 
@@ -333,7 +332,7 @@ def test_outputs_that_cannot_be_are_refused_before_the_work(
 
 def test_another_kind_of_file_is_refused_with_what_it_holds(runs: StudyRuns, tmp_path: Path) -> None:
     verb_writes(runs)
-    if " or " in runs.study.subject:
+    if " or " in runs.study.takes.subject:
         return
     other = {"case": "scene", "scene": "case"}[runs.row.subject]
     file = tmp_path / "other.json"
@@ -369,7 +368,7 @@ def test_its_process_is_listed_and_described(runs: StudyRuns) -> None:
     name, http = runs.study.name, runs.served.http
     assert name in [process["id"] for process in http.get("/v1/processes").json()["processes"]]
     inputs = http.get(f"/v1/processes/{name}").json()["inputs"]
-    assert set(inputs) == {*runs.study.subject.split(" or "), *runs.study.inputs.model_fields}
+    assert set(inputs) == {*runs.study.takes.subject.split(" or "), *runs.study.inputs.model_fields}
 
 
 def test_progress_goes_through_the_stages_and_never_falls(runs: StudyRuns) -> None:
@@ -430,7 +429,7 @@ def test_the_client_reads_the_result_that_python_has(runs: StudyRuns) -> None:
     client, result = runs.served.client, runs.python.result
     process = getattr(client, runs.study.package)
     further = {"run": runs.body["run"]} if runs.study.name == "listen" else {}
-    if runs.study.from_file:
+    if runs.study.takes.from_file:
         job = process.submit(runs.subject, runs.inputs)
     else:
         job = process.submit(runs.subject, **runs.inputs, **further)

@@ -17,7 +17,6 @@ from study_runs import refused_call, verb_call
 from study_service import Served
 
 from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
-from lineofaction.gearbox import workbench
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES
 
@@ -163,7 +162,7 @@ QUESTIONS = [(name, inputs, field) for name, refused in REFUSED.items() for inpu
 
 
 def subject_of(study: str) -> tuple[str, Json]:
-    name = "scene" if STUDIES[study].subject == "scene" else "case"
+    name = "scene" if STUDIES[study].takes.subject == "scene" else "case"
     return name, small_inputs(study)[name]
 
 
@@ -187,10 +186,10 @@ def test_a_question_is_refused_by_its_field_each_way(
     assert fault["bound"]
     with pytest.raises(BadInput) as caught, warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        getattr(workbench, STUDIES[study].package)(subject, inputs)
+        STUDIES[study](subject, inputs)
     (here, *_) = [each for each in caught.value.faults if field in each.field]
     assert here.bound == fault["bound"]
-    known = STUDIES[study].from_file or set(inputs) <= set(STUDIES[study].inputs.model_fields)
+    known = STUDIES[study].takes.from_file or set(inputs) <= set(STUDIES[study].inputs.model_fields)
     if known and study != "listen":  # its verb takes other options
         done = refused_call(study, subject, inputs, tmp_path)
         assert (done.exit_code, done.stdout) == (2, "")
@@ -215,7 +214,9 @@ def test_a_request_without_its_subject_or_with_an_odd_one_is_refused(served: Ser
         served.refuses(study, inputs | {"scene": subject | {"shafts": []}}, "shafts")
 
 
-@pytest.mark.parametrize("study", [name for name, row in STUDIES.items() if row.subject == "case or scene"])
+@pytest.mark.parametrize(
+    "study", [name for name, row in STUDIES.items() if row.takes.subject == "case or scene"]
+)
 def test_a_case_beside_a_scene_is_refused(served: Served, study: str) -> None:
     both = {"case": small_inputs("analyze")["case"], "scene": small_inputs("modes")["scene"]}
     with pytest.raises(BadInput, match=r"case.*left out beside one"):

@@ -124,7 +124,7 @@ def test_every_figure_and_every_result_is_saved(visit: Visit, name: str) -> None
 
 def test_every_study_of_a_case_has_a_card(visit: Visit) -> None:
     cards = visit.page.locator("#study-list .study")
-    studies = [study for study in REGISTERED.values() if "case" in study.subject]
+    studies = [study for study in REGISTERED.values() if "case" in study.takes.subject]
     assert cards.locator("> h3").all_text_contents() == [study.title for study in studies]
     assert cards.locator("> .row > button").all_text_contents() == [study.action for study in studies]
     labels = card(visit.page, "Tooth-root stress").locator("> .row label").all_text_contents()

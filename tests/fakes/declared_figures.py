@@ -8,8 +8,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from lineofaction.gearbox.registry import figures_model
 from lineofaction.gearbox.schemas.figures import Figures
-from lineofaction.gearbox.schemas.result_kinds import figures_model
 
 _OF_FILE = {"hash": "", "sha256": "", "size": 0}
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from lineofaction.gearbox.convert.result_files import stamp
+from lineofaction.gearbox.result_files import stamp
 from service.store.places import stored_results
 from service.store.results import StoredResult
 from service.worker.order import WorkOrder

@@ -17,7 +17,8 @@ from pytest import approx
 from small_inputs import small_inputs
 
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.study import Study
 from lineofaction.report.drawing.figure import number
 
 Json = dict[str, Any]

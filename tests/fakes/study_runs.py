@@ -22,8 +22,9 @@ from dynamics.results import RunResult
 from lineofaction.cli.commands import app
 from lineofaction.gearbox import workbench
 from lineofaction.gearbox.convert.case import CheckedCase
-from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas.model import spelling_of
+from lineofaction.gearbox.study import Study
 from lineofaction.report.drawing.page import Page
 from lineofaction.report.presentation import presentation_of
 
@@ -85,11 +86,12 @@ class StudyRuns:
     @cached_property
     def python(self) -> Computed:
         seen: list[tuple[str, float]] = []
-        function = getattr(workbench, self.study.package)
         run = {} if self.run is None else {"run": self.run}
         with self.at_home() as patch, warnings.catch_warnings(record=True):
             patch.setattr(self.study.run, "compute", self._noted)
-            result = function(self.subject, self.inputs, progress=lambda *step: seen.append(step), **run)
+            result = STUDIES[self.study.name](
+                self.subject, self.inputs, progress=lambda *step: seen.append(step), **run
+            )
         figures = json.loads(json.dumps(self.study.run.figures(result), allow_nan=False))
         return Computed(result, figures, seen)
 
@@ -199,7 +201,7 @@ def question_of(subject: Any, inputs: Any) -> object:
 
 def _spelled(study: Study, inputs: Json, folder: Path) -> Iterator[object]:
     """Yield inputs as the verb takes them: a file, or an option each."""
-    if study.from_file:
+    if study.takes.from_file:
         file = folder / "inputs.json"
         file.write_text(json.dumps(inputs), encoding="utf-8")
         yield file

@@ -8,7 +8,7 @@ from functools import partial
 import h5netcdf
 
 import service.worker.preparations  # noqa: F401 (stamps each result: once, before workers are forked)
-from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS
+from lineofaction.gearbox.registry import RESULT_KINDS
 from service.worker.order import Product, Progress, WorkOrder
 
 Work = Callable[[WorkOrder, Progress], tuple[Product, ...]]

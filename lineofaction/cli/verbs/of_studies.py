@@ -21,8 +21,9 @@ from lineofaction.cli.options import (
     overridable,
 )
 from lineofaction.gearbox.input_file import InputFile
-from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas.model import item_type, spelling_of
+from lineofaction.gearbox.study import Study
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
@@ -47,7 +48,7 @@ class StudyGroup(TyperGroup):
 def _command(study: Study) -> Any:
     verb = typer.Typer(add_completion=False, rich_markup_mode=None)
     example = f"Example: loa {study.name} {study.example}"
-    called = overridable(study.argument, study.subject)(_verb(study))
+    called = overridable(study.argument, study.takes.subject)(_verb(study))
     verb.command(study.name, epilog=example, short_help=study.description)(computing(called))
     return typer.main.get_command(verb)
 
@@ -67,13 +68,13 @@ def _verb(study: Study) -> Callable[..., None]:
 
 def _parameters(study: Study) -> Iterator[Parameter]:
     """Yield argument and options of a verb."""
-    metavar = study.subject.upper().replace(" ", "_")
-    argument = file_argument(f"{study.subject.capitalize()} file", metavar)
+    metavar = study.takes.subject.upper().replace(" ", "_")
+    argument = file_argument(f"{study.takes.subject.capitalize()} file", metavar)
     yield keyword(study.argument, Annotated[list[InputFile] if study.several else InputFile, argument])
-    if study.from_file and study.bare:
+    if study.takes.from_file and study.takes.bare:
         file = typer.Argument(help="Study file (TOML); left out: all defaults.")
         yield keyword("study", Annotated[Path | None, file], None)
-    elif study.from_file:
+    elif study.takes.from_file:
         yield keyword("study", Annotated[Path, typer.Argument(help="Study file (TOML).")])
     else:
         yield from (_option(name, field) for name, field in study.inputs.model_fields.items())
@@ -83,7 +84,7 @@ def _parameters(study: Study) -> Iterator[Parameter]:
     yield keyword("output", Annotated[Path | None, target], None)
     yield keyword("workers", TaskWorkers, 1)
     yield keyword("scheduler", Scheduler, None)
-    if study.subject != "case":
+    if study.takes.subject != "case":
         yield keyword("service", TableService, None)
     if ".csv" in study.endings:
         yield keyword("csv", AsCsv, False)

@@ -16,8 +16,8 @@ from dynamics.orders import Waterfall
 from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
-from lineofaction.gearbox.convert.result_files import stamped
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.result_files import stamped
 from lineofaction.report.comparison.measured import (
     COLORS,
     Difference,

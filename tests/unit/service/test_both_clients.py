@@ -36,7 +36,7 @@ def public(surface: type) -> dict[str, str]:
     return {
         name: str(inspect.signature(call)) if callable(call) else type(call).__name__
         for name, call in calls.items()
-        if name not in ("driver", "session", "close", "job", "batch")  # of the driver
+        if name not in ("driver", "session", "close", "job", "batch", "process")  # of the driver
     }
 
 

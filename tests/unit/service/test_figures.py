@@ -15,9 +15,8 @@ from stored_jobs import StoredJobs, against, case
 from lineofaction.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfActionClient
 from lineofaction.client.surface import Listing, Operation
 from lineofaction.gearbox.convert.answers import metadata_json
-from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.registry import RESULT_KINDS, STUDIES, figures_model
 from lineofaction.gearbox.schemas.figures import Figures, Part, RunFigures, TableFigures
-from lineofaction.gearbox.schemas.result_kinds import RESULT_KINDS, figures_model
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.units import RPM
 

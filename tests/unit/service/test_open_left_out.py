@@ -16,9 +16,9 @@ from click.testing import Result
 from command_line import loa
 from fastapi.testclient import TestClient
 
-from lineofaction.gearbox.convert.result_files import stamped
 from lineofaction.gearbox.from_rexs.opened import unit_of_rexs
 from lineofaction.gearbox.input_file import InputFile, Override
+from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text

@@ -19,13 +19,14 @@ from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.live import outline_json
 from lineofaction.gearbox.from_rexs.opened import opened, unit_files, unit_json
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.registry import STUDIES, Study, study_of
+from lineofaction.gearbox.registry import STUDIES, study_of
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.plan import OutlineBody, PlanBody
 from lineofaction.gearbox.studies.computation import Computation
 from lineofaction.gearbox.studies.deflect import Inputs
+from lineofaction.gearbox.study import Study
 from lineofaction.report.document import stored_study
 from lineofaction.report.presentation import Presentation, presentation_of
 from service.live.work import live_plan
@@ -49,7 +50,7 @@ def test_it_has_its_parts(study: Study) -> None:
 def test_the_client_has_a_process_that_says_what_it_takes(study: Study) -> None:
     with LineOfActionClient("http://127.0.0.1:9") as client:
         process = getattr(client, study.package)
-    expected = "study" if study.from_file else "options"
+    expected = "study" if study.takes.from_file else "options"
     assert list(signature(process).parameters) == [study.argument, expected]
     assert process.__doc__ == study.description
 

@@ -24,6 +24,7 @@ from dynamics.noise import pressure_recording, sound_limit, velocity_recording
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
 from lineofaction.gearbox import workbench
+from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.studies.housings import other_housings
 from lineofaction.gearbox.studies.listen.run import HeardRun, _sound_figures
 
@@ -149,7 +150,7 @@ def test_in_python_the_sound_needs_no_table(
 ) -> None:
     monkeypatch.setitem(sys.modules, "mosqito", None)  # its figures take seconds
     monkeypatch.setattr(workbench, "scene_by_tables", None)
-    heard: HeardRun = workbench.listen(scene, run=moved, microphone_mm=(600.0, 800.0, -200.0))
+    heard: HeardRun = STUDIES["listen"](scene, run=moved, microphone_mm=(600.0, 800.0, -200.0))
     expected = pressure_recording(housing, moved, np.array([0.6, 0.8, -0.2]))
     assert heard.recording.samples.tolist() == expected.samples.tolist()
 

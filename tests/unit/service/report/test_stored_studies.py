@@ -29,8 +29,9 @@ from fe_contact.options import AnalysisOptions, Run
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.registry import STUDIES, Study
+from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas.plan import InputWarning
+from lineofaction.gearbox.study import Study
 from lineofaction.report.design.optimize import _ripple_table
 from lineofaction.report.document import page_json, page_of, read_inputs, stored_figures
 from lineofaction.report.effects.ablate import _ablation_page

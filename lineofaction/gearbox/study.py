@@ -1,0 +1,213 @@
+"""A study as the registry states it: its row, which is also its function and the process of a client."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from inspect import Signature, signature
+from typing import TYPE_CHECKING, Any, Generic, ParamSpec, Protocol, TypeVar, overload
+
+from lineofaction.gearbox.loading import LOADING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from dynamics.results import RunResult
+    from lineofaction.gearbox.schemas.figures import Figures
+    from lineofaction.gearbox.schemas.model import BoundaryModel
+    from lineofaction.gearbox.studies.computation import Computation
+    from lineofaction.gearbox.subjects import Subject
+    from model_studies.progress import Progress
+    from model_studies.workers import Workers
+
+    Work = Computation[Any, Any, Any, Any, Any]
+
+P = ParamSpec("P")
+T = TypeVar("T")
+F = TypeVar("F", bound="Figures")
+C = TypeVar("C")
+S_contra = TypeVar("S_contra", contravariant=True)
+C_co = TypeVar("C_co", covariant=True)
+
+
+class _Caller(Protocol[S_contra, C_co]):
+    """Whose attributes the studies are, each as what this makes of it."""
+
+    def process(self, study: S_contra, /) -> C_co: ...
+
+
+@dataclass(frozen=True)
+class Takes(Generic[P, T, F]):
+    """What a call of a study takes, and with its types what comes of it: the result, the figures.
+
+    Attributes
+    ----------
+    subject : "case", "scene" or "case or scene"
+        What is studied.
+    from_file : bool
+        Whether the inputs are a file of the verb and a mapping of the client, rather than options.
+    bare : bool
+        Whether the file of the inputs may be left out; all of them then have defaults.
+    """
+
+    subject: str
+    from_file: bool = False
+    bare: bool = False
+
+
+@dataclass(frozen=True)
+class Study:
+    """A row of the registry.
+
+    Attributes
+    ----------
+    takes : Takes
+        What a call takes.
+    title, action, description : str
+        A noun, what the button of the page says, and an imperative sentence of what is done.
+    example : str
+        Arguments of the verb.
+    kind : str
+        Kind of the result, which is the process' output too.
+    stages : tuple of (str, float)
+        Stages of the work, in order, and their shares of the time.
+    version : str
+        Part of the result's content hash: another one, and stored results are computed again.
+    folder : str
+        Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
+    further : tuple of str
+        Endings of files that the verb writes beside those of all studies. CSV can be printed too.
+    several : bool
+        Whether the verb takes several files.
+    housed : bool
+        Whether it is about a housing, which a scene then has by its solid.
+    aliases : tuple of str
+        Other names of the verb's option ``--output``.
+    name : str
+        Of package, process, verb and the client's method: its name among the `Studies`.
+    """
+
+    takes: Takes[..., Any, Any]
+    title: str
+    action: str
+    description: str
+    example: str
+    kind: str
+    stages: tuple[tuple[str, float], ...]
+    version: str = "2"
+    folder: str = ""
+    further: tuple[str, ...] = ()
+    several: bool = False
+    housed: bool = False
+    aliases: tuple[str, ...] = ()
+    name: str = field(default="", init=False)
+
+    def __set_name__(self, _owner: type, name: str) -> None:
+        object.__setattr__(self, "name", name.replace("_", "-"))
+
+    @property
+    def argument(self) -> str:
+        """Name of what is studied, as the client's method and the verb have it."""
+        return "subject" if self.takes.subject == "case or scene" else self.takes.subject
+
+    @property
+    def package(self) -> str:
+        """Name of its package, and of what belongs to it in Python."""
+        return self.name.replace("-", "_")
+
+    @property
+    def endings(self) -> tuple[str, ...]:
+        """Endings of the files that the verb writes."""
+        return (".nc", ".json", ".png", ".html", *self.further)
+
+    @property
+    def inputs(self) -> type[BoundaryModel]:
+        """Model of what is varied."""
+        inputs: type[BoundaryModel] = self._part("", "Inputs")
+        return inputs
+
+    @property
+    def run(self) -> Work:
+        """Its work."""
+        work: Work = self._part(".run", "RUN")
+        return work
+
+    @property
+    def answer(self) -> type[Figures]:
+        """Model of its figures."""
+        figures: type[Figures] = self._part("", f"{self.name.title().replace('-', '')}Figures")
+        return figures
+
+    def _part(self, module: str, name: str) -> Any:
+        """Load a module of the package; return what it offers."""
+        with LOADING:
+            return getattr(import_module(f"lineofaction.gearbox.studies.{self.package}{module}"), name)
+
+
+@dataclass(frozen=True)
+class StudyOf(Study, Generic[P, T, F]):
+    """A study that is called, and that is a process of the clients whose classes have it."""
+
+    takes: Takes[P, T, F]
+
+    @property
+    def __doc__(self) -> str:  # type: ignore[override]
+        """What the study does, and its inputs."""
+        fields = self.inputs.model_fields.items()
+        inputs = "".join(f"\n{name}: {field.description or ''}" for name, field in fields)
+        return f"{self.description}\n{inputs}"
+
+    @property
+    def __signature__(self) -> Signature:
+        """That of its calls: an object with ``__get__`` may have none."""
+        return signature(self.__call__)
+
+    @overload
+    def __get__(self, caller: None, owner: type) -> StudyOf[P, T, F]: ...
+    @overload
+    def __get__(self, caller: _Caller[StudyOf[P, T, F], C], owner: type) -> C: ...
+    def __get__(self, caller: Any, owner: type) -> Any:
+        """Return the study of a class, the process of a client."""
+        return self if caller is None else caller.process(self)
+
+    def __call__(
+        self,
+        subject: Subject,
+        inputs: Mapping[str, Any] | None = None,
+        *,
+        run: RunResult | None = None,
+        workers: Workers | None = None,
+        progress: Progress | None = None,
+        folder: Path | None = None,
+        **fields: Any,
+    ) -> T:
+        """Study a case, a scene or a unit.
+
+        Parameters
+        ----------
+        inputs, fields
+            What is varied, in the units of the names; `help` of the function lists it.
+        run : RunResult, optional
+            Whose bearing forces a study of housings takes.
+        workers : Workers, optional
+            Who does the tasks; default: this process.
+        progress : callable, optional
+            Called as progress(stage, fraction).
+        folder : Path, optional
+            Where to put the runs that a study keeps.
+
+        Returns
+        -------
+        object
+            The result of the study, with errors and cost; `lineofaction.report` draws it.
+
+        Raises
+        ------
+        BadInput, JobFailed
+        """
+        with LOADING:
+            studied = import_module("lineofaction.gearbox.workbench").studied
+        varied = {**(inputs or {}), **fields}
+        result: T = studied(self, subject, varied, run=run, workers=workers, progress=progress, folder=folder)
+        return result
