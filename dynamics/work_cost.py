@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from bounds import engineering
-from host import cpu_seconds, memory_figure, peak_memory
+from host import memory_figure, peak_memory
 from model_studies.progress import Progress
+from model_studies.workers import InProcess, Workers, spent
 
 Result = TypeVar("Result")
 ANNOUNCED = 3.0
@@ -77,7 +78,11 @@ def on_this_host(kind: str, cost: Cost, cache: Path | None) -> Cost:
 
 
 def measured(
-    kind: str, cost: Cost, cache: Path | None, work: Callable[[], Result]
+    kind: str,
+    cost: Cost,
+    cache: Path | None,
+    work: Callable[[], Result],
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> tuple[Result, WorkCost]:
     """Do work; return its result and what it cost beside what was predicted, which the log keeps too.
 
@@ -85,14 +90,16 @@ def measured(
     ----------
     kind, cost, cache
         As of `on_this_host`.
+    workers : Workers
+        Who does some of it: their time counts.
     """
     from model_studies.host_speed import host_slowness  # noqa: PLC0415 (start-up time)
     from model_studies.run_log import record  # noqa: PLC0415
 
     predicted = on_this_host(kind, cost, cache)
-    held, peak, began = memory_figure("VmRSS"), peak_memory(), cpu_seconds()
+    held, peak, began = memory_figure("VmRSS"), peak_memory(), spent(workers)
     result = work()
-    seconds, highest = cpu_seconds() - began, peak_memory()
+    seconds, highest = spent(workers) - began, peak_memory()
     record(cache, {kind: cost.seconds * host_slowness(cache)}, {kind: seconds})
     grown = float(highest - held) if held is not None and highest > peak else None
     return result, WorkCost(predicted.seconds, predicted.bytes, seconds, grown)

@@ -54,6 +54,10 @@ class MissingExtra(ModuleNotFoundError):
         super().__init__(f"{module} is not installed. It comes with the extra {extra}: {advice}", name=module)
         self.extra = extra
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle by what it is made of."""
+        return type(self), (self.name, self.extra)
+
 
 def require(extra: str) -> None:
     """Raise `MissingExtra` unless all modules of an extra can be found; none is loaded."""

@@ -15,8 +15,8 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -28,8 +28,10 @@ from dynamics.errors import InputError, SolveError
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost
 from host import MissingExtra
-from model_studies.progress import Progress, by_cost, silent
+from model_studies.progress import Progress, Report, by_cost, silent, unreported
+from model_studies.workers import InProcess, Workers, divided
 
+_HERE = InProcess()
 MARGIN = 8
 """Spherical harmonics above the wavenumber times the radius, whose part of the far field is below 1e-6."""
 MIDDLES = 0.5 * (np.ones((3, 3)) - np.eye(3))  # barycentric coordinates of the edges' middles
@@ -59,48 +61,74 @@ def _far_field_resistance(
 # Layer operators of the Helmholtz equation by NGSolve: the one module that loads it.
 
 
+BLOCK = 512
+"""Panels, at most, whose rows of the operators are a task."""
+
+
 def _layer_operators(
-    hull: Hull, wavenumber: float, done: Callable[[str], None] = lambda _layer: None
+    hull: Hull, wavenumber: float, done: Report = unreported, workers: Workers = _HERE
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return the dense single layer (T, T) and double layer (T, N), tested with the panels, m^3 and m^2.
 
     Kernel e^{+ikr}/(4 pi r); the single layer acts on constants of the panels, the double layer on hats of
-    the nodes. Singular pairs are integrated by the library's own transformations. `done` is called with
-    "single layer" and "double layer".
+    the nodes. Singular pairs are integrated by the library's own transformations. `done` is called with the
+    fraction of the panels that are done.
     """
+    panels = len(hull.triangles)
+    single = np.empty((panels, panels), dtype=complex)
+    double = np.empty((panels, len(hull.nodes)), dtype=complex)
+    ends = np.linspace(0, panels, -(-panels // BLOCK) + 1).astype(int).tolist()
+    blocks = list(pairwise(ends))
+    seconds = BoundaryElements().cost(panels, 0.0, 0).seconds
+    rows = divided(workers, _layer_rows, (hull, wavenumber), blocks, seconds)
+    for (first, end), own in zip(blocks, rows, strict=True):
+        single[first:end], double[first:end] = own
+        done(end / panels)
+    return single, double
+
+
+def _layer_rows(shared: tuple[Hull, float], block: tuple[int, int]) -> tuple[ComplexArray, ComplexArray]:
+    """Return the rows of both operators that are tested with the panels of a block: one task."""
     try:
         import ngsolve  # noqa: PLC0415 (an extra)
         from ngsolve.bem import HelmholtzDL, HelmholtzSL  # noqa: PLC0415
     except ModuleNotFoundError:
         raise MissingExtra("ngsolve", "boundary-elements") from None
-    mesh = _mesh(hull)
+    (hull, wavenumber), ds = shared, ngsolve.ds
+    mesh = _mesh(hull, block)
     hats = ngsolve.H1(mesh, order=1, complex=True, definedon=mesh.Boundaries(".*")).TrialFunction()
-    constant, test = ngsolve.SurfaceL2(mesh, order=0, complex=True).TnT()
-    ds = ngsolve.ds
-    single = _dense((HelmholtzSL(constant * ds, wavenumber, use_fmm=False) * test * ds).mat)
-    done("single layer")
-    double = _dense((HelmholtzDL(hats * ds, wavenumber, use_fmm=False) * test * ds).mat)
-    done("double layer")
-    return single, double
+    constant = ngsolve.SurfaceL2(mesh, order=0, complex=True).TrialFunction()
+    own = ngsolve.SurfaceL2(mesh, order=0, complex=True, definedon=mesh.Boundaries(TESTED)).TestFunction()
+    single = HelmholtzSL(constant * ds, wavenumber, use_fmm=False) * own * ds(TESTED)
+    double = HelmholtzDL(hats * ds, wavenumber, use_fmm=False) * own * ds(TESTED)
+    return _dense(single.mat, block), _dense(double.mat, block)
 
 
-def _mesh(hull: Hull) -> Any:
+TESTED = "tested"
+"""Name of the panels of a block in the library's mesh."""
+
+
+def _mesh(hull: Hull, block: tuple[int, int]) -> Any:
     """Return the hull as a mesh of the library, nodes and panels in the same order."""
     import ngsolve  # noqa: PLC0415 (an extra)
     from netgen.meshing import Element2D, FaceDescriptor, Mesh, MeshPoint, Pnt  # noqa: PLC0415
 
     mesh = Mesh(dim=3)
-    mesh.Add(FaceDescriptor(surfnr=1, domin=1, bc=1))
+    for number, name in ((1, TESTED), (2, "other")):
+        mesh.Add(FaceDescriptor(surfnr=number, domin=1, bc=number))
+        mesh.SetBCName(number - 1, name)
     points = [mesh.Add(MeshPoint(Pnt(*(float(value) for value in node)))) for node in hull.nodes]
-    for triangle in hull.triangles:
-        mesh.Add(Element2D(1, [points[node] for node in triangle]))
+    for panel, triangle in enumerate(hull.triangles):
+        number = 1 if block[0] <= panel < block[1] else 2
+        mesh.Add(Element2D(number, [points[node] for node in triangle]))
     return ngsolve.Mesh(mesh)
 
 
-def _dense(matrix: Any) -> ComplexArray:
+def _dense(matrix: Any, block: tuple[int, int]) -> ComplexArray:
+    """Return the rows of a block, which are all that there are."""
     rows, columns, values = (np.asarray(part) for part in matrix.COO())
-    entries = np.zeros((matrix.height, matrix.width), dtype=complex)
-    entries[rows, columns] = values
+    entries = np.zeros((block[1] - block[0], matrix.width), dtype=complex)
+    entries[rows - block[0], columns] = values
     return entries
 
 
@@ -116,7 +144,7 @@ is more than the square of assembly: larger operators miss the cache more often.
 """
 BYTES, LIBRARY = 110.0, 1e8
 """For the square of the number of panels (5.9 GB measured with 7040), and of NGSolve."""
-SHARES = {"single layer": 0.28, "double layer": 0.70, "pressure": 0.02}
+SHARES = {"operators": 0.98, "pressure": 0.02}
 """Usual shares in the time."""
 STAGE = "boundary elements"
 
@@ -159,14 +187,17 @@ class BoundaryElements:
     ----------
     progress : callable
         Called as progress("boundary elements", fraction) while the operators of a frequency are assembled.
+    workers : Workers
+        Who assembles them, some panels each.
     """
 
     model_name: str = "boundary_elements"
     progress: Progress = field(default=silent, repr=False, compare=False)
+    workers: Workers = field(default=_HERE, repr=False, compare=False)
 
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
         """Return the resistance in the far field; see `surface_pressure` for what it raises."""
-        return surface_pressure(hull, frequency, shapes, air, self.progress).resistance
+        return surface_pressure(hull, frequency, shapes, air, self.progress, self.workers).resistance
 
     def cost(self, panels: int, ka: float, shapes: int) -> Cost:
         """Predict the cost: assembly of the dense operators."""
@@ -180,12 +211,17 @@ class BoundaryElements:
 
 
 def surface_pressure(
-    hull: Hull, frequency: float, shapes: ComplexArray, air: Air, progress: Progress = silent
+    hull: Hull,
+    frequency: float,
+    shapes: ComplexArray,
+    air: Air,
+    progress: Progress = silent,
+    workers: Workers = _HERE,
 ) -> SurfacePressure:
     """Solve for the pressure on a hull that vibrates in `shapes` (T, M) at a frequency, Hz.
 
     Memory grows with the square of the number of panels, time somewhat faster (`BoundaryElements.cost`).
-    `progress` is called as progress("boundary elements", fraction).
+    `progress` is called as progress("boundary elements", fraction); `workers` assemble the operators.
 
     Raises
     ------
@@ -203,7 +239,10 @@ def surface_pressure(
         raise InputError("triangles", len(hull.triangles), f"at most {MOST_PANELS}", "Coarsen the hull.")
     panels = LinearPanels(hull)
     slope = 1j * wavenumber * air.impedance * shapes.conj()  # dp/dn of e^{-i omega t}, as the kernel has it
-    pressure, residual = _solve(hull, panels, wavenumber, slope, progress)
+    parts = by_cost(lambda fraction: progress(STAGE, fraction), SHARES)
+    operators = _layer_operators(hull, wavenumber, lambda done: parts("operators", done), workers)
+    pressure, residual = _solve(hull, panels, wavenumber, slope, operators)
+    parts("pressure", 1.0)
     if not residual <= RESIDUAL:
         left = engineering(residual, 2)
         raise SolveError(f"boundary elements: the relative residual {left} is above {RESIDUAL:g}")
@@ -213,11 +252,14 @@ def surface_pressure(
 
 
 def _solve(
-    hull: Hull, panels: LinearPanels, wavenumber: float, slope: ComplexArray, progress: Progress
+    hull: Hull,
+    panels: LinearPanels,
+    wavenumber: float,
+    slope: ComplexArray,
+    operators: tuple[ComplexArray, ComplexArray],
 ) -> tuple[ComplexArray, float]:
     """Return the pressure (N, M) for its normal derivative `slope` (T, M), and the residual."""
-    parts = by_cost(lambda fraction: progress(STAGE, fraction), SHARES)
-    single, double = _layer_operators(hull, wavenumber, lambda part: parts(part, 1.0))
+    single, double = operators
     # of the derived equation: i/k above the first irregular frequency, near ka = pi; it vanishes with k,
     # where the plain equation is well conditioned and the derived one is not
     radius = hull.equivalent_radius
@@ -227,7 +269,6 @@ def _solve(
     right = np.asarray(panels.mean.T @ (single @ slope + 0.5 * coupling * hull.areas[:, None] * slope))
     right = -right - coupling * (double.T @ slope)
     pressure: ComplexArray = np.linalg.solve(matrix, right)
-    parts("pressure", 1.0)
     scale = float(np.linalg.norm(right)) or 1.0
     return pressure, float(np.linalg.norm(matrix @ pressure - right)) / scale
 

@@ -26,6 +26,7 @@ from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
 from host import MissingExtra
 from model_studies.frontier import run_variants
 from model_studies.progress import Progress, silent
+from model_studies.workers import InProcess
 
 BLOCK = 512  # panels whose mutual resistances are held at a time
 PAIR, PAIR_SHAPE = 48e-9, 0.1e-9
@@ -237,6 +238,7 @@ def compare_models(
             reference[name],
             cache,
             lambda: sound_power(model, hull, frequency, normal_velocity, air),
+            getattr(model, "workers", InProcess()),
         )
         return ModelResult(power, power / plane, cost)
 

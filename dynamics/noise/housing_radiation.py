@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple, cast
@@ -24,7 +25,8 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
 from model_studies.kept_file import kept_in
-from model_studies.progress import Progress, silent
+from model_studies.progress import Progress, silent, unreported
+from model_studies.workers import InProcess, Workers, divided
 
 TOLERANCE = 0.5
 """dB, of the power of each mode in the middle of two frequencies; what is kept is off by a quarter of it."""
@@ -45,35 +47,6 @@ class _Knots:
     frequency: FloatArray
     matrix: ComplexArray
     error: float
-
-
-def _knots_between(
-    low: float,
-    high: float,
-    resistance: Callable[[float], ComplexArray],
-    modes: FloatArray,
-) -> _Knots:
-    """Return frequencies from `low` to `high`, in Hz, between which R/f^2 is linear within `TOLERANCE`.
-
-    The middle of each interval is computed and kept. Where it is missed by more, both halves are looked at in
-    turn. The error of what is kept is about a quarter of that stated. `resistance` gives a matrix (r, r);
-    `modes` (r, m) are vectors whose power is compared.
-    """
-    count = max(int(np.ceil(np.log(high / low) / np.log(WIDEST))), 1)
-    start = np.geomspace(low, high, count + 1)
-    found = {float(frequency): resistance(float(frequency)) for frequency in start}
-    error, pending = 0.0, list(zip(start[:-1].tolist(), start[1:].tolist(), strict=True))
-    while pending:
-        left, right = pending.pop()
-        middle = float(np.sqrt(left * right))
-        found[middle] = resistance(middle)
-        missed = _missed(left, middle, right, found, modes)
-        if missed > TOLERANCE and right / left > CLOSEST:
-            pending += [(left, middle), (middle, right)]
-        else:
-            error = max(error, missed)
-    frequency = np.array(sorted(found))
-    return _Knots(frequency, np.stack([found[float(at)] for at in frequency]), error)
 
 
 def octaves(low: float, high: float) -> list[tuple[float, float]]:
@@ -126,15 +99,82 @@ class Octave(NamedTuple):
     hull: RadiatingHull
 
 
+Points = Sequence[tuple[int, float]]
+"""Numbers of octaves, and frequencies in Hz."""
+
+
+def _knots_of(
+    ranges: Sequence[tuple[float, float]],
+    resistances: Callable[[Points], Iterator[ComplexArray]],
+    modes: FloatArray,
+) -> list[_Knots]:
+    """Return frequencies of each range, in Hz, between which R/f^2 is linear within `TOLERANCE`.
+
+    The middle of each interval is computed and kept. Where it is missed by more, both halves are looked at in
+    turn, all of a width together. The error of what is kept is about a quarter of that stated. `resistances`
+    yields matrices (r, r); `modes` (r, m) are vectors whose power is compared.
+    """
+    found: list[dict[float, ComplexArray]] = [{} for _ in ranges]
+    error, pending = [0.0] * len(ranges), []
+
+    def compute(points: Points) -> None:
+        for (index, frequency), matrix in zip(points, resistances(points), strict=True):
+            found[index][frequency] = matrix
+
+    for index, (low, high) in enumerate(ranges):
+        count = max(int(np.ceil(np.log(high / low) / np.log(WIDEST))), 1)
+        start = np.geomspace(low, high, count + 1).tolist()
+        pending += [(index, *ends) for ends in pairwise(start)]
+    compute(list(dict.fromkeys((index, end) for index, *ends in pending for end in ends)))
+    while pending:
+        middles = [float(np.sqrt(left * right)) for _, left, right in pending]
+        compute([(index, middle) for (index, *_), middle in zip(pending, middles, strict=True)])
+        halves = []
+        for (index, left, right), middle in zip(pending, middles, strict=True):
+            missed = _missed(left, middle, right, found[index], modes)
+            if missed > TOLERANCE and right / left > CLOSEST:
+                halves += [(index, left, middle), (index, middle, right)]
+            else:
+                error[index] = max(error[index], missed)
+        pending = halves
+    knots = [(np.array(sorted(matrices)), matrices) for matrices in found]
+    return [
+        _Knots(frequency, np.stack([matrices[float(at)] for at in frequency]), missed)
+        for (frequency, matrices), missed in zip(knots, error, strict=True)
+    ]
+
+
+@dataclass(frozen=True)
+class _Radiators:
+    """A model, and the hulls of octaves: what the tasks of a radiation share."""
+
+    model: RadiationModel
+    hulls: tuple[RadiatingHull, ...]
+    air: Air
+
+
+def _resistance_at(radiators: _Radiators, point: tuple[int, float]) -> ComplexArray:
+    """Return the resistance of an octave's hull at a frequency: one task."""
+    panels = radiators.hulls[point[0]]
+    shapes = cast(ComplexArray, panels.shapes)
+    return resistance(radiators.model, panels.hull, point[1], shapes, radiators.air)
+
+
 def radiation_cost(octaves: Iterable[Octave], model: RadiationModel, air: Air) -> Cost:
     """Predict the cost of `housing_radiation` once its hulls are there, on the reference host."""
     whole = Cost(0.0, 0.0)
     for octave in octaves:
-        panels, coordinates = octave.hull.shapes.shape
-        per_hertz = 2.0 * math.pi / air.sound_speed * octave.hull.hull.outer_radius
-        cost = model.cost(panels, per_hertz * (USUAL * octave.last), coordinates)
-        whole = whole.then(cost.times(expected_knots(per_hertz * octave.last)))
+        cost, count = _knot_cost(octave, model, air)
+        whole = whole.then(cost.times(count))
     return whole
+
+
+def _knot_cost(octave: Octave, model: RadiationModel, air: Air) -> tuple[Cost, float]:
+    """Predict the cost of a frequency of an octave, and how many it has."""
+    panels, coordinates = octave.hull.shapes.shape
+    per_hertz = 2.0 * math.pi / air.sound_speed * octave.hull.hull.outer_radius
+    cost = model.cost(panels, per_hertz * (USUAL * octave.last), coordinates)
+    return cost, expected_knots(per_hertz * octave.last)
 
 
 BAND = 10.0**0.05
@@ -221,6 +261,7 @@ def housing_radiation(
     progress: Callable[[float], None] | None = None,
     expected: Callable[[Cost], object] = lambda _cost: None,
     cache: Path | None = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> HousingRadiation:
     """Return the radiation resistance of a housing from the lowest to the highest of some frequencies.
 
@@ -240,6 +281,8 @@ def housing_radiation(
         Called with the predicted cost before it is computed.
     cache : Path, optional
         Directory of what is known of the host, see `work_cost.on_this_host`.
+    workers : Workers
+        They compute a frequency each.
 
     Raises
     ------
@@ -252,12 +295,12 @@ def housing_radiation(
     low, high = positive("frequencies", float(requested.min())) / BAND, float(requested.max()) * BAND
     outer = outer_hull(housing)
     resolved = 0.0 if isinstance(model, EquivalentRadiatedPower) else resolved_frequency(outer, air)
-    ends, done = octaves(low, min(high, resolved)), progress or (lambda _fraction: None)
-
-    def reached(frequency: float) -> None:
-        done(((frequency - low) / (high - low)) ** 2)
-
-    parts, panels, cost = _resolved_parts(outer, model, air, ends, housing.modes[1], reached, expected, cache)
+    ends = octaves(low, min(high, resolved))
+    parted = [Octave(*each, radiating_hull(outer, each[1], air.sound_speed)) for each in ends]
+    parts, cost = _resolved_parts(
+        parted, model, air, housing.modes[1], progress or unreported, expected, cache, workers
+    )
+    panels = max((len(octave.hull.shapes) for octave in parted), default=len(outer.hull.triangles))
     if high > resolved:
         first = max(low, float(np.nextafter(resolved, np.inf)))
         parts.append(_constant_knots(first, high, cast(ComplexArray, air.impedance * outer.surface)))
@@ -274,34 +317,31 @@ def housing_radiation(
 
 
 def _resolved_parts(
-    outer: OuterHull,
+    parted: Sequence[Octave],
     model: RadiationModel,
     air: Air,
-    ends: Sequence[tuple[float, float]],
     modes: FloatArray,
-    reached: Callable[[float], None],
+    done: Callable[[float], None],
     expected: Callable[[Cost], object],
     cache: Path | None,
-) -> tuple[list[_Knots], int, WorkCost]:
-    """Return the knots of each octave between `ends`, Hz, and `panels` and `cost` of the facts."""
-    parted = [Octave(*each, radiating_hull(outer, each[1], air.sound_speed)) for each in ends]
+    workers: Workers,
+) -> tuple[list[_Knots], WorkCost]:
+    """Return the knots of each octave, and their cost."""
     kind, reference = WORK.format(model.model_name), radiation_cost(parted, model, air)
     expected(on_this_host(kind, reference, cache))
+    radiators = _Radiators(model, tuple(octave.hull for octave in parted), air)
+    ranges = [(octave.first, octave.last) for octave in parted]
+    cost_of_each = [_knot_cost(octave, model, air)[0].seconds for octave in parted]
+    computed: list[float] = []
 
-    def computed() -> list[_Knots]:
-        parts = []
-        for octave in parted:
+    def resistances(points: Points) -> Iterator[ComplexArray]:
+        matrices = divided(workers, _resistance_at, radiators, points, reference.seconds)
+        for (index, _), matrix in zip(points, matrices, strict=True):
+            yield matrix
+            computed.append(cost_of_each[index])
+            done(min(sum(computed) / reference.seconds, 1.0))
 
-            def resistance_at(frequency: float, panels: RadiatingHull = octave.hull) -> ComplexArray:
-                return resistance(model, panels.hull, frequency, cast(ComplexArray, panels.shapes), air)
-
-            parts.append(_knots_between(octave.first, octave.last, resistance_at, modes))
-            reached(octave.last)
-        return parts
-
-    parts, cost = measured(kind, reference, cache, computed)
-    panels = max((len(octave.hull.shapes) for octave in parted), default=len(outer.hull.triangles))
-    return parts, panels, cost
+    return measured(kind, reference, cache, lambda: _knots_of(ranges, resistances, modes), workers)
 
 
 def resolved_frequency(outer: OuterHull, air: Air) -> float:
@@ -323,6 +363,7 @@ def kept_radiation(
     air: Air | None = None,
     cache: Path | None = None,
     progress: Progress = silent,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> HousingRadiation:
     """Return `housing_radiation`, from the cache if it is there.
 
@@ -333,6 +374,8 @@ def kept_radiation(
         below a second is not kept.
     progress : callable, optional
         Called as progress("radiation", fraction), before costly work with its predicted cost behind it.
+    workers : Workers
+        As of `housing_radiation`.
 
     Raises
     ------
@@ -351,6 +394,7 @@ def kept_radiation(
             lambda fraction: progress(STAGE, fraction),
             lambda cost: announce(progress, STAGE, model.model_name.replace("_", " "), cost),
             cache,
+            workers,
         )
 
     def costly(made: HousingRadiation) -> bool:

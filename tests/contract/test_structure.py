@@ -16,14 +16,14 @@ SPEC.loader.exec_module(structure)
 
 BUDGETS = {
     ("fe_contact",): (36_806, 633),
-    ("dynamics",): (39_646, 803),
+    ("dynamics",): (39_740, 803),
     ("lineofaction.gearbox",): (21_637, 526),
     ("lineofaction.report",): (10_471, 198),
     ("service",): (14_754, 333),
     ("lineofaction.client",): (2_732, 54),
     ("lineofaction.cli",): (4_662, 68),
     ("lineofaction.hardcases",): (3_834, 35),
-    ("bounds", "host", "model_studies"): (4_152, 142),
+    ("bounds", "host", "model_studies"): (4_156, 142),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 746

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -14,7 +15,7 @@ from typing import Any
 import pytest
 from running_service import until
 
-from host import cpu_seconds
+from host import MissingExtra, cpu_seconds
 from model_studies import LeftOut, run_fidelities, run_variants
 from model_studies.workers import ByExecutor, InProcess, RunCost, WorkersLost, divided, local_processes, spent
 from model_studies.workers import executor as executors
@@ -157,6 +158,17 @@ def test_every_process_is_warm_before_it_is_timed_and_only_once() -> None:
     there = [outcome.result for outcome in outcomes if outcome.result[0] != os.getpid()]
     assert len(there) == 4  # behind the two whose cost tells that it pays
     assert all(warmed == [way.name for way in ways] for _, warmed in there)
+
+
+def test_what_is_missing_there_is_missing_here_by_the_same_error() -> None:
+    missing = MissingExtra("ngsolve", "boundary-elements")
+    with local_processes(1) as pool, pytest.raises(MissingExtra, match=re.escape(str(missing))) as caught:
+        list(pool.run(refused, missing, [1]))
+    assert vars(caught.value)["extra"] == "boundary-elements" and caught.value.name == "ngsolve"
+
+
+def refused(error: Exception, _: int) -> None:
+    raise error
 
 
 def long(_: None, seconds: float) -> None:

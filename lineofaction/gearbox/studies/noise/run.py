@@ -208,8 +208,8 @@ def _radiation(
     if means.run is not None:
         ends = [LOWEST, float(means.run.receipt["sampling"]["pass_frequency"])]
         hertz = np.append(hertz.ravel(), ends)
-    cache = means.home / FOLDER
-    return kept_radiation(body, MODELS[inputs.radiation], hertz, cache=cache, progress=means.report)
+    model, cache = MODELS[inputs.radiation], means.home / FOLDER
+    return kept_radiation(body, model, hertz, cache=cache, progress=means.report, workers=means.workers)
 
 
 def _compared(
@@ -224,7 +224,7 @@ def _compared(
     points = [point for point in loudest(sound) if point.frequency <= resolved] or loudest(sound, 1)
     if not points:
         return {}
-    ladder_of = (PLANE, MONOPOLES, BoundaryElements(progress=means.report))
+    ladder_of = (PLANE, MONOPOLES, BoundaryElements(progress=means.report, workers=means.workers))
     models: tuple[RadiationModel, ...] = ladder_of if inputs.boundary_elements else ladder_of[:-1]
     at, cache = (points[0].speed_index, points[0].order_index), means.home / FOLDER
     ladder = models_at(

@@ -11,6 +11,7 @@ from hulls import box, sphere
 from dynamics.acoustics import (
     Air,
     Hull,
+    boundary_elements,
     radiation_efficiency,
     resistance,
     sphere_efficiency,
@@ -19,6 +20,7 @@ from dynamics.acoustics import (
 from dynamics.acoustics.boundary_elements import BoundaryElements
 from dynamics.errors import InputError
 from host import MissingExtra
+from model_studies.workers import InProcess, executor, local_processes
 
 AIR = Air()
 MODEL = BoundaryElements()
@@ -106,6 +108,21 @@ def test_resistance_is_reciprocal_and_independent_of_place_and_turn() -> None:
     np.testing.assert_allclose(
         resistance(MODEL, moved, 300.0, shapes, AIR), matrix, atol=1e-3 * np.abs(matrix).max()
     )
+
+
+@pytest.mark.law
+def test_operators_by_blocks_of_panels_are_the_whole_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever assembles them: a pool has a library of its own, which sees a block at a time."""
+    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
+    whole = boundary_elements._layer_operators(FINE, 2.0)
+    monkeypatch.setattr(boundary_elements, "BLOCK", 170)
+    with local_processes(2) as pool:
+        for workers in (InProcess(), pool):
+            for one, other in zip(
+                boundary_elements._layer_operators(FINE, 2.0, workers=workers), whole, strict=True
+            ):
+                np.testing.assert_array_equal(one, other)
+        assert pool.cost.tasks == 3
 
 
 def test_an_open_or_a_coarse_hull_is_refused() -> None:

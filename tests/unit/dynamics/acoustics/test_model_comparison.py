@@ -9,7 +9,15 @@ import numpy as np
 import pytest
 from hulls import box, sphere
 
-from dynamics.acoustics import Air, BoundaryElements, ElementalRadiators, Hull, compare_models, errors_db
+from dynamics.acoustics import (
+    Air,
+    BoundaryElements,
+    ElementalRadiators,
+    Hull,
+    boundary_elements,
+    compare_models,
+    errors_db,
+)
 from dynamics.acoustics.model_comparison import MODELS
 from dynamics.errors import InputError
 
@@ -75,14 +83,16 @@ def test_the_whole_of_7040_panels_is_what_was_measured() -> None:
     assert cost.bytes == pytest.approx(5.9e9, rel=0.1)
 
 
-def test_boundary_elements_report_their_assembly() -> None:
+def test_boundary_elements_report_their_assembly(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
+    monkeypatch.setattr(boundary_elements, "BLOCK", 50)
     told: list[tuple[str, float]] = []
     hull = sphere(2)
     reporting = BoundaryElements(progress=lambda *step: told.append(step))
     reporting.resistance(hull, 30.0, np.ones((len(hull.areas), 1)), AIR)
     assert {stage for stage, _ in told} == {"boundary elements"}
     fractions = [fraction for _, fraction in told]
+    assert len(hull.areas) == 80
     assert len(fractions) == 3 and fractions == sorted(fractions) and fractions[-1] == pytest.approx(1.0)
     assert reporting == BoundaryElements() and repr(reporting) == repr(BoundaryElements())
 

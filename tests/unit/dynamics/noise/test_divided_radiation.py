@@ -1,0 +1,32 @@
+"""The radiation of a housing by workers: the frequencies are tasks, the resistance is the same."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hulls import box
+from reduced_housings import bare_housing
+from sounding_housings import smooth_motion, with_surface
+
+from dynamics.acoustics import ElementalRadiators
+from dynamics.noise import housing_radiation
+from model_studies.workers import InProcess, executor, local_processes
+
+
+@pytest.mark.law
+def test_workers_compute_the_same_resistance_and_their_time_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
+    bare, hull = bare_housing(modal=8), box((0.3, 0.2, 0.15), (6, 4, 3))
+    body, seen = with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness))), []
+    with local_processes(2) as pool:
+        here, there = (
+            housing_radiation(body, ElementalRadiators(), [100.0, 900.0], None, seen.append, workers=workers)
+            for workers in (InProcess(), pool)
+        )
+        assert pool.cost.tasks == here.frequency.size > 10
+        assert there.facts.cost.seconds > pool.cost.cpu_seconds > 0.0
+    np.testing.assert_array_equal(there.frequency, here.frequency)
+    np.testing.assert_array_equal(there.matrix, here.matrix)
+    assert there.facts.interpolation_error == here.facts.interpolation_error
+    half = len(seen) // 2
+    assert seen[:half] == seen[half:] == sorted(seen[:half]) and 0.5 < seen[half - 1] <= 1.0
