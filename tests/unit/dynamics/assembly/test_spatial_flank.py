@@ -254,6 +254,18 @@ def test_secant_and_coast_flank_act_at_the_centroid_too(table):
     assert result.energy.relative_to_throughput < 1e-7
 
 
+@pytest.mark.parametrize("on", [EFFECTS, *((effect,) for effect in EFFECTS)])
+def test_a_coast_flank_bends_the_shafts_as_the_driving_one_of_the_reversed_pair(table, on):
+    """Misalignment is that of the driving flank, positions count from where the flanks are mirrored."""
+    reversed_pair = with_mesh(scene_on(table, on, speed=-900.0), misalignment=2e-5)
+    back = with_mesh(scene_on(table, on, torque=-100.0), misalignment=-2e-5, coast=CoastFlank(50e-6, 0.0))
+    scenes = reversed_pair, replace(back, effects={**back.effects, "backlash": "on"})
+    driving, coasting = (static_equilibrium(assemble(scene)).displacement for scene in scenes)
+    assert np.abs(driving[:-1]).max() > 1e-5
+    np.testing.assert_allclose(coasting[:-1], driving[:-1], rtol=1e-9, atol=1e-15)
+    assert BASE_RADIUS * (driving[-1] - coasting[-1]) == pytest.approx(50e-6, rel=1e-9)
+
+
 def test_modes_about_a_tilted_equilibrium(table):
     stiffness = {}
     for on in (EFFECTS, ()):

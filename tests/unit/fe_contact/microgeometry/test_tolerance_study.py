@@ -20,7 +20,7 @@ from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.scatter import QuantileFigures
-from model_studies.spread import rank_correlation
+from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.workers import Remembering, RunCost
 
 TORQUES = [100.0, 200.0]
@@ -79,6 +79,19 @@ def test_bounds_cover_the_true_quantile_as_often_as_they_say() -> None:
     bounds = _quantile(samples, 0.9, 0.95)
     covered = np.mean((bounds.low <= true) & (true <= bounds.high))
     assert 0.94 < covered < 0.99  # order statistics are discrete: at least the asked confidence
+
+
+@pytest.mark.parametrize(
+    ("samples", "first", "last"),
+    [(5, None, None), (6, 1, 6), (8, 1, 8), (9, 2, 8), (10, 2, 9), (15, 4, 12), (20, 6, 15)],
+)
+def test_bounds_of_a_median_are_those_of_the_sign_test(
+    samples: int, first: int | None, last: int | None
+) -> None:
+    """Published tables: which samples in order enclose the median with 95 %; of five none do."""
+    _, low, high = quantile_bounds(np.arange(samples, 0.0, -1.0)[:, None], 0.5, 0.95)
+    assert low == (-np.inf if first is None else first)
+    assert high == (np.inf if last is None else last)
 
 
 def test_influence_sees_both_signs_and_small_samples_have_no_bound() -> None:

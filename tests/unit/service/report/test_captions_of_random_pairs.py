@@ -282,6 +282,8 @@ def check_flanks(figure: Figure, database: SteDatabase) -> None:
 def check_drawing(figure: Figure, database: SteDatabase) -> None:
     pair = pair_of(database)
     assert pair is not None
+    modified = len(figure.content) > 1
+    assert ("Material removed" in figure.caption) == ("flank modifications" in figure.title) == modified
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         flat = f"The {name} is not modified." in figure.alternative
         assert flat == gear.modification.neutral

@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.contour import ContourSet
 
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
 from fe_contact.ste import SteDatabase
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes
-from lineofaction.report.drawing.image import png
+from lineofaction.report.drawing.image import _panel_sheet, png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.flank.flank import (
     _isolines,
@@ -49,6 +50,16 @@ def test_the_pattern_passes_through_the_pressures_that_were_computed(flanks: Loa
         assert 0.0 < shade.isolines[0] < shade.isolines[-1] < shade.largest
         assert panel.y.limits is not None
         assert panel.y.limits[0] < shade.y[0] < shade.y[-1] < panel.y.limits[1]
+
+
+def test_an_image_has_the_lines_of_equal_pressure_at_their_values(flanks: LoadDistribution) -> None:
+    content = panels(contact_pattern_figure(flanks))
+    drawn = [part for ax in _panel_sheet(content).axes for part in ax.collections]
+    for panel, lines in zip(content, [d for d in drawn if isinstance(d, ContourSet)], strict=True):
+        assert isinstance(panel.shade, HeatMap)
+        assert list(lines.levels) == pytest.approx(panel.shade.isolines)
+        values = {text.get_text() for text in lines.labelTexts}
+        assert values and values <= {f"{value:g}" for value in panel.shade.isolines}
 
 
 def test_a_pressure_that_falls_along_the_path_is_interpolated_without_steps(flanks: LoadDistribution) -> None:
