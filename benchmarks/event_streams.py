@@ -19,7 +19,7 @@ from benchmarks.figures import Figure
 from benchmarks.service_process import cpu_seconds, memory_mb, running
 from lineofaction.gearbox.subjects import case_inputs
 from service.page.files import examples
-from service.queue.claims import Claims
+from service.queue.claims import Claims, Reached
 from service.queue.scheduler import Machinery, job_machinery
 from service.settings import load_settings
 from service.worker.process import ANALYZE, default_registry
@@ -28,7 +28,7 @@ STREAMS, REPORTS_PER_S, SECONDS, ROUNDS = 200, 2.0, 5.0, 3
 
 
 class _Jobs:
-    """Two jobs that run, and how far they are."""
+    """Two jobs that run by the table, claimed before the service looks at it, and how far they are."""
 
     def __init__(self, machinery: Machinery) -> None:
         self._claims, self._step = Claims(machinery.engine), 0
@@ -42,15 +42,15 @@ class _Jobs:
     def report(self) -> None:
         """Report on both."""
         self._step += 1
-        for claim in self._claimed:
-            self._claims.progress(claim, "contact", min(1e-4 * self._step, 1.0), min(1e-4 * self._step, 0.99))
+        reached = Reached("contact", min(1e-4 * self._step, 1.0), min(1e-4 * self._step, 0.99))
+        self._claims.progress([(claim, reached) for claim in self._claimed])
 
 
 def figures() -> list[Figure]:
     """Compare rounds without and with streams, in alternation."""
     with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
         directory = Path(folder)
-        address, process, _ = stack.enter_context(running(directory, options=["--no-work"]))
+        address, process, _ = stack.enter_context(running(directory))
         machinery = job_machinery(load_settings(data_directory=directory), default_registry(), works=False)
         jobs = _Jobs(stack.enter_context(closing(machinery)))
         port = int(address.rpartition(":")[2])

@@ -1,4 +1,4 @@
-"""Run compose.yaml and assess it: keys, PostgreSQL, two schedulers of which one is killed, a clean stop."""
+"""Run compose.yaml and assess it: keys, PostgreSQL, a server that is killed, a clean stop."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Composition:
         self.secrets = scratch / "secrets"
         self.name, self.port = f"lineofaction-{uuid.uuid4().hex[:8]}", free_port()
         subprocess.run(["scripts/secrets", str(self.secrets)], check=True)
-        own = {"LOA_SECRETS": str(self.secrets), "LOA_PORT": str(self.port), "LOA_LEASE_S": "5"}
+        own = {"LOA_SECRETS": str(self.secrets), "LOA_PORT": str(self.port), "LOA_WORKERS": "2"}
         self._ours = ("--filter", f"label=com.docker.compose.project={self.name}")
         self._environment = {**os.environ, **own, "COMPOSE_PROJECT_NAME": self.name}
 
@@ -59,7 +59,7 @@ class Composition:
             time.sleep(0.5)
         # step by step: podman 4 knows neither conditions of health nor dependencies of dependencies
         self.compose("run", "--rm", "--no-deps", "-T", "schema")
-        self.compose("up", "--detach", "--no-deps", "--scale", "work=2", "service", "work")
+        self.compose("up", "--detach", "--no-deps", "service")
         await_answer(f"{self.url}/ready")
         return time.monotonic() - begin
 
@@ -82,20 +82,19 @@ class Composition:
 def stopped(run: Composition) -> list[bool]:
     """Assess how long the program's containers take to end on SIGTERM."""
     verdicts = []
-    for service in ("service", "work"):
-        for container in run.containers(service):
-            begin = time.monotonic()
-            podman("stop", "--time", "30", container)
-            taken = time.monotonic() - begin
-            what = f"stop of {service} on SIGTERM, s (within {STOP_S:g})"
-            verdicts.append(assess(what, f"{taken:.1f}", good=taken < STOP_S))
+    for container in run.containers("service"):
+        begin = time.monotonic()
+        podman("stop", "--time", "30", container)
+        taken = time.monotonic() - begin
+        what = f"stop on SIGTERM, s (within {STOP_S:g})"
+        verdicts.append(assess(what, f"{taken:.1f}", good=taken < STOP_S))
     return verdicts
 
 
 def guarded(run: Composition) -> list[bool]:
     """Assess what holds the containers in: limits, rights, secrets that only files hold, checks of health."""
     verdicts = []
-    for container in (*run.containers("service"), *run.containers("work")):
+    for container in run.containers("service"):
         facts = json.loads(podman("inspect", container))[0]
         host, password = facts["HostConfig"], (run.secrets / "database_password").read_text()
         limits = [
@@ -129,17 +128,16 @@ def live(run: Composition, client: LineOfActionClient, key: str) -> bool:
 
 
 def shared(run: Composition, client: LineOfActionClient, case: Case) -> list[bool]:
-    """Kill one of two schedulers while both work; assess that every job ends."""
+    """Kill the server while it works; assess that every job ends."""
     jobs = [client.analyze.submit(_with_teeth(case, teeth)) for teeth in _TEETH]
     _until(lambda: sum(state.status == "running" for state in _states(client, jobs)) == 2, run)
-    both = len(run.containers("work"))
-    tried("kill", "--signal", "KILL", run.containers("work")[0])
+    tried("kill", "--signal", "KILL", run.containers("service")[0])
+    run.start()
     _until(lambda: all(state.ended for state in _states(client, jobs)), run)
     ends = [state.status for state in _states(client, jobs)]
     done = ends.count("successful")
     return [
-        assess("schedulers that worked at the same time", both, good=both == 2),
-        assess(f"of {len(ends)} jobs done, one scheduler killed", done, good=done == len(ends)),
+        assess(f"of {len(ends)} jobs done, the server killed", done, good=done == len(ends)),
     ]
 
 

@@ -102,7 +102,8 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
         if lock is not None:
             lock.acquire()
-        context.scheduler.start()
+        if context.scheduler is not None:
+            context.scheduler.start()
         deliverer = processes.deliverer_of(context)
         if deliverer is not None:
             deliverer.start()
@@ -113,7 +114,8 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
             context.stop_waiting()
             if deliverer is not None:
                 deliverer.stop()
-            context.scheduler.stop()
+            if context.scheduler is not None:
+                context.scheduler.stop()
             tracer().flush()
             context.close()
             if lock is not None:

@@ -1,4 +1,4 @@
-"""Folders: the data directory and its one scheduler, those of a process alone, those of limited size."""
+"""Folders: the data directory and its one server, those of a process alone, those of limited size."""
 
 from __future__ import annotations
 
@@ -88,13 +88,13 @@ def _files(folder: Path) -> Iterator[UsedFile]:
                 yield UsedFile(facts.st_mtime, facts.st_size, path)
 
 
-# One scheduler per data directory, and its name.
+# One server per data directory.
 
 
 class DirectoryLock:
     """An advisory lock on a data directory; the system lifts it when the process dies, however it dies.
 
-    A process that runs jobs takes it: workspaces, logs and memory are one scheduler's. Others need none.
+    A process that runs jobs takes it: workspaces, logs and memory are its own. Others need none.
     """
 
     def __init__(self, directory: Path) -> None:
@@ -133,14 +133,3 @@ class DirectoryLock:
         if self._descriptor is not None:
             os.close(self._descriptor)
             self._descriptor = None
-
-
-def identity_of(directory: Path) -> str:
-    """Return the name of whoever holds the lock of a data directory: the same after a restart."""
-    directory.mkdir(parents=True, exist_ok=True)
-    file = directory / "service.id"
-    if not file.is_file():
-        draft = directory / f".service.id.{os.getpid()}"
-        draft.write_text(uuid.uuid4().hex, encoding="ascii")
-        draft.replace(file)
-    return file.read_text(encoding="ascii").strip()

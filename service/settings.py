@@ -125,8 +125,6 @@ class Settings(BaseSettings):
         Longest run of one computation.
     memory_limit_mb : int or None
         Memory that one computation may have, MB; None: the machine's over the number of workers.
-    lease_s : float
-        How long a scheduler holds a computation without a sign of life.
     attempts : int
         How often a computation whose worker died is started.
     scheduler : str or None
@@ -159,7 +157,6 @@ class Settings(BaseSettings):
     body_limit: int = Field(4_000_000, ge=1_000, le=1_000_000_000)
     deadline_s: float = Field(3600.0, gt=0.0, le=1e6)
     memory_limit_mb: int | None = Field(None, ge=LEAST_MEMORY_MB, le=1_000_000_000)
-    lease_s: float = Field(60.0, ge=1.0, le=86_400.0)
     attempts: int = Field(2, ge=1, le=10)
     scheduler: str | None = None
     keys_file: Annotated[Path, AfterValidator(absolute)] | None = None

@@ -1,4 +1,4 @@
-"""Programs that run for long: ``loa serve`` in one process or several, ``loa work``; log and management port.
+"""The server, ``loa serve``: in one process or several; its log and management port.
 
 Serving processes are forked from a process that has loaded the libraries, which they share. All accept
 connections of the one socket, so that none is lost when one of them dies.
@@ -41,10 +41,7 @@ from service.management.server import ManagementServer, Vitals
 from service.queue.scheduler import Machinery, Scheduler, job_machinery
 from service.routes.warm_up import HEAVY
 from service.settings import Settings, load_settings
-from service.store.database import shown
 from service.store.deployment import Deployment, WriteCheck
-from service.tracing.tracer import tracer
-from service.worker.cluster import RemoteWork
 from service.worker.process import default_registry
 
 if TYPE_CHECKING:
@@ -87,14 +84,13 @@ def _managed(
 
 
 def _managed_work(
-    settings: Settings, machinery: Machinery, sums: str | None = None
+    settings: Settings, machinery: Machinery, sums: str
 ) -> AbstractContextManager[Callable[[], None]]:
-    """Return the management port of a scheduler; `sums`: the folder of the figures of several processes."""
+    """Return the management port of the scheduler; `sums`: the folder of the figures of all processes."""
     engine, store, scheduler = machinery.engine, machinery.store, machinery.scheduler
     writes = WriteCheck(Deployment(engine, store))
     registry = process_registry(engine, store, writes, scheduler, settings)
-    if sums is not None:
-        MultiProcessCollector(registry, path=sums)  # type: ignore[no-untyped-call]
+    MultiProcessCollector(registry, path=sums)  # type: ignore[no-untyped-call]
     return _managed(settings, Vitals(scheduler, writes), partial(generate_latest, registry))
 
 
@@ -122,55 +118,21 @@ def _leave() -> NoReturn:
     os._exit(0)
 
 
-# ``loa work``.
-
-
-def run_work(**options: object) -> None:
-    """Run jobs until stopped by SIGTERM or SIGINT; workers end with the scheduler."""
-    settings = load_settings(**options)
-    keep_private()
-    log_to_standard_error()
-    lock = DirectoryLock(settings.data_directory)
-    lock.acquire()
-    stopped = _until_stopped()
-    try:
-        _work(settings, stopped)
-    finally:
-        lock.release()
-    _leave()
-
-
-def _work(settings: Settings, stopped: threading.Event) -> None:
-    """Run jobs until `stopped`."""
-    machinery = job_machinery(settings, default_registry())
-    with closing(machinery), _managed_work(settings, machinery) as announce_management:
-        machinery.scheduler.start()
-        try:
-            print(f"lineofaction works for {shown(machinery.engine)}", flush=True)  # noqa: T201 (command line)
-            announce_management()
-            stopped.wait()
-        finally:
-            machinery.scheduler.stop()
-            tracer().flush()
-
-
 # ``loa serve``.
 
 
-def run_serve(*, works: bool = True, **options: object) -> None:
-    """Serve until stopped by SIGTERM or SIGINT; workers, if it `works`, end with it."""
+def run_serve(**options: object) -> None:
+    """Serve until stopped by SIGTERM or SIGINT; workers end with it."""
     settings = load_settings(**options)
     keep_private()
     log_to_standard_error()
     open_identities(settings)  # refused before a socket is opened
     with _listener(settings) as listener:
         if settings.processes > 1:
-            capacity(settings.workers if works else 0)  # refused before a process is started
-            _serve_in_processes(
-                settings, works, partial(_serve, settings, listener), partial(_announce, listener)
-            )
+            capacity(settings.workers)  # refused before a process is started
+            _serve_in_processes(settings, partial(_serve, settings, listener), partial(_announce, listener))
             _leave()
-        server = _server(settings, works=works)
+        server = _server(settings)
         _at_stop(_stopped)
         with _managed(settings, server.vitals, server.metrics) as announce_management:
             _announce(listener)
@@ -186,8 +148,8 @@ def _serve(settings: Settings, listener: socket.socket) -> None:
     _server(settings, works=False).run(sockets=[listener])
 
 
-def _server(settings: Settings, *, works: bool) -> Server:
-    """Return the server of this process; ``loa work`` loads none of it."""
+def _server(settings: Settings, *, works: bool = True) -> Server:
+    """Return the server of this process."""
     from lineofaction.cli.connections import http_server  # noqa: PLC0415 (start-up time)
     from service.app import create_app  # noqa: PLC0415 (start-up time)
 
@@ -239,8 +201,8 @@ Work = Callable[[], None]
 """What a process does; pickled on the way to it."""
 
 
-def _serve_in_processes(settings: Settings, works: bool, serve: Work, announce: Work) -> None:
-    """Let `settings.processes` processes `serve` until SIGTERM or SIGINT; if it `works`, a scheduler here.
+def _serve_in_processes(settings: Settings, serve: Work, announce: Work) -> None:
+    """Let `settings.processes` processes `serve` until SIGTERM or SIGINT, with their scheduler here.
 
     `announce` is called when the first of them are started.
 
@@ -253,18 +215,19 @@ def _serve_in_processes(settings: Settings, works: bool, serve: Work, announce: 
     """
     stopped = _until_stopped()
     lock = DirectoryLock(settings.data_directory)
-    if works:
-        lock.acquire()
+    lock.acquire()
     metrics = tempfile.mkdtemp(prefix="loa-metrics-")
     os.environ.update(child_environment(**{_METRICS: metrics}))
     try:
-        machinery = job_machinery(settings, default_registry(), works=works)
+        machinery = job_machinery(settings, default_registry())
+        scheduler = machinery.scheduler
+        assert scheduler is not None
         with closing(machinery), _managed_work(settings, machinery, metrics) as announce_management:
             processes = ServingProcesses(settings.processes, serve)
-            machinery.scheduler.start()
+            scheduler.start()
             announce()
             announce_management()
-            _supervise(processes, machinery.scheduler, stopped)
+            _supervise(processes, scheduler, stopped)
     finally:
         lock.release()
         shutil.rmtree(metrics, ignore_errors=True)
@@ -272,9 +235,7 @@ def _serve_in_processes(settings: Settings, works: bool, serve: Work, announce: 
         raise Unexpected("scheduler")
 
 
-def _supervise(
-    processes: ServingProcesses, scheduler: Scheduler | RemoteWork, stopped: threading.Event
-) -> None:
+def _supervise(processes: ServingProcesses, scheduler: Scheduler, stopped: threading.Event) -> None:
     """Keep the processes alive until `stopped`, or the scheduler is dead; then stop all."""
     try:
         while not stopped.is_set() and scheduler.alive:

@@ -37,7 +37,6 @@ from service.store.deployment import WriteCheck
 from service.store.migrations import REVISIONS
 from service.store.results import ResultStore
 from service.version import solver_version
-from service.worker.cluster import RemoteWork
 
 # Metrics of the database and the store: equal for all processes on them.
 
@@ -170,7 +169,7 @@ def process_registry(
     engine: Engine,
     store: ResultStore,
     writes: WriteCheck,
-    scheduler: Scheduler | RemoteWork,
+    scheduler: Scheduler | None,
     settings: Settings,
 ) -> CollectorRegistry:
     """Return the metrics that every process of the service has; who answers requests adds those.
@@ -188,7 +187,7 @@ def process_registry(
         partial(_of_space, settings.data_directory),
     ):
         registry.register(_Collected(read))
-    if isinstance(scheduler, Scheduler):
+    if scheduler is not None:
         registry.register(_Collected(partial(_of_scheduler, scheduler, settings.workers)))
         registry.register(scheduler.figures)
     return registry

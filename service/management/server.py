@@ -22,7 +22,6 @@ from urllib.parse import urlsplit
 from lineofaction.gearbox.problems import BadInput
 from service.queue.scheduler import Scheduler
 from service.store.deployment import WriteCheck
-from service.worker.cluster import RemoteWork
 
 TURN_WITHIN_S = 120.0
 """A scheduler whose turn takes longer is stuck: a turn may wait for locks of the database and for an object
@@ -63,15 +62,15 @@ class Vitals:
         Returns the fault of what else it does: of the loop that answers requests.
     """
 
-    scheduler: Scheduler | RemoteWork
+    scheduler: Scheduler | None
     writes: WriteCheck
     serving: Callable[[], str] = lambda: ""
 
     def fault_of_health(self) -> str:
         """Return why the process is to be started again."""
-        if not self.scheduler.alive:
+        if self.scheduler is not None and not self.scheduler.alive:
             return "The scheduler does not run. Restart the service."
-        if self.scheduler.turn_age_s > TURN_WITHIN_S:
+        if self.scheduler is not None and self.scheduler.turn_age_s > TURN_WITHIN_S:
             return f"The scheduler has not turned for {TURN_WITHIN_S:g} s. Restart the service."
         return self.serving()
 

@@ -24,7 +24,7 @@ from service.settings import LEAST_MEMORY_MB, Settings
 from service.store.results import ResultStore
 from service.tracing.tracer import Fact, Span, trace_facts, tracer
 from service.worker.forks import Launch
-from service.worker.order import USABLE, Outcome, WorkOrder
+from service.worker.order import Outcome, WorkOrder
 from service.worker.process import Process
 from service.worker.usage import BYTES_PER_MB, Usage, machine_memory_mb, no_space
 from service.worker.worker import Step, Worker
@@ -230,7 +230,6 @@ def _order(settings: Settings, entry: str, claim: Claim) -> WorkOrder:
         database_url=settings.database_address,
         results_url=settings.results_url,
         results_keys=settings.results_keys,
-        lease_until=claim.asked + USABLE * settings.lease_s,
         scheduler=settings.scheduler,
     )
 

@@ -14,8 +14,7 @@ from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select, 
 from lineofaction.gearbox.problems import BadInput, QueueFull
 from service.access.keyring import Holder
 from service.project import COMMON, address_of
-from service.queue.claims import is_newer
-from service.queue.tables import computations, jobs
+from service.queue.tables import BATCH, computations, jobs
 from service.queue.terms import (
     ANYBODY,
     AS_IT_IS,
@@ -26,7 +25,7 @@ from service.queue.terms import (
     differences_between,
     differences_column,
 )
-from service.queue.workload import FOR_EVER, HELD, batch_steps
+from service.queue.workload import batch_steps
 from service.schemas.answers import Differences
 from service.store.database import now, writing
 from service.store.dialects import retried
@@ -150,8 +149,8 @@ class Entry:
         """Return the computation of a job: the shared one, to these terms, or a new one.
 
         A shared one that waits gets at least this priority, and may cost what the most generous of its jobs
-        allows. Work in flight of an older program becomes this one's: ended as former it would end the new
-        job too.
+        allows. Work in flight that another version entered becomes this one's: ended as that it would end the
+        new job too.
         """
         if shared is None:
             return _enter_computation(connection, process, work, self._terms)
@@ -162,9 +161,7 @@ class Entry:
         tighter = table.max_cost_s.is_not(None) if limit is None else table.max_cost_s < limit
         connection.execute(update(computations).where(mine, tighter).values(max_cost_s=limit))
         live = mine & table.state.in_(LIVE)
-        program = connection.execute(select(table.program).where(live)).scalar()
-        if program is not None and not is_newer(program, solver_version()):
-            connection.execute(update(computations).where(live).values(program=solver_version()))
+        connection.execute(update(computations).where(live).values(program=solver_version()))
         return shared
 
     @retried
@@ -241,10 +238,10 @@ def _is_entered(connection: Connection, which: ColumnElement[bool], works: Seque
 def _entered_batch(connection: Connection, identifier: str, process: str, children: int) -> dict[str, Any]:
     """Enter what stands for the computation of a batch; return the row of its job."""
     instant, computation = now(), str(uuid.uuid4())
-    row = {"id": computation, "process": process, "key": f"batch {identifier}", "inputs": json.dumps({})}
-    row |= {"state": "running", "lease": HELD, "message": "", "stage": "jobs"}
+    row = {"id": computation, "process": process, "key": f"{BATCH}{identifier}", "inputs": json.dumps({})}
+    row |= {"state": "running", "message": "", "stage": "jobs"}
     row |= {"created": instant, "started": instant, "updated": instant}
-    connection.execute(insert(computations).values(**row, leased_until=FOR_EVER))
+    connection.execute(insert(computations).values(**row))
     job = {"id": identifier, "computation_id": computation, "parent": None, "place": 0}
     return job | {"children": children, "weight": 0.0}
 

@@ -1,4 +1,8 @@
-"""The scheduler: a thread that claims computations, minds workers, settles ends; and what it works with."""
+"""The scheduler: a thread that claims computations, minds workers, settles ends; and what it works with.
+
+One server owns the job table (`service.store.database.Ownership`). If it loses the lock its workers go on,
+and it starts and notes nothing until it has the lock again; if another server has it, they are killed.
+"""
 
 from __future__ import annotations
 
@@ -15,23 +19,24 @@ import structlog
 from sqlalchemy import Engine
 
 from host import never_wait_at, require_sessions
-from lineofaction.gearbox.problems import DatabaseUnavailable, ServiceError, StoreUnavailable
-from service.folders import identity_of
+from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable, ServiceError, StoreUnavailable
 from service.queue.attempt import Attempt, Ended, Settlement, WorkerFigures, begun
-from service.queue.claims import RENEWALS, Claim, Claims, Leases
+from service.queue.claims import Claim, Claims, Reached
 from service.queue.retention import Housekeeper, Retention
 from service.queue.submissions import Submissions
 from service.settings import Settings
-from service.store.database import Schema, open_database
+from service.store.database import Ownership, Schema, open_database
 from service.store.places import DATABASE_FILE, result_store
 from service.store.results import ResultStore
-from service.worker.cluster import RemoteWork
 from service.worker.forks import Forks
 from service.worker.order import Outcome
 from service.worker.process import Registry
 from service.worker.worker import Worker
 
-_HEARTBEAT_S = 0.5
+_TURN_S = 0.5
+"""Between two turns in which nothing is heard."""
+_NOTED_EVERY_S = 0.25
+"""Progress is written down at most so often."""
 _STOPPING_S = 1.0
 """How long a stop waits for killed workers to be dead."""
 _OUTAGES = (DatabaseUnavailable, StoreUnavailable)
@@ -40,7 +45,7 @@ logger = structlog.get_logger(__name__)
 
 
 class Scheduler:
-    """Runs what waits, at most `settings.workers` at a time; others may run on the same database."""
+    """Runs what waits, at most `settings.workers` at a time."""
 
     def __init__(
         self,
@@ -48,26 +53,32 @@ class Scheduler:
         registry: Registry,
         claims: Claims,
         store: ResultStore,
+        owner: Ownership,
         housekeeper: Housekeeper | None = None,
     ) -> None:
         self._settings, self._registry, self._claims = settings, registry, claims
-        self._housekeeper = housekeeper
+        self._owner, self._housekeeper = owner, housekeeper
         self._settlement = Settlement(claims, store, settings.attempts)
-        self._leases = Leases(claims, settings.lease_s)
         self._forks = Forks(registry.modules, settings.data_directory / "log" / "warm.log")
         self._running: dict[int, Attempt] = {}
+        self._reached: dict[str, tuple[Claim, Reached]] = {}
         self._unsettled: list[Ended] = []
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None
         self._wake_in: int | None = None
-        self._looked_at = self._turned_at = 0.0
+        self._doubtful = False
+        self._noted_at = self._turned_at = 0.0
         self.figures = WorkerFigures()
 
     def start(self) -> None:
-        """Take up what a dead service left behind, then begin; may be started again after a stop."""
+        """Take up what a dead service left behind, then begin; may be started again after a stop.
+
+        Raises `BadInput`: another server owns the job table.
+        """
+        self._owner.acquire()
         for name in ("work", "log"):
             (self._settings.data_directory / name).mkdir(parents=True, exist_ok=True)
-        for claim in self._claims.left():
+        for claim in self._claims.running():
             self._settlement.again_or_fail(claim, "The service ended while it ran.")
         self._clear()
         self._selector = selectors.DefaultSelector()
@@ -77,7 +88,6 @@ class Scheduler:
         self._selector.register(self._wake_out, selectors.EVENT_READ)
         self._stopping.clear()
         self._turned_at = time.monotonic()
-        self._leases.start()
         if self._housekeeper is not None:
             self._housekeeper.start()
         self._thread = threading.Thread(target=self._loop, name="scheduler", daemon=True)
@@ -97,6 +107,7 @@ class Scheduler:
         self._selector.close()
         os.close(self._wake_out)
         os.close(wake_in)
+        self._owner.release()
 
     @property
     def alive(self) -> bool:
@@ -105,7 +116,7 @@ class Scheduler:
 
     @property
     def turn_age_s(self) -> float:
-        """Seconds since its last turn ended, well or not; turns follow each other within `_HEARTBEAT_S`."""
+        """Seconds since its last turn ended, well or not; turns follow each other within `_TURN_S`."""
         return time.monotonic() - self._turned_at
 
     @property
@@ -124,6 +135,11 @@ class Scheduler:
             with contextlib.suppress(BlockingIOError):  # the pipe is full of wake-ups already
                 os.write(self._wake_in, b".")
 
+    def give_up(self) -> None:
+        """Let another server have the job table, as this one will not start, or has stopped."""
+        if not self.alive:
+            self._owner.release()
+
     def _loop(self) -> None:
         """Until stopped: claim, listen, enforce. A turn that fails is logged and the next one tries again."""
         while not self._stopping.is_set():
@@ -134,14 +150,14 @@ class Scheduler:
                     logger.warning("scheduler turn failed", error=str(error))
                 else:
                     logger.exception("scheduler turn failed")
-                self._stopping.wait(_HEARTBEAT_S)
+                self._doubtful = True
+                self._stopping.wait(_TURN_S)
             self._turned_at = time.monotonic()
         self._put_all_back()
         self._forks.close()
-        self._leases.stop()
 
     def _put_all_back(self) -> None:
-        """End all workers; without a database the leases end by themselves."""
+        """End all workers; what the database does not take now it is told at the next start."""
         running = list(self._running.values())
         for run in running:
             run.worker.end_group()
@@ -149,6 +165,7 @@ class Scheduler:
         for run in running:
             self._kill(run, "stopped", patience_s=max(deadline - time.monotonic(), 0.0))
         with contextlib.suppress(ServiceError):
+            self._own_table()
             self._settle_all()
             for run in running:
                 self._claims.put_back(run.claim, "Waits: the service was stopped.", counted=False)
@@ -157,10 +174,12 @@ class Scheduler:
         """Do one round; what needs no database comes first."""
         self._listen_to_all()
         self._enforce_deadline()
+        self._own_table()
+        self._put_back_strays()
         self._settle_all()
         self._enforce_dismissals()
         self._enforce_costs()
-        self._take_up()
+        self._note_progress()
         self._clear()
         self._claims.advance_batches()
         while len(self._running) < self._settings.workers and (claim := self._claims.claim()) is not None:
@@ -168,9 +187,7 @@ class Scheduler:
 
     def _listen_to_all(self) -> None:
         """Hear workers and wake-ups; wait for one if there is none."""
-        heard = self._selector.select(_HEARTBEAT_S)
-        self._enforce_leases()  # a worker may have ended because its lease did
-        for key, _ in heard:
+        for key, _ in self._selector.select(_TURN_S):
             if key.fd == self._wake_out:
                 os.read(self._wake_out, 65536)
             elif key.fd in self._running:
@@ -186,7 +203,6 @@ class Scheduler:
             text = f"No worker could be started. The log has the details under {reference}."
             self._claims.fail(claim, text, reference=reference)
             return
-        self._leases.hold(claim, attempt.worker.beat)
         self._running[attempt.worker.channel] = attempt
         self._selector.register(attempt.worker.channel, selectors.EVENT_READ)
 
@@ -195,29 +211,26 @@ class Scheduler:
         steps, ended = running.worker.listen()
         running.trace.see(steps)
         if ended:
-            self._end(running, self._forget(running, keep_lease=True).finish())
+            self._end(running, self._forget(running).finish())
             running.note_end(self._unsettled[-1].outcome.name)
         elif steps:
             last = steps[-1]
             paced = running.fraction.at(last.stage, last.fraction, running.worker.age)
             known = paced if last.whole is None else last.whole
-            self._claims.progress(running.claim, last.stage, last.fraction, known)
+            self._reached[running.claim.id] = running.claim, Reached(last.stage, last.fraction, known)
 
     def _end(self, running: Attempt, outcome: Outcome) -> None:
-        """Let an attempt be settled; its lease is held until then."""
+        """Let an attempt be settled."""
         self._unsettled.append(Ended(running.claim, outcome, running.workspace, running.log))
 
-    def _forget(self, running: Attempt, *, keep_lease: bool = False) -> Worker:
+    def _forget(self, running: Attempt) -> Worker:
         self._selector.unregister(running.worker.channel)
         del self._running[running.worker.channel]
-        if not keep_lease:
-            self._leases.drop(running.claim)
+        self._reached.pop(running.claim.id, None)
         return running.worker
 
-    def _kill(
-        self, running: Attempt, why: str, *, keep_lease: bool = False, patience_s: float | None = None
-    ) -> None:
-        self._forget(running, keep_lease=keep_lease).kill(patience_s)
+    def _kill(self, running: Attempt, why: str, patience_s: float | None = None) -> None:
+        self._forget(running).kill(patience_s)
         running.note_end(why)
 
     def _settle_all(self) -> None:
@@ -231,7 +244,6 @@ class Scheduler:
             except ServiceError:
                 logger.exception("outcome could not be settled", computation=ended.claim.id)
             self._unsettled.pop(0)
-            self._leases.drop(ended.claim)
 
     def _clear(self) -> None:
         """Remove the workspaces of computations that neither run nor wait for their next attempt."""
@@ -242,22 +254,37 @@ class Scheduler:
             if workspace.name not in waiting:
                 shutil.rmtree(workspace, ignore_errors=True)
 
-    def _take_up(self) -> None:
-        """Take up what dead schedulers hold, now and then."""
-        if time.monotonic() - self._looked_at < self._settings.lease_s / RENEWALS:
+    def _own_table(self) -> None:
+        """See to it that the table is ours: what was lost with its connection is acquired again."""
+        if not self._owner.lost():
             return
-        for claim in self._claims.take_up():
-            self._settlement.again_or_fail(claim, "The scheduler that ran it was lost.")
-        self._looked_at = time.monotonic()
+        logger.warning("job table lost")
+        try:
+            self._owner.acquire()
+        except BadInput:
+            for running in list(self._running.values()):
+                self._kill(running, "table lost")
+            self._unsettled.clear()
+            raise DatabaseUnavailable("Another server owns the job table.") from None
+        logger.warning("job table owned again")
+        self._doubtful = True
 
-    def _enforce_leases(self) -> None:
-        """End workers whose lease lapsed: by now another scheduler may run their computations."""
-        for running in list(self._running.values()):
-            if self._leases.lapsed(running.claim):
-                self._kill(running, "lease lost")
-                logger.warning("lease lost", computation=running.claim.id)
-                with contextlib.suppress(ServiceError):
-                    self._claims.put_back(running.claim, "Waits: the database was lost.", counted=False)
+    def _put_back_strays(self) -> None:
+        """Let wait what runs by the table but not here: a step broke off, or another server was killed."""
+        if not self._doubtful:
+            return
+        known = {run.claim.id for run in self._running.values()} | {end.claim.id for end in self._unsettled}
+        for claim in self._claims.running():
+            if claim.id not in known:
+                self._claims.put_back(claim, "Waits: the database was lost.", counted=False)
+        self._doubtful = False
+
+    def _note_progress(self) -> None:
+        """Write down how far works are, at most every `_NOTED_EVERY_S`."""
+        if self._reached and time.monotonic() - self._noted_at > _NOTED_EVERY_S:
+            self._claims.progress(list(self._reached.values()))
+            self._reached.clear()
+            self._noted_at = time.monotonic()
 
     def _enforce_deadline(self) -> None:
         deadline_s = self._settings.deadline_s
@@ -267,7 +294,7 @@ class Scheduler:
         )
         for running in list(self._running.values()):
             if running.worker.age > deadline_s:
-                self._kill(running, "too late", keep_lease=True)
+                self._kill(running, "too late")
                 self._end(running, Outcome(failure=text))
 
     def _enforce_costs(self) -> None:
@@ -275,11 +302,11 @@ class Scheduler:
         for running in list(self._running.values()):
             why = running.too_costly(self._claims)
             if why is not None:
-                self._kill(running, "too costly", keep_lease=True)
+                self._kill(running, "too costly")
                 self._end(running, Outcome(failure=why))
 
     def _enforce_dismissals(self) -> None:
-        """End workers of computations that nobody wants, or that another scheduler has."""
+        """End workers of computations that nobody wants."""
         held = self._claims.held([running.claim for running in self._running.values()])
         for running in list(self._running.values()):
             if running.claim.id not in held:
@@ -299,17 +326,19 @@ class Machinery:
     engine : Engine
     store : ResultStore
     submissions : Submissions
-    scheduler : Scheduler or RemoteWork
-        Not started.
+    scheduler : Scheduler or None
+        Not started; None: this process does no work.
     """
 
     engine: Engine
     store: ResultStore
     submissions: Submissions
-    scheduler: Scheduler | RemoteWork
+    scheduler: Scheduler | None
 
     def close(self) -> None:
         """Close what is open; it opens again when it is needed."""
+        if self.scheduler is not None:
+            self.scheduler.give_up()
         self.engine.dispose()
 
 
@@ -320,7 +349,7 @@ def job_machinery(settings: Settings, registry: Registry, *, works: bool = True)
     ------
     BadInput
         The database or the place of results is none, or they do not belong together, or the schema is another
-        program's.
+        program's; it works, and another server owns the job table.
     DatabaseUnavailable, StoreUnavailable
         One does not answer; `DatabaseDamaged`: it has to be mended.
     Unavailable
@@ -333,14 +362,18 @@ def job_machinery(settings: Settings, registry: Registry, *, works: bool = True)
         Schema(engine).check()
         target = (settings.results_url, settings.results_cache_mb, settings.results_keys)
         store = result_store(engine, settings.data_directory, *target)
+        scheduler = _scheduler(settings, registry, engine, store) if works else None
     except BaseException:
         engine.dispose()
         raise
-    scheduler: Scheduler | RemoteWork = RemoteWork()
-    if works:
-        claims = Claims(engine, identity_of(settings.data_directory), settings.lease_s)
-        retention = Retention(engine, store, settings.data_directory, settings.quarantine_days)
-        days = settings.retention_days
-        housekeeper = None if days is None else Housekeeper(retention, days)
-        scheduler = Scheduler(settings, registry, claims, store, housekeeper)
     return Machinery(engine, store, Submissions(engine, settings.queue_limit), scheduler)
+
+
+def _scheduler(settings: Settings, registry: Registry, engine: Engine, store: ResultStore) -> Scheduler:
+    """Return the scheduler of the server that owns the job table."""
+    retention = Retention(engine, store, settings.data_directory, settings.quarantine_days)
+    days = settings.retention_days
+    housekeeper = None if days is None else Housekeeper(retention, days)
+    owner = Ownership(engine)
+    owner.acquire()
+    return Scheduler(settings, registry, Claims(engine), store, owner, housekeeper)

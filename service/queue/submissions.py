@@ -15,9 +15,9 @@ from service.access.keyring import Holder
 from service.project import COMMON
 from service.queue.entry import LIVE, BatchCase, Entry
 from service.queue.job import ENDED, EVERY_JOB, Job, JobFilter, job_of, jobs_of_all_projects
-from service.queue.tables import computations, jobs
+from service.queue.tables import computations, jobs, of_batch
 from service.queue.terms import ANYBODY, USUAL, Label, Terms
-from service.queue.workload import HELD, end_computations, states_of
+from service.queue.workload import end_computations, states_of
 from service.store.database import BRIEF_MS, instant, now, reading, writing
 from service.store.dialects import optional, retried
 from service.store.results import USE_NOTED_EVERY_S, Mark, behind
@@ -209,7 +209,7 @@ class Submissions:
             # the scheduler kills their workers; a batch ends by its jobs
             unwanted = computations.c.id.in_(owners) & ~wanted & computations.c.state.in_(LIVE)
             values = {"state": "dismissed", "message": "Cancelled."}
-            end_computations(connection, unwanted & (computations.c.lease != HELD), values)
+            end_computations(connection, unwanted & ~of_batch, values)
 
     def _jobs(self) -> Any:
         return jobs_of_all_projects().where(jobs.c.project == self._project)

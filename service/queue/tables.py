@@ -23,8 +23,8 @@ computations = Table(
     Column("id", String, primary_key=True),
     *_columns(String, "process", "key", "state", "created", "updated"),
     *_columns(Text, "inputs"),
-    *_columns(String, "stage", "reference", "owner", "lease", default=""),
-    *_columns(Float, "stage_fraction", "fraction", "leased_until", default=0.0),
+    *_columns(String, "stage", "reference", default=""),
+    *_columns(Float, "stage_fraction", "fraction", default=0.0),
     *_columns(Text, "message", default=""),
     *_columns(Text, "faults", default="[]"),
     *_columns(Integer, "attempts", default=0),
@@ -44,10 +44,13 @@ Index(
     sqlite_where=_LIVE,
     postgresql_where=_LIVE,
 )
-Index("computation_by_lease", computations.c.lease)
 Index("computation_by_state", computations.c.state, computations.c.created)
 
 Index("computation_by_turn", computations.c.state, computations.c.priority, computations.c.created)
+
+BATCH = "batch "
+"""How the key of what stands for the computation of a batch begins; the hash of a result has no space."""
+of_batch = computations.c.key.startswith(BATCH)
 
 # Counts of ended computations: they outlive the computations, see `service.queue.workload`.
 durations = Table(

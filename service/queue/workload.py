@@ -1,4 +1,4 @@
-"""The load as the database knows it, equal for all services on it, and how long computations took."""
+"""The load as the database knows it, how far batches are, and how long computations took."""
 
 from __future__ import annotations
 
@@ -10,16 +10,12 @@ from typing import Any
 from sqlalchemy import ColumnElement, Connection, Engine, Row, Update, case, func, select, update
 
 from service.queue.job import ENDED, job_state
-from service.queue.tables import computations, durations, jobs
+from service.queue.tables import computations, durations, jobs, of_batch
 from service.store.database import now, reading
 from service.store.dialects import dialect_of, retried
 from service.store.results import results
 
 # Batches: how far one is follows from the jobs in it.
-
-
-HELD, FOR_EVER = "batch", 1e15
-"""The lease of the computation of a batch, and its end."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +55,7 @@ NOBODY = Family({}, 1.0)
 def batch_steps(connection: Connection) -> list[Update]:
     """Return the changes of those batches that go on and whose jobs have moved."""
     facts = (computations.c.id.label("row"), computations.c.message, computations.c.fraction)
-    held = (computations.c.state == "running") & (computations.c.lease == HELD)
+    held = (computations.c.state == "running") & of_batch
     rows = connection.execute(
         select(jobs.c.id, *facts).select_from(jobs.join(computations)).where(held)
     ).all()
@@ -204,14 +200,14 @@ def states_of(connection: Connection) -> dict[str, int]:
     """Count computations by state; what stands for a batch is none."""
     statement = select(computations.c.state, func.count()).group_by(computations.c.state)
     all_rows = {row[0]: row[1] for row in connection.execute(statement)}
-    batches = {row[0]: row[1] for row in connection.execute(statement.where(computations.c.lease == HELD))}
+    batches = {row[0]: row[1] for row in connection.execute(statement.where(of_batch))}
     counts = {state: number - batches.get(state, 0) for state, number in all_rows.items()}
     return {state: number for state, number in counts.items() if number}
 
 
 def _queue(connection: Connection) -> dict[tuple[str, str], int]:
     facts = (computations.c.state, computations.c.process)
-    live = computations.c.state.in_(("accepted", "running")) & (computations.c.lease != HELD)
+    live = computations.c.state.in_(("accepted", "running")) & ~of_batch
     rows = connection.execute(select(*facts, func.count()).where(live).group_by(*facts))
     return {(row[0], row[1]): row[2] for row in rows}
 

@@ -23,7 +23,6 @@ from service.reading.pool import ReadingPool
 from service.settings import Settings
 from service.store.deployment import WriteCheck
 from service.store.results import ResultStore
-from service.worker.cluster import RemoteWork
 from service.worker.process import Registry
 
 if TYPE_CHECKING:
@@ -151,7 +150,7 @@ class Context:
     settings: Settings
     registry: Registry
     submissions: Submissions
-    scheduler: Scheduler | RemoteWork
+    scheduler: Scheduler | None
     store: ResultStore
     live: LivePool
     reader: ReadingPool
@@ -173,6 +172,11 @@ class Context:
             self._projects[project] = replace(self, submissions=jobs, store=store, project=project)
         return self._projects[project]
 
+    def wake(self) -> None:
+        """Let the scheduler look at the table now; one in another process looks twice a second."""
+        if self.scheduler is not None:
+            self.scheduler.wake()
+
     def stop_waiting(self) -> None:
         """End the workers of those who wait for an answer, and the streams of those who wait for an event."""
         self.watcher.stop()
@@ -181,6 +185,8 @@ class Context:
 
     def close(self) -> None:
         """Close what is open; it opens again when it is needed."""
+        if self.scheduler is not None:
+            self.scheduler.give_up()
         self.engine.dispose()
 
 

@@ -196,7 +196,7 @@ def dismiss_job(job_id: str, request: Request, context: Ctx) -> StatusInfo:
     """
     _require_own(job_id, request, context)
     job = context.submissions.dismiss(job_id)
-    context.scheduler.wake()
+    context.wake()
     return status_info(job, context.registry)
 
 

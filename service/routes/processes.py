@@ -228,7 +228,7 @@ def _submit(
     )
     facts = {"job": job.id, "computation": job.computation, "process": process.id, "key": key}
     logger.info("job entered", **facts, stored=stored)
-    context.scheduler.wake()
+    context.wake()
     return status_info(job, context.registry)
 
 
@@ -347,7 +347,7 @@ def submit_batch(
     identifier = entry.batch(process.id, cases, looked, idempotency_key)
     _enter_calls(context, identifier, uris)
     logger.info("batch entered", job=identifier, process=process.id, jobs=len(cases))
-    context.scheduler.wake()
+    context.wake()
     response.headers["Location"] = f"/v1/jobs/{identifier}"
     return status_info(context.submissions.find(identifier), context.registry)
 

@@ -121,8 +121,12 @@ _PRAGMAS = (
 )
 _TURN = 0x6C6F61  # "loa": any number that all our processes know
 _CONNECT_TIMEOUT_S = 5
-_STALLED = "-c idle_in_transaction_session_timeout=30s -c lock_timeout=10s"
-"""A stalled process must not hold rows for ever, nor let its callers wait for longer than a client does."""
+_STALLED = (
+    "-c idle_in_transaction_session_timeout=30s -c lock_timeout=10s "
+    "-c tcp_keepalives_idle=10 -c tcp_keepalives_interval=5 -c tcp_keepalives_count=3"
+)
+"""A stalled process must not hold rows for ever, nor let its callers wait for longer than a client does; the
+locks of a machine that is gone end after half a minute."""
 _SILENT: Mapping[str, Any] = {
     "keepalives_idle": 10,
     "keepalives_interval": 5,

@@ -10,10 +10,10 @@ import sqlalchemy as sa
 if TYPE_CHECKING:
     from alembic.operations import Operations
 
-USABLE_SINCE = "0007"
+USABLE_SINCE = "0015"
 """The oldest schema whose program can use the newest one.
 
-Programs of two versions work on one database during an upgrade. A step that removes or renames moves it up.
+So a former version can be started again after an upgrade. A step that removes or renames moves it up.
 """
 
 
@@ -196,6 +196,13 @@ def _batches(op: Operations) -> None:
     op.create_index("webhook_by_lease", "webhook", ["lease"])
 
 
+def _one_owner(op: Operations) -> None:
+    """Remove who runs a computation and until when: the one server that owns the table does."""
+    op.drop_index("computation_by_lease", "computation")
+    for name in ("owner", "lease", "leased_until"):
+        op.drop_column("computation", name)
+
+
 STEPS: Mapping[str, Callable[[Operations], None]] = {
     "0001": _jobs_and_results,
     # what runs now is nobody's, and its lease has ended
@@ -218,6 +225,7 @@ STEPS: Mapping[str, Callable[[Operations], None]] = {
     "0013": _batches,
     # jobs of before, or of a former program, have the inputs of their computation alone
     "0014": _added("job", ("stated", "", sa.Text)),
+    "0015": _one_owner,
 }
 REVISIONS = tuple(STEPS)
 """All schemas there have been, the newest last."""

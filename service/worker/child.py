@@ -1,10 +1,9 @@
 """The worker process: one order in, progress and one outcome out, then the end.
 
 Started as ``python -m service.worker.child DESCRIPTOR``, or forked, in a session of its own. The order is
-the first line of standard input, which then stays open; on it comes a line whenever the lease of the
-computation was renewed: the instant until which. When it closes, the service is gone; when that instant
-passes, another scheduler may take the computation up: then the whole process group (gmsh's process included)
-is killed. Progress and outcome are lines of JSON on DESCRIPTOR. Standard error is the log.
+the first line of standard input, which then stays open. When it closes, the service is gone: then the whole
+process group (gmsh's process included) is killed. Progress and outcome are lines of JSON on DESCRIPTOR.
+Standard error is the log.
 """
 
 from __future__ import annotations
@@ -13,7 +12,6 @@ import importlib
 import json
 import logging
 import os
-import select
 import shutil
 import sys
 import tempfile
@@ -42,9 +40,8 @@ warnings_of_case = on_demand("service.worker.preparations:warnings_of_case")
 def work(descriptor: int) -> None:
     """Run one order; messages go to the descriptor."""
     begin_work()
-    line, renewals = _first_line()
-    order = WorkOrder.from_line(line)
-    threading.Thread(target=_watch_parent, args=(order.lease_until, renewals), daemon=True).start()
+    order = WorkOrder.from_line(_first_line())
+    threading.Thread(target=_watch_parent, daemon=True).start()
     lock(os.open(order.workspace, os.O_RDONLY), wait=True)  # open, and so locked, until we end
     # temporary files are below the workspace, which the service removes however this process ends
     drafts = order.workspace / "drafts"
@@ -77,27 +74,21 @@ def _part_from_stored(workspace: Path) -> None:
             file.unlink()
 
 
-def _first_line() -> tuple[bytes, bytes]:
-    """Read the order, and what has come behind it of renewed leases."""
+def _first_line() -> bytes:
+    """Read the order."""
     line = b""
-    while b"\n" not in line:
+    while not line.endswith(b"\n"):
         piece = os.read(0, 65536)
         if not piece:
             sys.exit("The service closed the channel before it gave an order.")
         line += piece
-    order, _, rest = line.partition(b"\n")
-    return order, rest
+    return line
 
 
-def _watch_parent(until: float | None, rest: bytes) -> None:
-    """Kill the process group when the service is gone, or the lease was not renewed in time."""
-    while True:
-        *renewed, rest = rest.split(b"\n")
-        until = float(renewed[-1]) if renewed else until
-        left = None if until is None else max(until - time.monotonic(), 0.0)
-        if not select.select([0], [], [], left)[0] or not (piece := os.read(0, 4096)):
-            kill_own_group()
-        rest += piece
+def _watch_parent() -> None:
+    """Kill the process group when the service is gone."""
+    os.read(0, 1)
+    kill_own_group()
 
 
 class _Telling(logging.Handler):

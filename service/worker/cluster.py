@@ -14,25 +14,6 @@ from model_studies.workers import ByDask, InProcess, OrHere, Remembering, RunCos
 from service.version import solver_version
 from service.worker.order import WorkOrder
 
-
-class RemoteWork:
-    """Stands where the scheduler is in a process that works; others look at the table by themselves."""
-
-    alive = True
-    """Nothing here can be dead; whether others work shows in the figures of the table."""
-    turn_age_s = 0.0
-    """Nothing here can be late."""
-
-    def start(self) -> None:
-        """Do nothing."""
-
-    def stop(self) -> None:
-        """Do nothing."""
-
-    def wake(self) -> None:
-        """Do nothing: remote schedulers look every half second."""
-
-
 logger = logging.getLogger(__name__)
 
 S = TypeVar("S")

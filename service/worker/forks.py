@@ -34,7 +34,7 @@ class Ends:
     Attributes
     ----------
     orders, channel, log : int
-        It reads its order and renewals of its lease, writes progress and outcome, writes what it prints.
+        It reads its order, writes progress and outcome, writes what it prints.
     workspace : Path
         Its working directory.
     """

@@ -17,10 +17,6 @@ class Progress(Protocol):
         """Report both, from 0 to 1; without `whole` it follows from the shares that the process declares."""
 
 
-USABLE = 0.9
-"""Part of a lease that its holder works under; the rest is for clocks and for ending the work."""
-
-
 @dataclass(frozen=True)
 class WorkOrder:
     """One computation for one child process.
@@ -50,9 +46,6 @@ class WorkOrder:
         Address of the scheduler whose workers do the tasks, if the service has one.
     project : str, optional
         Whose results the work may read.
-    lease_until : float, optional
-        Instant on the monotonic clock, which all processes of a machine share, s: unless the worker hears by
-        then that its lease was renewed, it ends.
     """
 
     entry: str
@@ -63,7 +56,6 @@ class WorkOrder:
     memory_limit_mb: int | None = None
     database_url: str | None = None
     results_url: str | None = None
-    lease_until: float | None = None
     scheduler: str | None = None
     project: str = COMMON
     results_keys: tuple[str, str] | None = None

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import threading
 import time
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -59,7 +58,6 @@ class Worker:
         self._ended: Ended | None = None
         self._peak_mb: float | None = None
         self._rest = b""
-        self._giving = threading.Lock()
         theirs, self._orders = os.pipe()
         self.channel, answers = os.pipe()
         never_wait_at(self.channel)
@@ -76,7 +74,6 @@ class Worker:
         # a child that died before reading the order shows when its channel ends
         with contextlib.suppress(BrokenPipeError), os.fdopen(self._orders, "wb", closefd=False) as stream:
             stream.write(order.line())
-        never_wait_at(self._orders)
 
     @property
     def pid(self) -> int:
@@ -87,12 +84,6 @@ class Worker:
     def age(self) -> float:
         """Seconds since the start."""
         return time.monotonic() - self.started
-
-    def beat(self, until: float) -> None:
-        """Tell the child until when its lease was renewed; it ends itself at that instant."""
-        with self._giving, contextlib.suppress(BrokenPipeError, BlockingIOError):
-            if self._orders >= 0:
-                os.write(self._orders, b"%r\n" % until)
 
     def listen(self) -> tuple[list[Step], bool]:
         """Return the progress since the last call, and whether the child closed its channel."""
@@ -167,10 +158,7 @@ class Worker:
                 self._ended = ended = self._process.reap()
                 peak_mb = ended.peak_memory / BYTES_PER_MB if self._peak_mb is None else self._peak_mb
                 self.usage = Usage(self.age, ended.cpu_seconds, peak_mb)
-        with self._giving:
-            if self._orders >= 0:
-                os.close(self._orders)
-                self._orders = -1
-        if self.channel >= 0:
-            os.close(self.channel)
-            self.channel = -1
+        for end in (self._orders, self.channel):
+            if end >= 0:
+                os.close(end)
+        self._orders = self.channel = -1

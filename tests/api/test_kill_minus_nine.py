@@ -27,21 +27,20 @@ from service.store.maintenance import verify_store
 from service.store.places import stored_results
 
 SEED = 20261120
-COMMON = {"LOA_WORKERS": "2", "LOA_ATTEMPTS": "10", "LOA_LEASE_S": "5"}
+COMMON = {"LOA_WORKERS": "2", "LOA_ATTEMPTS": "10"}
 FIGURES = Path(__file__).parents[2] / "out"
 
 
 @pytest.fixture
 def service(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[KilledService]:
-    """On a SQLite file one part does all and one works; on PostgreSQL one serves and two work.
+    """On a SQLite file, or on PostgreSQL, which is reached over a relay and harmed, too.
 
-    The server is reached over a relay, has connections ended by its administrator, and is itself stopped
-    without notice and started again.
+    It has connections ended by its administrator, and is itself stopped without notice and started again.
     """
     settings = COMMON | {"LOA_RESULTS_URL": (tmp_path / "results").as_uri()}
     if request.getfixturevalue("database") == "sqlite":
         settings["LOA_DATABASE_URL"] = f"sqlite:///{tmp_path / 'shared.sqlite3'}"
-        yield KilledService(tmp_path, settings, ["all", "work"])
+        yield KilledService(tmp_path, settings)
         return
     with running_server() as server, relay(server.socket) as between:
         direct = migrated(server.new_database())
@@ -51,7 +50,7 @@ def service(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[KilledSe
             "connections cut": between.cut,
             "database restarted": lambda: server.fall_and_rise(random.uniform(0.0, 8.0)),
         }
-        yield KilledService(tmp_path, settings, ["serve", "work", "work"], harms)
+        yield KilledService(tmp_path, settings, harms)
 
 
 @pytest.mark.law
@@ -79,11 +78,11 @@ def test_nothing_is_lost_when_parts_are_killed_at_random_moments(
         assert {end["status"] for end in ends.values()} == {"successful"}, ends
         for text in {*service.jobs.values()}:
             until(lambda text=text: text in service.witness.served)  # type: ignore[misc]
-        revived = sum(part.revived for part in service.parts)
-        assert service.stop() == [0] * len(service.parts)
+        revived = service.server.revived
+        assert service.stop() == 0
         until(lambda: service.marked() == [])
     assert service.witness.faults == []
-    assert [part.log.name for part in service.parts if "Traceback" in part.log.read_text()] == []
+    assert "Traceback" not in service.server.log.read_text()
     texts = ["undisturbed", *(f"case {number}" for number in range(moments))]
     served = {text: len(digests) for text, digests in service.witness.served.items()}
     assert served == dict.fromkeys(texts, 1)
@@ -97,7 +96,7 @@ def test_nothing_is_lost_when_parts_are_killed_at_random_moments(
         "jobs with further attempts": sum(end["attempts"] > 1 for end in ends.values()),
         "most attempts": max(end["attempts"] for end in ends.values()),
         "answers to the witness": service.witness.answers,
-        "parts that ended by themselves": revived,
+        "times the server ended by itself": revived,
         "seconds": round(time.monotonic() - began),
     }
     FIGURES.mkdir(exist_ok=True)
@@ -139,19 +138,19 @@ def test_batches_are_whole_whatever_is_killed(tmp_path: Path, moments: int) -> N
     chance = random.Random(BATCH_SEED)
     place = {"LOA_DATABASE_URL": f"sqlite:///{tmp_path / 'shared.sqlite3'}"}
     place["LOA_RESULTS_URL"] = (tmp_path / "results").as_uri()
-    service = KilledService(tmp_path, COMMON | place, ["all", "work"])
+    service = KilledService(tmp_path, COMMON | place)
     texts = {f"batch {n}": [f"{n} {m}" for m in range(3)] + ["all", f"{n} 0"] for n in range(moments)}
     with service, ThreadPoolExecutor(1) as pool:
         batches = {}
         service.request("GET", "/ready")
         for number, (name, wishes) in enumerate(texts.items()):
             entry = pool.submit(service.submit_batch, name, wishes)
-            kind = ("all", "worker", "work")[number % 3]
-            if kind == "all":  # while it is entered
+            kind = ("entry", "worker", "server")[number % 3]
+            if kind == "entry":  # while it is entered
                 time.sleep(chance.uniform(0.0, 0.05))
-                service.kill(service.parts[0])
+                service.kill()
             batches[name] = entry.result()
-            if kind != "all":
+            if kind != "entry":
                 service.strike(kind, chance)
         for name, wishes in texts.items():
             end = ended(service, batches[name])
@@ -162,6 +161,6 @@ def test_batches_are_whole_whatever_is_killed(tmp_path: Path, moments: int) -> N
             assert service.submit_batch(name, wishes) == batches[name]
         entered = service.request("GET", "/v1/jobs", params={"limit": 1000}).json()["jobs"]
         assert sorted(job["jobID"] for job in entered) == sorted(batches.values())
-        assert service.stop() == [0, 0]
+        assert service.stop() == 0
         until(lambda: service.marked() == [])
-    assert [part.log.name for part in service.parts if "Traceback" in part.log.read_text()] == []
+    assert "Traceback" not in service.server.log.read_text()

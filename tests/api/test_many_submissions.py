@@ -50,16 +50,17 @@ def one_process(tmp_path: Path) -> Iterator[Asked]:
 
 @pytest.fixture
 def several_processes(tmp_path: Path, postgres: PostgresServer) -> Iterator[Asked]:
-    """A server and two schedulers on PostgreSQL, and two callers with keys."""
+    """A server on PostgreSQL in a process of its own, and two callers with keys."""
     keys = KeyFile(tmp_path / "keys.json")
     settings = {
         "LOA_DATABASE_URL": migrated(postgres.new_database()),
         "LOA_RESULTS_URL": (tmp_path / "results").as_uri(),
         "LOA_KEYS_FILE": str(keys.path),
         "LOA_QUEUE_LIMIT": str(QUEUE),
+        "LOA_WORKERS": "2",
     }
     headers = [{"Authorization": f"Bearer {keys.add(name)}"} for name in ("one", "other")]
-    with KilledService(tmp_path, settings, ["serve", "work", "work"], headers=headers[0]) as service:
+    with KilledService(tmp_path, settings, headers=headers[0]) as service:
         service.request("GET", "/ready")
         first, second = (
             httpx2.Client(base_url=service.address, headers=one, timeout=PATIENCE_S) for one in headers

@@ -28,26 +28,23 @@ from host import processes_in
 
 @dataclass
 class Part:
-    """A process that does a role on a socket; `revived` counts starts after it had ended by itself."""
+    """A server on a socket; `revived` counts starts after it had ended by itself."""
 
-    role: str
     environment: Mapping[str, str]
     log: Path
-    descriptor: int | None = None
+    descriptor: int
     process: subprocess.Popen[bytes] | None = None
     revived: int = 0
 
     def start(self) -> None:
         script = str(Path(__file__).with_name("fake_process.py"))
-        listener = [] if self.descriptor is None else [str(self.descriptor)]
-        fds = () if self.descriptor is None else (self.descriptor,)
         with self.log.open("ab") as log:
             self.process = subprocess.Popen(
-                [sys.executable, script, self.role, *listener],
+                [sys.executable, script, str(self.descriptor)],
                 env=self.environment,
                 stdout=log,
                 stderr=log,
-                pass_fds=fds,
+                pass_fds=(self.descriptor,),
             )
 
     def revive(self) -> None:
@@ -66,10 +63,6 @@ class Part:
         status = Path(f"/proc/{self.pid}/status").read_text()
         caught = int(status.partition("SigCgt:")[2].split()[0], 16)
         return bool(caught >> (signal.SIGTERM - 1) & 1)
-
-    def send(self, number: signal.Signals) -> None:
-        assert self.process is not None
-        self.process.send_signal(number)
 
     def end(self, number: signal.Signals) -> int:
         assert self.process is not None
@@ -148,10 +141,8 @@ class KilledService:
 
     directory: Path
     settings: dict[str, str]
-    roles: Sequence[str]
     harms: Mapping[str, Callable[[], object]] = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
-    parts: list[Part] = field(default_factory=list)
     jobs: dict[str, str] = field(default_factory=dict)
     struck: list[str] = field(default_factory=list)
     span: float = 1.0
@@ -162,14 +153,11 @@ class KilledService:
         self._listener = socket.create_server(("127.0.0.1", 0), backlog=256)
         self._listener.set_inheritable(True)
         self.address = f"http://127.0.0.1:{self._listener.getsockname()[1]}"
-        for number, role in enumerate(self.roles):
-            place = {_MARK: self.mark, "LOA_DATA_DIRECTORY": str(self.directory / f"part_{number}")}
-            environment = {**os.environ, **self.settings, **place}
-            environment["PYTHONPATH"] = os.pathsep.join([str(_ROOT), os.environ["PYTHONPATH"]])
-            descriptor = None if role == "work" else self._listener.fileno()
-            self.parts.append(Part(role, environment, self.directory / f"{role}_{number}.log", descriptor))
-        for part in self.parts:
-            part.start()
+        place = {_MARK: self.mark, "LOA_DATA_DIRECTORY": str(self.directory / "server")}
+        environment = {**os.environ, **self.settings, **place}
+        environment["PYTHONPATH"] = os.pathsep.join([str(_ROOT), os.environ["PYTHONPATH"]])
+        self.server = Part(environment, self.directory / "server.log", self._listener.fileno())
+        self.server.start()
         self._client = httpx2.Client(base_url=self.address, headers=self.headers, timeout=PATIENCE_S)
         self.witness = Witness(self.address, self.jobs, self.headers)
         self.witness.start()
@@ -178,16 +166,14 @@ class KilledService:
     def __exit__(self, *_: object) -> None:
         self.witness.stop()
         self._client.close()
-        for part in self.parts:
-            if part.process is not None and part.process.poll() is None:
-                part.end(signal.SIGKILL)
+        if self.server.process is not None and self.server.process.poll() is None:
+            self.server.end(signal.SIGKILL)
         self._listener.close()
 
     @property
     def kinds(self) -> list[str]:
         """What can be done to it: each once."""
-        stopped = ["stop work"] if "work" in self.roles else []
-        return [*dict.fromkeys(["worker", *self.roles, *self.harms]), *stopped]
+        return ["worker", "server", *self.harms]
 
     def request(self, method: str, path: str, **more: Any) -> httpx2.Response:
         """Ask until there is an answer, as the client does; what has ended is started again meanwhile."""
@@ -203,8 +189,7 @@ class KilledService:
 
     def revive(self) -> None:
         with self._turns:
-            for part in self.parts:
-                part.revive()
+            self.server.revive()
 
     def submit(self, text: str) -> None:
         answer = self.request("POST", EXECUTION, json={"inputs": {"wish": {"mode": "slow", "text": text}}})
@@ -229,7 +214,7 @@ class KilledService:
     def strike(self, kind: str, chance: random.Random) -> None:
         """Wait for a worker with little else to do, for a random while, and do what `kind` says.
 
-        Where nothing is left to do, an idle part is struck.
+        Where nothing is left to do, an idle service is struck.
         """
         until(self._can_be_struck)
         time.sleep(chance.uniform(0.0, 1.2 * self.span))
@@ -241,23 +226,15 @@ class KilledService:
                 with suppress(ProcessLookupError):
                     os.kill(pid, signal.SIGKILL)
         else:
-            role = kind.removeprefix("stop ")
-            part = chance.choice([part for part in self.parts if part.role == role])
-            (self._suspend if kind.startswith("stop ") else self.kill)(part)
+            self.kill()
 
-    def kill(self, part: Part) -> None:
-        """Kill a part and start it again; its workers end by themselves."""
-        left = processes_in(Path(part.environment["LOA_DATA_DIRECTORY"]), WORKER)
+    def kill(self) -> None:
+        """Kill the server and start it again; its workers end by themselves."""
+        left = self._workers()
         with self._turns:
-            part.end(signal.SIGKILL)
-            part.start()
+            self.server.end(signal.SIGKILL)
+            self.server.start()
         until(lambda: not any(lives(pid) for pid in left))
-
-    def _suspend(self, part: Part) -> None:
-        """Stop a part for longer than its leases last, and let it go on."""
-        part.send(signal.SIGSTOP)
-        time.sleep(1.3 * float(self.settings["LOA_LEASE_S"]))
-        part.send(signal.SIGCONT)
 
     def _can_be_struck(self) -> bool:
         """Whether there is a worker and little else to do, or nothing."""
@@ -279,7 +256,7 @@ class KilledService:
         return found
 
     def _workers(self) -> list[int]:
-        """Return the processes that do fake work: each stands in a directory below that of its part."""
+        """Return the processes that do fake work: each stands in a directory below that of the service."""
         return processes_in(self.directory, WORKER)
 
     def settled(self) -> dict[str, Any]:
@@ -294,9 +271,8 @@ class KilledService:
         ends[job] = self.request("GET", f"/v1/jobs/{job}").json()
         return ends[job]["status"] in ("successful", "failed", "dismissed")
 
-    def stop(self) -> list[int]:
-        """Stop all parts as a supervisor does; return their exit codes."""
+    def stop(self) -> int:
+        """Stop the server as a supervisor does; return its exit code."""
         self.witness.stop()
-        for part in self.parts:
-            until(part.heeds_stops)
-        return [part.end(signal.SIGTERM) for part in self.parts]
+        until(self.server.heeds_stops)
+        return self.server.end(signal.SIGTERM)

@@ -10,13 +10,12 @@ from typing import Any
 
 from sqlalchemy import Engine
 
-from service.folders import identity_of
-from service.queue.claims import Claim, Claims
+from service.queue.claims import Claim, Claims, Reached
 from service.queue.job import Job
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
 from service.settings import Settings
-from service.store.database import open_database
+from service.store.database import Ownership, open_database
 from service.store.places import result_store
 from service.store.results import ResultStore
 from service.worker.process import Registry
@@ -56,9 +55,14 @@ class Bench:
         assert claim is not None
         return claim
 
+    def reach(self, claim: Claim, fraction: float, whole: float) -> None:
+        """Note that a claim has come so far in its first stage and as a whole."""
+        self.claims.progress([(claim, Reached("first", fraction, whole))])
+
     def close(self) -> None:
         if self.scheduler.alive:
             self.scheduler.stop()
+        self.scheduler.give_up()
         self.engine.dispose()
 
     def starts(self, job: Job) -> list[str]:
@@ -67,7 +71,9 @@ class Bench:
 
     def again(self) -> Bench:
         """Return a new scheduler on the same directory, as after a restart."""
-        scheduler = Scheduler(self.settings, self._registry(), self.claims, self.store)
+        scheduler = Scheduler(
+            self.settings, self._registry(), self.claims, self.store, Ownership(self.engine)
+        )
         return replace(self, scheduler=scheduler)
 
     def _registry(self) -> Registry:
@@ -77,14 +83,15 @@ class Bench:
 def bench(directory: Path, registry: Registry, results: Path | None = None, **settings: Any) -> Bench:
     """Return the machinery on a directory; its scheduler is not started."""
     chosen = Settings(data_directory=directory, **settings)
+    directory.mkdir(parents=True, exist_ok=True)
     engine = open_database(chosen.database_address or directory / "service.sqlite3")
     try:
         store = result_store(engine, directory, results.as_uri() if results else chosen.results_url)
     except BaseException:
         engine.dispose()
         raise
-    claims = Claims(engine, identity_of(directory), chosen.lease_s)
-    scheduler = Scheduler(chosen, registry, claims, store)
+    claims = Claims(engine)
+    scheduler = Scheduler(chosen, registry, claims, store, Ownership(engine))
     return Bench(chosen, Submissions(engine, chosen.queue_limit), claims, store, scheduler, engine)
 
 

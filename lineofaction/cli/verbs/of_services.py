@@ -41,25 +41,10 @@ def _serve(
     processes: Annotated[
         int | None, typer.Option(help="Processes that answer requests [LOA_PROCESSES].")
     ] = None,
-    no_work: Annotated[
-        bool, typer.Option("--no-work", help="Serve only; loa work runs the jobs of the same database.")
-    ] = False,
 ) -> None:
     """Serve jobs and results over HTTP on this machine, until stopped."""
     settings = {"host": host, "port": port, "data_directory": data_directory}
-    serve.run_serve(**settings, workers=workers, processes=processes, works=not no_work)
-
-
-@verbs.command("work", epilog="Example: LOA_DATABASE_URL=postgresql://loa@db/loa loa work --workers 4")
-@guarded
-def _work(
-    data_directory: Annotated[
-        Path | None, typer.Option(help="Directory of workspaces, one per loa work [LOA_DATA_DIRECTORY].")
-    ] = None,
-    workers: Workers = None,
-) -> None:
-    """Run the jobs of a database that loa serve --no-work fills, until stopped."""
-    serve.run_work(data_directory=data_directory, workers=workers)
+    serve.run_serve(**settings, workers=workers, processes=processes)
 
 
 @dataclass(frozen=True)

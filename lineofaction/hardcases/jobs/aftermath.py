@@ -27,7 +27,6 @@ from service.schemas.execute import AnalyzeInputs
 from service.settings import Settings
 from service.store.places import DATABASE_FILE
 from service.store.results import ResultStore
-from service.worker.cluster import RemoteWork
 from service.worker.process import ANALYZE, default_registry
 
 LOOK_S = 0.02
@@ -49,7 +48,7 @@ class JobService:
     directory: Path
     submissions: Submissions
     store: ResultStore
-    scheduler: Scheduler | RemoteWork
+    scheduler: Scheduler
     log: list[Any]
 
     def submit(self, case: dict[str, Any]) -> Job:
@@ -101,6 +100,7 @@ def _fresh_service(**settings: Any) -> Iterator[JobService]:
         directory = Path(name).resolve()
         chosen = Settings(data_directory=directory, workers=1, **settings)
         parts = job_machinery(chosen, default_registry())
+        assert parts.scheduler is not None
         service = JobService(directory, parts.submissions, parts.store, parts.scheduler, log)
         service.scheduler.start()
         try:

@@ -18,7 +18,6 @@ import yaml
 from typer.main import get_command
 
 from lineofaction.cli.commands import app
-from service.queue.claims import DEFAULT_LEASE_S
 from service.settings import Settings, is_secret
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -27,7 +26,7 @@ FIELDS = {name.upper(): field for name, field in Settings.model_fields.items()}
 VARIABLES = {f"LOA_{name}" for name in FIELDS} | {
     f"LOA_{name}_FILE" for name, field in FIELDS.items() if is_secret(field)
 }
-PARTS = ("serve", "work", "schema")
+PARTS = ("serve", "schema")
 
 
 @cache
@@ -139,31 +138,25 @@ def test_commands_are_verbs_of_the_program(part: str) -> None:
 def test_ports_and_paths_agree() -> None:
     exposed = set(map(int, re.search(r"^EXPOSE (.*)$", dockerfile(), re.MULTILINE)[1].split()))
     http = int(re.search(r"LOA_PORT=(\d+)", dockerfile())[1])
-    management = int(variables_of("work")["LOA_MANAGEMENT_PORT"])
+    management = int(variables_of("serve")["LOA_MANAGEMENT_PORT"])
     assert http == Settings.model_fields["port"].default
     assert exposed == {http, management}
     assert re.search(r"LOA_MANAGEMENT_PORT=(\d+)", dockerfile())[1] == str(management)
     check = dockerfile().partition("HEALTHCHECK")[2].partition("ENTRYPOINT")[0]
-    assert "LOA_MANAGEMENT_PORT" in check and "LOA_PORT" not in check  # also where only `loa work` runs
-    for part, named in (
-        ("serve", {"http": http, "management": management}),
-        ("work", {"management": management}),
-    ):
-        assert {port["name"]: port["containerPort"] for port in container(part)["ports"]} == named
+    assert "LOA_MANAGEMENT_PORT" in check and "LOA_PORT" not in check
+    ports = {port["name"]: port["containerPort"] for port in container("serve")["ports"]}
+    assert ports == {"http": http, "management": management}
     (service,) = of_kind("service", "Service")
     assert [port["targetPort"] for port in service["spec"]["ports"]] == ["http"]
     assert f":{http}" in compose()["services"]["service"]["ports"][0]
-    for name in ("service", "work"):
-        parts = compose()["services"][name]
-        assert parts["environment"]["LOA_MANAGEMENT_PORT"] == management
-        assert f"http://127.0.0.1:{management}/health" in parts["healthcheck"]["test"][-1]
-    for part in ("serve", "work"):
-        probes = {
-            name: container(part)[f"{name}Probe"]["httpGet"] for name in ("startup", "liveness", "readiness")
-        }
-        assert {probe["port"] for probe in probes.values()} == {"management"}
-        assert probes["liveness"]["path"] == probes["startup"]["path"] == "/health"
-        assert probes["readiness"]["path"] == "/ready"
+    parts = compose()["services"]["service"]
+    assert parts["environment"]["LOA_MANAGEMENT_PORT"] == management
+    assert f"http://127.0.0.1:{management}/health" in parts["healthcheck"]["test"][-1]
+    names = ("startup", "liveness", "readiness")
+    probes = {name: container("serve")[f"{name}Probe"]["httpGet"] for name in names}
+    assert {probe["port"] for probe in probes.values()} == {"management"}
+    assert probes["liveness"]["path"] == probes["startup"]["path"] == "/health"
+    assert probes["readiness"]["path"] == "/ready"
 
 
 @pytest.mark.parametrize("part", PARTS)
@@ -198,32 +191,20 @@ def test_containers_of_compose_are_bounded() -> None:
         assert service.get("read_only", False) or name == "database"
 
 
-def test_a_pod_ends_later_than_its_leases() -> None:
-    lease = float(variables_of("work")["LOA_LEASE_S"])
-    assert lease == DEFAULT_LEASE_S < pods()["work"]["terminationGracePeriodSeconds"]
+def test_there_is_one_server_and_the_former_has_ended_before_the_next_starts() -> None:
+    (server,) = of_kind("service", "Deployment")
+    assert (server["spec"]["replicas"], server["spec"]["strategy"]) == (1, {"type": "Recreate"})
 
 
 def test_a_worker_fails_by_its_own_limit_before_the_container_does() -> None:
-    limit = int(variables_of("work")["LOA_MEMORY_LIMIT_MB"]) * int(variables_of("work")["LOA_WORKERS"])
-    assert container("work")["resources"]["limits"]["memory"] == "4Gi"
-    assert limit + 600 < 4 * 1024  # the scheduler, and the warm process it forks workers from
-
-
-def test_scaling_follows_a_metric_of_the_program() -> None:
-    (scaler,) = of_kind("service", "HorizontalPodAutoscaler")
-    (metric,) = [entry["external"]["metric"]["name"] for entry in scaler["spec"]["metrics"]]
-    assert any(f'"{metric}"' in file.read_text() for file in (ROOT / "service").rglob("*.py"))
-    assert scaler["spec"]["scaleTargetRef"]["name"] in {
-        one["metadata"]["name"] for one in of_kind("service", "Deployment")
-    }
-    work = next(one for one in of_kind("service", "Deployment") if one["metadata"]["name"].endswith("work"))
-    assert "replicas" not in work["spec"]  # two would set it against each other
+    limit = int(variables_of("serve")["LOA_MEMORY_LIMIT_MB"]) * int(variables_of("serve")["LOA_WORKERS"])
+    assert container("serve")["resources"]["limits"]["memory"] == "6Gi"
+    assert limit + 2500 < 6 * 1024  # the server, its live worker, and the warm process it forks workers from
 
 
 def test_selectors_select_pods() -> None:
     labels = [one["spec"]["template"]["metadata"]["labels"] for one in of_kind("service", "Deployment")]
     chosen = [one["spec"]["selector"] for one in of_kind("service", "Service")]
-    chosen += [one["spec"]["selector"]["matchLabels"] for one in of_kind("service", "PodDisruptionBudget")]
     chosen += [
         one["spec"]["podSelector"].get("matchLabels", {}) for one in of_kind("service", "NetworkPolicy")
     ]

@@ -72,7 +72,7 @@ def test_a_backup_holds_what_was_entered_before_and_goes_on(
             copy = dumped(database_url, request.getfixturevalue("postgres"), tmp_path)
         shutil.copytree(tmp_path / "old/results", tmp_path / "new/results")
     machine.close()
-    restored = bench(tmp_path / "new", REGISTRY, database_url=copy, queue_limit=100_000, lease_s=1.0)
+    restored = bench(tmp_path / "new", REGISTRY, database_url=copy, queue_limit=100_000)
     assert [restored.submissions.find(job.id) for job in done] == done
     assert (found := verify_store(restored.store)).missing == found.damaged == () and found.sound >= 2
     assert restored.store.verified(done[1].key, "database").path.read_text() == "done 1"
@@ -81,12 +81,12 @@ def test_a_backup_holds_what_was_entered_before_and_goes_on(
 
 
 def test_what_ran_at_the_time_of_a_backup_is_done_after_its_restoration(tmp_path: Path) -> None:
-    machine = bench(tmp_path / "old", REGISTRY, lease_s=1.0)
+    machine = bench(tmp_path / "old", REGISTRY)
     jobs = [machine.submit(text=text) for text in ("runs", "waits")]
     machine.claimed()
     copy = copied(tmp_path / "old/service.sqlite3", tmp_path / "copy.sqlite3")
     machine.close()
-    restored = bench(tmp_path / "new", REGISTRY, database_url=copy, lease_s=1.0)
+    restored = bench(tmp_path / "new", REGISTRY, database_url=copy)
     restored.scheduler.start()
     until(lambda: all(restored.submissions.find(job.id).ended for job in jobs))
     assert [restored.submissions.find(job.id).attempts for job in jobs] == [2, 1]

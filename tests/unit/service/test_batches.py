@@ -1,4 +1,4 @@
-"""Batches in the job table, on each database: progress by cost, ends, expiry, schedulers of before."""
+"""Batches in the job table, on each database: progress by cost, ends, expiry."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_progress_is_the_share_of_the_cost_that_is_done(machine: Bench) -> None:
     batch = entered(machine, {"a": 9.0, "b": 3.0})
     assert (seen(machine, batch).fraction, seen(machine, batch).status) == (0.0, "running")
     first = machine.claimed()
-    machine.claims.progress(first, "first", 1.0, 0.5)
+    machine.reach(first, 1.0, 0.5)
     share = {"a": 9.0, "b": 3.0}[first.key] / 12.0
     assert seen(machine, batch).fraction == pytest.approx(0.5 * share)
     machine.claims.put_back(first, "again", counted=True)
@@ -45,12 +45,10 @@ def test_progress_is_the_share_of_the_cost_that_is_done(machine: Bench) -> None:
 
 
 def test_no_scheduler_takes_a_batch_for_work(machine: Bench) -> None:
-    """Nor one of a version that knows no batches: it claims what waits and takes up what leases have left."""
     batch = entered(machine, {"a": 1.0})
     assert machine.claimed().key == "a"
     assert machine.claims.claim() is None
-    assert machine.claims.take_up() == []
-    assert [claim.key for claim in machine.claims.left()] == ["a"]
+    assert [claim.key for claim in machine.claims.running()] == ["a"]
     assert seen(machine, batch).status == "running"
 
 

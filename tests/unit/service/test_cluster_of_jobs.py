@@ -199,7 +199,7 @@ def test_the_address_goes_from_the_environment_to_the_worker(
 
     monkeypatch.setattr("service.settings.find_spec", lambda _: object())
     monkeypatch.setenv("LOA_SCHEDULER", "tcp://gears.example:8786")
-    claim = Claim("c", "analyze", "k", {}, 1, "lease")
+    claim = Claim("c", "analyze", "k", {}, 1)
     order = _order(load_settings(data_directory=tmp_path), "a:b", claim)
     assert WorkOrder.from_line(order.line()).scheduler == "tcp://gears.example:8786"
     monkeypatch.setenv("LOA_SCHEDULER", "")

@@ -92,7 +92,7 @@ def test_a_server_that_is_gone_is_said_to_callers_with_a_time_to_try_again(tmp_p
         url = server.new_database()
         Schema(engine := database_engine(url)).upgrade()
         engine.dispose()
-        app = create_app(Settings(data_directory=tmp_path, database_url=url), REGISTRY)
+        app = create_app(Settings(data_directory=tmp_path, database_url=url), REGISTRY, works=False)
         client = TestClient(app, raise_server_exceptions=False)
         assert client.get("/v1/jobs").json()["jobs"] == []
     answer = client.get("/v1/jobs")

@@ -311,7 +311,7 @@ def test_the_verbs_refuse_and_rebuild(tmp_path: Path, monkeypatch: pytest.Monkey
     for file in tmp_path.glob("service.sqlite3*"):
         file.unlink()
     run = CliRunner()
-    for verb in (["serve", "--port", "0"], ["work"], ["store", "gc"], ["store", "verify"]):
+    for verb in (["serve", "--port", "0"], ["store", "gc"], ["store", "verify"]):
         refused = run.invoke(app, verb)
         assert refused.exit_code == 2 and "loa store reindex" in refused.stderr, refused.output
     told = run.invoke(app, ["store", "reindex"])

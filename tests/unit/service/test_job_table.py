@@ -15,6 +15,7 @@ from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import NoSuchJob, QueueFull
 from service.access.keyring import Holder
+from service.queue.claims import Claims
 from service.queue.job import Job
 from service.queue.terms import ANYBODY, Terms
 from service.store.database import instant, now
@@ -73,13 +74,21 @@ def test_a_job_answers_for_an_equal_one_as_long_as_it_has_or_will_have_a_result(
     assert reused(machine).id != second.id
 
 
-def test_claims_from_many_threads_are_disjoint(machine: Bench) -> None:
-    for text in "abc":
-        machine.submit(text=text)
-    with ThreadPoolExecutor(8) as pool:
-        claims = list(pool.map(lambda _: machine.claims.claim(), range(8)))
-    identifiers = [claim.id for claim in claims if claim is not None]
-    assert len(identifiers) == len(set(identifiers)) == 3
+def test_a_claim_whose_commit_was_not_answered_is_the_same_claim(machine: Bench) -> None:
+    """The connection broke after the commit: the step runs again and finds what it has done."""
+    machine.submit(text="a")
+    row = machine.claims._first()
+    begin = Claims._begin.__wrapped__  # type: ignore[attr-defined]
+    assert row is not None and begin(machine.claims, row) and begin(machine.claims, row)
+    assert [claim.attempts for claim in machine.claims.running()] == [1]
+
+
+def test_what_is_dismissed_while_it_is_claimed_is_not_run(machine: Bench) -> None:
+    job = machine.submit(text="a")
+    row = machine.claims._first()
+    machine.submissions.dismiss(job.id)
+    assert row is not None and not machine.claims._begin(row)
+    assert machine.submissions.find(job.id).status == "dismissed"
 
 
 def test_the_queue_is_bounded_but_lets_shared_work_in(machine: Bench) -> None:
@@ -129,10 +138,10 @@ def test_dismissed_work_cannot_end_otherwise(machine: Bench) -> None:
     job = machine.submit(text="a")
     claim = machine.claimed()
     machine.submissions.dismiss(job.id)
-    machine.claims.progress(claim, "first", 1.0, 1.0)
+    machine.reach(claim, 1.0, 1.0)
     machine.claims.succeed(claim)
     machine.claims.put_back(claim, "again", counted=True)
-    assert machine.claims.held([claim]) == machine.claims.renew([claim]) == set()
+    assert machine.claims.held([claim]) == set()
     assert machine.submissions.find(job.id).status == "dismissed"
     assert machine.claims.claim() is None
 
@@ -148,7 +157,7 @@ def test_the_remaining_time_follows_the_pace_and_falls_between_reports(machine: 
     job = machine.submit(text="a")
     assert machine.submissions.find(job.id).remaining_s(datetime.now(UTC)) is None
     claim = machine.claimed()
-    machine.claims.progress(claim, "first", 0.5, 0.25)
+    machine.reach(claim, 0.5, 0.25)
     seen = machine.submissions.find(job.id)
     begun, updated = datetime.now(UTC) - timedelta(seconds=10), datetime.now(UTC)
     seen = replace(seen, started=instant(begun), updated=instant(updated))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import signal
 import socket
 import subprocess
 import threading
@@ -29,7 +28,7 @@ from service.store.deployment import Deployment, WriteCheck
 
 @contextmanager
 def program(verb: str, folder: Path) -> Iterator[tuple[subprocess.Popen[str], list[str]]]:
-    """Run `loa serve` or `loa work` with a management port; gives the process and its two lines."""
+    """Run `loa serve` with a management port; gives the process and its two lines."""
     settings = {"LOA_DATA_DIRECTORY": str(folder), "LOA_MANAGEMENT_PORT": "0", "LOA_PORT": "0"}
     process = python("-m", "lineofaction.cli", verb, settings=settings, stderr=subprocess.PIPE)
     assert process.stdout is not None
@@ -57,18 +56,6 @@ def status(address: str, path: str) -> int:
     with suppress(httpx2.TransportError):
         return httpx2.get(f"{address}{path}", timeout=PATIENCE_S).status_code
     return 0
-
-
-def test_a_scheduler_without_http_tells_its_health_and_its_workers(tmp_path: Path) -> None:
-    with program("work", tmp_path / "data") as (process, (_, address)):
-        until(lambda: status(address, "/ready") == 200)
-        assert status(address, "/health") == 200
-        found = names(address)
-        assert {"loa_workers_busy", "loa_worker_starts", "loa_scheduler_up", "loa_queue_depth"} <= found
-        assert {"loa_build_info", "process_cpu_seconds", "loa_writable"} <= found
-        assert "loa_requests" not in found
-        process.send_signal(signal.SIGTERM)
-        assert process.wait(PATIENCE_S) == 0
 
 
 def test_a_server_with_keys_tells_them_without_one(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from fe_contact import SteDatabase
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.problems import EXIT_BAD_INPUT, EXIT_WARNINGS
 
-NOT_COMPUTING = {"new", "cache", "hardcases", "serve", "work", "keys", "database", "store", "jobs", "dismiss"}
+NOT_COMPUTING = {"new", "cache", "hardcases", "serve", "keys", "database", "store", "jobs", "dismiss"}
 LOA = get_command(app)  # loads its verbs when asked: the application itself lists none
 VERBS = LOA.list_commands(Context(LOA))
 CASE = (

@@ -42,7 +42,7 @@ def test_every_follower_gets_every_state_in_order(machine: Bench, watcher: Watch
         claim = machine.claimed()
         until(lambda: all(each for each in received))
         for fraction in (0.2, 0.4):
-            machine.claims.progress(claim, "first", fraction, fraction)
+            machine.reach(claim, fraction, fraction)
             until(lambda fraction=fraction: all(_fraction(each) == fraction for each in received))
         machine.claims.succeed(claim)
         until(lambda: all(_status(each) == "successful" for each in received))
@@ -156,7 +156,7 @@ def test_lost_connections_lose_no_state(
             claim = machine.claimed()
             until(lambda: _status(received) == "running")
             assert postgres.end_connections(url) > 0
-            machine.claims.progress(claim, "first", 0.5, 0.5)
+            machine.reach(claim, 0.5, 0.5)
             until(lambda: _fraction(received) == 0.5)
             postgres.fall_and_rise(0.2)
             machine.claims.succeed(claim)
