@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 
@@ -14,6 +13,12 @@ from fe_contact.errors import InputError, increasing, within
 from fe_contact.types import FloatArray
 
 _LARGEST = 0.01  # m; catches micrometers given as meters
+LARGEST_INVENTION = 0.1e-6
+"""How far the surface may leave the nodes around it, m, beyond what their curvature makes it."""
+_CONFIRMING = 4
+"""Neighboring second differences that confirm a curvature; beside a border of five nodes three."""
+_MOST_UNLIKE = 3.0
+"""Their ratio: 1 of a parabola; a flat between two reliefs has several times the curvature beside it."""
 
 
 @dataclass(frozen=True)
@@ -32,15 +37,18 @@ class FlankGrid:
     Raises
     ------
     InputError
-        Axes that do not increase, rows of another length, values that are no numbers or above 1 cm.
+        Axes that do not increase, rows of another length, values that are no numbers or above 1 cm; nodes
+        between which the surface would leave them by more than 0.1 um beyond what curvature makes it.
 
     Notes
     -----
-    Between the nodes: the cubic Hermite interpolant of either direction, with the slopes of the parabola
-    through three neighboring nodes. It is C1, as the search for the touching point needs (contact would stay
-    at the kinks of a bilinear surface and then jump), reproduces twist and parabolic crowning to rounding,
-    and spreads an error of one node over two cells. Beside a step between even nodes it overshoots by 2/27 of
-    it, at the border of the grid by 1/8. Beyond the grid the end value applies.
+    Between the nodes: the cubic Hermite interpolant of either direction. It is C1, as the search for the
+    touching point needs: contact would stay at the kinks of a bilinear surface and then jump. Its slopes are
+    those of the parabola through three neighboring nodes, limited so that the surface stays between the
+    values at the ends of a cell (Huynh, Accurate monotone cubic interpolation, SIAM J. Numer. Anal. 30, 1993,
+    constraint M4). It leaves them where at least three second differences around the cell agree in sign and
+    within a factor of 3, and then by what the lesser of those at its ends makes it: twist and parabolic
+    crowning on five nodes or more come out to rounding. Beyond the grid the end value applies.
     """
 
     roll_length: tuple[float, ...]
@@ -60,6 +68,16 @@ class FlankGrid:
             raise InputError("removed", f"{len(self.removed)} rows", bound)
         rows = tuple(_row(i, row, shape[1]) for i, row in enumerate(self.removed))
         object.__setattr__(self, "removed", rows)
+        self._refuse_invented()
+
+    def _refuse_invented(self) -> None:
+        """Refuse nodes between which the surface invents material."""
+        beyond = _beyond(self._nodes, np.array(self.roll_length), np.array(self.face_position))
+        i, j = np.unravel_index(beyond.argmax(), beyond.shape)
+        if beyond[i, j] > LARGEST_INVENTION:
+            value = f"{1e6 * beyond[i, j]:.3g} um beyond the nodes around it"
+            bound = f"at most {1e6 * LARGEST_INVENTION:g} um; add nodes beside the steps of the flank"
+            raise InputError(f"removed[{i}..{i + 1}][{j}..{j + 1}]", value, bound)
 
     @cached_property
     def neutral(self) -> bool:
@@ -83,16 +101,10 @@ class FlankGrid:
     @cached_property
     def _nodes(self) -> FloatArray:
         """Value, slope along the profile, along the face, and mixed slope at the nodes, (4, m, n)."""
-        value = np.array(self.removed)
-        along_roll = _slope(value, self.roll_length, 0)
-        return np.stack(
-            [
-                value,
-                along_roll,
-                _slope(value, self.face_position, 1),
-                _slope(along_roll, self.face_position, 1),
-            ]
-        )
+        value, roll, face = np.array(self.removed), np.array(self.roll_length), np.array(self.face_position)
+        along_roll, along_face = _slope(value, roll, 0), _slope(value, face, 1)
+        mixed = _lesser(_slope(along_roll, face, 1), _slope(along_face, roll, 0))
+        return np.stack([value, along_roll, along_face, mixed])
 
 
 def _row(index: int, row: Sequence[float], length: int) -> tuple[float, ...]:
@@ -102,7 +114,83 @@ def _row(index: int, row: Sequence[float], length: int) -> tuple[float, ...]:
     return tuple(within(f"removed[{index}][{j}]", v, -_LARGEST, _LARGEST, advice) for j, v in enumerate(row))
 
 
-def _slope(values: FloatArray, axis: tuple[float, ...], direction: int) -> FloatArray:
-    """Slope at the nodes of the parabola through three neighbors; of the straight line where two are all."""
-    order: Literal[1, 2] = 2 if len(axis) > 2 else 1
-    return np.asarray(np.gradient(values, np.array(axis), axis=direction, edge_order=order))
+def _slope(values: FloatArray, axis: FloatArray, direction: int) -> FloatArray:
+    """Limited slopes at the nodes; of the straight line where two are all."""
+    along = np.moveaxis(values, direction, 0)
+    step = np.diff(axis)[:, None]
+    secant = np.diff(along, axis=0) / step
+    if len(secant) == 1:
+        return np.moveaxis(np.repeat(secant, 2, axis=0), 0, direction)
+    curvature = _curvature(secant, step)
+    before, after = secant + curvature * step, secant - curvature * step  # at the end, at the begin of cells
+    bound = _lesser(before[:-1], after[1:])
+    most = np.maximum(3.0 * np.abs(_lesser(secant[:-1], secant[1:])), 1.5 * np.abs(bound))
+    parabola = (step[1:] * secant[:-1] + step[:-1] * secant[1:]) / (step[:-1] + step[1:])
+    inner = _lesser(parabola, np.copysign(most, bound))
+    first = _end_slope(secant[0], secant[1], step[0], step[1], after[0])
+    last = _end_slope(secant[-1], secant[-2], step[-1], step[-2], before[-1])
+    return np.moveaxis(np.stack([first, *inner, last]), 0, direction)
+
+
+def _end_slope(
+    secant: FloatArray, inner: FloatArray, step: FloatArray, next_step: FloatArray, confirmed: FloatArray
+) -> FloatArray:
+    """Slope at a border: that of the parabola, as confirmed or such that the surface does not turn back."""
+    parabola = secant + (secant - inner) * step / (step + next_step)
+    return np.where(confirmed != secant, confirmed, _lesser(parabola, 3.0 * secant))
+
+
+def _curvature(secant: FloatArray, step: FloatArray) -> FloatArray:
+    """Half the second derivative in every cell: the lesser of those at its ends, 0 if unconfirmed."""
+    at_nodes = np.diff(secant, axis=0) / (step[:-1] + step[1:])
+    cells, nodes = len(secant), len(at_nodes)
+    if nodes < _CONFIRMING - 1:
+        return np.zeros_like(secant)
+    count = min(_CONFIRMING, nodes)
+    around = np.clip(np.arange(cells) - 2, 0, nodes - count)[:, None] + np.arange(count)
+    low, high = at_nodes[around].min(axis=1), at_nodes[around].max(axis=1)
+    alike = _MOST_UNLIKE * np.minimum(np.abs(low), np.abs(high)) > np.maximum(np.abs(low), np.abs(high))
+    ends = np.concatenate([at_nodes[:1], at_nodes, at_nodes[-1:]])
+    return np.where(alike & (low * high > 0.0), _lesser(ends[:-1], ends[1:]), 0.0)
+
+
+def _lesser(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Return the one nearer to 0, 0 where they differ in sign."""
+    return np.where(first * second > 0.0, np.copysign(np.minimum(np.abs(first), np.abs(second)), first), 0.0)
+
+
+def _beyond(nodes: FloatArray, roll: FloatArray, face: FloatArray) -> FloatArray:
+    """How far the surface leaves its nodes in each cell, m, less what the curvature in the cell makes it."""
+    at = np.linspace(0.0, 1.0, 9)
+    weights = [_hermite_weights(at, axis) for axis in (roll, face)]
+    value, along_roll, along_face, mixed = nodes
+    ends = np.stack([[value, along_face], [along_roll, mixed]])  # (order in roll, in face, m, n)
+    corners = np.stack([[_corner(ends, a, b) for b in (0, 1)] for a in (0, 1)])
+    surface = np.einsum("kapi,lbqj,abpqij->klij", *weights, corners, optimize=True)
+    values = corners[:, :, 0, 0].reshape(4, *surface.shape[2:])
+    out = np.maximum(surface.max((0, 1)) - values.max(0), values.min(0) - surface.min((0, 1)))
+    return np.asarray(out - _sagitta(value, roll, 0) - _sagitta(value, face, 1))
+
+
+def _corner(ends: FloatArray, a: int, b: int) -> FloatArray:
+    """Return what is kept at one corner of every cell."""
+    m, n = ends.shape[-2:]
+    return ends[..., a : m - 1 + a, b : n - 1 + b]
+
+
+def _hermite_weights(at: FloatArray, axis: FloatArray) -> FloatArray:
+    """Weights (points, end, value or slope, cells) of the cubic Hermite interpolant."""
+    step, back = np.diff(axis), 1.0 - at
+    value = np.stack([(1.0 + 2.0 * at) * back**2, at**2 * (3.0 - 2.0 * at)], axis=1)
+    slope = np.stack([at * back**2, -back * at**2], axis=1)
+    return np.stack([value[..., None] + 0.0 * step, slope[..., None] * step], axis=2)
+
+
+def _sagitta(values: FloatArray, axis: FloatArray, direction: int) -> FloatArray:
+    """Height in each cell of the parabola over the chord, m; of the higher of both sides of a cell."""
+    if len(axis) < 3:
+        return np.zeros(())
+    along = np.moveaxis(values, direction, 0)
+    step = np.diff(axis)[:, None]
+    height = 0.25 * step**2 * np.abs(_curvature(np.diff(along, axis=0) / step, step))
+    return np.moveaxis(np.maximum(height[:, :-1], height[:, 1:]), 0, direction)

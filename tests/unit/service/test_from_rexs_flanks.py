@@ -202,7 +202,7 @@ def test_a_second_modification_of_a_kind_is_rasterized_with_its_difference() -> 
     measured = np.abs(found - 2.0 * uneven_crowning()).max()
     fate, words = said(unit, PINION_RIGHT, "flank_grid")
     assert fate == "derived"
-    assert measured / 1.2 <= float(words.rsplit(" ", 2)[1]) <= 0.05
+    assert measured / 1.2 <= max(float(words.rsplit(" ", 2)[1]), 1e-9) <= 0.05  # 1e-9 um: rounding
 
 
 def test_a_profile_crowning_with_different_ends_has_fields_of_tip_and_root() -> None:

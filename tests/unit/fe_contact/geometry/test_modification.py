@@ -215,14 +215,54 @@ def test_a_smooth_flank_is_met_at_third_order() -> None:
     assert np.log2(worst(21) / worst(41)) > 2.7
 
 
-@pytest.mark.parametrize(("first", "swing"), [(4, 2.0 / 27.0), (2, 1.0 / 8.0)], ids=["inside", "border"])
-def test_swings_beside_a_step_are_what_is_said(first: int, swing: float) -> None:
-    """Cubic with slopes 0 and D/2, or -D/2 and D/2 at the border: 2/27 or 1/8 of the step D h."""
-    roll = np.linspace(4e-3, 19e-3, 9)
-    step = FlankGrid(roll, (-1e-3, 1e-3), np.where(np.arange(9) >= first, 10e-6, 0.0)[:, None] + np.zeros(2))
-    at = np.linspace(4e-3, 19e-3, 4001)
-    removed = step.material_removed(at, np.zeros(4001))
-    assert -removed.min() == pytest.approx(10e-6 * swing, rel=1e-4, abs=0.0)
+@pytest.mark.parametrize("first", [1, 2, 4, 8])
+@pytest.mark.parametrize("along", [0, 1], ids=["roll", "face"])
+@pytest.mark.parametrize("uneven", [False, True], ids=["even", "uneven"])
+def test_nothing_is_invented_beside_a_step(first: int, along: int, uneven: bool) -> None:
+    nodes, other = np.linspace(4e-3, 19e-3, 9), (0.0, 1e-3, 3e-3)
+    if uneven:  # a gap of 2 mm, then 0.29 mm to the relieved end
+        nodes[first:] = nodes[first - 1] + 0.29e-3 + (nodes[first:] - nodes[first])
+    step = np.where(np.arange(9) >= first, 20e-6, 0.0)[:, None] + np.zeros(3)
+    grid = FlankGrid(nodes, other, step) if along == 0 else FlankGrid(other, nodes, step.T)
+    at = np.linspace(nodes[0], nodes[-1], 4001)
+    across = np.full(4001, 0.4e-3)
+    removed = grid.material_removed(*(at, across) if along == 0 else (across, at))
+    assert removed.min() >= -1e-18
+    assert removed.max() <= 20e-6 * (1.0 + 1e-12)
+    assert np.all(np.diff(removed) >= -1e-18)
+
+
+def test_a_flat_between_two_reliefs_stays_flat() -> None:
+    roll = (4e-3, 4.3e-3, 12e-3, 12.3e-3, 13e-3)
+    removed = np.array([20e-6, 0.0, 0.0, 5e-6, 20e-6])
+    at = np.linspace(roll[0], roll[-1], 4001)
+    for count in (4, 5):
+        grid = FlankGrid(roll[:count], (-1e-3, 1e-3), removed[:count, None] + np.zeros(2))
+        assert grid.material_removed(at, 0.0 * at).min() == pytest.approx(0.0, abs=1e-20)
+
+
+def test_measured_flanks_are_not_refused_and_leave_their_nodes_little() -> None:
+    random = np.random.default_rng(3)
+    for rows, columns in ((4, 9), (9, 11), (15, 5)):
+        noise = 1e-6 * random.uniform(-1.0, 1.0, (rows, columns))
+        crowned = noise + 8e-6 * np.linspace(-1.0, 1.0, columns) ** 2
+        roll, face = np.linspace(4e-3, 19e-3, rows), np.linspace(-12e-3, 12e-3, columns)
+        grid = FlankGrid(roll, face, crowned)
+        x, y = (
+            axis.ravel() for axis in np.meshgrid(*(np.linspace(*(a[0], a[-1]), 97) for a in (roll, face)))
+        )
+        removed = grid.material_removed(x, y)
+        assert crowned.min() - 0.1e-6 < removed.min()
+        assert removed.max() < crowned.max() + 0.1e-6
+
+
+def test_a_surface_that_leaves_its_nodes_is_refused_with_the_place() -> None:
+    roll, face = (2e-3, 2.3e-3, 4.3e-3), (0.3e-3, 2.3e-3, 2.6e-3)
+    removed = 20e-6 * np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]])
+    expected = r"removed\[1\.\.2\]\[0\.\.1\] = '1\.09 um beyond the nodes .* at most 0\.1 um; add nodes"
+    with pytest.raises(InputError, match=expected):
+        FlankGrid(roll, face, removed)
+    assert FlankGrid(roll, face, 0.09 * removed)
 
 
 def test_where_a_grid_belongs_depends_on_whether_it_differs_over_the_face() -> None:
