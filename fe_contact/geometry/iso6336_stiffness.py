@@ -50,7 +50,8 @@ def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336
     Parameters
     ----------
     pair : GearPair
-        External gears. The series was fitted for -0.5 <= x_1 + x_2 <= 2 and x_1 >= x_2.
+        External gears. Gear 1 of the series is the smaller one, whichever drives; it was fitted for -0.5 <=
+        x_1 + x_2 <= 2 and x_1 >= x_2.
     line_load : float, optional
         Specific load F_t K_A / b in N/m; below 1e5 N/m the stiffness falls with its fourth root. Default:
         above.
@@ -60,7 +61,8 @@ def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336
     Iso6336Stiffness
         Per unit face width.
     """
-    theoretical = _PER_MM_UM / _flexibility(pair.pinion, pair.wheel)
+    gears = sorted((pair.pinion, pair.wheel), key=lambda gear: (gear.teeth, -gear.profile_shift_coefficient))
+    theoretical = _PER_MM_UM / _flexibility(*gears)
     rack = 0.5 * (_rack_factor(pair.pinion) + _rack_factor(pair.wheel))
     body = 0.5 * (blank_factor(pair.pinion) + blank_factor(pair.wheel))
     single = (
@@ -89,11 +91,11 @@ def blank_factor(gear: Toothing) -> float:
     return 1.0 + math.log(web) / (5.0 * math.exp(0.2 * rim))
 
 
-def _flexibility(pinion: Gear, wheel: Gear) -> float:
+def _flexibility(small: Gear, large: Gear) -> float:
     """Flexibility q' in mm um/N: the series of the standard."""
     c1, c2, c3, c4, c5, c6, c7, c8, c9 = _SERIES
-    x1, x2 = pinion.profile_shift_coefficient, wheel.profile_shift_coefficient
-    z1, z2 = _virtual_teeth(pinion), _virtual_teeth(wheel)
+    x1, x2 = small.profile_shift_coefficient, large.profile_shift_coefficient
+    z1, z2 = _virtual_teeth(small), _virtual_teeth(large)
     linear = c1 + c2 / z1 + c3 / z2 + c4 * x1 + c5 * x1 / z1 + c6 * x2 + c7 * x2 / z2
     return linear + c8 * x1**2 + c9 * x2**2
 

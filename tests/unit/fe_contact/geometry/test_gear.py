@@ -272,6 +272,10 @@ def test_mesh_stiffness_follows_the_standard() -> None:
     pair = GearPair(make_gear(teeth=25), make_gear(teeth=25))
     large = GearPair(make_gear(teeth=25, normal_module=8e-3), make_gear(teeth=25, normal_module=8e-3))
     assert iso6336_stiffness(pair.swapped()) == iso6336_stiffness(pair)
+    unlike = GearPair(
+        make_gear(profile_shift_coefficient=0.4), make_gear(teeth=47, profile_shift_coefficient=0.1)
+    )
+    assert iso6336_stiffness(unlike.swapped()) == iso6336_stiffness(unlike)
     assert iso6336_stiffness(large).mesh_stiffness == pytest.approx(
         iso6336_stiffness(pair).mesh_stiffness, rel=1e-12
     )
