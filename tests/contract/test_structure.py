@@ -17,7 +17,7 @@ SPEC.loader.exec_module(structure)
 BUDGETS = {
     ("fe_contact",): (36_896, 633),
     ("dynamics",): (39_740, 803),
-    ("lineofaction.gearbox",): (21_637, 526),
+    ("lineofaction.gearbox",): (21_572, 447),
     ("lineofaction.report",): (10_471, 198),
     ("service",): (14_652, 331),
     ("lineofaction.client",): (2_732, 54),

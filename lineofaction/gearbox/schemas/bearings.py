@@ -78,55 +78,6 @@ class RollingBearingInput(BoundaryModel):
         return self
 
 
-class BearingLawInput(BoundaryModel):
-    """What a bearing does that is not linear."""
-
-    @property
-    def renamed(self) -> dict[str, Any]:
-        """Fields of the law, in SI, that are called otherwise here."""
-        return {}
-
-
-class RollingContactInput(BearingLawInput):
-    """The radial force of a rolling bearing with clearance."""
-
-    stiffness_n_per_m_n: float = Field(
-        gt=0.0,
-        le=1e20,
-        description="Factor k of the force k (r - clearance)^exponent of the whole bearing, N and m",
-        examples=[5e8],
-    )
-    exponent: float = Field(
-        default=10.0 / 9.0,
-        ge=1.0,
-        le=3.0,
-        description="Exponent of that force: 10/9 for rollers, 1.5 for balls",
-        examples=[1.5],
-    )
-    radial_clearance_um: float = Field(
-        default=0.0,
-        ge=0.0,
-        le=1e4,
-        description="Radial displacement from the middle to contact in um",
-        examples=[20.0],
-    )
-    damping_n_s_per_m: float | None = Field(
-        default=None,
-        ge=0.0,
-        le=1e12,
-        description="Damping in full contact in N s/m; left out: from damping_ratio",
-        examples=[500.0],
-    )
-    damping_ratio: float = Field(
-        default=0.05, ge=0.0, le=10.0, description="Damping ratio in full contact", examples=[0.05]
-    )
-
-    @property
-    def renamed(self) -> dict[str, Any]:
-        """The clearance."""
-        return {"clearance": self.radial_clearance_um * UM}
-
-
 _TILTS_OR_NOT = {
     "if": {"properties": {"direction": {"enum": ["x", "y", "z"]}}},
     "then": both(given("displacement_um", "force_n"), left_out("tilt_mrad", "moment_n_m")),
@@ -137,59 +88,109 @@ _TILTS_OR_NOT = {
 _Curve = Annotated[Listed[Number], Field(min_length=2, max_length=1000)]
 
 
-class SpringCurveInput(BearingLawInput):
-    """A bearing's force by displacement in one direction."""
-
-    model_config = ConfigDict(json_schema_extra=stated(_TILTS_OR_NOT))
-
-    direction: Literal["x", "y", "z", "tilt_x", "tilt_y"] = Field(
-        description="Direction of displacement and force", examples=["x"]
-    )
-    displacement_um: _Curve | None = Field(
-        default=None,
-        description="Displacements in um, increasing; for x, y, z",
-        examples=[[-40.0, 0.0, 40.0]],
-    )
-    force_n: _Curve | None = Field(
-        default=None,
-        description="Forces in N at these displacements, increasing",
-        examples=[[-6000.0, 0.0, 6000.0]],
-    )
-    tilt_mrad: _Curve | None = Field(
-        default=None, description="Tilts in mrad, increasing; for tilt_x, tilt_y", examples=[[-1.0, 0.0, 1.0]]
-    )
-    moment_n_m: _Curve | None = Field(
-        default=None, description="Moments in N m at these tilts, increasing", examples=[[-50.0, 0.0, 50.0]]
-    )
-
-    @model_validator(mode="after")
-    def _of_its_direction(self) -> Self:
-        """Displacement and force, or tilt and moment, as many of each."""
-        tilts = self.direction.startswith("tilt")
-        pair = ("tilt_mrad", "moment_n_m") if tilts else ("displacement_um", "force_n")
-        for field in ("displacement_um", "force_n", "tilt_mrad", "moment_n_m"):
-            value = getattr(self, field)
-            if (value is None) == (field in pair):
-                bound = "given" if field in pair else "left out"
-                refuse(field, value, f'{bound} for direction "{self.direction}"')
-        first, second = (getattr(self, field) for field in pair)
-        if len(first) != len(second):
-            refuse(pair[1], list(second), f"a list of {len(first)}, one for each of {pair[0]}")
-        for field, values in zip(pair, (first, second), strict=True):
-            if any(b <= a for a, b in pairwise(values)):
-                refuse(field, list(values), "strictly increasing")
-        return self
-
-    @property
-    def renamed(self) -> dict[str, Any]:
-        """Tilts and moments."""
-        if self.tilt_mrad is None:
-            return {}
-        return {"displacement": tuple(tilt * MRAD for tilt in self.tilt_mrad), "force": self.moment_n_m}
-
-
 class BearingInput(BoundaryModel):
     """Springs and dampers of a bearing, and what it does that is not linear."""
+
+    class BearingLawInput(BoundaryModel):
+        """What a bearing does that is not linear."""
+
+        @property
+        def renamed(self) -> dict[str, Any]:
+            """Fields of the law, in SI, that are called otherwise here."""
+            return {}
+
+    class RollingContactInput(BearingLawInput):
+        """The radial force of a rolling bearing with clearance."""
+
+        stiffness_n_per_m_n: float = Field(
+            gt=0.0,
+            le=1e20,
+            description="Factor k of the force k (r - clearance)^exponent of the whole bearing, N and m",
+            examples=[5e8],
+        )
+        exponent: float = Field(
+            default=10.0 / 9.0,
+            ge=1.0,
+            le=3.0,
+            description="Exponent of that force: 10/9 for rollers, 1.5 for balls",
+            examples=[1.5],
+        )
+        radial_clearance_um: float = Field(
+            default=0.0,
+            ge=0.0,
+            le=1e4,
+            description="Radial displacement from the middle to contact in um",
+            examples=[20.0],
+        )
+        damping_n_s_per_m: float | None = Field(
+            default=None,
+            ge=0.0,
+            le=1e12,
+            description="Damping in full contact in N s/m; left out: from damping_ratio",
+            examples=[500.0],
+        )
+        damping_ratio: float = Field(
+            default=0.05, ge=0.0, le=10.0, description="Damping ratio in full contact", examples=[0.05]
+        )
+
+        @property
+        def renamed(self) -> dict[str, Any]:
+            """The clearance."""
+            return {"clearance": self.radial_clearance_um * UM}
+
+    class SpringCurveInput(BearingLawInput):
+        """A bearing's force by displacement in one direction."""
+
+        model_config = ConfigDict(json_schema_extra=stated(_TILTS_OR_NOT))
+
+        direction: Literal["x", "y", "z", "tilt_x", "tilt_y"] = Field(
+            description="Direction of displacement and force", examples=["x"]
+        )
+        displacement_um: _Curve | None = Field(
+            default=None,
+            description="Displacements in um, increasing; for x, y, z",
+            examples=[[-40.0, 0.0, 40.0]],
+        )
+        force_n: _Curve | None = Field(
+            default=None,
+            description="Forces in N at these displacements, increasing",
+            examples=[[-6000.0, 0.0, 6000.0]],
+        )
+        tilt_mrad: _Curve | None = Field(
+            default=None,
+            description="Tilts in mrad, increasing; for tilt_x, tilt_y",
+            examples=[[-1.0, 0.0, 1.0]],
+        )
+        moment_n_m: _Curve | None = Field(
+            default=None,
+            description="Moments in N m at these tilts, increasing",
+            examples=[[-50.0, 0.0, 50.0]],
+        )
+
+        @model_validator(mode="after")
+        def _of_its_direction(self) -> Self:
+            """Displacement and force, or tilt and moment, as many of each."""
+            tilts = self.direction.startswith("tilt")
+            pair = ("tilt_mrad", "moment_n_m") if tilts else ("displacement_um", "force_n")
+            for field in ("displacement_um", "force_n", "tilt_mrad", "moment_n_m"):
+                value = getattr(self, field)
+                if (value is None) == (field in pair):
+                    bound = "given" if field in pair else "left out"
+                    refuse(field, value, f'{bound} for direction "{self.direction}"')
+            first, second = (getattr(self, field) for field in pair)
+            if len(first) != len(second):
+                refuse(pair[1], list(second), f"a list of {len(first)}, one for each of {pair[0]}")
+            for field, values in zip(pair, (first, second), strict=True):
+                if any(b <= a for a, b in pairwise(values)):
+                    refuse(field, list(values), "strictly increasing")
+            return self
+
+        @property
+        def renamed(self) -> dict[str, Any]:
+            """Tilts and moments."""
+            if self.tilt_mrad is None:
+                return {}
+            return {"displacement": tuple(tilt * MRAD for tilt in self.tilt_mrad), "force": self.moment_n_m}
 
     name: Name = Field(description="Name of the bushing", examples=["input left"])
     shaft: Name = Field(description="The shaft it carries", examples=["input"])

@@ -164,17 +164,18 @@ class ShaftInput(BoundaryModel):
 # Discs on the shafts of a scene that mesh with nothing.
 
 
-class SteelCylinderInput(BoundaryModel):
-    """A steel cylinder from which an inertia follows."""
-
-    outer_diameter_mm: float = Field(gt=0.0, le=1e5, description="Outer diameter in mm", examples=[300.0])
-    width_mm: float = Field(gt=0.0, le=1e6, description="Width along the axis in mm", examples=[40.0])
-    bore_diameter_mm: float = Field(default=0.0, ge=0.0, le=1e5, description="Bore in mm", examples=[40.0])
-
-
 @with_fields(declared_in(DiscBody))
 class DiscInput(BoundaryModel):
     """A flywheel, coupling half or rotor on a shaft."""
+
+    class SteelCylinderInput(BoundaryModel):
+        """A steel cylinder from which an inertia follows."""
+
+        outer_diameter_mm: float = Field(gt=0.0, le=1e5, description="Outer diameter in mm", examples=[300.0])
+        width_mm: float = Field(gt=0.0, le=1e6, description="Width along the axis in mm", examples=[40.0])
+        bore_diameter_mm: float = Field(
+            default=0.0, ge=0.0, le=1e5, description="Bore in mm", examples=[40.0]
+        )
 
     model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("inertia", "cylinder")))
 

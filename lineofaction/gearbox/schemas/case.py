@@ -170,89 +170,88 @@ class ErrorsInput(BoundaryModel):
         return self
 
 
-class AccuracyInput(BoundaryModel):
-    """The request to the planner: an accuracy, a time or a level; by default tolerance 0.01."""
-
-    model_config = ConfigDict(
-        json_schema_extra=stated(
-            at_most_one_of("level", "tolerance"), at_most_one_of("level", "time_budget_s")
-        )
-    )
-
-    tolerance: float | None = Field(
-        default=None,
-        ge=1e-4,
-        le=0.5,
-        description="Allowed relative error of mean and peak-to-peak STE",
-        examples=[0.01],
-    )
-    tolerance_floor_nm: float = Field(
-        default=20.0,
-        ge=0.0,
-        le=1e6,
-        description="Error in nm that a tolerance always allows, even if it is more than the relative error "
-        "of a small ripple",
-        examples=[20.0],
-    )
-    time_budget_s: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=1e6,
-        description="Budget in CPU seconds; with a tolerance, refinement ends there",
-        examples=[10.0],
-    )
-    level: Literal["draft", "standard", "fine"] | None = Field(
-        default=None, description="A mesh by name", examples=["standard"]
-    )
-    model: Literal["auto", "plane_strain", "plane_stress", "3d"] = Field(
-        default="auto", description="The body model; auto lets the planner choose", examples=["auto"]
-    )
-    receipt: Literal["full", "minimal"] = Field(
-        default="full",
-        description="full: errors by source; minimal: no error estimates",
-        examples=["full"],
-    )
-    on_violation: Literal["repeat", "fail", "report"] = Field(
-        default="repeat",
-        description="If an assumption is violated: repeat with the effect it needs, fail, or report",
-        examples=["repeat"],
-    )
-    positions: int | None = Field(
-        default=None,
-        ge=8,
-        le=4096,
-        description="Positions in one base pitch; left out: chosen by the planner",
-        examples=[64],
-    )
-    pitches: int | None = Field(
-        default=None,
-        ge=1,
-        le=1_000_000,
-        description="Base pitches that the table covers if gears have pitch deviations; left out: the full "
-        "period, one revolution of one gear or the hunting cycle of both",
-        examples=[20],
-    )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _default_wish(cls, data: Any) -> Any:
-        """Ask for the default tolerance when nothing is requested, so that the echo says so."""
-        if isinstance(data, dict) and all(data.get(name) is None for name in _WISHES):
-            return {**data, "tolerance": 0.01}
-        return data
-
-    @model_validator(mode="after")
-    def _one_wish(self) -> Self:
-        """Refuse a tolerance or a time budget beside a level, which is a mesh."""
-        wishes = [name for name in ("tolerance", "time_budget_s") if getattr(self, name) is not None]
-        if wishes and self.level is not None:
-            advice = "A level is a mesh, regardless of cost."
-            refuse("level", self.level, f"left out when {wishes[0]} is given", advice)
-        return self
-
-
 class Case(BoundaryModel):
     """A gear pair and what is to be computed for it."""
+
+    class AccuracyInput(BoundaryModel):
+        """The request to the planner: an accuracy, a time or a level; by default tolerance 0.01."""
+
+        model_config = ConfigDict(
+            json_schema_extra=stated(
+                at_most_one_of("level", "tolerance"), at_most_one_of("level", "time_budget_s")
+            )
+        )
+
+        tolerance: float | None = Field(
+            default=None,
+            ge=1e-4,
+            le=0.5,
+            description="Allowed relative error of mean and peak-to-peak STE",
+            examples=[0.01],
+        )
+        tolerance_floor_nm: float = Field(
+            default=20.0,
+            ge=0.0,
+            le=1e6,
+            description="Error in nm that a tolerance always allows, even if it is more than the relative "
+            "error of a small ripple",
+            examples=[20.0],
+        )
+        time_budget_s: float | None = Field(
+            default=None,
+            gt=0.0,
+            le=1e6,
+            description="Budget in CPU seconds; with a tolerance, refinement ends there",
+            examples=[10.0],
+        )
+        level: Literal["draft", "standard", "fine"] | None = Field(
+            default=None, description="A mesh by name", examples=["standard"]
+        )
+        model: Literal["auto", "plane_strain", "plane_stress", "3d"] = Field(
+            default="auto", description="The body model; auto lets the planner choose", examples=["auto"]
+        )
+        receipt: Literal["full", "minimal"] = Field(
+            default="full",
+            description="full: errors by source; minimal: no error estimates",
+            examples=["full"],
+        )
+        on_violation: Literal["repeat", "fail", "report"] = Field(
+            default="repeat",
+            description="If an assumption is violated: repeat with the effect it needs, fail, or report",
+            examples=["repeat"],
+        )
+        positions: int | None = Field(
+            default=None,
+            ge=8,
+            le=4096,
+            description="Positions in one base pitch; left out: chosen by the planner",
+            examples=[64],
+        )
+        pitches: int | None = Field(
+            default=None,
+            ge=1,
+            le=1_000_000,
+            description="Base pitches that the table covers if gears have pitch deviations; left out: the "
+            "full period, one revolution of one gear or the hunting cycle of both",
+            examples=[20],
+        )
+
+        @model_validator(mode="before")
+        @classmethod
+        def _default_wish(cls, data: Any) -> Any:
+            """Ask for the default tolerance when nothing is requested, so that the echo says so."""
+            if isinstance(data, dict) and all(data.get(name) is None for name in _WISHES):
+                return {**data, "tolerance": 0.01}
+            return data
+
+        @model_validator(mode="after")
+        def _one_wish(self) -> Self:
+            """Refuse a tolerance or a time budget beside a level, which is a mesh."""
+            wishes = [name for name in ("tolerance", "time_budget_s") if getattr(self, name) is not None]
+            if wishes and self.level is not None:
+                advice = "A level is a mesh, regardless of cost."
+                refuse("level", self.level, f"left out when {wishes[0]} is given", advice)
+            return self
 
     pair: PairInput = Field(description="The gear pair")
     material: MaterialInput = Field(

@@ -81,15 +81,14 @@ class TableFigures(Figures):
     center_distance_change_mm: list[float]
 
 
-class RunVariable(Part):
-    """A variable of the file of a run."""
-
-    dimensions: list[str]
-    units: str
-
-
 class RunFigures(Figures):
     """What the file of a run holds, without its data."""
+
+    class RunVariable(Part):
+        """A variable of the file of a run."""
+
+        dimensions: list[str]
+        units: str
 
     attributes: Json
     dimensions: dict[str, int]

@@ -40,23 +40,6 @@ GridRow = Annotated[Listed[_Deviation], _NODES]
 PitchDeviations = Annotated[Listed[_Deviation], Field(max_length=4000)]
 
 
-class FlankGridInput(BoundaryModel):
-    """A free-form flank as a grid: one row of removed material per roll length."""
-
-    roll_length_mm: GridAxis = Field(
-        description="Roll lengths of the rows in mm, increasing", examples=[[4.0, 10.0, 16.0]]
-    )
-    face_position_mm: GridAxis = Field(
-        description="Distances of the columns from mid-face in mm, increasing", examples=[[-12.5, 12.5]]
-    )
-    removed_um: Listed[GridRow] = Field(
-        min_length=2,
-        max_length=500,
-        description="Material removed in um, a row per roll length",
-        examples=[[[0.0, 2.0], [0.0, 0.0], [5.0, 7.0]]],
-    )
-
-
 SHARED = tuple(figure for figure in figures(Toothing) if figure.name in MATING)
 """Figures that a case has once, for both gears."""
 
@@ -77,6 +60,22 @@ class _ToothingFigures(BoundaryModel):
 @with_fields({**declared_in(FlankModification), **parts_in(parts_of(Gear))})
 class ToothingInput(_ToothingFigures):
     """Fields of all gears. Modifications: > 0 is material removed, normal to the involute, transverse."""
+
+    class FlankGridInput(BoundaryModel):
+        """A free-form flank as a grid: one row of removed material per roll length."""
+
+        roll_length_mm: GridAxis = Field(
+            description="Roll lengths of the rows in mm, increasing", examples=[[4.0, 10.0, 16.0]]
+        )
+        face_position_mm: GridAxis = Field(
+            description="Distances of the columns from mid-face in mm, increasing", examples=[[-12.5, 12.5]]
+        )
+        removed_um: Listed[GridRow] = Field(
+            min_length=2,
+            max_length=500,
+            description="Material removed in um, a row per roll length",
+            examples=[[[0.0, 2.0], [0.0, 0.0], [5.0, 7.0]]],
+        )
 
     flank_grid: FlankGridInput | None = Field(
         default=None,

@@ -114,15 +114,6 @@ class HousingFootInput(BoundaryModel):
         return self
 
 
-class HousingPointInput(BoundaryModel):
-    """A named point of a housing whose motion is of interest."""
-
-    name: Name = Field(description="Name of the point", examples=["cover"])
-    position_mm: Point = Field(
-        description="Where it is, x, y, z in the scene, mm", examples=[[40.0, 120.0, 50.0]]
-    )
-
-
 PERPENDICULAR = 1e-6
 """Cosine of the angle between axes."""
 SOURCES = ("step_file", "mesh_file")
@@ -180,6 +171,14 @@ _OF_SOLID = (*_SOLID, "points", "mesh_unit", "origin_mm", "x_axis", "z_axis", *_
 @with_fields(declared_in(ReductionSettings))
 class HousingInput(_MatrixHousing):
     """An elastic housing that several bearings share: by matrices, or by its solid, which is reduced."""
+
+    class HousingPointInput(BoundaryModel):
+        """A named point of a housing whose motion is of interest."""
+
+        name: Name = Field(description="Name of the point", examples=["cover"])
+        position_mm: Point = Field(
+            description="Where it is, x, y, z in the scene, mm", examples=[[40.0, 120.0, 50.0]]
+        )
 
     model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("stiffness_matrix", *SOURCES)))
 

@@ -88,21 +88,20 @@ class LiveInput(BoundaryModel):
     )
 
 
-class PlanInputs(BoundaryModel):
-    """The case to plan."""
-
-    case: Case = Field(description="The case, as in a case file")
-    time_budget_s: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=1e6,
-        description="Budget in CPU seconds, in addition to a tolerance or a level of the case",
-        examples=[30.0],
-    )
-
-
 class PlanRequest(BoundaryModel):
     """The body of an execution of analyze, planned instead of run."""
+
+    class PlanInputs(BoundaryModel):
+        """The case to plan."""
+
+        case: Case = Field(description="The case, as in a case file")
+        time_budget_s: float | None = Field(
+            default=None,
+            gt=0.0,
+            le=1e6,
+            description="Budget in CPU seconds, in addition to a tolerance or a level of the case",
+            examples=[30.0],
+        )
 
     inputs: PlanInputs = Field(description="Inputs of the plan")
     caller: Caller | None = Field(
@@ -115,107 +114,106 @@ class PlanRequest(BoundaryModel):
 # Answers to live questions: curves of other flanks, their errors and derivatives, results on the flanks.
 
 
-class SourceError(BoundaryModel):
-    """Error of one source; null where it is not known."""
-
-    mean: float | None = Field(description="Error of the mean in um", examples=[0.01])
-    peak_to_peak: float | None = Field(description="Error of peak-to-peak in um", examples=[0.02])
-    first_harmonic: float | None = Field(
-        description="Error of the first mesh harmonic in um", examples=[0.01]
-    )
-
-
-class CurveDerivative(BoundaryModel):
-    """Derivatives of a curve by one figure, per unit of the figure."""
-
-    ste_um: list[float] = Field(
-        description="Derivative of the transmission error at each position", examples=[[0.1, 0.2]]
-    )
-    mean_um: float = Field(description="Derivative of the mean", examples=[0.15])
-    peak_to_peak_um: float = Field(description="Derivative of peak-to-peak", examples=[0.02])
-    harmonics_um: list[float | None] = Field(
-        description="Derivatives of the amplitudes of the mesh harmonics; null if the positions do not "
-        "resolve one",
-        examples=[[0.01, -0.02]],
-    )
-
-
-class FlankDerivative(BoundaryModel):
-    """Change per micrometer removed at each node of a grid on a flank, bilinear between the nodes."""
-
-    roll_length_mm: list[float] = Field(description="Rows of the grid: roll lengths", examples=[[4.0, 9.0]])
-    face_position_mm: list[float] = Field(
-        description="Columns: distance from the gear's mid-face", examples=[[-5.0, 5.0]]
-    )
-    mean_um: list[list[float]] = Field(
-        description="Derivative of the mean", examples=[[[0.2, 0.3], [0.3, 0.2]]]
-    )
-    peak_to_peak_um: list[list[float]] = Field(
-        description="Derivative of peak-to-peak", examples=[[[0.1, 0.0], [-0.1, 0.0]]]
-    )
-
-
-class CurveDerivatives(BoundaryModel):
-    """The derivatives of a curve, to first order; see docs/theory/contact.md."""
-
-    by: dict[str, CurveDerivative] = Field(
-        description="Derivatives by every active quantity: per um, per mm of a length, per N m",
-        examples=[
-            {
-                "pinion.tip_relief_um": {
-                    "ste_um": [0.1, 0.2],
-                    "mean_um": 0.15,
-                    "peak_to_peak_um": 0.02,
-                    "harmonics_um": [0.01, -0.02],
-                }
-            }
-        ],
-    )
-    pinion: FlankDerivative = Field(description="Derivatives by the flank of the driving gear")
-    wheel: FlankDerivative = Field(description="Derivatives by the flank of the driven gear")
-
-
-class LiveFlanks(BoundaryModel):
-    """Results on the flanks over one period at one load; no error is stated for them."""
-
-    largest_pressure_mpa: float = Field(
-        description="Largest Hertz pressure in MPa away from edges", examples=[1093.0]
-    )
-    edge_pressure_mpa: float = Field(
-        description="At edges, as if the flank went on; the true one is singular. 0: no contact reaches one",
-        examples=[0.0],
-    )
-    k_h_beta: float | None = Field(
-        description="Face load factor: largest over mean load per face width, averaged over the positions; "
-        "null in the plane model, which assumes a uniform load",
-        examples=[1.2],
-    )
-    roll_length_mm: list[float] = Field(
-        description="Rows of the pressure: roll lengths of the driving gear", examples=[[4.0, 9.0]]
-    )
-    face_position_mm: list[float] = Field(
-        description="Columns of the pressure: distance from the driving gear's mid-face",
-        examples=[[-5.0, 5.0]],
-    )
-    pressure_mpa: list[list[float]] = Field(
-        description="Largest pressure in MPa at each point of the driving gear's flank over the positions",
-        examples=[[[900.0, 1093.0], [850.0, 1010.0]]],
-    )
-    mean_load_n_per_mm: list[float] = Field(
-        description="Load of all pairs per face width in N/mm, averaged over the positions",
-        examples=[[110.0, 160.0]],
-    )
-    worst_load_n_per_mm: list[float] = Field(
-        description="The same at the position where it is largest", examples=[[120.0, 190.0]]
-    )
-    worst_position: float = Field(description="That position in base pitches", examples=[0.25])
-
-
 class LiveCurve(BoundaryModel):
     """Transmission error over one period at one load, with what it may be wrong by.
 
     An error covers the discretization of the same model, all sources together; see docs/accuracy.md.
     """
+
+    class SourceError(BoundaryModel):
+        """Error of one source; null where it is not known."""
+
+        mean: float | None = Field(description="Error of the mean in um", examples=[0.01])
+        peak_to_peak: float | None = Field(description="Error of peak-to-peak in um", examples=[0.02])
+        first_harmonic: float | None = Field(
+            description="Error of the first mesh harmonic in um", examples=[0.01]
+        )
+
+    class CurveDerivatives(BoundaryModel):
+        """The derivatives of a curve, to first order; see docs/theory/contact.md."""
+
+        class CurveDerivative(BoundaryModel):
+            """Derivatives of a curve by one figure, per unit of the figure."""
+
+            ste_um: list[float] = Field(
+                description="Derivative of the transmission error at each position", examples=[[0.1, 0.2]]
+            )
+            mean_um: float = Field(description="Derivative of the mean", examples=[0.15])
+            peak_to_peak_um: float = Field(description="Derivative of peak-to-peak", examples=[0.02])
+            harmonics_um: list[float | None] = Field(
+                description="Derivatives of the amplitudes of the mesh harmonics; null if the positions do "
+                "not resolve one",
+                examples=[[0.01, -0.02]],
+            )
+
+        class FlankDerivative(BoundaryModel):
+            """Change per micrometer removed at each node of a grid on a flank, bilinear between the nodes."""
+
+            roll_length_mm: list[float] = Field(
+                description="Rows of the grid: roll lengths", examples=[[4.0, 9.0]]
+            )
+            face_position_mm: list[float] = Field(
+                description="Columns: distance from the gear's mid-face", examples=[[-5.0, 5.0]]
+            )
+            mean_um: list[list[float]] = Field(
+                description="Derivative of the mean", examples=[[[0.2, 0.3], [0.3, 0.2]]]
+            )
+            peak_to_peak_um: list[list[float]] = Field(
+                description="Derivative of peak-to-peak", examples=[[[0.1, 0.0], [-0.1, 0.0]]]
+            )
+
+        by: dict[str, CurveDerivative] = Field(
+            description="Derivatives by every active quantity: per um, per mm of a length, per N m",
+            examples=[
+                {
+                    "pinion.tip_relief_um": {
+                        "ste_um": [0.1, 0.2],
+                        "mean_um": 0.15,
+                        "peak_to_peak_um": 0.02,
+                        "harmonics_um": [0.01, -0.02],
+                    }
+                }
+            ],
+        )
+        pinion: FlankDerivative = Field(description="Derivatives by the flank of the driving gear")
+        wheel: FlankDerivative = Field(description="Derivatives by the flank of the driven gear")
+
+    class LiveFlanks(BoundaryModel):
+        """Results on the flanks over one period at one load; no error is stated for them."""
+
+        largest_pressure_mpa: float = Field(
+            description="Largest Hertz pressure in MPa away from edges", examples=[1093.0]
+        )
+        edge_pressure_mpa: float = Field(
+            description="At edges, as if the flank went on; the true one is singular. 0: no contact reaches "
+            "one",
+            examples=[0.0],
+        )
+        k_h_beta: float | None = Field(
+            description="Face load factor: largest over mean load per face width, averaged over the "
+            "positions; null in the plane model, which assumes a uniform load",
+            examples=[1.2],
+        )
+        roll_length_mm: list[float] = Field(
+            description="Rows of the pressure: roll lengths of the driving gear", examples=[[4.0, 9.0]]
+        )
+        face_position_mm: list[float] = Field(
+            description="Columns of the pressure: distance from the driving gear's mid-face",
+            examples=[[-5.0, 5.0]],
+        )
+        pressure_mpa: list[list[float]] = Field(
+            description="Largest pressure in MPa at each point of the driving gear's flank over the "
+            "positions",
+            examples=[[[900.0, 1093.0], [850.0, 1010.0]]],
+        )
+        mean_load_n_per_mm: list[float] = Field(
+            description="Load of all pairs per face width in N/mm, averaged over the positions",
+            examples=[[110.0, 160.0]],
+        )
+        worst_load_n_per_mm: list[float] = Field(
+            description="The same at the position where it is largest", examples=[[120.0, 190.0]]
+        )
+        worst_position: float = Field(description="That position in base pitches", examples=[0.25])
 
     torque_n_m: float = Field(description="Torque on the driving gear in N m", examples=[100.0])
     normal_force_n: float = Field(description="Normal tooth force in N", examples=[2660.4])
@@ -258,36 +256,35 @@ class LiveCurve(BoundaryModel):
     )
 
 
-class LiveAssumption(BoundaryModel):
-    """One thing that the answer took for granted."""
-
-    effect: str = Field(description="Effect that removes the assumption; empty if there is none")
-    assumption: str = Field(description="The assumption", examples=["coast flanks stay apart"])
-    holds: bool | None = Field(description="Null: not checked, or not assessable", examples=[True])
-    reason: str = Field(description="Finding of the check", examples=["the least clearance is 12 um"])
-    change: float | None = Field(
-        default=None, description="Upper bound of its relative change of mean or peak-to-peak"
-    )
-
-
-class LiveCost(BoundaryModel):
-    """CPU seconds of the parts of an answer."""
-
-    compliance_cpu_seconds: float = Field(
-        description="Reading and assembling the compliance; negligible if it is in memory", examples=[0.001]
-    )
-    contact_cpu_seconds: float = Field(description="Computing the curves", examples=[0.02])
-    error_estimate_cpu_seconds: float = Field(description="Estimating their errors", examples=[0.02])
-    flanks_cpu_seconds: float = Field(
-        default=0.0, description="Load and pressure on the flanks, if requested", examples=[0.01]
-    )
-    derivatives_cpu_seconds: float = Field(
-        default=0.0, description="Computing their derivatives, if requested", examples=[0.03]
-    )
-
-
 class LiveOutput(BoundaryModel):
     """Curves of other flanks."""
+
+    class LiveAssumption(BoundaryModel):
+        """One thing that the answer took for granted."""
+
+        effect: str = Field(description="Effect that removes the assumption; empty if there is none")
+        assumption: str = Field(description="The assumption", examples=["coast flanks stay apart"])
+        holds: bool | None = Field(description="Null: not checked, or not assessable", examples=[True])
+        reason: str = Field(description="Finding of the check", examples=["the least clearance is 12 um"])
+        change: float | None = Field(
+            default=None, description="Upper bound of its relative change of mean or peak-to-peak"
+        )
+
+    class LiveCost(BoundaryModel):
+        """CPU seconds of the parts of an answer."""
+
+        compliance_cpu_seconds: float = Field(
+            description="Reading and assembling the compliance; negligible if it is in memory",
+            examples=[0.001],
+        )
+        contact_cpu_seconds: float = Field(description="Computing the curves", examples=[0.02])
+        error_estimate_cpu_seconds: float = Field(description="Estimating their errors", examples=[0.02])
+        flanks_cpu_seconds: float = Field(
+            default=0.0, description="Load and pressure on the flanks, if requested", examples=[0.01]
+        )
+        derivatives_cpu_seconds: float = Field(
+            default=0.0, description="Computing their derivatives, if requested", examples=[0.03]
+        )
 
     curves: list[LiveCurve] = Field(description="One curve for each torque")
     effects: dict[str, bool] = Field(description="Effects that are on", examples=[{"corner_contact": True}])

@@ -40,38 +40,6 @@ def left_out_warnings(texts: Iterable[str]) -> list[dict[str, Any]]:
 # What a run will be and cost: the answer to a plan, with the effect ledger as answers have it.
 
 
-class EffectInfluence(BaseModel):
-    """The change by an effect, estimated before the run."""
-
-    torque_n_m: float = Field(description="Torque of the estimate")
-    misalignment_um: float = Field(description="Misalignment of the estimate")
-    mean_um: float | None = Field(description="Change of the mean transmission error")
-    peak_to_peak_um: float | None = Field(description="Change of its peak-to-peak")
-    whole_mean_um: float | None = Field(description="The mean with the effect")
-    whole_peak_to_peak_um: float | None = Field(description="Peak-to-peak with the effect")
-    relative_mean: float | None
-    relative_peak_to_peak: float | None
-    trifle: bool = Field(description="Whether it is below what any tolerance asks for")
-    words: str
-
-
-class LedgerEntry(BaseModel):
-    """An effect: whether it is on, why, its influence and its cost."""
-
-    name: str
-    on: bool
-    choice: Literal["on", "off", "auto"]
-    cost: str = Field(description="The cost in words")
-    called_for: bool = Field(description="Whether the scene calls for it")
-    reason: str
-    decision: str
-    influence: EffectInfluence | None = Field(description="Null: not estimated")
-    cost_cpu_seconds: float | None = Field(description="Predicted CPU time that it adds; null: not known")
-    price: str
-    checked: str = Field(description="Assumptions that were checked after the run")
-    holds: bool | None = Field(description="Whether they hold; null: not checked")
-
-
 Recipe = dict[str, bool | int | float | list[int] | None]
 """Settings of a mesh by name; lengths in m."""
 
@@ -99,43 +67,72 @@ class PlannedError(BaseModel):
     peak_to_peak_um: float | None = Field(description="Null where no size is known before the run")
 
 
-class PlannedMesh(BaseModel):
-    """The mesh that would be taken, and why."""
-
-    model: str
-    level: str
-    slices: int
-    met: bool = Field(description="Whether the request is expected to be met")
-    reason: str
-
-
-class PlannedLevel(BaseModel):
-    """A mesh level of the model, or what the tolerance needs beyond the time: cost and error."""
-
-    model: str
-    level: str
-    slices: int
-    cost: PlannedCost
-    error: PlannedError
-
-
-class PlannedRun(BaseModel):
-    """The discretization of the run."""
-
-    model: str
-    mesh: list[Recipe] = Field(description="Meshes of the driving and of the driven gear, lengths in m")
-    finite_width: list[Recipe] | None = Field(
-        default=None, description="Meshes that correct a plane model for the finite width"
-    )
-    slices: int | None = Field(default=None, description="Of the common face width; plane models have none")
-    patch: dict[str, float] = Field(description="Sizes of the load patches in m, and their load")
-    positions: int | Literal["adaptive"] = Field(description="In one base pitch")
-    load: list[float] = Field(description="Normal forces in N")
-    support_load: list[float] = Field(description="Further normal forces in N, for the force extraction")
-
-
 class PlanBody(BaseModel):
     """The plan of an analysis."""
+
+    class LedgerEntry(BaseModel):
+        """An effect: whether it is on, why, its influence and its cost."""
+
+        class EffectInfluence(BaseModel):
+            """The change by an effect, estimated before the run."""
+
+            torque_n_m: float = Field(description="Torque of the estimate")
+            misalignment_um: float = Field(description="Misalignment of the estimate")
+            mean_um: float | None = Field(description="Change of the mean transmission error")
+            peak_to_peak_um: float | None = Field(description="Change of its peak-to-peak")
+            whole_mean_um: float | None = Field(description="The mean with the effect")
+            whole_peak_to_peak_um: float | None = Field(description="Peak-to-peak with the effect")
+            relative_mean: float | None
+            relative_peak_to_peak: float | None
+            trifle: bool = Field(description="Whether it is below what any tolerance asks for")
+            words: str
+
+        name: str
+        on: bool
+        choice: Literal["on", "off", "auto"]
+        cost: str = Field(description="The cost in words")
+        called_for: bool = Field(description="Whether the scene calls for it")
+        reason: str
+        decision: str
+        influence: EffectInfluence | None = Field(description="Null: not estimated")
+        cost_cpu_seconds: float | None = Field(description="Predicted CPU time that it adds; null: not known")
+        price: str
+        checked: str = Field(description="Assumptions that were checked after the run")
+        holds: bool | None = Field(description="Whether they hold; null: not checked")
+
+    class PlannedMesh(BaseModel):
+        """The mesh that would be taken, and why."""
+
+        model: str
+        level: str
+        slices: int
+        met: bool = Field(description="Whether the request is expected to be met")
+        reason: str
+
+    class PlannedLevel(BaseModel):
+        """A mesh level of the model, or what the tolerance needs beyond the time: cost and error."""
+
+        model: str
+        level: str
+        slices: int
+        cost: PlannedCost
+        error: PlannedError
+
+    class PlannedRun(BaseModel):
+        """The discretization of the run."""
+
+        model: str
+        mesh: list[Recipe] = Field(description="Meshes of the driving and of the driven gear, lengths in m")
+        finite_width: list[Recipe] | None = Field(
+            default=None, description="Meshes that correct a plane model for the finite width"
+        )
+        slices: int | None = Field(
+            default=None, description="Of the common face width; plane models have none"
+        )
+        patch: dict[str, float] = Field(description="Sizes of the load patches in m, and their load")
+        positions: int | Literal["adaptive"] = Field(description="In one base pitch")
+        load: list[float] = Field(description="Normal forces in N")
+        support_load: list[float] = Field(description="Further normal forces in N, for the force extraction")
 
     choice: PlannedMesh
     prediction: PlannedCost
@@ -152,26 +149,24 @@ class PlanBody(BaseModel):
 Point = Annotated[tuple[float, ...], Field(min_length=2, max_length=2)]
 
 
-class GearOutline(BaseModel):
-    """One tooth of a gear with half a space on either side, in mm, center at the origin, tooth on +y."""
-
-    teeth: int
-    tooth_mm: list[Point]
-    radius_mm: dict[str, float] = Field(description="tip, root, base, reference, held")
-    angle_deg: float = Field(description="By which the whole is turned counter-clockwise")
-    centre_mm: Point
-    turn: float = Field(description="Sense of rotation, 1 counter-clockwise")
-
-
-class PathOfContact(BaseModel):
-    """The usable path of contact."""
-
-    points_mm: dict[str, Point] = Field(description="A to E")
-    base_pitch_mm: float
-
-
 class OutlineBody(BaseModel):
     """Both gears at position 0, seen from +z, x to the right, and the main figures of the pair."""
+
+    class GearOutline(BaseModel):
+        """One tooth of a gear with half a space on either side, in mm, center at the origin, tooth on +y."""
+
+        teeth: int
+        tooth_mm: list[Point]
+        radius_mm: dict[str, float] = Field(description="tip, root, base, reference, held")
+        angle_deg: float = Field(description="By which the whole is turned counter-clockwise")
+        centre_mm: Point
+        turn: float = Field(description="Sense of rotation, 1 counter-clockwise")
+
+    class PathOfContact(BaseModel):
+        """The usable path of contact."""
+
+        points_mm: dict[str, Point] = Field(description="A to E")
+        base_pitch_mm: float
 
     pinion: GearOutline
     wheel: GearOutline

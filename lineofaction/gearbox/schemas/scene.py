@@ -32,32 +32,6 @@ from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.model import Acceleration, BoundaryModel, Listed, refuse
 
 
-class RunInput(BoundaryModel):
-    """Duration of a run, and its reaction to an assumption that does not hold."""
-
-    duration_s: float = Field(ge=0.0, le=1e6, description="Duration in s", examples=[5.0])
-    on_violation: Literal["repeat", "fail", "report"] = Field(
-        default="repeat",
-        description="If a run or study violates an assumption: repeat with the effect it needs (fail if the "
-        "result is invalid and no effect corrects it), fail at any, or report",
-        examples=["repeat"],
-    )
-
-
-class SceneAccuracyInput(BoundaryModel):
-    """The tolerance that decides automatic effects."""
-
-    tolerance: float | None = Field(
-        default=None,
-        ge=1e-6,
-        le=0.5,
-        description="Relative tolerance of mean and peak-to-peak transmission error and of bearing forces: "
-        "effects of less influence are neglected, others are on; left out: as the scene calls for "
-        "them",
-        examples=[0.01],
-    )
-
-
 @with_fields(declared_in(Outputs))
 class OutputsInput(BoundaryModel):
     """The outputs to store."""
@@ -70,6 +44,31 @@ class IntegrationInput(BoundaryModel):
 
 class SceneInput(BoundaryModel):
     """A geared system and the run to make with it."""
+
+    class RunInput(BoundaryModel):
+        """Duration of a run, and its reaction to an assumption that does not hold."""
+
+        duration_s: float = Field(ge=0.0, le=1e6, description="Duration in s", examples=[5.0])
+        on_violation: Literal["repeat", "fail", "report"] = Field(
+            default="repeat",
+            description="If a run or study violates an assumption: repeat with the effect it needs (fail if "
+            "the result is invalid and no effect corrects it), fail at any, or report",
+            examples=["repeat"],
+        )
+
+    class SceneAccuracyInput(BoundaryModel):
+        """The tolerance that decides automatic effects."""
+
+        tolerance: float | None = Field(
+            default=None,
+            ge=1e-6,
+            le=0.5,
+            description="Relative tolerance of mean and peak-to-peak transmission error and of bearing "
+            "forces: "
+            "effects of less influence are neglected, others are on; left out: as the scene calls for "
+            "them",
+            examples=[0.01],
+        )
 
     run: RunInput = Field(description="The run", examples=[{"duration_s": 5.0}])
     gravity_m_per_s2: Acceleration = Field(

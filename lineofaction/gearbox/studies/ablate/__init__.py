@@ -40,28 +40,27 @@ def _estimate(estimate: Any) -> Json | None:
     return None if estimate is None else dict(in_um(estimate.to_json()))
 
 
-class EffectFigures(Part):
-    """One effect toggled: the figures with and without it, and their changes without it."""
-
-    name: str
-    on: bool
-    reason: str
-    with_effect: Toggled = Field(alias="with")
-    without_effect: Toggled = Field(alias="without")
-    estimate: Annotated[Json | None, Source("estimate", document=True, turned=_estimate)]
-    influence_um: float | None = None
-    mean_change_um: list[float]
-    peak_to_peak_change_um: list[float]
-    harmonic_change_um: list[list[float]] | None = None
-    order_change_um: list[list[float]] | None = None
-    bearing_order_change_n: list[list[float]] | None = None
-    cost_ratio: float
-    relative_mean_change: list[float] | None = None
-    relative_peak_to_peak_change: list[float] | None = None
-
-
 class AblateFigures(Figures):
     """All effects, each toggled by itself; of a case the loads, of a scene its meshes and bearings."""
+
+    class EffectFigures(Part):
+        """One effect toggled: the figures with and without it, and their changes without it."""
+
+        name: str
+        on: bool
+        reason: str
+        with_effect: Toggled = Field(alias="with")
+        without_effect: Toggled = Field(alias="without")
+        estimate: Annotated[Json | None, Source("estimate", document=True, turned=_estimate)]
+        influence_um: float | None = None
+        mean_change_um: list[float]
+        peak_to_peak_change_um: list[float]
+        harmonic_change_um: list[list[float]] | None = None
+        order_change_um: list[list[float]] | None = None
+        bearing_order_change_n: list[list[float]] | None = None
+        cost_ratio: float
+        relative_mean_change: list[float] | None = None
+        relative_peak_to_peak_change: list[float] | None = None
 
     of: Annotated[Literal["case", "scene"], Source(lambda own: "scene" if hasattr(own, "mesh") else "case")]
     nominal: Toggled

@@ -82,14 +82,6 @@ class Inputs(BoundaryModel):
 RatingLife = Literal["limited", "unlimited", "none: no capacity"]
 
 
-class Agreement(Part):
-    """Whether tables and deflections agree."""
-
-    agreed: bool
-    passes: int
-    relative_change: Annotated[float | None, Source("change")]
-
-
 class Flanks(Part):
     """A mesh on its flanks; K_Hbeta is None in the plane."""
 
@@ -105,53 +97,50 @@ class Flanks(Part):
     centroid_difference_mm: float | None
 
 
-class Mesh(Part):
-    """A mesh under a load case."""
-
-    name: str
-    force_n: float
-    misalignment_um: float
-    misalignment_over_cycle_um: Annotated[
-        tuple[float, float], Source(lambda mesh: (mesh.least, mesh.largest))
-    ]
-    causes_um: dict[str, float]
-    center_distance_change_um: float
-    lead_torsion_um: float
-    face_centroid_mm: float | None
-    in_table: bool
-    flanks: Flanks | None
-
-
-class Bearing(Part):
-    """A bearing under a load case, in the axes x, y, z; no life in hours: `rating_life` says why."""
-
-    name: str
-    shaft: str
-    speed_rpm: float
-    force_n: Annotated[list[float], Source(lambda load: load.force[:3])]
-    moment_n_m: Annotated[list[float], Source(lambda load: load.force[3:])]
-    radial_force_n: Annotated[float, Source("radial")]
-    axial_force_n: Annotated[float, Source("axial")]
-    largest_radial_force_n: Annotated[float, Source("largest_radial")]
-    elastic_um: Annotated[list[float], Source(lambda load: load.elastic[:3])]
-    clearance_um: Annotated[list[float], Source(lambda load: load.clearance[:3])]
-    seat_um: Annotated[list[float], Source(lambda load: load.seat[:3])]
-    tilt_mrad: Annotated[list[float], Source(lambda load: (load.elastic + load.clearance)[3:])]
-    rating_life_hours: float | None
-    rating_life: RatingLife
-
-
-class Force(Part):
-    """A force of the scene under a load case in the axes x, y, z, before the factor of its course."""
-
-    name: str
-    shaft: str
-    force_n: list[float]
-    moment_n_m: list[float]
-
-
 class LoadCase(Part):
     """A load case."""
+
+    class Mesh(Part):
+        """A mesh under a load case."""
+
+        name: str
+        force_n: float
+        misalignment_um: float
+        misalignment_over_cycle_um: Annotated[
+            tuple[float, float], Source(lambda mesh: (mesh.least, mesh.largest))
+        ]
+        causes_um: dict[str, float]
+        center_distance_change_um: float
+        lead_torsion_um: float
+        face_centroid_mm: float | None
+        in_table: bool
+        flanks: Flanks | None
+
+    class Bearing(Part):
+        """A bearing under a load case, in the axes x, y, z; no life in hours: `rating_life` says why."""
+
+        name: str
+        shaft: str
+        speed_rpm: float
+        force_n: Annotated[list[float], Source(lambda load: load.force[:3])]
+        moment_n_m: Annotated[list[float], Source(lambda load: load.force[3:])]
+        radial_force_n: Annotated[float, Source("radial")]
+        axial_force_n: Annotated[float, Source("axial")]
+        largest_radial_force_n: Annotated[float, Source("largest_radial")]
+        elastic_um: Annotated[list[float], Source(lambda load: load.elastic[:3])]
+        clearance_um: Annotated[list[float], Source(lambda load: load.clearance[:3])]
+        seat_um: Annotated[list[float], Source(lambda load: load.seat[:3])]
+        tilt_mrad: Annotated[list[float], Source(lambda load: (load.elastic + load.clearance)[3:])]
+        rating_life_hours: float | None
+        rating_life: RatingLife
+
+    class Force(Part):
+        """A force of the scene under a load case in the axes x, y, z, before the factor of its course."""
+
+        name: str
+        shaft: str
+        force_n: list[float]
+        moment_n_m: list[float]
 
     name: str
     direction: str
@@ -165,31 +154,36 @@ class LoadCase(Part):
     bearings: list[Bearing]
 
 
-class MeshOverCases(Part):
-    """A mesh over all load cases, means by their shares."""
-
-    name: str
-    mean_misalignment_um: float
-    largest_misalignment_um: float
-    largest_in: str
-    mean_peak_to_peak_um: float | None
-    largest_k_h_beta: float | None
-
-
-class BearingOverCases(Part):
-    """A bearing over all load cases: its life, and constant loads of the same life by kind of element."""
-
-    name: str
-    mean_speed_rpm: float
-    largest_radial_force_n: float
-    equivalent_radial_force_n: dict[str, float]
-    equivalent_axial_force_n: dict[str, float]
-    rating_life_hours: float | None
-    rating_life: RatingLife
-
-
 class DeflectFigures(Figures):
     """Misalignment by cause, flanks and bearings under every load case."""
+
+    class Agreement(Part):
+        """Whether tables and deflections agree."""
+
+        agreed: bool
+        passes: int
+        relative_change: Annotated[float | None, Source("change")]
+
+    class MeshOverCases(Part):
+        """A mesh over all load cases, means by their shares."""
+
+        name: str
+        mean_misalignment_um: float
+        largest_misalignment_um: float
+        largest_in: str
+        mean_peak_to_peak_um: float | None
+        largest_k_h_beta: float | None
+
+    class BearingOverCases(Part):
+        """A bearing over all load cases: its life, and constant loads of the same life by kind of element."""
+
+        name: str
+        mean_speed_rpm: float
+        largest_radial_force_n: float
+        equivalent_radial_force_n: dict[str, float]
+        equivalent_axial_force_n: dict[str, float]
+        rating_life_hours: float | None
+        rating_life: RatingLife
 
     leading_shaft: Annotated[str, Source("deflection.leading_shaft")]
     agreement: Annotated[Agreement, Source(lambda result: result)]

@@ -39,27 +39,26 @@ class Inputs(BoundaryModel):
     )
 
 
-class FidelityFigures(Part):
-    """One fidelity: its CPU time, and its errors against the finest one, relative."""
-
-    name: str
-    title: str
-    cpu_seconds: float
-    mean_um: list[float] | None = None
-    peak_to_peak_um: list[float] | None = None
-    stated_error: float | None = None
-    stages: dict[str, float] | None = None
-    peak_memory_bytes: int | None = None
-    mean_error: float | None = None
-    peak_to_peak_error: float | None = None
-    family: str | None = None
-    errors: Annotated[
-        dict[str, float] | None, Source(lambda own: own.errors if hasattr(own, "family") else None)
-    ] = None
-
-
 class FrontierFigures(Figures):
     """Error against time; the reference is the finest fidelity, the knee where time buys least."""
+
+    class FidelityFigures(Part):
+        """One fidelity: its CPU time, and its errors against the finest one, relative."""
+
+        name: str
+        title: str
+        cpu_seconds: float
+        mean_um: list[float] | None = None
+        peak_to_peak_um: list[float] | None = None
+        stated_error: float | None = None
+        stages: dict[str, float] | None = None
+        peak_memory_bytes: int | None = None
+        mean_error: float | None = None
+        peak_to_peak_error: float | None = None
+        family: str | None = None
+        errors: Annotated[
+            dict[str, float] | None, Source(lambda own: own.errors if hasattr(own, "family") else None)
+        ] = None
 
     rungs: Annotated[list[FidelityFigures], Source("results")]
     left_out: dict[str, str]

@@ -47,15 +47,14 @@ class Inputs(BoundaryModel):
         return self
 
 
-class Tone(Part):
-    """A prominent tone of a steady sound."""
-
-    frequency_hz: float
-    tone_to_noise_db: float
-
-
 class SoundPressure(Part):
     """What the ear makes of a sound pressure; loudness and sharpness need the extra `psychoacoustics`."""
+
+    class Tone(Part):
+        """A prominent tone of a steady sound."""
+
+        frequency_hz: float
+        tone_to_noise_db: float
 
     level_db: Annotated[float, Source("level")]
     level_db_a: Annotated[float, Source("weighted_level")]

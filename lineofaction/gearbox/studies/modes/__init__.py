@@ -28,12 +28,6 @@ class Inputs(OverSpeeds):
     )
 
 
-class LoadedMeshes(Equilibrium):
-    """The loaded equilibrium with the mean force of each mesh."""
-
-    mesh_force_n: dict[str, float]
-
-
 class Mode(Part):
     """What a mode is: where its strain and kinetic energy are, in parts; parts below 0.1 % are left out."""
 
@@ -43,38 +37,40 @@ class Mode(Part):
     kinetic_energy: dict[str, float]
 
 
-class NaturalMode(Mode):
-    """A natural mode at rest."""
-
-    frequency_hz: float
-    damping_ratio: float
-
-
-class WhirlMode(Mode):
-    """A mode over the speeds at which it oscillates; whirl > 0 is forward."""
-
-    speed_rpm: list[float]
-    frequency_hz: list[float]
-    damping_ratio: list[float]
-    whirl: list[float]
-
-
-class CriticalSpeed(Part):
-    """A speed at which a mesh order excites a mode."""
-
-    speed_rpm: float
-    frequency_hz: float
-    order: int
-    mesh: str
-    mode: int
-    kind: str
-    whirl: float
-    damping_ratio: float
-    residual_hz: float
-
-
 class ModesFigures(Figures):
     """Natural modes at rest, modes over speed, critical speeds."""
+
+    class LoadedMeshes(Equilibrium):
+        """The loaded equilibrium with the mean force of each mesh."""
+
+        mesh_force_n: dict[str, float]
+
+    class NaturalMode(Mode):
+        """A natural mode at rest."""
+
+        frequency_hz: float
+        damping_ratio: float
+
+    class WhirlMode(Mode):
+        """A mode over the speeds at which it oscillates; whirl > 0 is forward."""
+
+        speed_rpm: list[float]
+        frequency_hz: list[float]
+        damping_ratio: list[float]
+        whirl: list[float]
+
+    class CriticalSpeed(Part):
+        """A speed at which a mesh order excites a mode."""
+
+        speed_rpm: float
+        frequency_hz: float
+        order: int
+        mesh: str
+        mode: int
+        kind: str
+        whirl: float
+        damping_ratio: float
+        residual_hz: float
 
     leading_shaft: str
     highest_frequency_hz: float

@@ -40,13 +40,6 @@ class Inputs(NoiseRanges, OverSpeedsOrRun):
     )
 
 
-class BearingSound(Part):
-    """Levels by order, then by speed: by the force of a bearing alone, and of what is left without it."""
-
-    alone_db_a: list[list[float]]
-    without_db_a: list[list[float]]
-
-
 class HousingSound(Part):
     """How a housing radiates: outer hull, radiation model, the models where it is loudest, and what it cost.
 
@@ -113,15 +106,6 @@ class LevelBandFigures(Part):
     above_db: dict[str, float]
 
 
-class OrderBand(Part):
-    """Bands of an order: of its largest level over the speeds, and of that at its loudest speed."""
-
-    order: float
-    largest: LevelBandFigures
-    speed_rpm: float
-    there: LevelBandFigures
-
-
 def _by_order(band: Any) -> list[dict[str, Any]]:
     rows = zip(band.order, band.largest, band.loudest_speed, band.there, strict=True)
     return [dict(zip(("order", "largest", "speed", "there"), row, strict=True)) for row in rows]
@@ -129,6 +113,14 @@ def _by_order(band: Any) -> list[dict[str, Any]]:
 
 class SoundBandFigures(Part):
     """Bands of levels: the largest total, orders, and the total by speed."""
+
+    class OrderBand(Part):
+        """Bands of an order: of its largest level over the speeds, and of that at its loudest speed."""
+
+        order: float
+        largest: LevelBandFigures
+        speed_rpm: float
+        there: LevelBandFigures
 
     largest_total: LevelBandFigures
     orders: Annotated[list[OrderBand], Source(_by_order)]
@@ -166,6 +158,12 @@ class SoundOverTimeFigures(Part):
 
 class NoiseFigures(Figures):
     """Sound power levels re 1 pW by order, then by speed; third octaves; the loudest points."""
+
+    class BearingSound(Part):
+        """Levels by order, then by speed: by the force of a bearing alone, and of what is left without it."""
+
+        alone_db_a: list[list[float]]
+        without_db_a: list[list[float]]
 
     leading_shaft: str
     speed_rpm: list[float]

@@ -56,27 +56,6 @@ class GearVariablesInput(BoundaryModel):
         return self
 
 
-class VariablesInput(BoundaryModel):
-    """Design variables of both gears."""
-
-    pinion: GearVariablesInput = Field(
-        default=GearVariablesInput(), description="Modifications of the driving gear"
-    )
-    wheel: GearVariablesInput = Field(
-        default=GearVariablesInput(), description="Modifications of the driven gear"
-    )
-    most_tip_relief_um: float = Field(
-        default=40.0,
-        title="Most tip relief, µm",
-        gt=0.0,
-        le=1000.0,
-        description="If no modification is named: tip relief of both gears up to this amount, 0.15 to 0.8 "
-        "modules long, and lead crowning of the driving gear up to 30 um unless the model is "
-        "plane",
-        examples=[40.0],
-    )
-
-
 @with_fields({figure.field: _deviation(figure) for figure in _FREE})
 class GearScatterInput(BoundaryModel):
     """Standard deviations of one gear's modifications as manufactured; what is left out does not scatter."""
@@ -109,38 +88,6 @@ class ScatterInput(BoundaryModel):
     )
     log2_size: int = Field(
         default=4, ge=0, le=10, description="Binary logarithm of the size of the Sobol sample", examples=[4]
-    )
-
-
-class ObjectiveInput(BoundaryModel):
-    """What is made of the expected peak-to-peak at the torques."""
-
-    kind: Literal["weighted_mean", "worst"] = Field(
-        default="weighted_mean", description="Mean over the torques, or the largest", examples=["worst"]
-    )
-    weights: Annotated[tuple[Annotated[float, Field(ge=0.0, le=1e6)], ...], Strict(False)] = Field(
-        default=(),
-        max_length=64,
-        description="Weights of weighted_mean, one for each torque",
-        examples=[[1.0, 2.0]],
-    )
-
-
-class LimitsInput(BoundaryModel):
-    """What a design has to keep at every torque and deviation."""
-
-    max_pressure_mpa: float | None = Field(
-        default=None, gt=0.0, le=1e5, description="Largest Hertzian pressure in MPa", examples=[1500.0]
-    )
-    face_load_factor: float | None = Field(
-        default=None, gt=1.0, le=100.0, description="Largest K_Hbeta of the mesh cycle", examples=[1.5]
-    )
-    edge_load_share: float | None = Field(
-        default=None,
-        ge=0.0,
-        lt=1.0,
-        description="Largest share of the load on tip edges; 0 forbids their contact",
-        examples=[0.0],
     )
 
 
@@ -197,6 +144,56 @@ class SearchInput(BoundaryModel):
 class Inputs(BoundaryModel):
     """An optimization of a case's flank modifications."""
 
+    class VariablesInput(BoundaryModel):
+        """Design variables of both gears."""
+
+        pinion: GearVariablesInput = Field(
+            default=GearVariablesInput(), description="Modifications of the driving gear"
+        )
+        wheel: GearVariablesInput = Field(
+            default=GearVariablesInput(), description="Modifications of the driven gear"
+        )
+        most_tip_relief_um: float = Field(
+            default=40.0,
+            title="Most tip relief, µm",
+            gt=0.0,
+            le=1000.0,
+            description="If no modification is named: tip relief of both gears up to this amount, 0.15 to "
+            "0.8 modules long, and lead crowning of the driving gear up to 30 um unless the model is "
+            "plane",
+            examples=[40.0],
+        )
+
+    class ObjectiveInput(BoundaryModel):
+        """What is made of the expected peak-to-peak at the torques."""
+
+        kind: Literal["weighted_mean", "worst"] = Field(
+            default="weighted_mean", description="Mean over the torques, or the largest", examples=["worst"]
+        )
+        weights: Annotated[tuple[Annotated[float, Field(ge=0.0, le=1e6)], ...], Strict(False)] = Field(
+            default=(),
+            max_length=64,
+            description="Weights of weighted_mean, one for each torque",
+            examples=[[1.0, 2.0]],
+        )
+
+    class LimitsInput(BoundaryModel):
+        """What a design has to keep at every torque and deviation."""
+
+        max_pressure_mpa: float | None = Field(
+            default=None, gt=0.0, le=1e5, description="Largest Hertzian pressure in MPa", examples=[1500.0]
+        )
+        face_load_factor: float | None = Field(
+            default=None, gt=1.0, le=100.0, description="Largest K_Hbeta of the mesh cycle", examples=[1.5]
+        )
+        edge_load_share: float | None = Field(
+            default=None,
+            ge=0.0,
+            lt=1.0,
+            description="Largest share of the load on tip edges; 0 forbids their contact",
+            examples=[0.0],
+        )
+
     torque_n_m: Torques | None = Field(
         default=None,
         description="Design torques in N m on the driving gear, increasing, and equal only at different "
@@ -235,73 +232,67 @@ class Inputs(BoundaryModel):
         return self
 
 
-class VariableFigures(Part):
-    """What was free, between bounds in the unit of its name."""
-
-    name: str
-    bounds: tuple[float, float]
-
-
-class StepFigures(Part):
-    """Change of the objective by a step of a variable down and up from the optimum."""
-
-    name: str
-    values: tuple[float, float]
-    change_um: tuple[float, float]
-
-
-class NodeFigures(Part):
-    """The nodes of the scatter and their weights."""
-
-    names: list[str]
-    deviation: list[list[float]]
-    weight: list[float]
-
-
-class HarrisMapFigures(Part):
-    """Transmission error over position and torque, with its errors."""
-
-    torque_n_m: list[float]
-    position: list[float]
-    ste_um: Annotated[list[Any], Source("ste.T")]
-    nominal_peak_to_peak_um: Annotated[list[float], Source("nominal")]
-    nominal_error_um: list[float]
-    expected_peak_to_peak_um: Annotated[list[float], Source("expected")]
-    expected_error_um: list[float]
-    peak_to_peak_um: list[Any]
-    error_um: list[Any]
-
-
-class DesignFigures(Part):
-    """One design as analyzed in full: its values by gear and field of a case file."""
-
-    values: dict[str, dict[str, float]]
-    objective_um: Annotated[float, Source("objective.value")]
-    objective_error_um: Annotated[float, Source("objective.error")]
-    scatter_error_um: float
-    violation: float
-    peak_to_peak_um: Annotated[list[Any], Source("figures.peak_to_peak")]
-    face_load_factor: Annotated[list[float], Source(lambda own: own.figures.face_load_factor.max(axis=0))]
-    edge_load_share: Annotated[list[float], Source(lambda own: own.figures.edge_load_share.max(axis=0))]
-    harris_map: HarrisMapFigures
-    max_pressure_mpa: Annotated[list[float], Source(lambda own: own.figures.pressure.max(axis=0))]
-
-
-class SearchFigures(Part):
-    """The result of one start of the search."""
-
-    objective_um: Annotated[float, Source("assessed.objective")]
-    violation: Annotated[float, Source("assessed.violation")]
-    evaluations: int
-    explored: int
-    converged: bool
-    ended: Annotated[str, Source("ended.value")]
-    spread_um: float
-    cpu_seconds: float
-
-
 class OptimizeFigures(Figures):
     """The start and the optimum, what was free, and how the search ended."""
+
+    class VariableFigures(Part):
+        """What was free, between bounds in the unit of its name."""
+
+        name: str
+        bounds: tuple[float, float]
+
+    class StepFigures(Part):
+        """Change of the objective by a step of a variable down and up from the optimum."""
+
+        name: str
+        values: tuple[float, float]
+        change_um: tuple[float, float]
+
+    class NodeFigures(Part):
+        """The nodes of the scatter and their weights."""
+
+        names: list[str]
+        deviation: list[list[float]]
+        weight: list[float]
+
+    class DesignFigures(Part):
+        """One design as analyzed in full: its values by gear and field of a case file."""
+
+        class HarrisMapFigures(Part):
+            """Transmission error over position and torque, with its errors."""
+
+            torque_n_m: list[float]
+            position: list[float]
+            ste_um: Annotated[list[Any], Source("ste.T")]
+            nominal_peak_to_peak_um: Annotated[list[float], Source("nominal")]
+            nominal_error_um: list[float]
+            expected_peak_to_peak_um: Annotated[list[float], Source("expected")]
+            expected_error_um: list[float]
+            peak_to_peak_um: list[Any]
+            error_um: list[Any]
+
+        values: dict[str, dict[str, float]]
+        objective_um: Annotated[float, Source("objective.value")]
+        objective_error_um: Annotated[float, Source("objective.error")]
+        scatter_error_um: float
+        violation: float
+        peak_to_peak_um: Annotated[list[Any], Source("figures.peak_to_peak")]
+        face_load_factor: Annotated[list[float], Source(lambda own: own.figures.face_load_factor.max(axis=0))]
+        edge_load_share: Annotated[list[float], Source(lambda own: own.figures.edge_load_share.max(axis=0))]
+        harris_map: HarrisMapFigures
+        max_pressure_mpa: Annotated[list[float], Source(lambda own: own.figures.pressure.max(axis=0))]
+
+    class SearchFigures(Part):
+        """The result of one start of the search."""
+
+        objective_um: Annotated[float, Source("assessed.objective")]
+        violation: Annotated[float, Source("assessed.violation")]
+        evaluations: int
+        explored: int
+        converged: bool
+        ended: Annotated[str, Source("ended.value")]
+        spread_um: float
+        cpu_seconds: float
 
     outcome: Annotated[str, Source("outcome.value")]
     reason: str

@@ -10,47 +10,15 @@ class Inputs(OverOrders):
     """Speeds at which the forced response is looked for."""
 
 
-class MeshResponse(Part):
-    """Amplitudes of a mesh by order, then by speed."""
-
-    mean_force_n: float
-    mean_stiffness_n_per_um: float
-    static_transmission_error_um: list[float]
-    dynamic_transmission_error_um: list[list[float]]
-    mesh_force_n: list[list[float]]
-    least_mesh_force_n: list[float]
-    excitation_difference: list[float]
-
-
-class BearingResponse(Part):
-    """Amplitudes of a bearing force by order, then by speed."""
-
-    force_n: list[list[float]]
-
-
-class PeakFigures(Part):
-    """A peak over speed."""
-
-    quantity: str
-    name: str
-    order: float
-    speed_rpm: float
-    frequency_hz: float
-    amplitude_n: float
-    amplification: float
-    natural_frequency_hz: float
-
-
-class PowerLoss(Part):
-    """Mean power that a part loses by order, then by speed."""
-
-    part: str
-    kind: str
-    loss_w: list[list[float]]
-
-
 class Power(Part):
     """Mean power that errors of meshes and loads put in, where it is lost, and the rest over the input."""
+
+    class PowerLoss(Part):
+        """Mean power that a part loses by order, then by speed."""
+
+        part: str
+        kind: str
+        loss_w: list[list[float]]
 
     input_w: dict[str, list[list[float]]]
     losses: list[PowerLoss]
@@ -59,6 +27,34 @@ class Power(Part):
 
 class ResponseFigures(Figures):
     """Amplitudes of meshes and bearings, peaks, and the speeds at which flanks would part."""
+
+    class MeshResponse(Part):
+        """Amplitudes of a mesh by order, then by speed."""
+
+        mean_force_n: float
+        mean_stiffness_n_per_um: float
+        static_transmission_error_um: list[float]
+        dynamic_transmission_error_um: list[list[float]]
+        mesh_force_n: list[list[float]]
+        least_mesh_force_n: list[float]
+        excitation_difference: list[float]
+
+    class BearingResponse(Part):
+        """Amplitudes of a bearing force by order, then by speed."""
+
+        force_n: list[list[float]]
+
+    class PeakFigures(Part):
+        """A peak over speed."""
+
+        quantity: str
+        name: str
+        order: float
+        speed_rpm: float
+        frequency_hz: float
+        amplitude_n: float
+        amplification: float
+        natural_frequency_hz: float
 
     leading_shaft: str
     speed_rpm: list[float]

@@ -12,39 +12,36 @@ class Inputs(FlankPoint):
     """One load and one alignment; what is left out is taken from the case."""
 
 
-class PeakFigures(Part):
-    """The largest stress of a root, and where it is; the position is that of the tooth's own pair."""
-
-    stress_mpa: Annotated[float, Source("stress.value")]
-    error_mpa: Annotated[float, Source("stress.error")]
-    position: Annotated[float, Source(lambda peak: peak.position % 1.0 + peak.pair)]
-    flank_coordinate_mm: float
-    tangent_angle_deg: float
-    face_position_mm: float
-
-
-class PassageFigures(Part):
-    """Stress over the passage of a tooth, in base pitches of its own pair."""
-
-    position: list[float]
-    tension_mpa: list[float]
-    compression_mpa: list[float]
-    at_tension_peak_mpa: list[float]
-    at_compression_peak_mpa: list[float]
-
-
-class GearRootFigures(Part):
-    """The roots of one gear."""
-
-    tension: PeakFigures
-    compression: PeakFigures
-    critical_section_mm: Annotated[float, Source("critical_coordinate")]
-    iso_6336_3_mpa: Annotated[float | None, Source("nominal")]
-    passage: PassageFigures
-
-
 class RootStressFigures(Figures):
     """The roots of both gears at one load and one alignment."""
+
+    class GearRootFigures(Part):
+        """The roots of one gear."""
+
+        class PeakFigures(Part):
+            """The largest stress of a root, and where it is; the position is that of the tooth's own pair."""
+
+            stress_mpa: Annotated[float, Source("stress.value")]
+            error_mpa: Annotated[float, Source("stress.error")]
+            position: Annotated[float, Source(lambda peak: peak.position % 1.0 + peak.pair)]
+            flank_coordinate_mm: float
+            tangent_angle_deg: float
+            face_position_mm: float
+
+        class PassageFigures(Part):
+            """Stress over the passage of a tooth, in base pitches of its own pair."""
+
+            position: list[float]
+            tension_mpa: list[float]
+            compression_mpa: list[float]
+            at_tension_peak_mpa: list[float]
+            at_compression_peak_mpa: list[float]
+
+        tension: PeakFigures
+        compression: PeakFigures
+        critical_section_mm: Annotated[float, Source("critical_coordinate")]
+        iso_6336_3_mpa: Annotated[float | None, Source("nominal")]
+        passage: PassageFigures
 
     torque_n_m: float
     normal_force_n: float

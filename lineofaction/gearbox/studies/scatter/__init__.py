@@ -52,19 +52,18 @@ class Inputs(BoundaryModel):
     )
 
 
-class QuantileFigures(Part):
-    """A quantile by torque with its confidence bounds; None: the sample is too small for one."""
-
-    fraction: float
-    value_um: list[float]
-    low_um: Annotated[list[float] | None, Source(lambda own: own.low if own.low.any() else None)]
-    high_um: Annotated[
-        list[float] | None, Source(lambda own: own.high if all(map(math.isfinite, own.high)) else None)
-    ]
-
-
 class ScatterFigures(Figures):
     """Peak-to-peak STE of the sampled pairs (rows) by torque, and by what they deviate (`names`)."""
+
+    class QuantileFigures(Part):
+        """A quantile by torque with its confidence bounds; None: the sample is too small for one."""
+
+        fraction: float
+        value_um: list[float]
+        low_um: Annotated[list[float] | None, Source(lambda own: own.low if own.low.any() else None)]
+        high_um: Annotated[
+            list[float] | None, Source(lambda own: own.high if all(map(math.isfinite, own.high)) else None)
+        ]
 
     torque_n_m: list[float]
     samples: Annotated[int, Source(lambda study: len(study.peak_to_peak))]

@@ -40,36 +40,32 @@ class Inputs(BoundaryModel):
         return self
 
 
-class Ripple(Part):
-    """Peak-to-peak STE over a deviation, with its error, and its change."""
-
-    peak_to_peak_um: list[float]
-    peak_to_peak_error_um: Annotated[list[float], Source("error")]
-    change_percent: Annotated[list[float], Source(lambda curve: 100.0 * curve.relative_change)]
-
-
-class MisalignmentRipple(Ripple):
-    """Over the misalignment."""
-
-    misalignment_um: Annotated[list[float], Source("deviation")]
-
-
-class CenterDistanceRipple(Ripple):
-    """Over the change of the center distance."""
-
-    center_distance_change_percent: list[float]
-
-
-class DeviationCurves(Part):
-    """Both curves with or without corner contact."""
-
-    corner_contact: bool
-    misalignment: MisalignmentRipple
-    center_distance: CenterDistanceRipple
-
-
 class PairFigures(Part):
     """One pair."""
+
+    class DeviationCurves(Part):
+        """Both curves with or without corner contact."""
+
+        class Ripple(Part):
+            """Peak-to-peak STE over a deviation, with its error, and its change."""
+
+            peak_to_peak_um: list[float]
+            peak_to_peak_error_um: Annotated[list[float], Source("error")]
+            change_percent: Annotated[list[float], Source(lambda curve: 100.0 * curve.relative_change)]
+
+        class MisalignmentRipple(Ripple):
+            """Over the misalignment."""
+
+            misalignment_um: Annotated[list[float], Source("deviation")]
+
+        class CenterDistanceRipple(Ripple):
+            """Over the change of the center distance."""
+
+            center_distance_change_percent: list[float]
+
+        corner_contact: bool
+        misalignment: MisalignmentRipple
+        center_distance: CenterDistanceRipple
 
     name: str
     normal_force_n: float

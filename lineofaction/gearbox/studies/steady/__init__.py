@@ -34,26 +34,24 @@ class Inputs(OverSpeeds):
     )
 
 
-class MeshMotion(Part):
-    """A mesh over a period; parts of it are without contact or on the coast flank."""
-
-    mean_error_um: float
-    rms_error_um: float
-    peak_to_peak_error_um: float
-    least_force_n: float
-    largest_force_n: float
-    parted: float
-    coasting: float
-
-
-class BearingMotion(Part):
-    """A bearing over a period."""
-
-    rms_force_n: float
-
-
 class SteadyMotion(Part):
     """A motion at a speed; of one that was not found only how the search ended."""
+
+    class MeshMotion(Part):
+        """A mesh over a period; parts of it are without contact or on the coast flank."""
+
+        mean_error_um: float
+        rms_error_um: float
+        peak_to_peak_error_um: float
+        least_force_n: float
+        largest_force_n: float
+        parted: float
+        coasting: float
+
+    class BearingMotion(Part):
+        """A bearing over a period."""
+
+        rms_force_n: float
 
     speed_rpm: float
     status: str
@@ -66,29 +64,26 @@ class SteadyMotion(Part):
     bearings: dict[str, BearingMotion] | None = None
 
 
-class BranchFigures(Part):
-    """The branch that was followed, unstable parts included."""
-
-    status: str
-    points: list[SteadyMotion]
-
-
-class Bifurcation(Part):
-    """Where a motion changes its stability."""
-
-    kind: str
-    speed_rpm: float
-
-
-class Jump(Part):
-    """Between which speeds a sweep jumps."""
-
-    sweep: Literal["up", "down"]
-    between_rpm: tuple[float, float]
-
-
 class SteadyFigures(Figures):
     """Motions of both sweeps and of the branch, jumps and bifurcations."""
+
+    class BranchFigures(Part):
+        """The branch that was followed, unstable parts included."""
+
+        status: str
+        points: list[SteadyMotion]
+
+    class Bifurcation(Part):
+        """Where a motion changes its stability."""
+
+        kind: str
+        speed_rpm: float
+
+    class Jump(Part):
+        """Between which speeds a sweep jumps."""
+
+        sweep: Literal["up", "down"]
+        between_rpm: tuple[float, float]
 
     leading_shaft: str
     period_pitches: dict[str, int]

@@ -30,30 +30,28 @@ MOST_POINTS = 100_000
 """Of a job: its result holds every run's figures."""
 
 
-class NormalInput(BoundaryModel):
-    """A truncated normal distribution."""
-
-    mean: Value = Field(description="Mean before truncation", examples=[1e8])
-    standard_deviation: float = Field(
-        gt=0.0, le=1e20, description="Standard deviation before truncation", examples=[5e6]
-    )
-    low: Value | None = Field(
-        default=None, description="Lower limit; values below are rejected", examples=[8e7]
-    )
-    high: Value | None = Field(
-        default=None, description="Upper limit; values above are rejected", examples=[1.2e8]
-    )
-
-
-class UniformInput(BoundaryModel):
-    """A uniform distribution."""
-
-    low: Value = Field(description="Lowest value", examples=[0.05])
-    high: Value = Field(description="Highest value", examples=[0.15])
-
-
 class FactorInput(BoundaryModel):
     """Something that the scene file declares, and the values it takes; in the unit of its name."""
+
+    class NormalInput(BoundaryModel):
+        """A truncated normal distribution."""
+
+        mean: Value = Field(description="Mean before truncation", examples=[1e8])
+        standard_deviation: float = Field(
+            gt=0.0, le=1e20, description="Standard deviation before truncation", examples=[5e6]
+        )
+        low: Value | None = Field(
+            default=None, description="Lower limit; values below are rejected", examples=[8e7]
+        )
+        high: Value | None = Field(
+            default=None, description="Upper limit; values above are rejected", examples=[1.2e8]
+        )
+
+    class UniformInput(BoundaryModel):
+        """A uniform distribution."""
+
+        low: Value = Field(description="Lowest value", examples=[0.05])
+        high: Value = Field(description="Highest value", examples=[0.15])
 
     model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*_KINDS)))
 
@@ -100,31 +98,30 @@ class FactorInput(BoundaryModel):
         return any(getattr(self, name) is not None for name in SAMPLED)
 
 
-class ResponseInput(BoundaryModel):
-    """A figure that is taken from every run."""
-
-    quantity: QuantityName = Field(description="Name of the response", examples=["bearing_force"])
-    part: Name | None = Field(
-        default=None,
-        description="Its mesh or bearing; left out: the largest over all",
-        examples=["input left"],
-    )
-    order: int | None = Field(
-        default=None,
-        ge=1,
-        le=1000,
-        description="Mesh order, for bearing_force and dte_order",
-        examples=[1],
-    )
-    mesh: Name | None = Field(
-        default=None,
-        description="Mesh whose orders a bearing force has; left out: the first mesh",
-        examples=["mesh"],
-    )
-
-
 class Inputs(BoundaryModel):
     """A study of a scene: what is varied, and what is taken from every run."""
+
+    class ResponseInput(BoundaryModel):
+        """A figure that is taken from every run."""
+
+        quantity: QuantityName = Field(description="Name of the response", examples=["bearing_force"])
+        part: Name | None = Field(
+            default=None,
+            description="Its mesh or bearing; left out: the largest over all",
+            examples=["input left"],
+        )
+        order: int | None = Field(
+            default=None,
+            ge=1,
+            le=1000,
+            description="Mesh order, for bearing_force and dte_order",
+            examples=[1],
+        )
+        mesh: Name | None = Field(
+            default=None,
+            description="Mesh whose orders a bearing force has; left out: the first mesh",
+            examples=["mesh"],
+        )
 
     factors: Row[FactorInput] = Field(
         min_length=1,
@@ -188,59 +185,6 @@ class Inputs(BoundaryModel):
         return self
 
 
-class FactorFigures(Part):
-    """What was varied, and how."""
-
-    path: str
-    kind: str
-
-
-class QuantileFigures(Part):
-    """A quantile by combination of grid and list, with its confidence bounds; None: not known."""
-
-    fraction: float
-    value: list[float | None]
-    low: list[float | None]
-    high: list[float | None]
-
-
-class ResponseFigures(Part):
-    """Statistics of a response by combination of grid and list, in its unit."""
-
-    name: str
-    unit: str
-    mean: list[float | None]
-    standard_error: list[float | None]
-    confidence: float
-    quantiles: list[QuantileFigures]
-    spread_of_level_means: dict[str, float | None]
-    rank_correlation: dict[str, float | None]
-
-
-class PointResponse(Part):
-    """A response at a point with its stated error."""
-
-    value: float | None
-    unit: str
-    error: float | None
-
-
-class PointFigures(Part):
-    """A point: the values of the factors and its responses."""
-
-    point: int
-    values: dict[str, float]
-    responses: dict[str, PointResponse]
-
-
-class FailedPoint(Part):
-    """A point without responses."""
-
-    point: int
-    values: dict[str, float]
-    reason: str
-
-
 class StudyFigures(Figures):
     """Factors, statistics of all responses, worst and failed points.
 
@@ -249,6 +193,53 @@ class StudyFigures(Figures):
     runs : dict
         Content hashes of the runs that are kept in full, by point.
     """
+
+    class FactorFigures(Part):
+        """What was varied, and how."""
+
+        path: str
+        kind: str
+
+    class ResponseFigures(Part):
+        """Statistics of a response by combination of grid and list, in its unit."""
+
+        class QuantileFigures(Part):
+            """A quantile by combination of grid and list, with its confidence bounds; None: not known."""
+
+            fraction: float
+            value: list[float | None]
+            low: list[float | None]
+            high: list[float | None]
+
+        name: str
+        unit: str
+        mean: list[float | None]
+        standard_error: list[float | None]
+        confidence: float
+        quantiles: list[QuantileFigures]
+        spread_of_level_means: dict[str, float | None]
+        rank_correlation: dict[str, float | None]
+
+    class PointFigures(Part):
+        """A point: the values of the factors and its responses."""
+
+        class PointResponse(Part):
+            """A response at a point with its stated error."""
+
+            value: float | None
+            unit: str
+            error: float | None
+
+        point: int
+        values: dict[str, float]
+        responses: dict[str, PointResponse]
+
+    class FailedPoint(Part):
+        """A point without responses."""
+
+        point: int
+        values: dict[str, float]
+        reason: str
 
     points: int
     usable: int

@@ -44,14 +44,6 @@ class Inputs(BoundaryModel):
     )
 
 
-class AxisFigures(Part):
-    """One axis of the map."""
-
-    path: str
-    unit: str
-    values: list[float]
-
-
 class SweepFigures(Figures):
     """Points of the map: each has the paths of the axes and the figures with their errors.
 
@@ -60,6 +52,13 @@ class SweepFigures(Figures):
     least : dict
         By figure: the point where it is least, and the number of points that are as low within the errors.
     """
+
+    class AxisFigures(Part):
+        """One axis of the map."""
+
+        path: str
+        unit: str
+        values: list[float]
 
     over: list[AxisFigures]
     held: dict[str, float]

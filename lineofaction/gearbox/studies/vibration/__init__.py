@@ -35,36 +35,33 @@ class Inputs(OverSpeedsOrRun):
     )
 
 
-class PointVelocity(Part):
-    """Velocity of a point, root mean square, by order, then by speed; x, y, z in the scene's frame."""
-
-    velocity_mm_per_s: list[list[float]]
-    velocity_xyz_mm_per_s: list[list[list[float]]]
-    overall_mm_per_s: list[float]
-    level_db: list[list[float]]
-
-
-class Contribution(Part):
-    """What a bearing or a mode contributes to the mean square of points and outer hull; sums to 1."""
-
-    name: str
-    frequency_hz: float | None
-    points: dict[str, float]
-    surface: float | None
-
-
-class Contributions(Part):
-    """Contributions at one speed and order."""
-
-    speed_rpm: float
-    order: float
-    frequency_hz: float
-    bearings: list[Contribution]
-    modes: list[Contribution]
-
-
 class VibrationFigures(Figures):
     """Velocities by order and speed, and what makes the motion at one of them."""
+
+    class PointVelocity(Part):
+        """Velocity of a point, root mean square, by order, then by speed; x, y, z in the scene's frame."""
+
+        velocity_mm_per_s: list[list[float]]
+        velocity_xyz_mm_per_s: list[list[list[float]]]
+        overall_mm_per_s: list[float]
+        level_db: list[list[float]]
+
+    class Contributions(Part):
+        """Contributions at one speed and order."""
+
+        class Contribution(Part):
+            """What a bearing or a mode contributes to the mean square of points and outer hull; sums to 1."""
+
+            name: str
+            frequency_hz: float | None
+            points: dict[str, float]
+            surface: float | None
+
+        speed_rpm: float
+        order: float
+        frequency_hz: float
+        bearings: list[Contribution]
+        modes: list[Contribution]
 
     leading_shaft: str
     housing: str

@@ -19,7 +19,7 @@ from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, Toler
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.scatter import QuantileFigures
+from lineofaction.gearbox.studies.scatter import ScatterFigures
 from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.workers import Remembering, RunCost
 
@@ -96,7 +96,7 @@ def test_bounds_of_a_median_are_those_of_the_sign_test(
 
 def test_influence_sees_both_signs_and_small_samples_have_no_bound() -> None:
     small = _quantile(np.arange(1.0, 6.0)[:, None], 0.95, 0.95)
-    assert np.isinf(small.high).all() and figures_of(QuantileFigures, small)["high_um"] is None
+    assert np.isinf(small.high).all() and figures_of(ScatterFigures.QuantileFigures, small)["high_um"] is None
     deviation = np.random.default_rng(1).normal(size=(400, 3))
     ripple = np.stack([deviation[:, 0] ** 2, -deviation[:, 1]], axis=1)
     found = rank_correlation(deviation, ripple)
