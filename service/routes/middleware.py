@@ -31,7 +31,7 @@ from lineofaction.gearbox.problems import (
     Unexpected,
     UnsupportedMediaType,
 )
-from lineofaction.gearbox.schemas.faults import fault_of, innermost
+from lineofaction.gearbox.schemas.faults import fault_of, innermost, model_in
 from service.management.figures import Metrics
 from service.routes.media_types import CBOR, EVENT_STREAM, JSON, NO_STORE, PROBLEM, RAW, media_type
 from service.tracing.tracer import TRACEPARENT, trace_facts, tracer, valid_traceparent
@@ -89,14 +89,10 @@ def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fa
     if item["type"] == "json_invalid":
         return Fault("body", None, "valid JSON", f"{item.get('ctx', {}).get('error', '')}.")
     if loc[:1] == ["inputs"] and loc[1:2] in (["case"], ["scene"]) and len(loc) > 2 and model is not None:
-        inner = model.model_fields["inputs"].annotation
-        named = (
-            inner.model_fields.get(loc[1])
-            if isinstance(inner, type) and issubclass(inner, BaseModel)
-            else None
-        )
-        if named is not None and isinstance(named.annotation, type):
-            return fault_of(item, named.annotation, loc[2:])
+        inner = model_in(model.model_fields["inputs"].annotation)
+        named = None if inner is None else inner.model_fields.get(loc[1])
+        if named is not None:
+            return fault_of(item, model_in(named.annotation), loc[2:])
     return fault_of(item, model, loc if loc or item["type"] == "refused" else ["body"])
 
 

@@ -207,11 +207,12 @@ def test_a_request_without_its_subject_or_with_an_odd_one_is_refused(served: Ser
     served.refuses(study, inputs, name)
     served.refuses(study, {name: subject, **inputs, "odd": 1}, "odd")
     if name == "case":
-        served.refuses(
-            study, inputs | {"case": subject | {"load": {"torque_n_m": [-1.0]}}}, "load.torque_n_m"
-        )
+        wrong, field = {"case": subject | {"load": {"torque_n_m": [-1.0]}}}, "load.torque_n_m[0]"
     else:
-        served.refuses(study, inputs | {"scene": subject | {"shafts": []}}, "shafts")
+        wrong, field = {"scene": subject | {"shafts": []}}, "shafts"
+    served.refuses(study, inputs | wrong, field)
+    answer = served.http.post(f"/v1/processes/{study}/execution", json={"inputs": inputs | wrong})
+    assert [fault["field"] for fault in answer.json()["errors"]] == [field]  # as in the file of the subject
 
 
 @pytest.mark.parametrize(

@@ -131,6 +131,16 @@ def test_a_train_without_a_load_at_its_other_end_is_loaded_at_the_shaft() -> Non
     assert torques == pytest.approx([NORMAL_LOAD, 0.5 * NORMAL_LOAD])
 
 
+@pytest.mark.parametrize("mass", [1.0, 0.0, -1.0, None])
+def test_a_disc_has_a_mass_above_zero_or_is_left_out(mass: float | None) -> None:
+    stated = {"u_coordinate_on_shaft": 150.0} | ({} if mass is None else {"mass_of_component": mass})
+    unit = opened(two_stages(more={MACHINE: ("additional_mass", stated)}))
+    assert unit.scene is not None
+    whole = mass is not None and mass > 0.0
+    assert [disc.inertia.mass_kg for disc in unit.scene.discs] == ([mass] if whole else [])
+    assert (("refused", "no mass is stated") == said(unit, MACHINE, "")) != whole
+
+
 def test_teeth_below_zero_make_no_ring_of_an_external_gear() -> None:
     unit = opened(two_stages({GEARS[0]: {"number_of_teeth": -20}}))
     fate, words = said(unit, STAGES[0], "")

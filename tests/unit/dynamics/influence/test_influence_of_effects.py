@@ -222,6 +222,11 @@ def test_moments_are_those_of_the_run() -> None:
     assert [part.time for part in parts] == sorted(part.time for part in parts)
 
 
+def test_once_at_rest_a_run_passes_no_operating_condition() -> None:
+    halted = gear_pair_scene(speed=TimeLaw((0.0, 0.5, 1.0), (100.0, 0.0, 0.0)), duration=1.0)
+    assert operating_conditions(halted, 0) and operating_conditions(halted, 0, 0.6) == ()
+
+
 def test_where_linear_theory_says_nothing_there_is_no_estimate() -> None:
     scene = gear_pair_scene(spring_table(4e8), duration=0.01)
     free = replace(scene, drives=(), loads=(), free_rotations=(FreeRotation("free", "input", 10.0),))

@@ -23,7 +23,7 @@ from dynamics.linearize import (
     natural_modes,
     whirl_modes,
 )
-from dynamics.linearize.campbell import WhirlModes, _whirl, likeness, modes_at
+from dynamics.linearize.campbell import WhirlModes, _continued, _whirl, likeness, modes_at
 from dynamics.linearize.flank_cycles import averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.loads import TimeLaw
@@ -245,3 +245,15 @@ def test_modes_resolve_to_a_frequency_of_their_own():
     np.testing.assert_allclose(coarse.natural_frequency[: low.size], low, rtol=2e-2, atol=1e-3)
     with pytest.raises(InputError, match="highest_frequency"):
         modal_analysis(assemble(scene), highest_frequency=-1.0)
+
+
+@pytest.mark.parametrize("frequency", [(101.0, 198.0), (198.0, 101.0)])
+def test_of_shapes_that_are_equally_alike_the_nearest_frequency_goes_on(frequency):
+    """Motions along two axes become circles, each half like either of them."""
+    linear = replace(linearize(assemble(disc_scene())), mass=np.eye(2))
+    along, round_about = np.eye(2) + 0j, np.array([[1.0, 1.0j], [1.0, -1.0j]])
+    before, after = (
+        WhirlModes(np.array(each), np.zeros(2), shape, ("disc.x", "disc.y"), np.ones(2))
+        for each, shape in (((100.0, 200.0), along), (frequency, round_about))
+    )
+    assert _continued(linear, before, [4, 7], after) == [4 if each < 150.0 else 7 for each in frequency]

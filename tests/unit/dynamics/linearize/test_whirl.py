@@ -7,7 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
+from geared_scenes import (
+    BASE_RADIUS,
+    RPM,
+    gear_pair_scene,
+    repeated,
+    spring_table,
+    square_wave_table,
+    with_mesh,
+)
 from housed_pair import ON, housed_pair
 from planetary_scenes import driven_scene, planetary_scene, published_set
 
@@ -16,7 +24,7 @@ from dynamics.bearings import Bushing
 from dynamics.joints import Coupling
 from dynamics.linearize import harmonic_response, linearize, natural_modes, steady_vibration, whirl_modes
 from dynamics.linearize.campbell import terms_at
-from dynamics.linearize.harmonic_response import extremes, parametric_response
+from dynamics.linearize.harmonic_response import _all_harmonics, extremes, parametric_response, response_of
 from dynamics.linearize.operating_speeds import law_speeds
 from dynamics.linearize.steady_vibration import _modal_elimination, excited, gyroscopic_terms, swept_vibration
 from dynamics.loads import TimeLaw
@@ -183,6 +191,17 @@ def test_a_constant_stiffness_leaves_the_harmonic_response():
     np.testing.assert_allclose(first, plain.dynamic_transmission_error, atol=1e-9 * largest, rtol=0.0)
     np.testing.assert_allclose(shift, 0.0, atol=1e-9 * largest)
     np.testing.assert_allclose(found.bearing_force[..., :1], plain.bearing_force, rtol=1e-6)
+
+
+def test_a_table_of_several_pitches_keeps_its_mean_stiffness():
+    system = assemble(gear_pair_scene(repeated(square_wave_table(), 2)))
+    at, speed = excited(system, 0.0, 4), np.array([60.0, 300.0])
+    found, shift = parametric_response(at, speed, np.zeros(2), 4)
+    largest = np.abs(found.displacement).max()
+    mean = swept_vibration(at, speed, np.zeros(2), _all_harmonics(at, 4, 300.0))
+    own = response_of(at, speed, mean).displacement
+    np.testing.assert_allclose(found.displacement, own, rtol=0.0, atol=1e-12 * largest)
+    np.testing.assert_array_equal(shift, 0.0)
 
 
 @pytest.mark.parametrize("rpm", [700.0, 2300.0, 6000.0])

@@ -129,6 +129,7 @@ def test_forces_of_a_run_move_the_housing_as_the_run_does():
     ("changes", "words"),
     [
         ({"time": np.array([0.0, 1.0, 3.0])}, "uniform grid"),
+        ({"time": np.zeros(3)}, "uniform grid"),
         ({"time": np.array([0.0])}, "at least two samples"),
         ({"force": np.zeros((3, 2))}, "force"),
         ({"force": np.full((3, 20), np.nan)}, "finite"),

@@ -220,6 +220,16 @@ def test_parts_of_the_table_sum_to_the_misalignment(result: GearboxDeflection) -
         assert total == pytest.approx(sum(parts), abs=0.02 * max(map(abs, parts)))
 
 
+def test_a_mesh_that_nothing_loads_has_no_figures_of_its_flanks(result: GearboxDeflection) -> None:
+    name, case = result.flanks[0].mesh, result.deflection.cases[0]
+    bare = _mesh_table(replace(result, flanks=result.flanks[1:])).rows
+    full = _mesh_table(result).rows
+    changed = [(new, old) for new, old in zip(bare, full, strict=True) if new != old]
+    ((new, old),) = changed
+    assert new[0] == name and case.name in new[1]
+    assert new[-3:] == ("none", "none", "none") and new[:-3] == old[:-3]
+
+
 def test_the_spectrum_of_the_driving_side_is_what_is_optimized(result: GearboxDeflection) -> None:
     inputs = _optimization_inputs(result, "first")
     study = OptimizeInputs.model_validate_json(json.dumps(inputs))
