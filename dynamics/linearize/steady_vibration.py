@@ -10,6 +10,7 @@ import numpy as np
 
 from dynamics.arrays.sparse_rows import ModalFreedoms
 from dynamics.assembly.assemble import System
+from dynamics.errors import SolveError
 from dynamics.forces.laws import Law
 from dynamics.linearize.campbell import terms_at
 from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
@@ -64,7 +65,7 @@ class _ModalElimination:
         bottom = np.concatenate([receptance @ into, unit + receptance @ along], axis=-1)
         answer = right[..., first:, :] / own[..., None]
         pushed = np.concatenate([right[..., :first, :], self.shape @ answer], axis=-2)
-        found = np.linalg.solve(np.concatenate([top, bottom], axis=-2), pushed)
+        found = _solved(np.concatenate([top, bottom], axis=-2), pushed)
         moved, along_rows = found[..., :first, :], found[..., first:, :]
         force = into @ moved + along @ along_rows
         return np.concatenate([moved, answer - (self.shape.T @ force) / own[..., None]], axis=-2)
@@ -135,6 +136,12 @@ Terms = tuple[FloatArray, FloatArray]
 EXCITATIONS = ("static_error", "blocked_force")
 BLOCK = 1_000_000  # entries of the matrices solved at once
 NOTHING = 1e-12  # of the largest exciting force: harmonics below it are left out
+ROUNDED = 1e-3
+"""Largest part of the exciting force that rounding of the elastic forces may be."""
+UNBOUNDED = (
+    "the vibration is unbounded: at one of the speeds a harmonic excites an undamped mode. Give the meshes, "
+    "shafts or supports damping, or leave that speed out"
+)
 SWEPT = 0.34
 """Rate of decay over the root of the rate of the circular frequency that limits a resonance as a sweep does:
 1.17 sqrt(2 pi/h)/(2 m w) is the largest amplitude of an undamped oscillator per force (Lewis, 1932)."""
@@ -364,7 +371,20 @@ def _solve(
         displacement[part] = solved * per_meter[:, None]
         if progress is not None:
             progress(min(start + block, omega.shape[0]) / omega.shape[0])
-    return displacement, left / max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
+    largest = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
+    moved = np.max(np.abs(displacement[..., 0] / per_meter), axis=(0, 1), initial=0.0)
+    elastic = float(np.max(np.abs(total) @ moved, initial=0.0))
+    if not max(left, np.finfo(float).eps * elastic) <= ROUNDED * largest:
+        raise SolveError(UNBOUNDED)
+    return displacement, left / largest
+
+
+def _solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
+    """Solve; `SolveError` where nothing bounds the motion."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right), dtype=complex)
+    except np.linalg.LinAlgError:
+        raise SolveError(UNBOUNDED) from None
 
 
 def _dense(
@@ -378,6 +398,6 @@ def _dense(
     by_part = np.concatenate([np.ones_like(w), -w * w, 1j * w], axis=-1)
     matrix = (by_part[..., 0, :] @ parts.reshape(3, -1)).reshape(*w.shape[:2], size, size)
     matrix += _turning_terms(w, swept)
-    solved = np.asarray(np.linalg.solve(matrix, right), dtype=complex)
+    solved = _solved(matrix, right)
     miss = np.abs(np.einsum("shij,shj->shi", matrix, solved[..., 0]) - right[..., 0])
     return solved, np.asarray(miss, dtype=float)

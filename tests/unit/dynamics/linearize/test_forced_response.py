@@ -11,7 +11,7 @@ from sliced_face import sliced_database
 
 from dynamics.assembly.assemble import assemble
 from dynamics.assembly.varied import _operating_points_at, with_static_reference
-from dynamics.errors import InputError
+from dynamics.errors import InputError, SolveError
 from dynamics.integrators import static_equilibrium
 from dynamics.linearize import (
     ForcedResponse,
@@ -67,6 +67,17 @@ def test_the_peak_of_one_freedom_is_that_of_its_closed_form(sense):
     )
     assert peak.natural_frequency == pytest.approx(NATURAL / (2 * np.pi), rel=1e-9)
     assert peak.amplification == pytest.approx(1.0 / np.abs(1 - r**2 + 2j * ratio * r), rel=1e-4)
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-15, -1e-15, 1e-14])
+def test_an_undamped_resonance_is_refused_and_a_speed_beside_it_is_not(off):
+    undamped = assemble(one_freedom(0.0))
+    natural = 2.0 * np.pi * forced_response(undamped, [1.0], 1).natural_frequency[-1]
+    with pytest.raises(SolveError, match="unbounded: .* undamped mode.* damping, or leave"):
+        forced_response(undamped, [natural / 20 * (1.0 + off)], 1)
+    beside = forced_response(undamped, [natural / 20 * (1.0 + 1e-4)], 1)
+    amplitude = np.abs(beside.dynamic_transmission_error).max() / RIPPLE
+    assert amplitude == pytest.approx(0.5e4, rel=1e-3)
 
 
 def test_blocks_of_speeds_change_nothing(monkeypatch):
