@@ -171,13 +171,19 @@ def suites(fault: Fault, tests: dict[Path, dict[Path, int]]) -> dict[str, list[s
         for file, away in tests.items()
         if target in away or fault.house in rests_on(file)[1]
     )
-    slow = [test for test, seconds in read_costs().items() if seconds > SLOW]
+    slow = [_tests_of(name) for name, seconds in read_costs().items() if seconds > SLOW]
     of_house: list[str] = []
     of_others: list[str] = []
     for _, _, file in near:
         own = [test for test in slow if ROOT / test.partition("::")[0] == file]
         (of_house if fault.house in rests_on(file)[1] else of_others).extend(own)
     return {"day": [str(file) for _, _, file in near], "house": of_house, "night": of_others}
+
+
+def _tests_of(name: str) -> str:
+    """Return a test that is on record; of a fixture its file."""
+    file, _, own = name.partition("::")
+    return name if own.startswith("test_") else file
 
 
 _BY_PROCESS = 99

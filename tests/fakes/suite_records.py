@@ -1,7 +1,8 @@
 """What each test costs in CPU time, and what it rested on when it passed: `pytest --all --record`.
 
 Counted is the time of this process, of its children and of theirs, from set-up to tear-down. Set-up that
-tests share (a fixture of a file or of the run) counts for none of them: it would only move to the next.
+tests share (a fixture of a file or of the run) counts for none of them: it would only move to the next. That
+of a file is on record by the fixture's own name.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from suite_selection import COSTS, PASSED, ROOT, SLOW, digest, read_costs, read_
 
 LEAST = 0.5
 """Tests below this (s) are not on record: they are as good as free."""
-_PROPERTY = "cpu_seconds"
+_PROPERTY, _SHARED = "cpu_seconds", "shared_cpu_seconds"
 
 
 class SuiteRecords:
@@ -26,21 +27,28 @@ class SuiteRecords:
 
     def __init__(self) -> None:
         self.shared = self.start = 0.0
+        self.fixtures: dict[str, float] = {}
         self.seconds: dict[str, float] = {}
         self.failed: set[str] = set()
 
     @pytest.hookimpl(hookwrapper=True)
-    def pytest_fixture_setup(self, fixturedef: pytest.FixtureDef[Any]) -> Iterator[None]:
+    def pytest_fixture_setup(
+        self, fixturedef: pytest.FixtureDef[Any], request: pytest.FixtureRequest
+    ) -> Iterator[None]:
         """Take what is shared apart."""
         start = _cpu_seconds()
         yield
         if fixturedef.scope != "function":
-            self.shared += _cpu_seconds() - start
+            seconds = _cpu_seconds() - start
+            self.shared += seconds
+            if fixturedef.scope == "module":
+                self.fixtures[f"{_file(request.node.nodeid)}::{fixturedef.argname}"] = seconds
 
     @pytest.hookimpl(hookwrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self) -> Iterator[None]:
         """Note the time at which a test begins."""
         self.shared, self.start = 0.0, _cpu_seconds()
+        self.fixtures = {}
         yield
 
     @pytest.hookimpl(hookwrapper=True)
@@ -48,12 +56,16 @@ class SuiteRecords:
         """Give the last report of a test its cost."""
         if call.when == "teardown":
             item.user_properties.append((_PROPERTY, _cpu_seconds() - self.start - self.shared))
+            item.user_properties.append((_SHARED, self.fixtures))
         yield
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Keep what a worker measured, and which files have a test that failed."""
         if report.when == "teardown":
-            self.seconds[report.nodeid] = float(str(dict(report.user_properties)[_PROPERTY]))
+            told: dict[str, Any] = dict(report.user_properties)
+            self.seconds[report.nodeid] = told[_PROPERTY]
+            for fixture, seconds in told[_SHARED].items():  # the dearest of its values
+                self.seconds[fixture] = max(seconds, self.seconds.get(fixture, 0.0))
         if report.failed:
             self.failed.add(_file(report.nodeid))
 

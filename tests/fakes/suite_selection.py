@@ -30,7 +30,8 @@ COSTS, PASSED = RECORDS / "cpu_seconds.csv", RECORDS / "passed.csv"
 SLOW = 1.0
 """CPU seconds of a test from which on it is slow."""
 LONG = 3.0
-"""CPU seconds from which on a law, too, runs only when what it rests on changed."""
+"""CPU seconds from which on a law, too, runs only when what it rests on changed; a fixture that costs as much
+counts for each test of the file that shares it."""
 VERSIONS = ROOT / "requirements-dev.lock"
 STARTS_PROCESSES = ("subprocess", "multiprocessing")
 
@@ -77,18 +78,26 @@ def select(items: list[pytest.Item], config: pytest.Config) -> None:
 def _of_the_day(items: Sequence[pytest.Item], passed: dict[str, str] | None) -> list[pytest.Item]:
     """Return those that are quick, state a law, or rest on what changed; without `passed` nothing has."""
     costs = read_costs()
+    own = {item.nodeid: costs.get(item.nodeid, 0.0) + _shared(item, costs) for item in items}
     chains = defaultdict[Path, float](float)
     for item in items:
         if item.get_closest_marker("chain"):
-            chains[item.path] += costs.get(item.nodeid, 0.0)
+            chains[item.path] += own[item.nodeid]
 
     def stays(item: pytest.Item) -> bool:
-        cost = chains[item.path] if item.get_closest_marker("chain") else costs.get(item.nodeid, 0.0)
+        cost = chains[item.path] if item.get_closest_marker("chain") else own[item.nodeid]
         if cost <= (LONG if item.get_closest_marker("law") else SLOW):
             return True
         return passed is not None and passed.get(name_of(item.path)) != digest(item.path)
 
     return [item for item in items if stays(item)]
+
+
+def _shared(item: pytest.Item, costs: dict[str, float]) -> float:
+    """Return what the dear ones of the fixtures cost that a test shares with others of its file."""
+    names = item.fixturenames  # type: ignore[attr-defined]
+    file = item.nodeid.partition("::")[0]
+    return sum(cost for name in names if (cost := costs.get(f"{file}::{name}", 0.0)) > LONG)
 
 
 def houses_from(name: str) -> frozenset[str]:
@@ -106,7 +115,7 @@ def name_of(file: Path) -> str:
 
 
 def read_costs() -> dict[str, float]:
-    """Return the CPU time (s) of each test that has one on record."""
+    """Return the CPU time (s) of each test, and of each fixture of a file, that has one on record."""
     return {test: float(seconds) for test, seconds in _rows(COSTS)}
 
 

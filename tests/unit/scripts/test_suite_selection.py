@@ -21,7 +21,8 @@ class _Item(SimpleNamespace):
 
 
 def _item(name: str, *marks: str) -> Any:
-    return _Item(nodeid=f"tests/unit/scripts/test_suite_selection.py::{name}", path=HERE, marks=marks)
+    nodeid = f"tests/unit/scripts/test_suite_selection.py::{name}"
+    return _Item(nodeid=nodeid, path=HERE, marks=marks, fixturenames=["table"] * name.startswith("sharing"))
 
 
 def _left(items: list[Any], **options: Any) -> list[str]:
@@ -63,6 +64,15 @@ def test_a_long_law_runs_when_what_it_rests_on_changed(
     assert _left([_item("slow", "law")]) == ["slow"]
     on_record.clear()
     assert _left([_item("slow", "law")]) == []
+
+
+@pytest.mark.usefixtures("on_record")
+@pytest.mark.parametrize(("cost", "left"), [(2.9, []), (3.1, ["sharing", "sharing too"])])
+def test_a_dear_fixture_counts_for_each_test_that_shares_it(
+    monkeypatch: pytest.MonkeyPatch, cost: float, left: list[str]
+) -> None:
+    monkeypatch.setattr(suite_selection, "read_costs", lambda: {SLOW_TEST.replace("slow", "table"): cost})
+    assert _left([_item("sharing", "law"), _item("sharing too"), _item("quick")]) == left
 
 
 def test_a_chain_runs_whole_or_not_at_all(on_record: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
