@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
-from scipy.stats import qmc
 
 from bounds import engineering, written
 from fe_contact.errors import SolveError
@@ -325,6 +324,8 @@ def _search_all(
 
     At least one run: where the search is cancelled before any has ended, that of the design to begin with.
     """
+    from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
+
     first = problem.place(own)
     others = qmc.Sobol(first.size, rng=search.seed).random_base2((search.starts - 1).bit_length())[
         1 : search.starts

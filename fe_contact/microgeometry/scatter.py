@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
-from scipy.special import roots_hermitenorm
-from scipy.stats import norm, qmc
+from scipy.special import ndtri, roots_hermitenorm
 
 from bounds import SiNote, at_least
 from fe_contact.errors import InputError, finite, integer, positive
@@ -94,9 +93,11 @@ class SobolSample:
 
     def nodes(self, dimensions: int) -> tuple[FloatArray, FloatArray]:
         """Return the sample."""
+        from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
+
         size = 2**self.log2_size
         uniform = qmc.Sobol(dimensions, rng=self.seed).random_base2(self.log2_size)
-        return np.asarray(norm.ppf(uniform)), np.full(size, 1.0 / size)
+        return np.asarray(ndtri(uniform)), np.full(size, 1.0 / size)
 
     def finer(self, dimensions: int) -> SobolSample:
         """Return the sample of four times the size, of the same sequence."""

@@ -11,7 +11,6 @@ from typing import Protocol
 
 import numpy as np
 from scipy.optimize import Bounds, differential_evolution, minimize
-from scipy.stats import qmc
 
 from fe_contact.errors import integer
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
@@ -225,6 +224,8 @@ class SequentialLinearProgramming:
 
     def _best(self, rough: _CountedMerit, dimensions: int, seed: np.random.SeedSequence) -> list[FloatArray]:
         """Return the best points of the sequence, as far as the designs reach."""
+        from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
+
         explored: list[tuple[float, FloatArray]] = []
         with suppress(_BudgetUsed):
             sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))

@@ -1,4 +1,4 @@
-"""Opening a gear unit does not load what computes."""
+"""Opening a gear unit does not load what computes, and computing not what searches."""
 
 from __future__ import annotations
 
@@ -62,3 +62,12 @@ print(*sys.modules, file=sys.stderr)
     loaded = set(done.stderr.split())
     assert '"scene": true' in done.stdout and "lineofaction.gearbox.from_rexs.opened" in loaded
     return loaded
+
+
+def test_computing_verbs_start_without_statistics() -> None:
+    code = "import sys, lineofaction.cli.analyze, lineofaction.cli.simulate; print(*sys.modules)"
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=300
+    )
+    assert "dynamics.scene" in loaded.stdout.split()
+    assert "scipy.stats" not in loaded.stdout.split()
