@@ -2,11 +2,11 @@
 
 By default: all that are quick, those marked `law` that are not long, and of the others those that rest on
 what changed since they last passed. A test rests on its file, on the fakes that file imports, on the houses
-both import, on what its file names in `RESTS_ON`, and on the versions of packages; one that starts processes
-rests on all houses. Tests marked `chain` go on with what those before them in their file left: they run all
-or none, by the cost of all. `tests/records` holds what each slow test costs and what it rested on when it
-passed; the nightly run renews it. Files that are named on the command line run whole, and with `--all`
-everything does.
+both import and those below, on what its file names in `RESTS_ON`, and on the versions of packages; one that
+starts processes rests on all houses. Tests marked `chain` go on with what those before them in their file
+left: they run all or none, by the cost of all. `tests/records` holds what each slow test costs and what it
+rested on when it passed; the nightly run renews it. Files that are named on the command line run whole, and
+with `--all` everything does.
 """
 
 from __future__ import annotations
@@ -144,7 +144,7 @@ def digest(file: Path) -> str:
 
 @cache
 def rests_on(file: Path) -> tuple[frozenset[Path], frozenset[str]]:
-    """Return the files of the tests, `file` first of all, and the houses that a test file rests on."""
+    """Return the files of the tests, and the houses that a test file rests on, those below included."""
     files, houses, waiting = set[Path](), set[str](), [file, *_conftests(file)]
     while waiting:
         path = waiting.pop()
@@ -156,8 +156,15 @@ def rests_on(file: Path) -> tuple[frozenset[Path], frozenset[str]]:
             elif module.split(".")[0] in STARTS_PROCESSES or module == "lineofaction":
                 houses.update(structure.HOUSES)
             elif house := structure.house_of(module):
-                houses.add(house)
+                houses.update(_with_those_below(house))
     return frozenset(files), frozenset(houses)
+
+
+@cache
+def _with_those_below(house: str) -> frozenset[str]:
+    """Return a house and all that it may import."""
+    (level,) = (number for number, floor in enumerate(structure.FLOORS) if house in floor)
+    return frozenset({house}.union(*structure.FLOORS[level + 1 :]))
 
 
 def _named_in(file: Path) -> Iterator[Path]:

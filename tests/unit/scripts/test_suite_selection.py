@@ -121,9 +121,15 @@ def test_a_house_has_the_tests_of_itself_and_of_what_stands_on_it(monkeypatch: p
 
 def test_a_test_rests_on_what_it_and_its_fakes_import() -> None:
     files, houses = rests_on(TESTS / "unit" / "dynamics" / "bearings" / "test_matrix.py")
-    assert houses == {"dynamics"}
+    assert houses == {"dynamics", "model_studies", "bounds", "host"}
     assert {file.name for file in files} >= {"test_matrix.py"}
     assert rests_on(HERE)[1] == set()
+
+
+def test_a_test_rests_on_the_houses_below_those_it_imports() -> None:
+    _, houses = rests_on(TESTS / "stability" / "test_hard_scenes.py")
+    assert houses >= {"lineofaction.hardcases", "lineofaction.gearbox", "dynamics", "fe_contact", "host"}
+    assert "lineofaction.cli" not in houses
 
 
 def test_a_test_that_starts_processes_rests_on_all_houses() -> None:

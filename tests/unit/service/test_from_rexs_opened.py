@@ -138,7 +138,7 @@ def test_a_disc_has_a_mass_above_zero_or_is_left_out(mass: float | None) -> None
     assert unit.scene is not None
     whole = mass is not None and mass > 0.0
     assert [disc.inertia.mass_kg for disc in unit.scene.discs] == ([mass] if whole else [])
-    assert (("refused", "no mass is stated") == said(unit, MACHINE, "")) != whole
+    assert (said(unit, MACHINE, "") == ("refused", "no mass is stated")) != whole
 
 
 def test_teeth_below_zero_make_no_ring_of_an_external_gear() -> None:

@@ -73,7 +73,7 @@ def test_the_peak_of_one_freedom_is_that_of_its_closed_form(sense):
 def test_an_undamped_resonance_is_refused_and_a_speed_beside_it_is_not(off):
     undamped = assemble(one_freedom(0.0))
     natural = 2.0 * np.pi * forced_response(undamped, [1.0], 1).natural_frequency[-1]
-    with pytest.raises(SolveError, match="unbounded: .* undamped mode.* damping, or leave"):
+    with pytest.raises(SolveError, match=r"unbounded: .* undamped mode.* damping, or leave"):
         forced_response(undamped, [natural / 20 * (1.0 + off)], 1)
     beside = forced_response(undamped, [natural / 20 * (1.0 + 1e-4)], 1)
     amplitude = np.abs(beside.dynamic_transmission_error).max() / RIPPLE
