@@ -35,7 +35,7 @@ LEAST_PITCHES = 2.0
 
 
 @dataclass(frozen=True)
-class Vibration:
+class _Vibration:
     """In B blocks of a run: m meshes, b bearings, n mesh orders (of the first mesh for bearings).
 
     Attributes
@@ -55,7 +55,7 @@ class Vibration:
 
 
 @dataclass(frozen=True)
-class Blocks:
+class _Blocks:
     """The output grid that a run is compared on.
 
     Attributes
@@ -74,7 +74,7 @@ class Blocks:
     orders: int
 
     @classmethod
-    def of(cls, system: System) -> Blocks:
+    def of(cls, system: System) -> _Blocks:
         """Cut the run of `system` into blocks of equal time.
 
         Raises
@@ -109,7 +109,7 @@ class Blocks:
         return np.asarray(self.time[self.bounds.mean(axis=1).astype(int)])
 
 
-def _vibration_of(blocks: Blocks, error: FloatArray, force: FloatArray) -> Vibration:
+def _vibration_of(blocks: _Blocks, error: FloatArray, force: FloatArray) -> _Vibration:
     """Return the vibration in transmission errors (m, T), m, and bearing forces (b, 3, T), N."""
     rms, by_error, by_force = [], [], []
     for first, stop in blocks.bounds:
@@ -122,13 +122,13 @@ def _vibration_of(blocks: Blocks, error: FloatArray, force: FloatArray) -> Vibra
         by_force.append(
             np.linalg.norm(order_amplitudes(position[0], force[..., part], blocks.orders), axis=1)
         )
-    return Vibration(np.array(rms), np.array(by_error), np.array(by_force))
+    return _Vibration(np.array(rms), np.array(by_error), np.array(by_force))
 
 
-class Fidelity(model_studies.Fidelity[Scene], Protocol):
+class _Fidelity(model_studies.Fidelity[Scene], Protocol):
     """A way to the vibration of a scene; its family is "model", "table" or "steps"."""
 
-    def run(self, scene: Scene, blocks: Blocks) -> Vibration:
+    def run(self, scene: Scene, blocks: _Blocks) -> _Vibration:
         """Compute the vibration.
 
         Raises
@@ -145,7 +145,7 @@ IN_PLANE = (COAST_FLANKS, "x", "y")
 
 
 @dataclass(frozen=True)
-class TimeIntegration:
+class _TimeIntegration:
     """A run of the scene with changes.
 
     Attributes
@@ -185,7 +185,7 @@ class TimeIntegration:
         outputs = Outputs(scene.outputs.sample_rate, energy_audit=False, receipt="minimal", anti_alias=False)
         return replace(scene, integration=integration, effects=effects, outputs=outputs)
 
-    def run(self, scene: Scene, blocks: Blocks) -> Vibration:
+    def run(self, scene: Scene, blocks: _Blocks) -> _Vibration:
         """Integrate."""
         system = assemble(self.as_run(scene))
         if self.every > 1:
@@ -232,7 +232,7 @@ class _QuasiStatic:
         """Say nothing: it is valid for every scene."""
         return None
 
-    def run(self, scene: Scene, blocks: Blocks) -> Vibration:
+    def run(self, scene: Scene, blocks: _Blocks) -> _Vibration:
         """Read the tables at the positions and forces of every block."""
         system = assemble(scene)
         error = np.zeros_like(blocks.position)
@@ -260,7 +260,7 @@ class _LinearResponse:
         """Say nothing: what it cannot hold shows when it runs."""
         return None
 
-    def run(self, scene: Scene, blocks: Blocks) -> Vibration:
+    def run(self, scene: Scene, blocks: _Blocks) -> _Vibration:
         """Respond at the speed in the middle of every block."""
         system = assemble(scene)
         speeds = np.abs(observe_laws(system.arrays, blocks.middle)[2])
@@ -271,11 +271,11 @@ class _LinearResponse:
             )
             for speed, time in zip(speeds[law], blocks.middle, strict=True)
         ]
-        names = Vibration.__dataclass_fields__
-        return Vibration(*(np.array([getattr(part, name) for part in parts]) for name in names))
+        names = _Vibration.__dataclass_fields__
+        return _Vibration(*(np.array([getattr(part, name) for part in parts]) for name in names))
 
 
-def _of_one_speed(response: HarmonicResponse, system: System, blocks: Blocks) -> Vibration:
+def _of_one_speed(response: HarmonicResponse, system: System, blocks: _Blocks) -> _Vibration:
     """Pick each mesh's own orders, and those of the first mesh for bearings."""
     pace = np.abs(blocks.position[:, -1] - blocks.position[:, 0])
     ratio = pace / pace[0]
@@ -284,7 +284,7 @@ def _of_one_speed(response: HarmonicResponse, system: System, blocks: Blocks) ->
     pushed = np.linalg.norm(np.abs(response.bearing_force[:, :3, 0]), axis=1)
     forces = [_at(response.order, line, 1.0, blocks.orders) for line in pushed]
     empty = np.zeros((0, blocks.orders))
-    return Vibration(
+    return _Vibration(
         np.sqrt(0.5 * np.sum(size**2, axis=1)), np.array(errors), np.array(forces) if forces else empty
     )
 
@@ -298,18 +298,18 @@ def _at(order: FloatArray, amplitude: FloatArray, ratio: float, orders: int) -> 
 
 NM = 1e-9
 
-FIDELITIES: tuple[Fidelity, ...] = (
+FIDELITIES: tuple[_Fidelity, ...] = (
     _QuasiStatic(),
     _LinearResponse(),
-    TimeIntegration("torsion", "torsion only", "model", additions=BY_TORSION),
-    TimeIntegration("in_plane", "torsion and lateral motion", "model", additions=IN_PLANE),
-    TimeIntegration("table_quarter", "every fourth position node", "table", every=4),
-    TimeIntegration("table_half", "every second position node", "table", every=2),
-    TimeIntegration("100_nm", "tolerance 100 nm", "steps", tolerance=100 * NM),
-    TimeIntegration("10_nm", "tolerance 10 nm", "steps", tolerance=10 * NM),
-    TimeIntegration("1_nm", "tolerance 1 nm", "steps", tolerance=NM),
-    TimeIntegration("0.1_nm", "tolerance 0.1 nm", "steps", tolerance=0.1 * NM),
-    TimeIntegration("0.01_nm", "tolerance 0.01 nm", "steps", tolerance=0.01 * NM),
+    _TimeIntegration("torsion", "torsion only", "model", additions=BY_TORSION),
+    _TimeIntegration("in_plane", "torsion and lateral motion", "model", additions=IN_PLANE),
+    _TimeIntegration("table_quarter", "every fourth position node", "table", every=4),
+    _TimeIntegration("table_half", "every second position node", "table", every=2),
+    _TimeIntegration("100_nm", "tolerance 100 nm", "steps", tolerance=100 * NM),
+    _TimeIntegration("10_nm", "tolerance 10 nm", "steps", tolerance=10 * NM),
+    _TimeIntegration("1_nm", "tolerance 1 nm", "steps", tolerance=NM),
+    _TimeIntegration("0.1_nm", "tolerance 0.1 nm", "steps", tolerance=0.1 * NM),
+    _TimeIntegration("0.01_nm", "tolerance 0.01 nm", "steps", tolerance=0.01 * NM),
 )
 
 
@@ -322,7 +322,7 @@ LEAST_RATE = 1.5  # by which errors must fall from fidelity to fidelity to say w
 
 
 @dataclass(frozen=True)
-class FidelityResult(model_studies.FidelityResult):
+class _FidelityResult(model_studies.FidelityResult):
     """Errors and time of a fidelity.
 
     Attributes
@@ -346,7 +346,7 @@ class FidelityResult(model_studies.FidelityResult):
 
 
 @dataclass(frozen=True)
-class Frontier(model_studies.Frontier[FidelityResult]):
+class Frontier(model_studies.Frontier[_FidelityResult]):
     """The accuracy study of one scene.
 
     Attributes
@@ -393,7 +393,7 @@ def frontier(
         Fewer than two fidelities came to their end.
     """
     system = assemble(scene)
-    blocks, scene = Blocks.of(system), system.resolved_scene
+    blocks, scene = _Blocks.of(system), system.resolved_scene
     names = chosen("fidelities", fidelities, [fidelity.name for fidelity in FIDELITIES])
     outcomes, left_out = run_fidelities(
         [fidelity for fidelity in FIDELITIES if fidelity.name in names],
@@ -405,7 +405,7 @@ def frontier(
         workers,
     )
     results = tuple(  # every fidelity against the last, and that one by how the errors fell towards it
-        FidelityResult(
+        _FidelityResult(
             outcome.fidelity.name,
             outcome.fidelity.title,
             outcome.cpu_seconds,
@@ -417,7 +417,7 @@ def frontier(
     return Frontier(
         results,
         left_out,
-        knee_of_results(results),
+        _knee_of_results(results),
         _chosen_fidelity(scene, [outcome.fidelity for outcome in outcomes]),
         blocks.orders,
         len(blocks.bounds),
@@ -425,33 +425,33 @@ def frontier(
     )
 
 
-def _chosen_fidelity(scene: Scene, fidelities: Sequence[Fidelity]) -> str | None:
+def _chosen_fidelity(scene: Scene, fidelities: Sequence[_Fidelity]) -> str | None:
     """Return the fidelity of all effects and tables with the scene's tolerance, or the next finer one."""
     for fidelity in fidelities:
-        tolerance = fidelity.tolerance if isinstance(fidelity, TimeIntegration) else None
+        tolerance = fidelity.tolerance if isinstance(fidelity, _TimeIntegration) else None
         if tolerance is not None and tolerance <= scene.integration.tolerance * (1.0 + 1e-9):
             return fidelity.name
     return None
 
 
-def _run(scene: Scene, blocks: Blocks, fidelity: Fidelity) -> Vibration:
+def _run(scene: Scene, blocks: _Blocks, fidelity: _Fidelity) -> _Vibration:
     return fidelity.run(scene, blocks)
 
 
-def _warm_up(scene: Scene, blocks: Blocks, fidelities: Sequence[Fidelity]) -> None:
+def _warm_up(scene: Scene, blocks: _Blocks, fidelities: Sequence[_Fidelity]) -> None:
     """Compile what the fidelities run."""
     short = replace(scene, duration=min(WARM_UP, scene.duration))
-    system = assemble(TimeIntegration("warm_up", "", "steps").as_run(short))
+    system = assemble(_TimeIntegration("warm_up", "", "steps").as_run(short))
     start = static_equilibrium(system)
     for method in EVALUATIONS if start.status.usable else ():
         integrate(system, start, replace(system.scene.integration, method=method))
     for fidelity in fidelities:
-        if not isinstance(fidelity, TimeIntegration):
+        if not isinstance(fidelity, _TimeIntegration):
             with suppress(InputError, SolveError):
                 fidelity.run(scene, replace(blocks, bounds=blocks.bounds[:1]))
 
 
-def _errors(vibration: Vibration, reference: Vibration) -> Errors:
+def _errors(vibration: _Vibration, reference: _Vibration) -> Errors:
     pairs = zip(vars(vibration).values(), vars(reference).values(), strict=True)
     return {name: _apart(*pair) for name, pair in zip(FIGURES, pairs, strict=True)}
 
@@ -464,7 +464,7 @@ def _apart(values: FloatArray, reference: FloatArray) -> float:
     return float(np.linalg.norm(values - reference)) / size
 
 
-def _remaining(coarser: Sequence[tuple[Fidelity, Errors]], _finest: Fidelity) -> Errors:
+def _remaining(coarser: Sequence[tuple[_Fidelity, Errors]], _finest: _Fidelity) -> Errors:
     """Return what the errors of two fidelities leave behind the finer one, by the rate at which they fell."""
     if len(coarser) < 2:
         return dict.fromkeys(FIGURES, NAN)
@@ -475,6 +475,6 @@ def _remaining(coarser: Sequence[tuple[Fidelity, Errors]], _finest: Fidelity) ->
     }
 
 
-def knee_of_results(results: Sequence[FidelityResult]) -> str | None:
+def _knee_of_results(results: Sequence[_FidelityResult]) -> str | None:
     """Return the knee; differences below what steps and tables of the reference leave say nothing."""
     return knee_above(results, *(TABLE_REST * result.error for result in results if result.name == HALF))

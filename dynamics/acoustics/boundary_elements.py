@@ -150,7 +150,7 @@ STAGE = "boundary elements"
 
 
 @dataclass(frozen=True)
-class SurfacePressure:
+class _SurfacePressure:
     """The solution of the exterior problem at one frequency.
 
     Attributes
@@ -217,7 +217,7 @@ def surface_pressure(
     air: Air,
     progress: Progress = silent,
     workers: Workers = _HERE,
-) -> SurfacePressure:
+) -> _SurfacePressure:
     """Solve for the pressure on a hull that vibrates in `shapes` (T, M) at a frequency, Hz.
 
     Memory grows with the square of the number of panels, time somewhat faster (`BoundaryElements.cost`).
@@ -248,7 +248,7 @@ def surface_pressure(
         raise SolveError(f"boundary elements: the relative residual {left} is above {RESIDUAL:g}")
     far = _far_field_resistance(hull, wavenumber, pressure, slope) / air.impedance
     surface = shapes.T @ (hull.areas[:, None] * np.asarray(panels.mean @ pressure))
-    return SurfacePressure(pressure.conj(), far.conj(), 0.5 * (surface.conj() + surface.T), residual)
+    return _SurfacePressure(pressure.conj(), far.conj(), 0.5 * (surface.conj() + surface.T), residual)
 
 
 def _solve(

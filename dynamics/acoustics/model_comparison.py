@@ -147,7 +147,7 @@ WORK = "radiation by {}"
 
 
 @dataclass(frozen=True)
-class ModelResult:
+class _ModelResult:
     """What a radiation model says of a vibration.
 
     Attributes
@@ -182,7 +182,7 @@ class ModelComparison:
         By how much the level of each may be off, dB, from and to; below 0: too quiet.
     """
 
-    results: Mapping[str, ModelResult]
+    results: Mapping[str, _ModelResult]
     left_out: Mapping[str, str]
     predicted: Mapping[str, Cost]
     error_band: Mapping[str, tuple[float, float]]
@@ -230,7 +230,7 @@ def compare_models(
     reference = {name: model.cost(panels, outer, 1) for name, model in listed.items()}
     predicted = {name: on_this_host(WORK.format(name), cost, cache) for name, cost in reference.items()}
 
-    def compute(model: RadiationModel) -> ModelResult:
+    def compute(model: RadiationModel) -> _ModelResult:
         name = model.model_name
         announce(progress, name.replace("_", " "), f"{panels} panels", predicted[name])
         power, cost = measured(
@@ -240,7 +240,7 @@ def compare_models(
             lambda: sound_power(model, hull, frequency, normal_velocity, air),
             getattr(model, "workers", InProcess()),
         )
-        return ModelResult(power, power / plane, cost)
+        return _ModelResult(power, power / plane, cost)
 
     results, left_out = run_variants("models", by_name, compute, (DynamicsError, MissingExtra), progress)
     ka = wavenumber * hull.equivalent_radius

@@ -53,7 +53,7 @@ SHORTEST = 0.01
 
 
 @dataclass(frozen=True)
-class SoundQuality:
+class _SoundQuality:
     """Metrics of a stationary sound.
 
     Attributes
@@ -72,7 +72,7 @@ class SoundQuality:
     tone_to_noise: FloatArray
 
 
-def sound_quality(recording: Recording) -> SoundQuality:
+def sound_quality(recording: Recording) -> _SoundQuality:
     """Return the metrics of a sound that does not change over the recording.
 
     Raises
@@ -87,7 +87,7 @@ def sound_quality(recording: Recording) -> SoundQuality:
     loudness, specific, _ = metrics.loudness_zwst(recording.samples, recording.sample_rate)
     sharpness = metrics.sharpness_din_from_loudness(loudness, specific) if loudness > 0.0 else 0.0
     _, tones, _, frequency = metrics.tnr_ecma_st(recording.samples, recording.sample_rate, prominence=True)
-    return SoundQuality(
+    return _SoundQuality(
         float(loudness), float(sharpness), np.asarray(frequency, float), np.asarray(tones, float)
     )
 

@@ -47,7 +47,7 @@ class ModalFreedoms(NamedTuple):
     stiffness: FloatArray
 
 
-def modal_freedoms(
+def _modal_freedoms(
     mass: FloatArray, damping: FloatArray, stiffness: FloatArray, direction: FloatArray, others: FloatArray
 ) -> ModalFreedoms:
     """Find the modal freedoms of a system: matrices (n, n), `direction` (R, n), all `others` (..., n)."""
@@ -190,7 +190,7 @@ def sparse_matrices(
     alone = connected_components(mass != 0.0)[1]
     mobility = np.where(alone[:, None] == alone, np.linalg.inv(mass), 0.0)
     either = (damping != 0.0) | (stiffness != 0.0)
-    modal = modal_freedoms(mass, damping, stiffness, direction, np.concatenate([turn, *others]))
+    modal = _modal_freedoms(mass, damping, stiffness, direction, np.concatenate([turn, *others]))
     return SparseMatrices(
         damping=_sparse_rows(damping, either),
         stiffness=_sparse_rows(stiffness, either),

@@ -163,7 +163,7 @@ ANGLES = 32
 
 
 @dataclass(frozen=True)
-class ElementPassing:
+class _ElementPassing:
     """The motion of a bearing's inner ring over the passing of one element.
 
     Attributes
@@ -188,7 +188,7 @@ class ElementPassing:
 
 def element_passing(
     bearing: BallBearing | RollerBearing, load: ArrayLike, angles: int = ANGLES
-) -> ElementPassing:
+) -> _ElementPassing:
     """Return the motion of `bearing` under `load` (5,), N and N m, at evenly spaced angles of the cage.
 
     Raises
@@ -200,7 +200,7 @@ def element_passing(
     pitch = 2.0 * math.pi / bearing.count
     angle = np.arange(angles) * pitch / angles
     moved = [loaded.displacement(load, float(turned)) for turned in angle]
-    return ElementPassing(bearing.count * bearing.cage_ratio, angle, np.array(moved))
+    return _ElementPassing(bearing.count * bearing.cage_ratio, angle, np.array(moved))
 
 
 # A bearing by geometry as the linear bushing that it is for small motions.

@@ -25,7 +25,7 @@ ROLLER_QUALITY = 0.83  # lambda nu: contained in C, but no more once edge loads 
 
 
 @dataclass(frozen=True)
-class RatingLife:
+class _RatingLife:
     """The basic reference rating life.
 
     Attributes
@@ -42,7 +42,7 @@ class RatingLife:
 
 def rating_life(
     bearing: BallBearing | RollerBearing, load: FloatArray, rating: float, inner_turns: bool = True
-) -> RatingLife:
+) -> _RatingLife:
     """Return the life of `bearing` under constant loads of its elements.
 
     Parameters
@@ -76,7 +76,7 @@ def rating_life(
         failing += float(np.sum((equivalent / limit) ** slope))
     power = 3.0 if ball else 10.0 / 3.0
     life = failing ** (-power / slope) if failing > 0.0 else math.inf
-    return RatingLife(1e6 * life, rating * life ** (-1.0 / power))
+    return _RatingLife(1e6 * life, rating * life ** (-1.0 / power))
 
 
 def _ball_ratings(bearing: BallBearing, rating: float) -> tuple[float, float]:

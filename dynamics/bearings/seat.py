@@ -38,7 +38,7 @@ DAMPING_RATIO = Declared(
 )
 
 
-class Seat:
+class _Seat:
     """Stiffness K, damping C and preload p of a bearing: it pushes what holds it with K d + C d' - p.
 
     The isotropic figures are on the diagonals of K and C, the matrices are added to them.
@@ -107,7 +107,7 @@ def _isotropic(radial: float, axial: float) -> FloatArray:
 
 @described
 @dataclass(frozen=True)
-class Bushing(Seat):
+class Bushing(_Seat):
     """A bushing between a shaft and the ground.
 
     The shaft's section at the bushing moves by d = (x, y, z, tilt_x, tilt_y); the bushing acts on the ground
@@ -150,7 +150,7 @@ _TANGENTIAL = Declared(Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of
 
 @described
 @dataclass(frozen=True)
-class PlanetBearing(Seat):
+class PlanetBearing(_Seat):
     """A linear bearing between a point of a planet's axis and the pin in the carrier.
 
     The pin moves with the carrier as a rigid body: u_pin = u_carrier + r_carrier x lever. The bearing pushes

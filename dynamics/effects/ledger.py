@@ -18,7 +18,7 @@ CHOICES = ("auto", "on", "off")
 
 
 @dataclass(frozen=True)
-class LedgerEntry:
+class _LedgerEntry:
     """One decision.
 
     Attributes
@@ -93,11 +93,11 @@ class LedgerEntry:
 class EffectLedger:
     """All decisions, and what this model leaves out."""
 
-    entries: tuple[LedgerEntry, ...] = ()
+    entries: tuple[_LedgerEntry, ...] = ()
 
     def decide(self, effect: Effect, choice: str, verdicts: Mapping[str, Verdict]) -> EffectLedger:
         """Return the ledger with the decisions on one more effect, by part."""
-        made = (LedgerEntry(effect, part, choice, verdict) for part, verdict in verdicts.items())
+        made = (_LedgerEntry(effect, part, choice, verdict) for part, verdict in verdicts.items())
         return EffectLedger((*self.entries, *made))
 
     def with_entries_of(self, other: EffectLedger, addition: str) -> EffectLedger:
@@ -130,7 +130,7 @@ class EffectLedger:
         own = [entry.decided for entry in self.entries if entry.on and entry.part == mesh]
         return [effect for effect in own if isinstance(effect, MeshEffect)]
 
-    def of(self, effect: str) -> list[LedgerEntry]:
+    def of(self, effect: str) -> list[_LedgerEntry]:
         """Return the decisions on one effect, one per part."""
         return [entry for entry in self.entries if entry.effect == effect]
 
@@ -138,7 +138,7 @@ class EffectLedger:
         """Whether an effect is on for a part."""
         return any(entry.on and entry.part == part for entry in self.of(effect))
 
-    def adding(self, addition: str) -> list[LedgerEntry]:
+    def adding(self, addition: str) -> list[_LedgerEntry]:
         """Return the decisions on the effect that adds `addition`, one per part."""
         return [entry for entry in self.entries if addition in entry.decided.adds]
 

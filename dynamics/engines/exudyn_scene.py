@@ -95,8 +95,8 @@ def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Dri
     InputError
         If Exudyn is not installed.
     """
-    items = exudyn().itemInterface
-    force, jacobian = user_functions(mesh, drive)
+    items = _exudyn().itemInterface
+    force, jacobian = _user_functions(mesh, drive)
     columns = 6 if drive is None else 5
     zero = np.zeros((columns, columns))
     return mbs.AddObject(
@@ -112,7 +112,7 @@ def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Dri
     )
 
 
-def user_functions(mesh: PlanarMesh, drive: Drive | None = None) -> tuple[Force, Jacobian]:
+def _user_functions(mesh: PlanarMesh, drive: Drive | None = None) -> tuple[Force, Jacobian]:
     """Return the two functions of the mesh that Exudyn calls.
 
     Force: (system, t, item, q, v) to the generalized forces on the coordinates q, which are x, y, angle of
@@ -142,7 +142,7 @@ def user_functions(mesh: PlanarMesh, drive: Drive | None = None) -> tuple[Force,
     return force, jacobian
 
 
-def exudyn() -> Any:
+def _exudyn() -> Any:
     """Return the package.
 
     Raises
@@ -191,7 +191,7 @@ SOLVERS = ("GeneralizedAlpha", "TrapezoidalIndex2", "RK44", "DOPRI5")
 
 
 @dataclass(frozen=True)
-class PlanarRun:
+class _PlanarRun:
     """The result of a run in Exudyn.
 
     Attributes
@@ -209,7 +209,7 @@ class PlanarRun:
     cpu_seconds: float
 
 
-def run_in_exudyn(scene: Scene, *, solver: str = "GeneralizedAlpha", step: float = 5e-6) -> PlanarRun:
+def run_in_exudyn(scene: Scene, *, solver: str = "GeneralizedAlpha", step: float = 5e-6) -> _PlanarRun:
     """Run `scene` in Exudyn from its static equilibrium at constant speed.
 
     Parameters
@@ -234,7 +234,7 @@ def run_in_exudyn(scene: Scene, *, solver: str = "GeneralizedAlpha", step: float
     SolveError
         If there is no equilibrium to start from, or Exudyn gives up.
     """
-    package = exudyn()
+    package = _exudyn()
     if solver not in SOLVERS:
         raise InputError("solver", solver, f"one of {', '.join(SOLVERS)}")
     system = assemble(scene)
@@ -319,7 +319,7 @@ def _planar_mesh(system: System, sense: int) -> PlanarMesh:
 
 def _bodies(mbs: Any, system: System, start: dict[str, float], speed: float) -> tuple[Any, Any]:
     """Add both rotors, driver first, on their bushings and under their loads; return their nodes."""
-    items, scene, mesh = exudyn().itemInterface, system.scene, system.scene.meshes[0]
+    items, scene, mesh = _exudyn().itemInterface, system.scene, system.scene.meshes[0]
     ground = mbs.AddMarker(items.MarkerNodePosition(nodeNumber=mbs.AddNode(items.NodePointGround())))
     nodes = []
     for side, gear in enumerate((mesh.driver, mesh.driven)):
@@ -350,7 +350,7 @@ def _add_bushings(mbs: Any, markers: list[Any], bushings: tuple[Bushing, ...]) -
     """Add springs and dampers from the ground to the axis, with the damping a run uses."""
     for bushing in bushings:
         mbs.AddObject(
-            exudyn().itemInterface.ObjectConnectorCartesianSpringDamper(
+            _exudyn().itemInterface.ObjectConnectorCartesianSpringDamper(
                 markerNumbers=markers,
                 stiffness=[bushing.radial_stiffness, bushing.radial_stiffness, 0.0],
                 damping=[bushing.radial_damping, bushing.radial_damping, 0.0],
@@ -370,10 +370,10 @@ def _settings(package: Any, system: System, step: float) -> Any:
     return settings
 
 
-def _observed(mesh: PlanarMesh, speed: float, stored: list[FloatArray], seconds: float) -> PlanarRun:
+def _observed(mesh: PlanarMesh, speed: float, stored: list[FloatArray], seconds: float) -> _PlanarRun:
     """Return the transmission error from the coordinates of both nodes."""
     driver, driven = (np.asarray(rows) for rows in stored)
     gradient, time = mesh.gradient, driver[:, 0]
     angle = gradient[2] * speed * time
     error = driver[:, 1:3] @ gradient[:2] + angle + driven[:, 1:4] @ gradient[3:]
-    return PlanarRun(time, error, seconds)
+    return _PlanarRun(time, error, seconds)

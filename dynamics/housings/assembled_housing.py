@@ -34,7 +34,7 @@ class _RigidFace:
 
 
 @dataclass(frozen=True)
-class Freedoms:
+class _Freedoms:
     """Independent freedoms: three of each free node, then six of each rigid face.
 
     Attributes
@@ -65,7 +65,7 @@ class Freedoms:
         return np.vstack(parts)
 
 
-def _independent_freedoms(points: FloatArray, faces: tuple[_RigidFace, ...]) -> Freedoms:
+def _independent_freedoms(points: FloatArray, faces: tuple[_RigidFace, ...]) -> _Freedoms:
     """Eliminate the nodes of rigid faces.
 
     Raises
@@ -94,7 +94,7 @@ def _independent_freedoms(points: FloatArray, faces: tuple[_RigidFace, ...]) -> 
         (value, (row, column)), shape=(3 * len(points), rows.size + 6 * len(moving))
     ).tocsr()
     motion.eliminate_zeros()
-    return Freedoms(motion, free, moving)
+    return _Freedoms(motion, free, moving)
 
 
 # Mass and stiffness matrices of quadratic tetrahedra.
@@ -173,7 +173,7 @@ class AssembledHousing:
         Of the mesh.
     """
 
-    freedoms: Freedoms
+    freedoms: _Freedoms
     mass: sp.csr_array
     stiffness: sp.csr_array
     mounts: tuple[sp.csr_array, sp.csr_array]
@@ -239,7 +239,7 @@ def _rigid_faces(housing: MeshedHousing) -> tuple[_RigidFace, ...]:
     return tuple(faces)
 
 
-def _motion(mesh: TetrahedralMesh, seat: tuple[SeatBore, SeatFrame], freedoms: Freedoms) -> sp.csr_array:
+def _motion(mesh: TetrahedralMesh, seat: tuple[SeatBore, SeatFrame], freedoms: _Freedoms) -> sp.csr_array:
     """Return the motion of a seat along its own axes, (motions, f)."""
     bore, frame = seat
     if bore.ring is Ring.RIGID:
@@ -252,7 +252,7 @@ def _motion(mesh: TetrahedralMesh, seat: tuple[SeatBore, SeatFrame], freedoms: F
 
 
 def _stiffness_and_damping_of_mounts(
-    feet: tuple[Foot, ...], freedoms: Freedoms
+    feet: tuple[Foot, ...], freedoms: _Freedoms
 ) -> tuple[sp.csr_array, sp.csr_array]:
     size = freedoms.motion.shape[1]
     both = [sp.csr_array((size, size)), sp.csr_array((size, size))]
@@ -267,7 +267,7 @@ def _stiffness_and_damping_of_mounts(
 
 
 def _loose(
-    points: FloatArray, feet: tuple[Foot, ...], freedoms: Freedoms, stiffness: sp.csr_array
+    points: FloatArray, feet: tuple[Foot, ...], freedoms: _Freedoms, stiffness: sp.csr_array
 ) -> FloatArray:
     """Return the rigid motions without any stiffness against them, by freedom."""
     if any(foot.mount is None for foot in feet):

@@ -28,7 +28,7 @@ from host import MissingExtra
 HIGHEST_RATIO = 1.0
 
 
-class Damping(Protocol):
+class _Damping(Protocol):
     """Gives the damping ratio of every mode."""
 
     def ratios(self, elastic_share: FloatArray) -> FloatArray:
@@ -95,7 +95,7 @@ class MeshedHousing:
     feet: tuple[Foot, ...] = ()
     points: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
     modes: int = declared(80, MODES)
-    damping: Damping = USUAL_DAMPING
+    damping: _Damping = USUAL_DAMPING
 
     def __post_init__(self) -> None:
         declared_fields(self)
@@ -206,7 +206,7 @@ def read_matrix_market(
 
 
 def housing_of_matrices(
-    matrices: ReducedMatrices, seats: tuple[SeatFrame, ...], damping: Damping | None = None
+    matrices: ReducedMatrices, seats: tuple[SeatFrame, ...], damping: _Damping | None = None
 ) -> ReducedHousing:
     """Return a housing by its matrices.
 

@@ -28,7 +28,7 @@ OSCILLATING = 1e-6  # least imaginary part over the largest eigenvalue's size
 
 
 @dataclass(frozen=True)
-class WhirlModes:
+class _WhirlModes:
     """Modes that oscillate, by rising frequency, as seen in the frame of each shaft.
 
     Attributes
@@ -52,7 +52,7 @@ class WhirlModes:
     scale: FloatArray
 
 
-def whirl_modes(system: System, time: float = 0.0) -> WhirlModes:
+def whirl_modes(system: System, time: float = 0.0) -> _WhirlModes:
     """Return the modes about the static equilibrium at the speeds of the kinematic motion at `time`.
 
     M x'' + (C + G) x' + (K + S) x = 0 with G and S of `_speed_terms`, both zero at standstill.
@@ -65,14 +65,14 @@ def whirl_modes(system: System, time: float = 0.0) -> WhirlModes:
     return _whirl_modes_with(linearize(system, time), *_speed_terms(system, time))
 
 
-def _whirl_modes_with(linear: LinearSystem, gyroscopic: FloatArray, stiffening: FloatArray) -> WhirlModes:
+def _whirl_modes_with(linear: LinearSystem, gyroscopic: FloatArray, stiffening: FloatArray) -> _WhirlModes:
     """Return the modes of `linear` with the terms G and S (n, n) of its speeds."""
     eigenvalue, vector = _eigen(linear, linear.damping + gyroscopic, linear.stiffness + stiffening)
     kept = np.flatnonzero(eigenvalue.imag > OSCILLATING * np.max(np.abs(eigenvalue), initial=0.0))
     kept = kept[np.argsort(eigenvalue[kept].imag)]
     shape = vector[: linear.scale.size, kept].T
     largest = np.take_along_axis(shape, np.argmax(np.abs(shape), axis=1)[:, None], axis=1)
-    return WhirlModes(
+    return _WhirlModes(
         eigenvalue[kept].imag / (2.0 * math.pi),
         -eigenvalue[kept].real / np.abs(eigenvalue[kept]),
         shape / largest / linear.scale,
@@ -192,7 +192,7 @@ class WhirlBranches:
     kinetic_energy: FloatArray
 
 
-def modes_at(system: System, linear: LinearSystem, speed: float) -> WhirlModes:
+def modes_at(system: System, linear: LinearSystem, speed: float) -> _WhirlModes:
     """Return the whirl modes where the leading law has `speed` in rad/s."""
     return _whirl_modes_with(linear, *terms_at(system, law_speeds(system, speed)))
 
@@ -208,7 +208,7 @@ def whirl_branches(
     A mode continues in the one whose shape is most like it (modal assurance criterion weighted with the
     mass), all assigned together; equal likeness is decided by the nearness of the frequencies.
     """
-    swept: list[WhirlModes] = []
+    swept: list[_WhirlModes] = []
     branches: list[list[int]] = []
     for index, value in enumerate(speed):
         modes = modes_at(system, linear, float(value))
@@ -238,7 +238,7 @@ def likeness(linear: LinearSystem, first: ComplexArray, second: ComplexArray) ->
     return np.asarray(product / (size[0][:, None] * size[1]))
 
 
-def _continued(linear: LinearSystem, before: WhirlModes, branch: list[int], modes: WhirlModes) -> list[int]:
+def _continued(linear: LinearSystem, before: _WhirlModes, branch: list[int], modes: _WhirlModes) -> list[int]:
     """Return the branch of each mode: that of its predecessor, or a new one."""
     apart = np.abs(before.frequency[:, None] - modes.frequency)
     apart = apart / (before.frequency[:, None] + modes.frequency)
@@ -253,7 +253,7 @@ def _continued(linear: LinearSystem, before: WhirlModes, branch: list[int], mode
     return numbers
 
 
-def _whirl(system: System, linear: LinearSystem, speed: float, modes: WhirlModes) -> FloatArray:
+def _whirl(system: System, linear: LinearSystem, speed: float, modes: _WhirlModes) -> FloatArray:
     """Return the sense of whirl of each mode, (a,).
 
     Modes of one frequency are any combination of each other: they get one sense together, which does not

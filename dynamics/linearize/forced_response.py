@@ -136,7 +136,7 @@ FRAMES = "rotating frames"
 
 
 @dataclass(frozen=True)
-class PowerBalance:
+class _PowerBalance:
     """Mean powers of H harmonics at S speeds, W; p sources, a sinks.
 
     Attributes
@@ -173,7 +173,7 @@ class PowerBalance:
         }
 
 
-def _power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalance:
+def _power_balance(at: Excited, speed: FloatArray, steady: Steady) -> _PowerBalance:
     """Return where the power of a vibration at `speed` (S,) comes from and goes to.
 
     Forces of complex amplitude F on coordinates of amplitude y put in Re(F conj(i w y))/2. Each part is
@@ -191,7 +191,7 @@ def _power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalan
     lost: dict[tuple[str, str], FloatArray] = {}
     for name, kind, power in _losses(at, speed, u, rate):
         lost[name, kind] = lost.get((name, kind), 0.0) + power
-    return PowerBalance(
+    return _PowerBalance(
         tuple(source),
         np.array(gained).reshape(len(source), *omega.shape),
         tuple(name for name, _ in lost),
@@ -270,9 +270,9 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
     facts: Json = field(default_factory=dict)
 
     @property
-    def power(self) -> PowerBalance:
+    def power(self) -> _PowerBalance:
         """Where the power of the vibration comes from and goes to, with the residual of the balance."""
-        return PowerBalance(
+        return _PowerBalance(
             self.power_source, self.power_input, self.power_sink, self.power_sink_kind, self.power_loss
         )
 
@@ -373,7 +373,7 @@ def _difference(response: HarmonicResponse, other: HarmonicResponse) -> FloatArr
 
 
 @dataclass(frozen=True)
-class Peak:
+class _Peak:
     """A local maximum over the speeds.
 
     Attributes
@@ -402,7 +402,7 @@ class Peak:
     natural_frequency: float
 
 
-def peaks(response: ForcedResponse) -> tuple[Peak, ...]:
+def peaks(response: ForcedResponse) -> tuple[_Peak, ...]:
     """Return the peaks of all mesh and bearing forces by order, those of meshes first, the largest first.
 
     A peak is a speed of the study at which an amplitude is above those at both neighbors.
@@ -429,10 +429,10 @@ def peaks(response: ForcedResponse) -> tuple[Peak, ...]:
 
 def _peak(
     sweep: ForcedResponse, quantity: str, name: str, at: tuple[int, int], amplitude: float, gain: FloatArray
-) -> Peak:
+) -> _Peak:
     frequency = float(sweep.frequency[at])
     near = sweep.natural_frequency[np.argmin(np.abs(sweep.natural_frequency - frequency))]
-    return Peak(
+    return _Peak(
         quantity=quantity,
         name=name,
         order=float(sweep.order[at[1]]),

@@ -181,7 +181,7 @@ ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class ModalHousing:
+class _ModalHousing:
     """M = 1, C and K over m modal amplitudes, and the motion of s seats by them.
 
     All modes of the matrices are kept, so that static motions are those of the matrices.
@@ -220,7 +220,7 @@ class ModalHousing:
 
 
 @identity_cached
-def modal_housing(housing: Housing) -> ModalHousing:
+def modal_housing(housing: Housing) -> _ModalHousing:
     """Return the modes of a housing with mass.
 
     They are those of M x = theta K x, in which the shapes reproduce the compliance: sum theta x x^T = K^-1 to
@@ -236,9 +236,9 @@ def modal_housing(housing: Housing) -> ModalHousing:
         damping = shape.T @ _symmetric(housing.damping) @ shape
         own = np.sqrt(np.maximum(np.diag(damping), 0.0))
         damping = np.where(np.abs(damping) > ROUNDING * np.outer(own, own), damping, 0.0)
-    seats = np.zeros((SEAT * len(housing.bushings), square.size))
-    seats[list(housing.columns)] = shape[list(housing.own_columns)]
-    return ModalHousing(housing.name, housing.bushings, square, damping, seats.reshape(-1, SEAT, square.size))
+    rows = np.zeros((SEAT * len(housing.bushings), square.size))
+    rows[list(housing.columns)] = shape[list(housing.own_columns)]
+    return _ModalHousing(housing.name, housing.bushings, square, damping, rows.reshape(-1, SEAT, square.size))
 
 
 def _symmetric(matrix: object) -> FloatArray:
@@ -257,7 +257,7 @@ class Bodies(Sequence[Rotor]):
     """
 
     rotors: tuple[Rotor, ...]
-    housings: tuple[ModalHousing, ...] = ()
+    housings: tuple[_ModalHousing, ...] = ()
 
     @overload
     def __getitem__(self, index: int) -> Rotor: ...

@@ -21,7 +21,7 @@ FARTHEST = 1.0
 """From the middle of a cell to its node, over the largest distance of the middle to a node of the surface."""
 
 
-def surface_cells(hull: Hull, count: int) -> IntArray:
+def _surface_cells(hull: Hull, count: int) -> IntArray:
     """Return the cell of every node, (N,), numbers from 0 on; at most `count` of about the same size."""
     share = _node_areas(hull)
     most = min(count, int(np.count_nonzero(share)))
@@ -29,7 +29,7 @@ def surface_cells(hull: Hull, count: int) -> IntArray:
     return _settled(hull, seeds, STEPS)
 
 
-def split_cells(hull: Hull, cell: IntArray, chosen: BoolArray) -> IntArray:
+def _split_cells(hull: Hull, cell: IntArray, chosen: BoolArray) -> IntArray:
     """Return the cell of every node, (N,), where each of the `chosen` (C,) cells has become two."""
     middle = _means(cell, _node_areas(hull), hull.nodes)
     distance = np.linalg.norm(hull.nodes - middle[cell], axis=1)
@@ -178,13 +178,13 @@ def radiating_hull(outer: OuterHull, highest_frequency: float, sound_speed: floa
     count = max(int(np.ceil(outer.hull.area / (0.5 * np.sqrt(3.0) * (longest / LONGEST) ** 2))), FEWEST)
     if count >= most:
         return fine
-    cell = surface_cells(outer.hull, count)
+    cell = _surface_cells(outer.hull, count)
     for _ in range(ATTEMPTS):
         coarse, owner = _coarse_hull(outer, cell)
         poor = np.concatenate([coarse.hull.open_edges, coarse.hull.longer_edges(longest)])
         if not poor.size:
             return coarse
-        cell = split_cells(outer.hull, cell, np.isin(np.arange(cell.max() + 1), owner[poor]))
+        cell = _split_cells(outer.hull, cell, np.isin(np.arange(cell.max() + 1), owner[poor]))
         if cell.max() >= most:
             break
     return fine

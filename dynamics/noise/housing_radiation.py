@@ -49,7 +49,7 @@ class _Knots:
     error: float
 
 
-def octaves(low: float, high: float) -> list[tuple[float, float]]:
+def _octaves(low: float, high: float) -> list[tuple[float, float]]:
     """Return ranges of at most an octave from `low` to `high`, each a bit above the one before.
 
     Each has its own panels: the highest are too many for the lowest.
@@ -61,7 +61,7 @@ def octaves(low: float, high: float) -> list[tuple[float, float]]:
     return list(zip(starts, ends[1:], strict=True))
 
 
-def expected_knots(ka: float) -> float:
+def _expected_knots(ka: float) -> float:
     """Return how many frequencies `_knots_between` about takes in an octave up to a wavenumber times radius.
 
     Counted on cast boxes with 40 and 100 coordinates, ka of 0.6 to 28: within a quarter. Few simple modes
@@ -91,7 +91,7 @@ USUAL = 0.85
 """Frequency of an octave whose cost is the mean, over its highest: they lie closer towards its end."""
 
 
-class Octave(NamedTuple):
+class _Octave(NamedTuple):
     """A range of frequencies, Hz, and the panels that resolve it."""
 
     first: float
@@ -160,7 +160,7 @@ def _resistance_at(radiators: _Radiators, point: tuple[int, float]) -> ComplexAr
     return resistance(radiators.model, panels.hull, point[1], shapes, radiators.air)
 
 
-def radiation_cost(octaves: Iterable[Octave], model: RadiationModel, air: Air) -> Cost:
+def _radiation_cost(octaves: Iterable[_Octave], model: RadiationModel, air: Air) -> Cost:
     """Predict the cost of `housing_radiation` once its hulls are there, on the reference host."""
     whole = Cost(0.0, 0.0)
     for octave in octaves:
@@ -169,12 +169,12 @@ def radiation_cost(octaves: Iterable[Octave], model: RadiationModel, air: Air) -
     return whole
 
 
-def _knot_cost(octave: Octave, model: RadiationModel, air: Air) -> tuple[Cost, float]:
+def _knot_cost(octave: _Octave, model: RadiationModel, air: Air) -> tuple[Cost, float]:
     """Predict the cost of a frequency of an octave, and how many it has."""
     panels, coordinates = octave.hull.shapes.shape
     per_hertz = 2.0 * math.pi / air.sound_speed * octave.hull.hull.outer_radius
     cost = model.cost(panels, per_hertz * (USUAL * octave.last), coordinates)
-    return cost, expected_knots(per_hertz * octave.last)
+    return cost, _expected_knots(per_hertz * octave.last)
 
 
 BAND = 10.0**0.05
@@ -184,7 +184,7 @@ WORK = "radiation resistance by {}"
 
 
 @dataclass(frozen=True)
-class RadiationFacts:
+class _RadiationFacts:
     """How a radiation resistance was computed.
 
     Attributes
@@ -228,7 +228,7 @@ class HousingRadiation(ModalResistance, ArrayFile):
 
     SCHEMA = "lineofaction housing radiation"
     RECORDS = MappingProxyType(
-        {"facts": lambda data: RadiationFacts(**{**data, "cost": WorkCost(**data["cost"])})}
+        {"facts": lambda data: _RadiationFacts(**{**data, "cost": WorkCost(**data["cost"])})}
     )
 
     surface: FloatArray = field(
@@ -237,12 +237,12 @@ class HousingRadiation(ModalResistance, ArrayFile):
     area: float
     impedance: float
     model_name: str
-    facts: RadiationFacts
+    facts: _RadiationFacts
 
     def hull_at(self, outer: OuterHull, frequency: float, sound_speed: float) -> RadiatingHull | None:
         """Return the panels at a computed frequency, Hz; None above those that the mesh resolves."""
         low, high = float(self.frequency[0]), float(self.frequency[-1])
-        for first, last in octaves(low, min(high, self.facts.resolved_frequency)):
+        for first, last in _octaves(low, min(high, self.facts.resolved_frequency)):
             if first <= frequency <= last:
                 return radiating_hull(outer, last, sound_speed)
         return None
@@ -295,8 +295,8 @@ def housing_radiation(
     low, high = positive("frequencies", float(requested.min())) / BAND, float(requested.max()) * BAND
     outer = outer_hull(housing)
     resolved = 0.0 if isinstance(model, EquivalentRadiatedPower) else resolved_frequency(outer, air)
-    ends = octaves(low, min(high, resolved))
-    parted = [Octave(*each, radiating_hull(outer, each[1], air.sound_speed)) for each in ends]
+    ends = _octaves(low, min(high, resolved))
+    parted = [_Octave(*each, radiating_hull(outer, each[1], air.sound_speed)) for each in ends]
     parts, cost = _resolved_parts(
         parted, model, air, housing.modes[1], progress or unreported, expected, cache, workers
     )
@@ -312,12 +312,12 @@ def housing_radiation(
         outer.hull.area,
         air.impedance,
         model.model_name,
-        RadiationFacts(panels, cost, resolved, error, outer.inner_area, outer.cap_area),
+        _RadiationFacts(panels, cost, resolved, error, outer.inner_area, outer.cap_area),
     )
 
 
 def _resolved_parts(
-    parted: Sequence[Octave],
+    parted: Sequence[_Octave],
     model: RadiationModel,
     air: Air,
     modes: FloatArray,
@@ -327,7 +327,7 @@ def _resolved_parts(
     workers: Workers,
 ) -> tuple[list[_Knots], WorkCost]:
     """Return the knots of each octave, and their cost."""
-    kind, reference = WORK.format(model.model_name), radiation_cost(parted, model, air)
+    kind, reference = WORK.format(model.model_name), _radiation_cost(parted, model, air)
     expected(on_this_host(kind, reference, cache))
     radiators = _Radiators(model, tuple(octave.hull for octave in parted), air)
     ranges = [(octave.first, octave.last) for octave in parted]

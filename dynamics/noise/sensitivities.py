@@ -97,7 +97,7 @@ class Sensitivity:
         return abs(self.for_one_db_less) <= self.linear_range
 
 
-def ranked(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
+def _ranked(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
     """Return sensitivities by what a step changes, the largest first."""
     return tuple(sorted(rows, key=lambda row: -abs(row.change)))
 
@@ -110,7 +110,7 @@ def sound_sensitivities(
     scenes: Callable[[DesignFigure], Callable[[float], Scene]],
     progress: Progress,
 ) -> tuple[tuple[Sensitivity, ...], dict[str, str]]:
-    """Return what steps of the guesses that a model has and of its flanks change, `ranked`.
+    """Return what steps of the guesses that a model has and of its flanks change, `_ranked`.
 
     Parameters
     ----------
@@ -145,4 +145,4 @@ def sound_sensitivities(
     figures = (DesignFigure(name, "", 1.0, STEPS.get(name, STEP)) for name in known)
     by_name = {figure.name: figure for figure in (*figures, *flanks)}
     rows, left_out = run_variants("sensitivities", by_name, compute, (DynamicsError,), progress)
-    return ranked(rows.values()), left_out
+    return _ranked(rows.values()), left_out

@@ -89,7 +89,7 @@ Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
 
 
 @dataclass(frozen=True)
-class Guess:
+class _Guess:
     """A figure of a scene that is known within a range only.
 
     Attributes
@@ -167,21 +167,21 @@ def _stiffened(bearing: Bearing, factor: float) -> Bearing:
 GUESSES = {
     guess.name: guess
     for guess in (
-        Guess(
+        _Guess(
             "housing_damping",
             "damping of the housing",
             Range(0.4, 1.0, 2.0),
             partial(_each_housing, with_damping),
         ),
-        Guess(
+        _Guess(
             "housing_frequency",
             "natural frequencies of the housing",
             Range(0.97, 1.0, 1.01),
             partial(_each_housing, with_frequencies),
         ),
-        Guess("mount_stiffness", "stiffness of the mounts", Range(0.5, 1.0, 2.0), _mount_stiffness),
-        Guess("bearing_stiffness", "stiffness of the bearings", Range(0.7, 1.0, 1.4), _bearing_stiffness),
-        Guess("mesh_damping", "damping of the meshes", Range(0.5, 1.0, 2.0), _mesh_damping),
+        _Guess("mount_stiffness", "stiffness of the mounts", Range(0.5, 1.0, 2.0), _mount_stiffness),
+        _Guess("bearing_stiffness", "stiffness of the bearings", Range(0.7, 1.0, 1.4), _bearing_stiffness),
+        _Guess("mesh_damping", "damping of the meshes", Range(0.5, 1.0, 2.0), _mesh_damping),
     )
 }
 """By name. Cast iron with bolted joints has ratios of 0.002 to 0.01 about 0.005; a mesh reads natural
@@ -331,7 +331,7 @@ def _band(
             bands[index] = bands[index].with_error(name, missed, missed)
     peaks = np.array([nominal.weighted_power.sum(axis=0), *nominal.weighted_power])
     for index, row in enumerate(peaks):
-        bands[index] = bands[index].with_error("speed_steps", 0.0, missed_between(speed, row))
+        bands[index] = bands[index].with_error("speed_steps", 0.0, _missed_between(speed, row))
     parts = np.cumsum([1, order.size, order.size])
     total, largest, there, each = (
         tuple(bands[first:end]) for first, end in zip([0, *parts], [*parts, len(bands)], strict=True)
@@ -339,7 +339,7 @@ def _band(
     return SoundBand(speed, order, total[0], largest, speed[loudest], there, each)
 
 
-def missed_between(speed: FloatArray, power: FloatArray) -> float:
+def _missed_between(speed: FloatArray, power: FloatArray) -> float:
     """Return how far a peak between the speeds may stand above the largest power, dB, at most `MOST_MISSED`.
 
     The reciprocal of the power over speed is a parabola near a resonance: that through the largest value and
@@ -362,7 +362,7 @@ def largest_level(speed: FloatArray, power: OrderPower) -> float:
     Smooth in whatever shifts a resonance, where the speeds resolve it.
     """
     total = power.weighted_power.sum(axis=0)
-    return float(sound_power_level(total.max())) + missed_between(speed, total)
+    return float(sound_power_level(total.max())) + _missed_between(speed, total)
 
 
 def _levels(order: FloatArray, loudest: FloatArray, own: FloatArray, power: OrderPower) -> FloatArray:

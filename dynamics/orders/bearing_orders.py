@@ -38,7 +38,7 @@ SAME = 1e-6
 
 
 @dataclass(frozen=True)
-class MeshHarmonics:
+class _MeshHarmonics:
     """Harmonics of meshes, in rising order; one that several meshes share is that of the first of them.
 
     Attributes
@@ -78,7 +78,7 @@ def _counting_mesh(result: RunResult) -> int:
     return int(np.argmax(turning))
 
 
-def _mesh_harmonics(result: RunResult, highest: int) -> MeshHarmonics:
+def _mesh_harmonics(result: RunResult, highest: int) -> _MeshHarmonics:
     """Return the harmonics of all meshes that turn up to order `highest` of the `_counting_mesh`."""
     mean = result.mesh_frequency.mean(axis=-1)
     ratio = mean / mean[_counting_mesh(result)]
@@ -93,7 +93,7 @@ def _mesh_harmonics(result: RunResult, highest: int) -> MeshHarmonics:
         if row[0] - kept[-1][0] > SAME * row[0]:
             kept.append(row)
     order, mesh, multiple = (np.array(column) for column in zip(*kept, strict=True))
-    return MeshHarmonics(order, mesh, multiple)
+    return _MeshHarmonics(order, mesh, multiple)
 
 
 SECOND_MOMENT = 1.0 / 12.0 - 0.5 / np.pi**2
@@ -235,7 +235,7 @@ def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | 
     return _put_together(result, harmonics, kept[::-1] if falls else kept, facts)
 
 
-def _checked_pitches(harmonics: MeshHarmonics, pitches: int | None) -> int:
+def _checked_pitches(harmonics: _MeshHarmonics, pitches: int | None) -> int:
     """Return the base pitches of a window that tells the orders apart."""
     least = int(np.ceil(APART / harmonics.closest * (1.0 - 1e-6)))
     if pitches is None:
@@ -260,7 +260,7 @@ def _windows(own: FloatArray, pitches: int) -> Iterator[slice]:
 
 
 def _row(
-    result: RunResult, harmonics: MeshHarmonics, cycles: FloatArray, signals: FloatArray, window: slice
+    result: RunResult, harmonics: _MeshHarmonics, cycles: FloatArray, signals: FloatArray, window: slice
 ) -> _Row:
     hertz = result.mesh_frequency[:, window]
     own = hertz[_counting_mesh(result)]
@@ -314,7 +314,7 @@ def _no_window(own: FloatArray, pitches: int, rows: list[_Row]) -> InputError:
 
 
 def _put_together(
-    result: RunResult, harmonics: MeshHarmonics, rows: list[_Row], facts: Json
+    result: RunResult, harmonics: _MeshHarmonics, rows: list[_Row], facts: Json
 ) -> BearingOrders:
     frequency = np.stack([row.frequency for row in rows])
     sweep = np.array([row.sweep for row in rows])

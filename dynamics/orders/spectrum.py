@@ -44,7 +44,7 @@ class Spectrum:
 
 
 @dataclass(frozen=True)
-class MeshOrder:
+class _MeshOrder:
     """The band of a harmonic of the mesh frequency in a window of a run-up.
 
     Attributes
@@ -106,17 +106,17 @@ def window_spectrum(
 
 def mesh_orders(
     result: RunResult, start: float, end: float, count: int = 5, mesh: int = 0
-) -> tuple[MeshOrder, ...]:
+) -> tuple[_MeshOrder, ...]:
     """Return the first `count` multiples of a mesh's frequency over the window."""
     integer("count", count, 1, 1000)
     integer("mesh", mesh, 0, len(result.mesh) - 1)
     frequency = result.mesh_frequency[mesh, result.window(start, end)]
     low, high = float(frequency.min()), float(frequency.max())
-    return tuple(MeshOrder(order, order * low, order * high) for order in range(1, count + 1))
+    return tuple(_MeshOrder(order, order * low, order * high) for order in range(1, count + 1))
 
 
 @dataclass(frozen=True)
-class Peak:
+class _Peak:
     """A local maximum of a spectrum.
 
     Attributes
@@ -133,7 +133,7 @@ class Peak:
 
 def find_peaks(
     spectrum: Spectrum, count: int = 10, low: float = 0.0, high: float = np.inf
-) -> tuple[Peak, ...]:
+) -> tuple[_Peak, ...]:
     """Return the `count` highest peaks between `low` and `high` (Hz), highest first; the mean is none.
 
     Raises
@@ -153,13 +153,13 @@ def find_peaks(
     return tuple(_vertex(spectrum, int(top)) for top in tops)
 
 
-def _vertex(spectrum: Spectrum, top: int) -> Peak:
+def _vertex(spectrum: Spectrum, top: int) -> _Peak:
     """Parabola through the logarithms of three lines."""
     left, middle, right = np.log(np.maximum(spectrum.amplitude[top - 1 : top + 2], 1e-300))
     bend = left - 2.0 * middle + right
     shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
     height = middle - 0.25 * (left - right) * shift
-    return Peak(float(spectrum.frequency[top] + shift * spectrum.resolution), float(np.exp(height)))
+    return _Peak(float(spectrum.frequency[top] + shift * spectrum.resolution), float(np.exp(height)))
 
 
 ORDERS = 3
@@ -169,7 +169,7 @@ REVOLUTIONS = 4
 
 
 @dataclass(frozen=True)
-class Sideband:
+class _Sideband:
     """One line beside a mesh order.
 
     Attributes
@@ -198,7 +198,7 @@ def sidebands(
     count: int = 3,
     mesh: int = 0,
     periods: Mapping[str, int] | None = None,
-) -> tuple[Sideband, ...]:
+) -> tuple[_Sideband, ...]:
     """Return `count` sidebands on either side of the first `orders` mesh orders of the signal `values` (T,).
 
     Parameters
@@ -218,7 +218,7 @@ def sidebands(
         raise InputError("values", np.shape(values), "one signal, (T,)", "Pick one bearing and direction.")
     per_pitch = max(64, 8 * (orders + 1))
     grid, _, signal = resample_to_position(result, values, per_pitch, mesh)
-    bands: list[Sideband] = []
+    bands: list[_Sideband] = []
     if not periods:
         pair = result.case["meshes"][mesh]
         teeth = {gear["name"]: int(gear["teeth"]) for gear in result.case["gears"]}
@@ -234,5 +234,5 @@ def sidebands(
                 line = (order * period + number) * turns
                 at = order + number / period
                 if line > 0:
-                    bands.append(Sideband(source, order, number, at, float(lines[line])))
+                    bands.append(_Sideband(source, order, number, at, float(lines[line])))
     return tuple(bands)

@@ -44,7 +44,7 @@ class BranchStatus(IntEnum):
 
 
 @dataclass(frozen=True)
-class Bifurcation:
+class _Bifurcation:
     """A point where a branch turns back in speed, or gains or loses stability.
 
     Attributes
@@ -68,7 +68,7 @@ class Branch:
 
     status: BranchStatus
     orbits: tuple[Orbit, ...]
-    bifurcations: tuple[Bifurcation, ...]
+    bifurcations: tuple[_Bifurcation, ...]
 
     @property
     def speed(self) -> FloatArray:
@@ -157,7 +157,7 @@ def _continue(
     """
     first, last = speeds
     low, high = sorted(speeds)
-    trail, bifurcations, step = [start], list[Bifurcation](), largest_step
+    trail, bifurcations, step = [start], list[_Bifurcation](), largest_step
     status = BranchStatus.POINT_LIMIT
     while len(trail) < points:
         arrived = _step(problem, scale, trail[-1], step)
@@ -222,18 +222,18 @@ def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) ->
 
 def _passed(
     problem: PeriodicProblem, scale: float, before: _Point, behind: _Point, step: float, index: int
-) -> list[Bifurcation]:
+) -> list[_Bifurcation]:
     """Return what lies between two neighboring points."""
-    bifurcations = []
+    between = []
     if before.tangent[-1] * behind.tangent[-1] < 0.0:
-        bifurcations.append(Bifurcation(Instability.FOLD, _fold(problem, scale, before, behind, step), index))
+        between.append(_Bifurcation(Instability.FOLD, _fold(problem, scale, before, behind, step), index))
     elif before.orbit.stable is not behind.orbit.stable:
         unstable = behind.orbit if before.orbit.stable else before.orbit
         excess = [abs(p.orbit.multipliers[0]) - 1.0 - ON_THE_CIRCLE for p in (before, behind)]
         weight = excess[0] / (excess[0] - excess[1])
         speed = before.orbit.speed + weight * (behind.orbit.speed - before.orbit.speed)
-        bifurcations.append(Bifurcation(unstable.instability, float(speed), index))
-    return bifurcations
+        between.append(_Bifurcation(unstable.instability, float(speed), index))
+    return between
 
 
 def _fold(problem: PeriodicProblem, scale: float, before: _Point, behind: _Point, step: float) -> float:

@@ -123,7 +123,7 @@ MOST_STEPS = 1_000_000
 
 
 @dataclass(frozen=True)
-class PeriodGrid:
+class _PeriodGrid:
     """N steps of U different sizes, in common periods; the same at all speeds.
 
     Attributes
@@ -141,7 +141,7 @@ class PeriodGrid:
     level: IntArray
 
     @classmethod
-    def of(cls, system: System, period: CommonPeriod, largest: float) -> PeriodGrid:
+    def of(cls, system: System, period: CommonPeriod, largest: float) -> _PeriodGrid:
         """Return steps of at most `largest` common periods, an equal number of them between any two knots.
 
         Tables have a kink in their second derivative at each knot (a jump of stiffness is a narrow interval
@@ -168,11 +168,11 @@ class PeriodGrid:
         return cls(phase, np.append(size, 0.0), np.asarray(level, dtype=np.int64))
 
     @property
-    def halved(self) -> PeriodGrid:
+    def halved(self) -> _PeriodGrid:
         """The grid with every step halved."""
         middle = 0.5 * (self.phase[1:] + self.phase[:-1])
         phase = np.sort(np.concatenate([self.phase, middle]))
-        return PeriodGrid(phase, 0.5 * self.size, np.repeat(self.level, 2))
+        return _PeriodGrid(phase, 0.5 * self.size, np.repeat(self.level, 2))
 
 
 def _knots(system: System, period: CommonPeriod) -> FloatArray:
@@ -286,7 +286,7 @@ class PeriodicProblem:
 
     system: System
     period: CommonPeriod
-    grid: PeriodGrid
+    grid: _PeriodGrid
     repeat: int
     time: float
     rest: FloatArray
@@ -337,7 +337,7 @@ def periodic_problem(
     return PeriodicProblem(
         system,
         period,
-        PeriodGrid.of(system, period, 1.0 / max(steps_per_cycle * cycles, STEPS_PER_PITCH * waves)),
+        _PeriodGrid.of(system, period, 1.0 / max(steps_per_cycle * cycles, STEPS_PER_PITCH * waves)),
         repeat,
         time,
         np.concatenate([rest, np.zeros(rest.size)]),

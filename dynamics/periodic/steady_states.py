@@ -26,7 +26,7 @@ SAMPLES_PER_PITCH = 64  # at least; as many powers of 2 more as there are steps
 
 
 @dataclass(frozen=True)
-class PeriodicMotion:
+class _PeriodicMotion:
     """Series over one period on a uniform grid of T samples, its end left out; m meshes, b bearings.
 
     Attributes
@@ -75,7 +75,7 @@ def spectrum(values: FloatArray) -> ComplexArray:
 
 def motion(
     problem: PeriodicProblem, orbit: Orbit, samples_per_pitch: int = SAMPLES_PER_PITCH
-) -> PeriodicMotion:
+) -> _PeriodicMotion:
     """Return the series of `orbit`, a motion that `problem` has, at least so many samples per base pitch."""
     over_period = PeriodMap(problem, orbit.speed)
     path = over_period.path(orbit.state)
@@ -94,7 +94,7 @@ def motion(
     static = np.empty((meshes, samples))
     for f, force in enumerate(system.flanks.nominal_force):
         static_deflections(system.flanks.static, f, seen.position[f], float(force), static[f])
-    return PeriodicMotion(
+    return _PeriodicMotion(
         time,
         seen.position[:meshes],
         seen.coordinate[driving],

@@ -32,7 +32,7 @@ def contact_shares(result: RunResult) -> list[dict[str, float]]:
 
 
 @dataclass(frozen=True)
-class DynamicFactor:
+class _DynamicFactor:
     """Mesh force over the nominal one, in B blocks along a run.
 
     Attributes
@@ -51,7 +51,7 @@ class DynamicFactor:
     least: FloatArray
 
 
-def dynamic_factor(result: RunResult, pitches: int = 16, mesh: int = 0) -> DynamicFactor:
+def dynamic_factor(result: RunResult, pitches: int = 16, mesh: int = 0) -> _DynamicFactor:
     """Return the dynamic factor of a mesh in blocks of `pitches` base pitches.
 
     Raises
@@ -78,7 +78,7 @@ def dynamic_factor(result: RunResult, pitches: int = 16, mesh: int = 0) -> Dynam
     def mean(values: FloatArray) -> FloatArray:
         return np.asarray(np.add.reduceat(values[: force.size], first) / samples)
 
-    return DynamicFactor(
+    return _DynamicFactor(
         mean(result.time),
         mean(result.mesh_frequency[mesh]),
         np.maximum.reduceat(largest, first),

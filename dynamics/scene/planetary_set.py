@@ -21,7 +21,7 @@ Stiffness = BearingStiffness | float | None
 
 
 @dataclass(frozen=True)
-class PlanetaryParts:
+class _PlanetaryParts:
     """Parts of a scene, to be joined with those of other trains: ``Scene((*parts.shafts, other), ...)``."""
 
     shafts: tuple[Shaft, ...]
@@ -152,7 +152,7 @@ class PlanetarySet:
         """Return the full name of a part."""
         return f"{self.name}.{part}" if self.name else part
 
-    def parts(self) -> PlanetaryParts:
+    def parts(self) -> _PlanetaryParts:
         """Return the parts of the set."""
         planets = [self._planet(index) for index in range(self.planets)]
         names, inertias = ("sun", "ring", "carrier"), (Inertia(),) * 2 + (self.carrier_inertia,)
@@ -172,7 +172,7 @@ class PlanetarySet:
             if values is not None
         ]
         pins = range(self.planets if self.planet_stiffness is not None else 0)
-        return PlanetaryParts(
+        return _PlanetaryParts(
             (*central, *planets),
             tuple(gears),
             tuple(bushings),

@@ -29,7 +29,7 @@ StatesOf = Callable[[int, int], States]
 
 
 @dataclass(frozen=True)
-class Window:
+class _Window:
     """A stretch of a run from a sample on; T samples, m meshes, b bearings.
 
     Attributes
@@ -104,7 +104,7 @@ class _Difference:
     force_orders: FloatArray
 
 
-def windows(system: System, states_of: StatesOf, samples: int) -> list[Window]:
+def _windows(system: System, states_of: StatesOf, samples: int) -> list[_Window]:
     """Return windows at the ends of equal parts of the run; none where it is too short or has no mesh."""
     count = WINDOWS if SHARE * samples >= WINDOWS * LEAST_SAMPLES else 1
     size = int(SHARE * samples / count)
@@ -114,7 +114,7 @@ def windows(system: System, states_of: StatesOf, samples: int) -> list[Window]:
     return [_window(system, states_of, end - size, end) for end in ends]
 
 
-def _window(system: System, states_of: StatesOf, first: int, stop: int) -> Window:
+def _window(system: System, states_of: StatesOf, first: int, stop: int) -> _Window:
     rate = system.sampling.rate
     states, time = states_of(first, stop), np.arange(stop - first) / rate
     later = starting_at(system, first / rate, states.moved[0])
@@ -123,7 +123,7 @@ def _window(system: System, states_of: StatesOf, first: int, stop: int) -> Windo
     later = replace(later, scene=scene, sampling=system.sampling.points())
     counted = states._replace(moved=states.moved - states.moved[0])
     position, error, force = _seen(later, time, counted)
-    return Window(first, stop, time, later, counted, position, error, force)
+    return _Window(first, stop, time, later, counted, position, error, force)
 
 
 def _seen(system: System, time: FloatArray, states: States) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -148,7 +148,7 @@ def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
     left_out = _left_out_effects(system)
     began = cpu_seconds()
     full = system.scene.outputs.receipt == "full"
-    looked = windows(system, states_of, samples) if full else []
+    looked = _windows(system, states_of, samples) if full else []
     if not looked:
         return {**requested, "left_out_effects": left_out}
     steps = [window.repeated(window.system, finer(integration)) for window in looked]

@@ -96,7 +96,7 @@ class _Value(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Quantity:
+class _Quantity:
     """What a response is.
 
     Attributes
@@ -153,7 +153,7 @@ class Response:
             )
 
     @property
-    def kind(self) -> Quantity:
+    def kind(self) -> _Quantity:
         """What it is."""
         return QUANTITIES[self.quantity]
 
@@ -232,26 +232,26 @@ def _mesh_load_factor(window: _Window, _row: int, _order: int) -> _Value:
     return _Value(max(sharing.mesh_load_factor for sharing in shared))
 
 
-QUANTITIES: dict[str, Quantity] = {
-    "bearing_force": Quantity("bearing force", "N", "bearing", True, _bearing_force),
-    "dte_order": Quantity("dynamic transmission error", "m", "mesh", True, _dte_order),
-    "dte_rms": Quantity(
+QUANTITIES: dict[str, _Quantity] = {
+    "bearing_force": _Quantity("bearing force", "N", "bearing", True, _bearing_force),
+    "dte_order": _Quantity("dynamic transmission error", "m", "mesh", True, _dte_order),
+    "dte_rms": _Quantity(
         "dynamic transmission error, rms",
         "m",
         "mesh",
         False,
         lambda seen, row, _: _Value(float(np.std(seen.transmission_error(row))), seen.error("rms")),
     ),
-    "dte_peak_to_peak": Quantity(
+    "dte_peak_to_peak": _Quantity(
         "dynamic transmission error, peak to peak",
         "m",
         "mesh",
         False,
         lambda seen, row, _: _Value(float(np.ptp(seen.transmission_error(row)))),
     ),
-    "peak_mesh_force": Quantity("peak mesh force", "N", "mesh", False, _peak_mesh_force),
-    "dynamic_factor": Quantity("dynamic factor K_v", "", "mesh", False, _dynamic_factor),
-    "contact_loss": Quantity("contact loss", "", "mesh", False, _contact_loss),
-    "mesh_load_factor": Quantity("mesh load factor K_gamma", "", "", False, _mesh_load_factor),
+    "peak_mesh_force": _Quantity("peak mesh force", "N", "mesh", False, _peak_mesh_force),
+    "dynamic_factor": _Quantity("dynamic factor K_v", "", "mesh", False, _dynamic_factor),
+    "contact_loss": _Quantity("contact loss", "", "mesh", False, _contact_loss),
+    "mesh_load_factor": _Quantity("mesh load factor K_gamma", "", "", False, _mesh_load_factor),
 }
 """Responses by name."""

@@ -28,7 +28,7 @@ POINT = ("point",)
 
 
 @dataclass(frozen=True)
-class Spread:
+class _Spread:
     """The distribution of a response over the samples of each of C combinations of grid and list.
 
     Attributes
@@ -105,12 +105,12 @@ class Study(ArrayFile):
         """Return a response (C, samples) by combination and sample."""
         return self.figure[:, response].reshape(-1, self.samples)
 
-    def spread(self, response: int) -> Spread:
+    def spread(self, response: int) -> _Spread:
         """Return the distribution of a response over the samples of each combination."""
         rows = [row[np.isfinite(row)] for row in self.column(response)]
         bounds = [[_bounds(row, fraction, self.confidence) for fraction in FRACTIONS] for row in rows]
         quantile, low, high = np.moveaxis(np.array(bounds), -1, 0)
-        return Spread(
+        return _Spread(
             np.array([row.mean() if row.size else np.nan for row in rows]),
             np.array([row.std(ddof=1) / np.sqrt(row.size) if row.size > 1 else np.nan for row in rows]),
             np.array(FRACTIONS),
@@ -177,7 +177,7 @@ class Scenes(Protocol):
         ...
 
 
-class Workers(Protocol):
+class _Workers(Protocol):
     """Runs independent tasks, yields their results in order; see `model_studies.workers`, which conform."""
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
@@ -227,7 +227,7 @@ class StudyTask:
 
 
 @dataclass(frozen=True)
-class PointResult:
+class _PointResult:
     """What a study keeps of one run.
 
     Attributes
@@ -261,12 +261,12 @@ def _batches(design: Design, scenes: Scenes) -> Iterator[tuple[tuple[int, ...], 
             yield some, tuple(values[k] for k in some)
 
 
-def run_batch(task: StudyTask, batch: Batch) -> list[PointResult]:
+def _run_batch(task: StudyTask, batch: Batch) -> list[_PointResult]:
     """Run the points of a batch."""
     return [_run_point(task, values) for values in batch]
 
 
-def _run_point(task: StudyTask, values: tuple[float, ...]) -> PointResult:
+def _run_point(task: StudyTask, values: tuple[float, ...]) -> _PointResult:
     """Run one point; what fails is a marked point with its reason."""
     began, integration, none = clock.thread_time(), NAN, [NAN] * len(task.responses)
     try:
@@ -280,7 +280,7 @@ def _run_point(task: StudyTask, values: tuple[float, ...]) -> PointResult:
         figures, errors, reason = none, none, str(error)
     except MemoryError:
         figures, errors, reason = none, none, "out of memory"
-    return PointResult(figures, errors, reason, [clock.thread_time() - began, integration])
+    return _PointResult(figures, errors, reason, [clock.thread_time() - began, integration])
 
 
 NEGLECTED = ("errors of steps and tables measured in windows of the run", "estimated influence of effects")
@@ -290,7 +290,7 @@ NEGLECTED = ("errors of steps and tables measured in windows of the run", "estim
 def study(
     task: StudyTask,
     design: Design,
-    workers: Workers = _OneByOne(),  # noqa: B008 (no state)
+    workers: _Workers = _OneByOne(),  # noqa: B008 (no state)
     progress: Progress = silent,
     *,
     confidence: float = 0.95,
@@ -325,9 +325,9 @@ def study(
     within("confidence", confidence, 0.5, 0.9999)
     count = len(design.points)
     integer("keep_worst", keep_worst, 0, count)
-    results: list[PointResult | None] = [None] * count
+    results: list[_PointResult | None] = [None] * count
     parts = list(_batches(design, task.scenes))
-    done, batch_results = 0, workers.run(run_batch, task, [values for _, values in parts])
+    done, batch_results = 0, workers.run(_run_batch, task, [values for _, values in parts])
     for (indices, _), points in zip(parts, batch_results, strict=True):
         for index, point in zip(indices, points, strict=True):
             results[index] = point
@@ -354,7 +354,7 @@ def keep_runs(task: StudyTask, study: Study, folder: Path, progress: Progress = 
 
 
 def _result(
-    task: StudyTask, design: Design, points: Sequence[PointResult], confidence: float, keep_worst: int
+    task: StudyTask, design: Design, points: Sequence[_PointResult], confidence: float, keep_worst: int
 ) -> Study:
     figure = np.array([point.figures for point in points])
     usable = np.flatnonzero(np.isfinite(figure[:, 0]))

@@ -219,7 +219,7 @@ FREQUENCIES = 800
 
 
 @dataclass(frozen=True)
-class Mobilities:
+class _Mobilities:
     """Transfer functions from the motions of the seats, n frequencies.
 
     Attributes
@@ -276,7 +276,7 @@ class VibrationAnalysis:
 
     housing: str
     vibration: HousingVibration
-    mobilities: Mobilities
+    mobilities: _Mobilities
     at_speed: int
     at_order: int
     bearings: Shares
@@ -335,7 +335,7 @@ def analyze_vibration(
     )
 
 
-def _mobilities(housing: ReducedHousing, highest: float, points: Sequence[str] | None = None) -> Mobilities:
+def _mobilities(housing: ReducedHousing, highest: float, points: Sequence[str] | None = None) -> _Mobilities:
     """Return the transfer functions of a housing up to a frequency in Hz, its resonances among them."""
     even = np.linspace(highest / FREQUENCIES, highest, FREQUENCIES)
     own = housing.frequency[(housing.frequency > even[0]) & (housing.frequency < highest)]
@@ -347,7 +347,7 @@ def _mobilities(housing: ReducedHousing, highest: float, points: Sequence[str] |
         surface = mean_square_mobility(housing, hertz, surface_weight(housing))
     names = tuple(f"{seat.name} {motion}" for seat in housing.seats for motion in seat.motions)
     by_point = moved.reshape(hertz.size, len(rows), 3, housing.motions)
-    return Mobilities(names, hertz, np.ascontiguousarray(np.moveaxis(by_point, 0, 2)), surface)
+    return _Mobilities(names, hertz, np.ascontiguousarray(np.moveaxis(by_point, 0, 2)), surface)
 
 
 def _shares(housing: ReducedHousing, parts: Parts, points: Sequence[str] | None) -> Shares:

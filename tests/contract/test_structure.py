@@ -16,7 +16,7 @@ SPEC.loader.exec_module(structure)
 
 BUDGETS = {
     ("fe_contact",): (36_899, 633),
-    ("dynamics",): (39_760, 803),
+    ("dynamics",): (39_760, 740),
     ("lineofaction.gearbox",): (21_572, 447),
     ("lineofaction.report",): (10_471, 198),
     ("service",): (14_648, 331),

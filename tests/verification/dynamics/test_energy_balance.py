@@ -24,7 +24,7 @@ from dynamics.loads import TimeLaw
 from dynamics.results.order_fit import order_amplitudes, unwrapped
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
-from dynamics.simulation.error_by_source import windows
+from dynamics.simulation.error_by_source import _windows
 
 # Energy: conserved without damping and drive, and the audit closes with everything on.
 
@@ -192,7 +192,7 @@ def test_a_window_run_again_as_it_was_is_the_run(make):
     """Law, loads and counted quanta at its start are right: only the choice of steps is another."""
     system = assemble(make())
     found = integrate(system, static_equilibrium(system), system.scene.integration)
-    looked = windows(system, found.states.rows, found.samples)
+    looked = _windows(system, found.states.rows, found.samples)
     for window in looked:
         again = window.repeated(window.system, system.scene.integration)
         assert again is not None

@@ -17,7 +17,7 @@ from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table
 
 from dynamics.engines import MeshElement, mesh_element
 from dynamics.engines.fmu import export_fmu
-from dynamics.engines.fmu.export import CompilerError, binary_folder, find_compiler
+from dynamics.engines.fmu.export import _binary_folder, _CompilerError, _find_compiler
 from dynamics.errors import InputError
 
 fmpy = fmu_instance.fmpy
@@ -58,10 +58,10 @@ def test_it_can_be_rebuilt_from_its_own_sources(element, tmp_path):
     sources = tmp_path / "unpacked" / "sources"
     description = ElementTree.fromstring((tmp_path / "unpacked" / "modelDescription.xml").read_bytes())
     listed = [entry.attrib["name"] for entry in description.iter("File")]
-    folder, ending = binary_folder()
+    folder, ending = _binary_folder()
     strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-Wno-sign-conversion"]
     flags = ["-O2", "-fPIC", "-shared", "-ffp-contract=off", "-s", "-I."]
-    command = [*find_compiler(), *strict, *flags, "-o", f"m{ending}", *listed, "-lm"]
+    command = [*_find_compiler(), *strict, *flags, "-o", f"m{ending}", *listed, "-lm"]
     subprocess.run(command, cwd=sources, check=True)
     shipped = tmp_path / "unpacked" / "binaries" / folder / f"gear_mesh{ending}"
     assert (sources / f"m{ending}").read_bytes() == shipped.read_bytes()
@@ -97,7 +97,7 @@ def test_its_interface_is_that_of_the_standards_header(element, tmp_path):
         ["-DFMI2_H", f"-I{standard}", "-include", "fmi2Functions.h"],
         [f"-I{sources}", "-include", "fmi2.h"],
     ):
-        strict = [*find_compiler(), "-std=c99", "-Wall", "-Werror", *headers]
+        strict = [*_find_compiler(), "-std=c99", "-Wall", "-Werror", *headers]
         subprocess.run([*strict, "-fsyntax-only", "fmi2_slave.c"], cwd=sources, check=True)
         subprocess.run([*strict, "-o", "layout", "layout.c"], cwd=tmp_path, check=True)
         found.append(subprocess.run([tmp_path / "layout"], capture_output=True, check=True).stdout)
@@ -175,7 +175,7 @@ def test_without_a_compiler_the_error_says_what_to_do_and_sources_can_be_written
 
 def test_a_compiler_that_fails_is_quoted(element, tmp_path, monkeypatch):
     monkeypatch.setenv("CC", "cc -DTABLE_FILE_MISSING -include nowhere.h")
-    with pytest.raises(CompilerError, match=r"nowhere\.h"):
+    with pytest.raises(_CompilerError, match=r"nowhere\.h"):
         export_fmu(element, tmp_path / "m.fmu")
     assert not list(tmp_path.iterdir())
 

@@ -11,7 +11,7 @@ from housed_pair import MODES, NAMES, SEATS, SPEED, housed_pair
 from planetary_scenes import planetary_scene, published_set
 from scipy.linalg import expm
 
-from dynamics.arrays.sparse_rows import LEAST, TOGETHER, modal_freedoms, sparse_matrices
+from dynamics.arrays.sparse_rows import LEAST, TOGETHER, _modal_freedoms, sparse_matrices
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError
 from dynamics.forces import RollingContact
@@ -194,12 +194,12 @@ def test_a_freedom_that_more_than_elements_bind_is_not_modal(bound):
     n = 2 * LEAST
     mass, damping, stiffness, direction = np.eye(n), np.zeros((n, n)), np.eye(n), np.ones((3, n))
     others = np.zeros((2, n))
-    assert modal_freedoms(mass, damping, stiffness, direction, others).first == 0
+    assert _modal_freedoms(mass, damping, stiffness, direction, others).first == 0
     if bound == "coupled":
         damping[3, 7] = damping[7, 3] = 1.0
     else:
         others[0 if bound == "loaded" else 1, 7] = 1.0
-    modal = modal_freedoms(mass, damping, stiffness, direction, others)
+    modal = _modal_freedoms(mass, damping, stiffness, direction, others)
     assert modal.first == 8
     assert modal.row.size % TOGETHER == 0
     assert sparse_matrices(mass, damping, stiffness, direction, others).bodies.column.max() == 7

@@ -23,7 +23,7 @@ from dynamics.linearize import (
     natural_modes,
     whirl_modes,
 )
-from dynamics.linearize.campbell import WhirlModes, _continued, _whirl, likeness, modes_at
+from dynamics.linearize.campbell import _continued, _whirl, _WhirlModes, likeness, modes_at
 from dynamics.linearize.flank_cycles import averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.loads import TimeLaw
@@ -204,7 +204,7 @@ def test_critical_speeds_follow_eigenvectors_and_agree_with_the_dense_solve(monk
     solved: list[float] = []
     dense = campbell.modes_at
 
-    def counted(of: System, linear: LinearSystem, speed: float) -> WhirlModes:
+    def counted(of: System, linear: LinearSystem, speed: float) -> _WhirlModes:
         solved.append(speed)
         return dense(of, linear, speed)
 
@@ -253,7 +253,7 @@ def test_of_shapes_that_are_equally_alike_the_nearest_frequency_goes_on(frequenc
     linear = replace(linearize(assemble(disc_scene())), mass=np.eye(2))
     along, round_about = np.eye(2) + 0j, np.array([[1.0, 1.0j], [1.0, -1.0j]])
     before, after = (
-        WhirlModes(np.array(each), np.zeros(2), shape, ("disc.x", "disc.y"), np.ones(2))
+        _WhirlModes(np.array(each), np.zeros(2), shape, ("disc.x", "disc.y"), np.ones(2))
         for each, shape in (((100.0, 200.0), along), (frequency, round_about))
     )
     assert _continued(linear, before, [4, 7], after) == [4 if each < 150.0 else 7 for each in frequency]

@@ -12,7 +12,7 @@ from sounding_housings import smooth_motion, with_surface
 
 from dynamics.acoustics import Air, ElementalRadiators, OuterHull, outer_hull, resistance
 from dynamics.noise import radiating_hull
-from dynamics.noise.coarse_hull import split_cells, surface_cells
+from dynamics.noise.coarse_hull import _split_cells, _surface_cells
 
 AIR, HERTZ = Air(), 3000.0
 BODIES = {
@@ -58,7 +58,7 @@ def test_it_radiates_as_the_fine_hull_does(name: str) -> None:
 
 def test_chosen_cells_alone_are_split() -> None:
     hull = body("block").hull
-    cell = surface_cells(hull, 200)
+    cell = _surface_cells(hull, 200)
     chosen = np.isin(np.arange(cell.max() + 1), [3, 50])
-    assert split_cells(hull, cell, chosen).max() == cell.max() + 2
-    assert split_cells(hull, cell, np.zeros_like(chosen)).max() == cell.max()
+    assert _split_cells(hull, cell, chosen).max() == cell.max() + 2
+    assert _split_cells(hull, cell, np.zeros_like(chosen)).max() == cell.max()

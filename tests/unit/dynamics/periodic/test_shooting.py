@@ -25,7 +25,7 @@ from dynamics.periodic import (
     periodic_problem,
     spectrum,
 )
-from dynamics.periodic.period_map import PeriodGrid
+from dynamics.periodic.period_map import _PeriodGrid
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 
@@ -99,7 +99,7 @@ def test_steps_end_on_knots_and_halve():
     table = square_wave_table(8)
     table = replace(table, position=table.position + 0.03 * np.sin(np.arange(8)) ** 2)
     system = assemble(gear_pair_scene(repeated(table, 2)))
-    grid = PeriodGrid.of(system, common_period(system), 1.0 / 40.0)
+    grid = _PeriodGrid.of(system, common_period(system), 1.0 / 40.0)
     knots = np.concatenate([table.position, table.position + 1.0]) / 2.0
     np.testing.assert_allclose(np.min(np.abs(grid.phase[:, None] - knots), axis=0), 0.0, atol=1e-12)
     np.testing.assert_allclose(np.diff(grid.phase), grid.size[grid.level], atol=1e-11)

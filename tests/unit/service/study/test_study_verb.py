@@ -24,7 +24,7 @@ from spur_case import spur_case
 from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from dynamics.study import QUANTITIES, Design, Levels, Response, Study, StudyTask, responses_of, study
-from dynamics.study.run_study import run_batch
+from dynamics.study.run_study import _run_batch
 from fe_contact.ste import PairFacts
 from lineofaction.cli.analyze import analyzed
 from lineofaction.gearbox import workbench
@@ -136,10 +136,10 @@ def test_a_killed_study_goes_on_where_it_was(scene: Path, tmp_path: Path) -> Non
     assert 3 <= len(before) < 10 and not (tmp_path / "killed" / "study.nc").exists()
     done = []
 
-    @wraps(run_batch)
+    @wraps(_run_batch)
     def counted(task: Any, batch: Any) -> Any:
         done.append(len(batch))
-        return run_batch(task, batch)
+        return _run_batch(task, batch)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("dynamics.study.run_study.run_batch", counted)
