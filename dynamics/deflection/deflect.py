@@ -35,6 +35,7 @@ from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import LoadCase, check_forces
 from dynamics.types import FloatArray, IntArray
 from model_studies import in_unit
+from model_studies.workers import InProcess, Workers, divided
 
 # Basic reference rating life of rolling bearings under load cases, and over all of them.
 
@@ -288,6 +289,7 @@ def deflect(
     cases: Sequence[LoadCase] = (LoadCase("load"),),
     positions: int = 16,
     progress: Callable[[float], None] | None = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> Deflection:
     """Return where the bodies of `scene` rest under each load case, mean over the mesh cycle.
 
@@ -304,6 +306,8 @@ def deflect(
         Least number of positions of the mesh cycle, see `_cycle_times`.
     progress : callable, optional
         Called with the fraction done.
+    workers : Workers
+        They take a load case each.
 
     Raises
     ------
@@ -314,16 +318,18 @@ def deflect(
     check_forces(cases, [force.name for force in scene.forces])
     integer("positions", positions, 1, MOST_POSITIONS)
     deflections = []
-    for number, case in enumerate(cases):
-        with inside(f"load_cases[{number}]"):
-            loaded = loaded_scene(scene, case)
-        deflections.append(_deflected(loaded, case, positions))
+    for deflected in divided(workers, _deflected, (scene, positions), list(enumerate(cases))):
+        deflections.append(deflected)
         if progress is not None:
-            progress((number + 1) / len(cases))
+            progress(len(deflections) / len(cases))
     return Deflection(leader_of(scene).shaft, tuple(deflections))
 
 
-def _deflected(loaded: Scene, case: LoadCase, positions: int) -> CaseDeflection:
+def _deflected(shared: tuple[Scene, int], numbered: tuple[int, LoadCase]) -> CaseDeflection:
+    """Return the deflection of a scene under a load case: one task."""
+    (scene, positions), (number, case) = shared, numbered
+    with inside(f"load_cases[{number}]"):
+        loaded = loaded_scene(scene, case)
     system = assemble(loaded)
     rest = rest_over(system, _cycle_times(system, positions))
     motion = rest.motion.mean(axis=0)

@@ -1,8 +1,9 @@
-"""The problem a search solves: points of the unit cube to one number."""
+"""The problem a search solves: points of the unit cube to one number, and how it counts them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -13,6 +14,8 @@ from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import Limits, LinearMerit, Objective
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.types import FloatArray
+from host import cpu_seconds
+from model_studies.workers import InProcess, Workers, divided
 
 PENALTY = 10.0
 """Merit of a limit exceeded by its own size, in parts of the scale: 1 % costs a tenth of it."""
@@ -61,6 +64,10 @@ class DesignProblem:
     scale: float
     memory: _Memory | None = None
 
+    def __getstate__(self) -> dict[str, object]:
+        """Leave the memory behind: it is a file of this machine, for one writer."""
+        return vars(self) | {"memory": None}
+
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the variables."""
@@ -86,6 +93,12 @@ class DesignProblem:
     def assess(self, point: FloatArray) -> Assessed:
         """Evaluate the design at a point; one whose contact cannot be solved has an infinite merit."""
         return self._with_merit(*self._figures(self.values(point)))
+
+    def keep(self, point: FloatArray, assessed: Assessed) -> None:
+        """Have the memory learn of a design that a worker assessed."""
+        key, position = np.array(list(self.values(point).values())), self.evaluator.position
+        if self.memory is not None and self.memory.find(key, position) is None:
+            self.memory.add(key, position, (assessed.objective, assessed.violation))
 
     def linearize(self, point: FloatArray) -> tuple[Assessed, LinearMerit]:
         """Evaluate the design at a point (d,) with its derivatives; the memory learns of it.
@@ -127,3 +140,125 @@ class DesignProblem:
             key = np.array(list(values.values()))
             self.memory.add(key, self.evaluator.position, (objective, violation))
         return objective, violation
+
+
+# The merit of designs as a search sees it: counted, ended when enough are evaluated, all remembered.
+
+
+class BudgetUsed(Exception):
+    """All designs that may be evaluated were."""
+
+
+class Cancelled(Exception):
+    """Somebody requested the search to end."""
+
+
+class Budget:
+    """Designs that one search may evaluate, of whatever cost.
+
+    Before every design it is asked whether to `cancel`; after it, the part of all that is used is
+    reported.
+    """
+
+    def __init__(self, total: int, cancel: Callable[[], bool], report: Callable[[float], None]) -> None:
+        self.total, self.used = total, 0
+        self._cancel, self._report = cancel, report
+
+    def take(self, most: int) -> None:
+        """Take one design, if fewer than `most` were taken; raises `BudgetUsed` or `Cancelled`."""
+        if self._cancel():
+            raise Cancelled
+        if self.used >= min(most, self.total):
+            raise BudgetUsed
+        self.used += 1
+
+    def tell(self) -> None:
+        """Report what is used."""
+        self._report(self.used / self.total)
+
+
+Design = tuple[Assessed, FloatArray]
+
+
+class CountedMerit:
+    """Merit of a point (d,) in the unit cube.
+
+    Parameters
+    ----------
+    most : int
+        It raises `BudgetUsed` when so many designs of the budget are used.
+    workers : Workers
+        Who assesses designs, and walks, that do not wait for each other.
+
+    Attributes
+    ----------
+    designs : list of (Assessed, ndarray)
+        In their order.
+    seconds : float
+        CPU seconds of the last linearization.
+    """
+
+    def __init__(
+        self,
+        problem: DesignProblem,
+        budget: Budget,
+        most: int,
+        workers: Workers = InProcess(),  # noqa: B008 (frozen)
+    ) -> None:
+        self.problem, self.workers, self.seconds = problem, workers, 0.0
+        self.designs: list[Design] = []
+        self._budget, self._most = budget, most
+
+    def __call__(self, point: FloatArray) -> float:
+        """Assess a design."""
+        self._budget.take(self._most)
+        return self._counted(self.problem.assess(point), point)
+
+    def linearize(self, point: FloatArray) -> tuple[float, LinearMerit]:
+        """Assess a design, and return its merit with what is known about it to first order."""
+        self._budget.take(self._most)
+        began = cpu_seconds()
+        assessed, merit = self.problem.linearize(point)
+        self.seconds = cpu_seconds() - began
+        return self._counted(assessed, point), merit
+
+    def each(self, points: Sequence[FloatArray]) -> Iterator[float]:
+        """Assess designs, as far as the budget reaches; those in the memory cost nothing, and stay here."""
+        results = divided(self.workers, _assess, self.problem, points[: self.left])
+        for point in points:
+            self._budget.take(self._most)
+            yield self._counted(next(results), point)
+
+    @property
+    def left(self) -> int:
+        """Designs that may still be evaluated."""
+        return max(0, min(self._most, self._budget.total) - self._budget.used)
+
+    def replay(self, designs: Iterable[Design]) -> None:
+        """Count designs that a worker assessed."""
+        for assessed, point in designs:
+            self._budget.take(self._most)
+            self._counted(assessed, point)
+
+    def _counted(self, assessed: Assessed, point: FloatArray) -> float:
+        """Count and remember a design; return its merit."""
+        self.designs.append((assessed, np.clip(point, 0.0, 1.0)))
+        self.problem.keep(point, assessed)
+        self._budget.tell()
+        return assessed.merit
+
+    @property
+    def best(self) -> Design | None:
+        """The first of its designs by their order; None before any."""
+        return min(self.designs, key=lambda design: design[0].order, default=None)
+
+    @property
+    def spread(self) -> float:
+        """Largest less least objective of its designs that could be assessed, m."""
+        known = [own.objective for own, _ in self.designs if math.isfinite(own.objective)]
+        return max(known) - min(known) if known else 0.0
+
+
+def _assess(problem: DesignProblem, point: FloatArray) -> Assessed:
+    """Assess a design: one task."""
+    return problem.assess(point)

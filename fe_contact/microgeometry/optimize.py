@@ -15,13 +15,12 @@ import numpy as np
 from bounds import engineering, written
 from fe_contact.errors import SolveError
 from fe_contact.microgeometry.confirmation import ConfirmedDesign, DesignStudy, confirm, design_study, rising
-from fe_contact.microgeometry.design_problem import DesignProblem
+from fe_contact.microgeometry.design_problem import Cancelled, DesignProblem
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest, Outcome, Perturbation
 from fe_contact.microgeometry.scatter import MISALIGNMENT, Scatter
 from fe_contact.microgeometry.search import (
     Cancel,
-    Cancelled,
     Ended,
     Search,
     SearchRun,
@@ -35,7 +34,7 @@ from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray
-from model_studies.workers import InProcess
+from model_studies.workers import InProcess, divided
 
 # Assessed designs on disk: a search that was killed, or may use more evaluations, continues.
 
@@ -170,24 +169,35 @@ def _choose(
     request: OptimizationRequest,
     study: DesignStudy,
     clock: StageClock,
-    cache: Path | None,
+    run: Run,
     cancel: Cancel,
 ) -> _Choice:
     """Confirm the start and the best of all runs; go on searching where that exceeds the limits after all."""
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     with clock.stage("confirmation"):
-        start = confirm(problem, dict(zip(problem.names, request.own, strict=True)), study, cache)
-        optimum = confirm(problem, problem.values(runs[best].place), study, cache)
+        own = dict(zip(problem.names, request.own, strict=True))
+        designs = own, problem.values(runs[best].place)
+        seconds = len(designs) * study.decided.checked.predicted(study.decided.plan, None).cpu_seconds
+        shared = problem, study, run.cache
+        start, optimum = divided(run.workers, _confirmed, shared, designs, seconds)
     choice = _Choice(problem, start, optimum, runs, best)
     for _ in range(ROUNDS):
         if choice.optimum.violation <= SLACK or choice.run.assessed.violation > SLACK or cancel():
             break
-        choice = _refined(choice, request.search, study, clock, cache, cancel)
+        choice = _refined(choice, request.search, study, clock, run, cancel)
     return choice
 
 
+def _confirmed(
+    shared: tuple[DesignProblem, DesignStudy, Path | None], values: dict[str, float]
+) -> ConfirmedDesign:
+    """Analyze a design in full: one task."""
+    problem, study, cache = shared
+    return confirm(problem, values, study, cache)
+
+
 def _refined(
-    choice: _Choice, search: Search, study: DesignStudy, clock: StageClock, cache: Path | None, cancel: Cancel
+    choice: _Choice, search: Search, study: DesignStudy, clock: StageClock, run: Run, cancel: Cancel
 ) -> _Choice:
     """Search on from a design that exceeds the limits between the positions of the search."""
     shorter = replace(
@@ -199,16 +209,16 @@ def _refined(
     evaluator = choice.problem.evaluator.at(np.union1d(*seen))
     problem = replace(choice.problem, evaluator=evaluator)
     with clock.stage("search"):
-        run = search_from(problem, shorter, choice.run.place, search.starts, cancel=cancel)
+        place, workers = choice.run.place, run.workers
+        further = search_from(problem, shorter, place, search.starts, cancel=cancel, workers=workers)
     with clock.stage("confirmation"):
-        optimum = confirm(problem, problem.values(run.place), study, cache)
-    return _Choice(problem, choice.start, optimum, (*choice.runs, run), len(choice.runs))
+        optimum = confirm(problem, problem.values(further.place), study, run.cache)
+    return _Choice(problem, choice.start, optimum, (*choice.runs, further), len(choice.runs))
 
 
-def _perturbation(
-    problem: DesignProblem, run: SearchRun, scatter: Scatter, variable: DesignVariable
-) -> Perturbation:
-    """Take a step of one variable from the best design of a run to both sides."""
+def _perturbation(best: tuple[DesignProblem, SearchRun, Scatter], variable: DesignVariable) -> Perturbation:
+    """Take a step of one variable from the best design of a run to both sides: one task."""
+    problem, run, scatter = best
     values = problem.values(run.place)
     step = scatter.modification.get(variable.name, STEP * (variable.high - variable.low))
     ends = max(variable.low, values[variable.name] - step), min(variable.high, values[variable.name] + step)
@@ -331,7 +341,8 @@ def _search_all(
         1 : search.starts
     ]
     begins = list(enumerate([first, *others]))
-    search_from_each = _here if isinstance(run.workers, InProcess) else _remotely
+    alone = search.starts == 1 or isinstance(run.workers, InProcess)
+    search_from_each = _here if alone else _remotely
     runs = search_from_each(problem, search, begins, run, cancel)
     return tuple(runs) or (SearchRun(first, problem.assess(first), 1, Ended.CANCELLED, 0.0),)
 
@@ -351,7 +362,7 @@ def _here(
         def report(part: float, index: int = index) -> None:
             run.progress("search", (index + part) / search.starts)
 
-        runs.append(search_from(problem, search, start, index, report, cancel))
+        runs.append(search_from(problem, search, start, index, report, cancel, workers=run.workers))
     return runs
 
 
@@ -365,8 +376,7 @@ def _remotely(
     """Let workers search; cancelled, keep what is there: a Ctrl-C may have ended some of them."""
     runs: list[SearchRun] = []
     try:
-        bare = replace(problem, memory=None)  # a file of this machine, for one writer
-        for result in run.workers.run(_search_one, (bare, search), begins):
+        for result in run.workers.run(_search_one, (problem, search), begins):
             runs.append(result)
             run.progress("search", len(runs) / search.starts)
             if cancel():
@@ -399,7 +409,8 @@ def optimize(
     ----------
     request : OptimizationRequest
     run : Run
-        Its workers run the searches, one per start.
+        Its workers run the searches, one per start; of a single start the designs and walks that do not wait
+        for each other. They analyze the designs at the end.
     cancel : callable
         Asked before every design whether to end the search: the best so far is then analyzed in full, and
         the reason says so. Remote workers end their starts first.
@@ -419,12 +430,11 @@ def optimize(
     with clock.stage("search"):
         problem = _posed(study, request, memory)
         runs = _search_all(problem, request.search, request.own, run, cancel)
-    choice = _choose(problem, runs, request, study, clock, run.cache, cancel)
+    choice = _choose(problem, runs, request, study, clock, run, cancel)
     run.progress("confirmation", 1.0)
     with clock.stage("sensitivity"):
-        aside = tuple(
-            _perturbation(choice.problem, choice.run, request.scatter, v) for v in request.variables
-        )
+        place = choice.problem, choice.run, request.scatter
+        aside = tuple(divided(run.workers, _perturbation, place, request.variables))
     return _result(request, study, choice, aside, clock)
 
 

@@ -2,105 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import count
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.optimize import Bounds, differential_evolution, minimize
 
 from fe_contact.errors import integer
-from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
+from fe_contact.microgeometry.design_problem import (
+    Assessed,
+    Budget,
+    BudgetUsed,
+    Cancelled,
+    CountedMerit,
+    DesignProblem,
+)
 from fe_contact.microgeometry.objective import LinearMerit
 from fe_contact.types import FloatArray, Json
-from host import cpu_seconds
 from model_studies.progress import unreported
-
-# The merit of designs as a search sees it: counted, ended when enough are evaluated, the best remembered.
-
-
-class _BudgetUsed(Exception):
-    """All designs that may be evaluated were."""
-
-
-class Cancelled(Exception):
-    """Somebody requested the search to end."""
-
-
-class _Budget:
-    """Designs that one search may evaluate, of whatever cost.
-
-    Before every design it is asked whether to `cancel`; after it, the part of all that is used is
-    reported.
-    """
-
-    def __init__(self, total: int, cancel: Callable[[], bool], report: Callable[[float], None]) -> None:
-        self.total, self.used = total, 0
-        self._cancel, self._report = cancel, report
-
-    def take(self, most: int) -> None:
-        """Take one design, if fewer than `most` were taken; raises `_BudgetUsed` or `Cancelled`."""
-        if self._cancel():
-            raise Cancelled
-        if self.used >= min(most, self.total):
-            raise _BudgetUsed
-        self.used += 1
-
-    def tell(self) -> None:
-        """Report what is used."""
-        self._report(self.used / self.total)
-
-
-class _CountedMerit:
-    """Merit of a point (d,) in the unit cube.
-
-    Parameters
-    ----------
-    most : int
-        It raises `_BudgetUsed` when so many designs of the budget are used.
-
-    Attributes
-    ----------
-    best : tuple of Assessed and ndarray, or None
-        Of its designs, by their order; None before the first.
-    count : int
-        Its designs.
-    least, largest : float
-        Of the objectives of its designs that could be assessed, m.
-    """
-
-    def __init__(self, problem: DesignProblem, budget: _Budget, most: int) -> None:
-        self.best: tuple[Assessed, FloatArray] | None = None
-        self.count, self.least, self.largest = 0, np.inf, -np.inf
-        self._problem, self._budget, self._most = problem, budget, most
-
-    def __call__(self, point: FloatArray) -> float:
-        """Assess a design."""
-        self._budget.take(self._most)
-        return self._counted(self._problem.assess(point), point)
-
-    def linearize(self, point: FloatArray) -> tuple[float, LinearMerit]:
-        """Assess a design, and return its merit with what is known about it to first order."""
-        self._budget.take(self._most)
-        assessed, merit = self._problem.linearize(point)
-        return self._counted(assessed, point), merit
-
-    def _counted(self, assessed: Assessed, point: FloatArray) -> float:
-        """Count and remember a design; return its merit."""
-        self.count += 1
-        if self.best is None or assessed.order < self.best[0].order:
-            self.best = assessed, np.clip(point, 0.0, 1.0)
-        if np.isfinite(assessed.objective):
-            self.least, self.largest = (
-                min(self.least, assessed.objective),
-                max(self.largest, assessed.objective),
-            )
-        self._budget.tell()
-        return assessed.merit
-
+from model_studies.workers import InProcess, Workers, pays, spent
 
 SIMPLEX_SIZE, SIMPLEX_MERIT = 1e-3, 1e-4
 """A simplex this small has converged: parts of the range of a variable, and of the merit of the start."""
@@ -127,7 +51,7 @@ class Method(Protocol):
     """A way to search the unit cube."""
 
     def minimize(
-        self, merit: _CountedMerit, rough: _CountedMerit, start: FloatArray, seed: np.random.SeedSequence
+        self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search from `start` (d,) until converged; the merits remember the best.
 
@@ -135,7 +59,7 @@ class Method(Protocol):
 
         Raises
         ------
-        _BudgetUsed, Cancelled
+        BudgetUsed, Cancelled
             By the merit: the search is over.
         """
 
@@ -151,7 +75,7 @@ class NelderMead:
     """
 
     def minimize(
-        self, merit: _CountedMerit, rough: _CountedMerit, start: FloatArray, seed: np.random.SeedSequence
+        self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search; nothing is random, and nothing is rough."""
         bounds = Bounds(np.zeros(start.size), np.ones(start.size))
@@ -204,33 +128,41 @@ class SequentialLinearProgramming:
         integer("method.trials", self.trials, 0, 64)
 
     def minimize(
-        self, merit: _CountedMerit, rough: _CountedMerit, start: FloatArray, seed: np.random.SeedSequence
+        self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search; the sequence and the points beside an end are random."""
         walks = [_Walk(merit, start)]
+        walks[0].begin()
         for point in self._best(rough, start.size, seed):
             walks.append(_Walk(merit, point))
-        for walk in walks if len(walks) > 1 else ():
-            walk.follow(TRIED)
+            walks[-1].begin()
+        if len(walks) > 1:
+            walks = list(_followed(walks, TRIED))
         best = min(walks, key=lambda walk: walk.value)
         best.follow()
         random, misses = np.random.default_rng(seed.spawn(1)[0]), 0
+        draws: list[FloatArray] = []
         while misses < MISSES and np.isfinite(best.value):
-            aside = best.place + ASIDE * random.uniform(-1.0, 1.0, start.size)
-            other = _Walk(merit, np.clip(aside, 0.0, 1.0), 2.0 * ASIDE)
-            other.follow()
-            misses = 0 if other.value < (1.0 - LEAST_GAIN) * best.value else misses + 1
-            best = min(best, other, key=lambda walk: walk.value)
+            fresh = MISSES - misses - len(draws)
+            draws += [random.uniform(-1.0, 1.0, start.size) for _ in range(fresh)]
+            asides = [np.clip(best.place + ASIDE * draw, 0.0, 1.0) for draw in draws]
+            for other in _followed([_Walk(merit, aside, 2.0 * ASIDE) for aside in asides]):
+                draws.pop(0)
+                misses = 0 if other.value < (1.0 - LEAST_GAIN) * best.value else misses + 1
+                if other.value < best.value:
+                    best = other
+                    break  # the others began beside another design
 
-    def _best(self, rough: _CountedMerit, dimensions: int, seed: np.random.SeedSequence) -> list[FloatArray]:
+    def _best(self, rough: CountedMerit, dimensions: int, seed: np.random.SeedSequence) -> list[FloatArray]:
         """Return the best points of the sequence, as far as the designs reach."""
         from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
 
         explored: list[tuple[float, FloatArray]] = []
-        with suppress(_BudgetUsed):
+        with suppress(BudgetUsed):
             sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
-            for point in sequence.random_base2((self.sample - 1).bit_length())[: self.sample]:
-                explored.append((rough(point), point))
+            points = list(sequence.random_base2((self.sample - 1).bit_length())[: self.sample])
+            for value, point in zip(rough.each(points), points, strict=True):
+                explored.append((value, point))
         explored.sort(key=lambda trial: trial[0])
         return [point for value, point in explored[: self.trials] if np.isfinite(value)]
 
@@ -242,24 +174,41 @@ class SequentialLinearProgramming:
 class _Walk:
     """Steps of linear programmes from one design on; `place` (d,) is the best so far, `value` its merit."""
 
-    def __init__(self, merit: _CountedMerit, start: FloatArray, region: float = FIRST_REGION) -> None:
-        self._merit, self.place, self._region = merit, start, region
-        self.value, self._linear = merit.linearize(start)
+    def __init__(self, merit: CountedMerit, start: FloatArray, region: float = FIRST_REGION) -> None:
+        self.merit, self.place, self.value = merit, start, np.inf
+        self._region = region
+        self._linear: LinearMerit | None = None
+
+    def begin(self) -> None:
+        """Assess the design that it starts from."""
+        self.value, self._linear = self.merit.linearize(self.place)
 
     def follow(self, most: int | None = None) -> None:
-        """Step until converged, or so often at most."""
+        """Begin, and step until converged, or so often at most."""
+        if self._linear is None:
+            self.begin()
         for _ in range(most) if most is not None else count():
             if not np.isfinite(self.value) or self._region <= SIMPLEX_SIZE or not self._step():
                 return
 
+    @property
+    def state(self) -> Any:
+        """What it is but for its merit."""
+        return {name: value for name, value in vars(self).items() if name != "merit"}
+
+    def take(self, state: Any) -> None:
+        """Go on from the state of another."""
+        vars(self).update(state)
+
     def _step(self) -> bool:
         """Take a step if one promises anything; shorten the region where it keeps too little of it."""
         ends = np.maximum(-self._region, -self.place), np.minimum(self._region, 1.0 - self.place)
+        assert self._linear is not None
         step, promised = self._linear.least(*ends)
         if self.value - promised <= SIMPLEX_MERIT * self.value:
             return False
         point = np.clip(self.place + step, 0.0, 1.0)
-        value, linear = self._merit.linearize(point)
+        value, linear = self.merit.linearize(point)
         kept = (self.value - value) / (self.value - promised)
         if kept < POOR:
             self._region = POORER * float(np.abs(step).max())
@@ -268,6 +217,41 @@ class _Walk:
         if value < self.value:
             self.place, self.value, self._linear = point, value, linear
         return True
+
+
+USUAL_STEPS = 7
+"""Of a walk that is followed to its end."""
+
+
+def _followed(walks: Sequence[_Walk], most: int | None = None) -> Iterator[_Walk]:
+    """Follow walks that do not wait for each other, to their ends or so far at most, and yield each."""
+    merit = walks[0].merit
+    if not pays(merit.workers, merit.seconds * (most or USUAL_STEPS) * len(walks)):
+        for walk in walks:
+            walk.follow(most)
+            yield walk
+        return
+    tasks = [(walk.state, most, merit.left) for walk in walks]
+    for walk, (state, designs) in zip(walks, merit.workers.run(_walked, merit.problem, tasks), strict=True):
+        merit.replay(designs)
+        walk.take(state)
+        yield walk
+
+
+def _walked(
+    problem: DesignProblem, task: tuple[Any, int | None, int]
+) -> tuple[Any, list[tuple[Assessed, FloatArray]]]:
+    """Follow a walk from its state: one task. An interrupted worker gives what it has.
+
+    Its designs are counted by the caller, whose budget ends where this one does at the latest.
+    """
+    state, most, left = task
+    merit = CountedMerit(problem, Budget(left, never, unreported), left)
+    walk = _Walk(merit, state["place"])
+    walk.take(state)
+    with suppress(BudgetUsed, KeyboardInterrupt):
+        walk.follow(most)
+    return walk.state, merit.designs
 
 
 @dataclass(frozen=True)
@@ -286,11 +270,11 @@ class DifferentialEvolution:
         integer("method.population", self.population, 3, 50)
 
     def minimize(
-        self, merit: _CountedMerit, rough: _CountedMerit, start: FloatArray, seed: np.random.SeedSequence
+        self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search; the start is one of the first population."""
         merit(start)
-        with suppress(_BudgetUsed):
+        with suppress(BudgetUsed):
             differential_evolution(
                 rough,
                 Bounds(np.zeros(start.size), np.ones(start.size)),
@@ -401,6 +385,7 @@ def search_from(
     report: Callable[[float], None] | None = None,
     cancel: Cancel | None = None,
     ending: tuple[type[BaseException], ...] = (Cancelled,),
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> SearchRun:
     """Search from one start.
 
@@ -416,30 +401,32 @@ def search_from(
         Asked before each design whether to end with the best so far.
     ending : tuple of exception types
         By which it is cancelled.
+    workers : Workers
+        Who assesses designs, and takes walks, that do not wait for each other.
     """
-    begun = cpu_seconds()
-    budget = _Budget(search.evaluations, cancel or never, report or unreported)
-    merit = _CountedMerit(problem, budget, search.evaluations)
-    rough = _CountedMerit(problem.rough(search.exploration), budget, int(EXPLORED * search.evaluations))
+    begun = spent(workers)
+    budget = Budget(search.evaluations, cancel or never, report or unreported)
+    merit = CountedMerit(problem, budget, search.evaluations, workers)
+    explored = int(EXPLORED * search.evaluations)
+    rough = CountedMerit(problem.rough(search.exploration), budget, explored, workers)
     ended = Ended.CONVERGED
     try:
         search.method.minimize(merit, rough, start, np.random.SeedSequence((search.seed, index)))
-    except _BudgetUsed:
+    except BudgetUsed:
         ended = Ended.SPENT
     except ending:
         ended = Ended.CANCELLED
     assessed, point = _best(problem, merit, rough, start)
-    seconds = cpu_seconds() - begun
-    spread = max(0.0, merit.largest - merit.least)
-    return SearchRun(point, assessed, budget.used, ended, seconds, rough.count, spread)
+    seconds = spent(workers) - begun
+    return SearchRun(point, assessed, budget.used, ended, seconds, len(rough.designs), merit.spread)
 
 
 def _best(
-    problem: DesignProblem, merit: _CountedMerit, rough: _CountedMerit, start: FloatArray
+    problem: DesignProblem, merit: CountedMerit, rough: CountedMerit, start: FloatArray
 ) -> tuple[Assessed, FloatArray]:
     """Return the best design; where exploration was cut short its best has yet to be assessed in full."""
     known = [] if merit.best is None else [merit.best]
-    if merit.count <= 1 and rough.best is not None:
+    if len(merit.designs) <= 1 and rough.best is not None:
         known.append((problem.assess(rough.best[1]), rough.best[1]))
     return min(known, key=lambda design: design[0].order) if known else (problem.assess(start), start)
 

@@ -14,6 +14,7 @@ from model_studies.workers.executor import (
     WorkersLost,
     divided,
     local_processes,
+    pays,
     spent,
 )
 from model_studies.workers.remembering import Remembering
@@ -30,5 +31,6 @@ __all__ = [
     "dask_workers",
     "divided",
     "local_processes",
+    "pays",
     "spent",
 ]

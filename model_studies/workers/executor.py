@@ -306,25 +306,29 @@ def divided(
     Parameters
     ----------
     seconds : float, optional
-        CPU seconds that all items are predicted to take; they go to the workers above `START_SECONDS`. None:
-        they are done here until those left would take more, each as long as the last. The first one tells
-        nothing, it loads code.
+        CPU seconds that all items are predicted to take; above `START_SECONDS` the workers do all of them.
+        Else items are done here until those left would take more, each as long as the last. The first one
+        tells nothing, it loads code.
 
     Raises
     ------
     WorkersLost
         As `Workers.run`, and what the function raises.
     """
-    done = 0
-    while len(items) - done > 1 and (seconds is None or seconds < START_SECONDS):
+    done, expected = 0, seconds or 0.0
+    while len(items) - done > 1 and expected <= START_SECONDS:
         began = cpu_seconds()
         result = function(shared, items[done])
         last, done = cpu_seconds() - began, done + 1
-        if seconds is None and done > 1 and last * (len(items) - done) > START_SECONDS:
-            seconds = last * (len(items) - done)
+        expected = last * (len(items) - done) if done > 1 else 0.0
         yield result
     left: Workers = workers if len(items) - done > 1 else InProcess()
     yield from left.run(function, shared, items[done:])
+
+
+def pays(workers: Workers, seconds: float) -> bool:
+    """Return whether work of so many predicted CPU seconds goes to workers, if it is not `divided`."""
+    return not isinstance(workers, InProcess) and seconds > START_SECONDS
 
 
 def spent(workers: Workers) -> float:

@@ -15,15 +15,15 @@ structure = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(structure)
 
 BUDGETS = {
-    ("fe_contact",): (36_899, 633),
-    ("dynamics",): (39_760, 740),
-    ("lineofaction.gearbox",): (21_572, 447),
+    ("fe_contact",): (37_031, 636),
+    ("dynamics",): (39_766, 740),
+    ("lineofaction.gearbox",): (21_632, 448),
     ("lineofaction.report",): (10_471, 198),
     ("service",): (14_648, 331),
     ("lineofaction.client",): (2_732, 54),
     ("lineofaction.cli",): (4_608, 67),
     ("lineofaction.hardcases",): (3_834, 35),
-    ("bounds", "host", "model_studies"): (4_156, 142),
+    ("bounds", "host", "model_studies"): (4_162, 143),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 746

@@ -37,6 +37,7 @@ from model_studies.workers import (
     Workers,
     WorkersLost,
     dask_workers,
+    executor,
 )
 from model_studies.workers.executor import Packed, _Done
 from model_studies.workers.remembering import content_digest
@@ -100,6 +101,38 @@ def test_starts_searched_in_a_pool_find_the_same_designs(
     assert [run.assessed for run in there.runs] == [run.assessed for run in here.runs]
     assert there.optimum.values == here.optimum.values
     assert there.optimum.objective == here.optimum.objective
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("evaluations", [90, 30, 9])
+def test_a_single_start_is_divided_and_finds_the_same(
+    pair: GearPair,
+    compliances: Path,
+    pool: ByExecutor,
+    evaluations: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its sample, its walks and those beside its end; also where the designs end in the middle of them."""
+    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
+    variables = [DesignVariable(f"{gear}.profile_crowning", 0.0, 2e-5) for gear in ("pinion", "wheel")]
+    search = Search(evaluations=evaluations, positions=16, exploration=8)
+    here, there = (
+        optimize(
+            design_request(pair, [100.0, 200.0], variables, search=search, map_torques=[200.0], **DRAFT),
+            Run(workers=workers, cache=compliances),
+            memory=tmp_path / str(isinstance(workers, InProcess)),
+        )
+        for workers in (InProcess(), pool)
+    )
+    for mine, theirs in zip(here.runs, there.runs, strict=True):
+        np.testing.assert_array_equal(theirs.place, mine.place)
+        assert replace(theirs, place=mine.place, cpu_seconds=mine.cpu_seconds) == mine
+    assert there.optimum.objective == here.optimum.objective
+    assert there.sensitivity == here.sensitivity
+    files = [sorted((tmp_path / alone).glob("designs-*.bin")) for alone in ("True", "False")]
+    mine, theirs = ({file.name: file.read_bytes() for file in own} for own in files)
+    assert mine and theirs == mine  # what is kept of a search goes on by whom it may
 
 
 def test_a_failing_task_fails_the_whole(pool: ByExecutor) -> None:

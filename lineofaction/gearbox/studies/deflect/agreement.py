@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from fe_contact.ste.database import joined_over_misalignment
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair
 from lineofaction.gearbox.schemas import Case
+from model_studies.workers import InProcess, Workers, divided, spent
 
 # A mesh on its condensed gears: tables at the alignments that are met, and what happens on its flanks.
 
@@ -42,12 +44,18 @@ class MeshContact:
     ----------
     torques : (F,) array
         On the case's pinion, N m: those of the load cases and one on either side.
+    tables : dict
+        By misalignment, m: those that are there so far.
     """
 
     pair: ParallelAxes
     bodies: CondensedPair
     torques: FloatArray
-    _tables: dict[float, SteDatabase] = field(default_factory=dict, repr=False)
+    tables: dict[float, SteDatabase] = field(default_factory=dict, repr=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Leave behind the tables, which tasks have no need of."""
+        return type(self), (self.pair, self.bodies, self.torques)
 
     @property
     def across_face(self) -> bool:
@@ -56,7 +64,7 @@ class MeshContact:
 
     def table(self, misalignments: Sequence[float]) -> MeshTable:
         """Return the mesh-force table over misalignments, m, increasing."""
-        tables = [self._at(misalignment) for misalignment in misalignments]
+        tables = [self.tables[misalignment] for misalignment in misalignments]
         return joined_over_misalignment(tables).force_table()
 
     def solved(
@@ -72,10 +80,39 @@ class MeshContact:
             center_distance_change=change,
         )
 
-    def _at(self, misalignment: float) -> SteDatabase:
-        if misalignment not in self._tables:
-            self._tables[misalignment] = self.bodies.table(self.pair, self.torques, misalignment)
-        return self._tables[misalignment]
+
+@dataclass
+class DividedTables:
+    """Lets workers compute the tables at the knots of all contacts, a table each.
+
+    Attributes
+    ----------
+    contacts : mapping
+        By the names of meshes; copies share one.
+    seconds : float
+        CPU seconds of a table: predicted, then those of the last pass.
+    """
+
+    contacts: Mapping[str, MeshContact]
+    workers: Workers
+    seconds: float
+
+    def complete(self, knots: Mapping[str, Sequence[float]]) -> None:
+        """Compute those at misalignments by mesh, m, that are not there."""
+        first = {id(contact): name for name, contact in reversed(list(self.contacts.items()))}
+        wanted = ((first[id(self.contacts[name])], knot) for name, own in knots.items() for knot in own)
+        new = [at for at in dict.fromkeys(wanted) if at[1] not in self.contacts[at[0]].tables]
+        began = spent(self.workers)
+        tables = divided(self.workers, _table_at, self.contacts, new, self.seconds * len(new))
+        for (name, knot), table in zip(new, tables, strict=True):
+            self.contacts[name].tables[knot] = table
+        self.seconds = (spent(self.workers) - began) / len(new) if new else self.seconds
+
+
+def _table_at(contacts: Mapping[str, MeshContact], at: tuple[str, float]) -> SteDatabase:
+    """Return the table of a mesh at a misalignment, m: one task."""
+    contact = contacts[at[0]]
+    return contact.bodies.table(contact.pair, contact.torques, at[1])
 
 
 def mesh_contact(case: Case, database: SteDatabase, torques: Sequence[float], run: Run) -> MeshContact:
@@ -144,6 +181,8 @@ def in_agreement(
     positions: int,
     contacts: Mapping[str, MeshContact],
     first: Deflection,
+    complete: Callable[[Mapping[str, Sequence[float]]], object] = lambda _knots: None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> Agreement:
     """Deflect the scene until the misalignments are those of the tables.
 
@@ -156,6 +195,10 @@ def in_agreement(
         Of the meshes whose load may vary over the face, by name.
     first : Deflection
         On the tables of the scene.
+    complete : callable
+        Called with the knots by mesh, m, before their tables are asked for.
+    workers : Workers
+        As of `deflect`.
     """
     if not contacts:
         return Agreement(first, 1, 0.0)
@@ -164,9 +207,10 @@ def in_agreement(
     last, deflection, change, passes = first, first, float("inf"), 0
     while passes < PASSES:
         passes += 1
+        complete(knots)
         tables = {name: contact.table(knots[name]) for name, contact in contacts.items()}
         meshes = tuple(replace(mesh, table=tables.get(mesh.name, mesh.table)) for mesh in scene.meshes)
-        deflection = deflect(replace(scene, meshes=meshes), cases, positions)
+        deflection = deflect(replace(scene, meshes=meshes), cases, positions, workers=workers)
         change = _change(last, deflection, contacts)
         if change <= TOLERANCE or not deflection.converged:
             break

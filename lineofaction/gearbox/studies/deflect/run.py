@@ -10,11 +10,9 @@ import numpy as np
 from bounds import inside, leftover
 from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
-from dynamics.scene import Scene
 from dynamics.settings.load_case import CaseForce, LoadCase, check_forces
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
 from fe_contact.types import FloatArray
-from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
@@ -25,9 +23,16 @@ from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
 from lineofaction.gearbox.studies.deflect import DeflectFigures, Inputs
-from lineofaction.gearbox.studies.deflect.agreement import Agreement, MeshContact, in_agreement, mesh_contact
+from lineofaction.gearbox.studies.deflect.agreement import (
+    Agreement,
+    DividedTables,
+    MeshContact,
+    in_agreement,
+    mesh_contact,
+)
 from lineofaction.gearbox.studies.deflect.figures import figures_by_case, write_spectrum
 from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks, outline_of
+from model_studies.workers import divided, spent
 
 ALONG_FACE, ALONG_PROFILE = 41, 40
 
@@ -51,14 +56,16 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
                 )
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
-        began, scene = cpu_seconds() - tabled.seconds, tabled.scene
+        began, scene = spent(means.workers) - tabled.seconds, tabled.scene
         with boundary_errors():
             cases = load_cases(inputs)
-            first = deflect(scene, cases, inputs.positions, lambda done: means.report("deflection", done))
+            positions, workers = inputs.positions, means.workers
+            first = deflect(scene, cases, positions, lambda done: means.report("deflection", done), workers)
             contacts = _contacts(tabled, first.cases, means)
             across = {name: contact for name, contact in contacts.items() if contact.across_face}
-            agreed = in_agreement(scene, cases, inputs.positions, across, first)
-            flanks = tuple(_flanks(scene, agreed, contacts, means))
+            tables = DividedTables(across, workers, _usual_seconds(tabled))
+            agreed = in_agreement(scene, cases, positions, across, first, tables.complete, workers)
+            flanks = tuple(_flanks(agreed, contacts, means, tables.seconds))
         written = {name: mesh.case.model_dump(mode="json") for name, mesh in _with_case(tabled) if mesh.case}
         return GearboxDeflection(
             agreed.deflection,
@@ -68,7 +75,7 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
             agreed.reached,
             outline_of(scene),
             written,
-            cpu_seconds() - began,
+            spent(means.workers) - began,
             scene_of(tabled.inputs),
         )
 
@@ -138,20 +145,29 @@ def _contacts(tabled: TabledScene, cases: tuple[CaseDeflection, ...], means: Mea
     return {name: made[known.name] for name, known in inputs.items()}
 
 
+def _usual_seconds(tabled: TabledScene) -> float:
+    """Return the CPU seconds of a table at one misalignment: about those of the contact of a mesh's own."""
+    stages = [table.metadata.receipt.get("stages", {}) for table in tabled.databases.values()]
+    return max((own["contact"]["cpu_seconds"] for own in stages if "contact" in own), default=0.0)
+
+
 def _flanks(
-    scene: Scene, agreed: Agreement, contacts: Mapping[str, MeshContact], means: Means
+    agreed: Agreement, contacts: Mapping[str, MeshContact], means: Means, seconds: float
 ) -> Iterator[MeshFlanks]:
-    count = len(agreed.deflection.cases) * max(len(scene.meshes), 1)
-    done = 0
-    for case in agreed.deflection.cases:
-        for mesh in case.meshes:
-            if mesh.name in contacts:
-                yield _on_flanks(case.name, mesh, contacts[mesh.name])
-            done += 1
-            means.report("flanks", done / count)
+    """Yield what happens on the flanks; each is predicted to take so many CPU seconds."""
+    items = [
+        (case.name, mesh) for case in agreed.deflection.cases for mesh in case.meshes if mesh.name in contacts
+    ]
+    flanks = divided(means.workers, _on_flanks, contacts, items, seconds * len(items))
+    for done, own in enumerate(flanks, 1):
+        yield own
+        means.report("flanks", done / len(items))
 
 
-def _on_flanks(case: str, mesh: MeshAlignment, contact: MeshContact) -> MeshFlanks:
+def _on_flanks(contacts: Mapping[str, MeshContact], of: tuple[str, MeshAlignment]) -> MeshFlanks:
+    """Return what happens on the flanks of a mesh under a load case: one task."""
+    case, mesh = of
+    contact = contacts[mesh.name]
     across = contact.across_face
     torque = mesh.force * contact.pair.pinion.base_radius
     misalignment = mesh.misalignment if across else 0.0

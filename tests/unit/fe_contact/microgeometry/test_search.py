@@ -75,6 +75,9 @@ class Bowl:
     def place(self, own: Any) -> FloatArray:
         return np.asarray(own)
 
+    def keep(self, place: FloatArray, assessed: Assessed) -> None:
+        """Remember nothing."""
+
 
 def searched(bowl: Bowl, search: Search, cancel: Callable[[], bool] | None = None) -> Any:
     return search_from(cast(DesignProblem, bowl), search, START, 0, cancel=cancel)
@@ -231,7 +234,9 @@ def test_positions_of_every_analysis_join_until_the_limits_are_kept(
         cast(Any, Places(np.array([0.0, 0.5]))), (VARIABLE,), WeightedMean(), Limits(), 1.0
     )
     asked: Any = SimpleNamespace(own=(0.0,), search=Search())
-    found = choice._choose(problem, (CONVERGED,), asked, cast(Any, None), StageClock(), None, lambda: False)
+    checked = SimpleNamespace(predicted=lambda *_: SimpleNamespace(cpu_seconds=0.0))
+    study: Any = SimpleNamespace(decided=SimpleNamespace(checked=checked, plan=None))
+    found = choice._choose(problem, (CONVERGED,), asked, study, StageClock(), Run(), lambda: False)
     places = [0.1 * k for k in range(1, rounds + 1)]
     assert searched == [sorted([0.0, 0.5, *places[: k + 1]]) for k in range(rounds)]
     assert len(found.runs) == rounds + 1 and found.best == rounds
