@@ -46,6 +46,7 @@ from lineofaction.report.drawing.page import Page
 from lineofaction.report.presentation import presentation_of
 from service.worker.process import default_registry
 
+pytestmark = pytest.mark.chain  # each question is asked once each way, by the first that reads an answer
 LOA = get_command(app)
 BEFORE = {"compliance", "contact", "housing"}
 """Stages of the tables and housings of a scene, in Python."""
@@ -82,7 +83,6 @@ def test_every_study_has_a_row_for_each_of_its_subjects() -> None:
 # The same figures each way.
 
 
-@pytest.mark.law
 def test_figures_are_in_the_units_of_their_names(runs: StudyRuns, table: SteDatabase) -> None:
     figures, result = runs.python.figures, runs.python.result
     pairs = list(runs.row.witness(figures, result, table))
@@ -94,7 +94,6 @@ def test_figures_are_in_the_units_of_their_names(runs: StudyRuns, table: SteData
             assert told == expected
 
 
-@pytest.mark.law
 def test_the_verb_prints_the_figures_of_python_as_json(runs: StudyRuns) -> None:
     verb_writes(runs)
     printed, figures = runs.printed, without_file(runs.python.figures)
@@ -103,7 +102,6 @@ def test_the_verb_prints_the_figures_of_python_as_json(runs: StudyRuns) -> None:
     assert isinstance(printed["warnings"], list)
 
 
-@pytest.mark.law
 def test_a_job_has_the_figures_of_python(runs: StudyRuns) -> None:
     told, figures = runs.job.figures, without_file(runs.python.figures)
     assert unmeasured(without_file(told), runs.row.own) == unmeasured(figures, runs.row.own)
