@@ -21,6 +21,7 @@ from dynamics.results import RunResult
 from host.extras import MODULES
 from lineofaction.client import OfflineWarning, ResultCache
 
+RESTS_ON = ("docs/client.md", "docs/how-to/call-a-service.md", "examples")
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "client.md").read_text(encoding="utf-8")
 RECIPES = (ROOT / "docs" / "how-to" / "call-a-service.md").read_text(encoding="utf-8")
@@ -56,6 +57,7 @@ def _as_a_user(
     monkeypatch.setenv("LOA_SERVICE", service[1])
 
 
+@pytest.mark.chain
 def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureFixture[str]) -> None:
     scripts = re.findall(r"```python\n(.*?)```", RECIPES, re.DOTALL)
     assert len(scripts) == 14  # the first one, and the recipes
@@ -87,7 +89,7 @@ def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureF
     assert float(run_up) == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=2e-3)
 
 
-@pytest.mark.law
+@pytest.mark.chain  # by the bodies that the scripts had condensed
 def test_the_paper_s_flow_runs_again_without_the_service(
     service: tuple[subprocess.Popen[str], str],
     monkeypatch: pytest.MonkeyPatch,

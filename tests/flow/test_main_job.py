@@ -17,6 +17,7 @@ from running_service import PATIENCE_S, until
 
 from service.page.files import examples
 
+RESTS_ON = ("examples",)
 ROOT = Path(__file__).parents[2]
 JOB = ROOT / "examples" / "main_job.py"
 HELICAL = ROOT / "examples" / "helical_ev_23_67.toml"
