@@ -88,7 +88,7 @@ def _table(field: str, source: object) -> dict[str, Any]:
     raise BadInput.of(field, said[:80], f"a Path, a dictionary or a model of a {field}", advice)
 
 
-def case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> schemas.Case | None:
+def _case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> schemas.Case | None:
     """Return the case of a mesh, from the scene or its file; None if the mesh names a database."""
     if mesh.case_file is None:
         return mesh.case
@@ -106,7 +106,7 @@ def with_own_cases(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInpu
 
 def with_case(mesh: MeshInput, field: str, folder: Path) -> MeshInput:
     """Return the mesh with the case in its file written out; raises `BadInput`."""
-    case = case_of_mesh(mesh, field, folder)
+    case = _case_of_mesh(mesh, field, folder)
     return mesh if case is None else mesh.model_copy(update={"case": case, "case_file": None})
 
 
@@ -190,7 +190,7 @@ class MeshTables:
         field = f"meshes[{index}]"
         if mesh.database_file is not None:
             return self._in_file(f"{field}.database_file", mesh.database_file)
-        case = case_of_mesh(mesh, field, self._folder)
+        case = _case_of_mesh(mesh, field, self._folder)
         try:
             if case is not None:
                 return (yield from self._of_case(case))

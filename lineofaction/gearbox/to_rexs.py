@@ -305,7 +305,7 @@ def _along(name: str, vector: Iterable[float], unit: str, axes: str = _AXES) -> 
             yield _calculated(f"{name}_{axis}", value, unit)
 
 
-def bearing_results(part: BearingPart, load: BearingLoad) -> tuple[Attribute, ...]:
+def _bearing_results(part: BearingPart, load: BearingLoad) -> tuple[Attribute, ...]:
     """Return the attributes of a bearing under a load case, along its own u, v, w, mean over the mesh cycle.
 
     The force on a side is what the bearing exerts on the component of that side: what it carries acts on the
@@ -476,7 +476,7 @@ def _bearings(parts: SceneParts, case: CaseDeflection) -> Iterator[_Part]:
     for load in case.bearings:
         if load.name in parts.bearings:
             part = parts.bearings[load.name]
-            yield part.component, bearing_results(part, load)
+            yield part.component, _bearing_results(part, load)
 
 
 def _meshes(parts: SceneParts, result: GearboxDeflection, case: CaseDeflection) -> Iterator[_Part]:

@@ -20,7 +20,6 @@ from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.force_query import (
     ForceAnswer,
     check_columns,
-    force_answer,
     points_of_columns,
     points_of_model,
 )
@@ -187,7 +186,7 @@ async def _answer(request: Request) -> Response:
 
     def work() -> bytes:
         table = opened or context.databases.get(context.store, key)
-        return WRITE[accepted](force_answer(table.law, READ[sent](body, columns)))
+        return WRITE[accepted](ForceAnswer.of(table.law, READ[sent](body, columns)))
 
     small = len(body) <= _INLINE_BYTES and opened is not None and opened.compiled
     return Response(work() if small else await run_in_threadpool(work), media_type=accepted)

@@ -17,9 +17,9 @@ SPEC.loader.exec_module(structure)
 BUDGETS = {
     ("fe_contact",): (37_031, 636),
     ("dynamics",): (39_766, 740),
-    ("lineofaction.gearbox",): (21_632, 448),
+    ("lineofaction.gearbox",): (21_628, 431),
     ("lineofaction.report",): (10_471, 198),
-    ("service",): (14_648, 331),
+    ("service",): (14_647, 331),
     ("lineofaction.client",): (2_732, 54),
     ("lineofaction.cli",): (4_608, 67),
     ("lineofaction.hardcases",): (3_834, 35),

@@ -18,7 +18,7 @@ from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.deflect import Inputs
-from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, outline_of
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, Outline
 from lineofaction.gearbox.studies.deflect.run import load_cases
 from lineofaction.gearbox.studies.deflect.run import scene_of as kept_scene
 
@@ -40,7 +40,7 @@ def deflection_of_unit(unit: OpenedUnit) -> GearboxDeflection:
     flanks = tuple(_flanks(case, mesh) for case in found.cases for mesh in case.meshes)
     cases = {case.name: case.case.model_dump(mode="json") for case in unit.cases}
     by_mesh = {name: cases[part.case] for name, part in unit.parts.meshes.items()}
-    outline = outline_of(scene)
+    outline = Outline.of(scene)
     kept = kept_scene(validated(SceneInput, tomllib.loads(unit_files(unit)[SCENE_FILE])))
     return GearboxDeflection(found, flanks, 2, 1e-9, True, outline, by_mesh, 1.0, kept)
 

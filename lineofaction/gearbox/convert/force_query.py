@@ -28,6 +28,17 @@ class ForceAnswer(NamedTuple):
     stiffness_n_per_um: FloatArray
     validity: NDArray[np.int8]
 
+    @staticmethod
+    def of(law: CompiledForce, points: FloatArray) -> ForceAnswer:
+        """Return force, tangent stiffness and validity at points (4, n).
+
+        Raises `JobFailed`: the table gives no number somewhere.
+        """
+        forces = law.force_at(points)
+        if not (np.isfinite(forces.force).all() and np.isfinite(forces.stiffness).all()):
+            raise JobFailed("The table has no value at some of these points. Compute it again.")
+        return ForceAnswer(forces.force, forces.stiffness / N_PER_UM, forces.validity)
+
 
 def points_of_model(query: QueryInput) -> FloatArray:
     """Return the points of a query in SI units, (4, n) as `CompiledForce.force_at` takes them."""
@@ -65,14 +76,3 @@ def _points(columns: dict[str, FloatArray], size: int) -> FloatArray:
     for name, column in columns.items():
         np.multiply(column, _FACTOR[name], out=points[_ROW[name]])
     return points
-
-
-def force_answer(law: CompiledForce, points: FloatArray) -> ForceAnswer:
-    """Return force, tangent stiffness and validity at points (4, n).
-
-    Raises `JobFailed`: the table gives no number somewhere.
-    """
-    forces = law.force_at(points)
-    if not (np.isfinite(forces.force).all() and np.isfinite(forces.stiffness).all()):
-        raise JobFailed("The table has no value at some of these points. Compute it again.")
-    return ForceAnswer(forces.force, forces.stiffness / N_PER_UM, forces.validity)

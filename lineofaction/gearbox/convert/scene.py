@@ -134,7 +134,7 @@ def _bushing(table: BushingInput) -> Bushing:
     return Bushing(**in_si(Bushing, table), preload=preload)
 
 
-def rolling_bearing_of(table: RollingBearingInput) -> RollingBearing:
+def _rolling_bearing_of(table: RollingBearingInput) -> RollingBearing:
     """Return a rolling bearing, its row as written or by its catalog line."""
     row = part_of(BallBearing, table.ball, "ball") or part_of(RollerBearing, table.roller, "roller")
     if row is None:
@@ -454,7 +454,7 @@ def _assembled(
             speed_torques=_all(scene, "speed_torques", _speed_torque),
             free_rotations=_all(scene, "free_rotations", _plain(FreeRotation)),
             housings=tuple(housings),
-            rolling_bearings=_all(scene, "rolling_bearings", rolling_bearing_of),
+            rolling_bearings=_all(scene, "rolling_bearings", _rolling_bearing_of),
             **laws,
             loads=_all(scene, "loads", _load_torque),
             forces=_all(scene, "forces", _force),

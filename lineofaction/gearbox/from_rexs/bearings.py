@@ -109,14 +109,14 @@ class BearingGeometry:
     rating: float
     line: CatalogLine | None = None
 
-
-def bearing_geometry(part: Part) -> BearingGeometry | str:
-    """Return the geometry of a bearing, or the reason why it is not known."""
-    read = {
-        "rolling_bearing_with_catalog_geometry": _catalog_bearing,
-        "rolling_bearing_with_detailed_geometry": _detailed_bearing,
-    }.get(part.type)
-    return f"a {part.type} has no geometry" if read is None else read(part)
+    @staticmethod
+    def of(part: Part) -> BearingGeometry | str:
+        """Return the geometry of a bearing, or the reason why it is not known."""
+        read = {
+            "rolling_bearing_with_catalog_geometry": _catalog_bearing,
+            "rolling_bearing_with_detailed_geometry": _detailed_bearing,
+        }.get(part.type)
+        return f"a {part.type} has no geometry" if read is None else read(part)
 
 
 def _bearing_type(part: Part) -> str:
@@ -321,7 +321,7 @@ def _own_stiffness(part: Part, item: str, derived: float | None) -> float | None
 
 def _by_geometry(part: Part) -> FloatArray | None:
     """Return the tangent (5, 5) in x, y, z, tilts of a bearing whose geometry is known, at the usual load."""
-    geometry = bearing_geometry(part)
+    geometry = BearingGeometry.of(part)
     if isinstance(geometry, str):
         return None
     from dynamics.bearings.loaded_bearing import LoadedBearing  # noqa: PLC0415 (start-up time)

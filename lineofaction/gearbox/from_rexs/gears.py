@@ -68,37 +68,37 @@ class StageCase:
             return second, first
         return first, second
 
+    @staticmethod
+    def all_of(
+        unit: GearUnit, torques: Mapping[int, tuple[float, ...]], drivers: Mapping[int, int] | None = None
+    ) -> tuple[StageCase, ...]:
+        """Return a case for each cylindrical stage; of stages with equal cases, as of planets, the first.
 
-def stage_cases(
-    unit: GearUnit, torques: Mapping[int, tuple[float, ...]], drivers: Mapping[int, int] | None = None
-) -> tuple[StageCase, ...]:
-    """Return a case for each cylindrical stage; of stages with equal cases, as of planets, the first.
+        A stage that cannot be computed has no case, and the account has the reason; so have bevel and worm
+        stages.
 
-    A stage that cannot be computed has no case, and the account has the reason; so have bevel and worm
-    stages.
-
-    Parameters
-    ----------
-    torques : mapping of int to tuple of float
-        By id of the stage: torques of its shaft on the driving gear about that gear's u axis, N m, all of the
-        sign of its sense of rotation. A stage without gets three load levels, which the account states.
-    drivers : mapping of int to int, optional
-        The driving gear by stage; else as the file marks it, else gear 1 of the stage.
-    """
-    for stage in unit.of_type(*OTHER_STAGES):
-        stage.say("", "refused", "no cylindrical stage: its loads stand in its place")
-    pairs: list[ToothedPair] = []
-    for stage in unit.of_type(*STAGES):
-        driver = (drivers or {}).get(stage.id)
-        pair = _attempt(stage, partial(_pair, stage, torques.get(stage.id, ()), driver))
-        pairs += [] if pair is None else [pair]
-    shifts = derived_shifts(pairs)
-    cases: list[StageCase] = []
-    for pair in pairs:
-        case = _attempt(pair.stage, partial(case_of, pair, pairs, shifts))
-        if case is not None:
-            _enter(cases, pair, case)
-    return tuple(cases)
+        Parameters
+        ----------
+        torques : mapping of int to tuple of float
+            By id of the stage: torques of its shaft on the driving gear about that gear's u axis, N m, all of
+            the sign of its sense of rotation. A stage without gets three load levels, which the account says.
+        drivers : mapping of int to int, optional
+            The driving gear by stage; else as the file marks it, else gear 1 of the stage.
+        """
+        for stage in unit.of_type(*OTHER_STAGES):
+            stage.say("", "refused", "no cylindrical stage: its loads stand in its place")
+        pairs: list[ToothedPair] = []
+        for stage in unit.of_type(*STAGES):
+            driver = (drivers or {}).get(stage.id)
+            pair = _attempt(stage, partial(_pair, stage, torques.get(stage.id, ()), driver))
+            pairs += [] if pair is None else [pair]
+        shifts = derived_shifts(pairs)
+        cases: list[StageCase] = []
+        for pair in pairs:
+            case = _attempt(pair.stage, partial(case_of, pair, pairs, shifts))
+            if case is not None:
+                _enter(cases, pair, case)
+        return tuple(cases)
 
 
 def _attempt(stage: Part, make: Callable[[], T]) -> T | None:

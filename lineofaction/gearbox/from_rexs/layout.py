@@ -16,7 +16,6 @@ from lineofaction.gearbox.from_rexs.placement import (
     PlacedShaft,
     Placement,
     SceneAxes,
-    placement,
 )
 from lineofaction.gearbox.problems import BadInput
 
@@ -120,7 +119,7 @@ def _shaft_places(
     axis of the central shafts, its u = 0 at theirs.
     """
     shafts = unit.of_type("shaft")
-    places = {shaft.id: place for shaft in shafts if (place := placement(shaft)) is not None}
+    places = {shaft.id: place for shaft in shafts if (place := Placement.of(shaft)) is not None}
     if not places and stages:
         first = stages[0].shafts[0]
         places[first.id] = FIXED
@@ -221,7 +220,7 @@ class Layout:
         root = next(iter(unit.of_type("gear_unit")), None)
         first = [shaft.id for stage in stages if stage.is_cylindrical for shaft in stage.shafts]
         lines = [places[shaft] for shaft in (*first, *places) if shaft in places]
-        axes = SceneAxes.of(None if root is None else placement(root), lines)
+        axes = SceneAxes.of(None if root is None else Placement.of(root), lines)
         shafts = {}
         for part in unit.of_type("shaft"):
             place = places.get(part.id)
@@ -242,7 +241,7 @@ class Layout:
 
     def turn(self, part: Part, held: Part) -> FloatArray:
         """Return the matrix that takes u, v, w of a part on a shaft to x, y, z."""
-        return self.axes.turn(placement(part) or self.shafts[held.id].place)
+        return self.axes.turn(Placement.of(part) or self.shafts[held.id].place)
 
     def rotor(self, shaft: int) -> int:
         """Return the rotor of a shaft."""
@@ -263,7 +262,7 @@ class Layout:
 
     def u_on(self, shaft: PlacedShaft, part: Part, item: str = "u_coordinate_on_shaft") -> float:
         """Return u of a part on a shaft, m: by its place, else by its coordinate, else 0."""
-        place = placement(part)
+        place = Placement.of(part)
         stated = part.number(item, "place along the shaft, mm")
         if place is None:
             if stated is None:

@@ -14,11 +14,11 @@ from typing import Any
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.from_rexs.account import Assumption, Line, assumed
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
+from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.layout import Layout, Train
 from lineofaction.gearbox.from_rexs.loads import LoadCase
-from lineofaction.gearbox.from_rexs.power_flow import REPLACED, PowerFlow, operating_points, power_flow
-from lineofaction.gearbox.from_rexs.scene import SceneParts, SceneTable, scene_table
+from lineofaction.gearbox.from_rexs.power_flow import REPLACED, OperatingPoint, PowerFlow
+from lineofaction.gearbox.from_rexs.scene import SceneParts, SceneTable
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import parsed
 from lineofaction.gearbox.rexs.model import Document
@@ -150,8 +150,8 @@ def opened(document: Document, assumptions: Iterable[Assumption] = ()) -> Opened
     layout = Layout.of(unit)
     flows = _flows(layout)
     drivers = {s.stage.id: s.gears[flows[0].driver(s)].id for s in layout.stages if flows}
-    cases = stage_cases(unit, _torques(layout, flows), drivers)
-    table = scene_table(layout, flows, cases) if flows and cases else None
+    cases = StageCase.all_of(unit, _torques(layout, flows), drivers)
+    table = SceneTable.of(layout, flows, cases) if flows and cases else None
     if not flows:
         unit.say("scene", "refused", "no load case fits the train")
     elif not cases:
@@ -170,9 +170,9 @@ def _flows(layout: Layout) -> list[PowerFlow]:
     """Return the flows of power of the load cases, that of the largest share first."""
     train = Train.of(layout)
     flows = []
-    points = operating_points(layout.unit)
+    points = OperatingPoint.all_of(layout.unit)
     for point in points:
-        flow = power_flow(point, layout, train)
+        flow = PowerFlow.of(point, layout, train)
         if isinstance(flow, str):
             layout.unit.say(point.name, "refused", flow)
             continue
@@ -302,10 +302,10 @@ def unit_of_rexs(inputs: Json, _folder: Path) -> Json:
         data = base64.b64decode(inputs["rexs_base64"], validate=True)
     except (binascii.Error, ValueError):
         raise BadInput.of("rexs_base64", inputs["rexs_base64"][:20], "base64 of the file's bytes") from None
-    return unit_json(opened(parsed(data), [Assumption.of(text) for text in inputs.get("assume", ())]))
+    return _unit_json(opened(parsed(data), [Assumption.of(text) for text in inputs.get("assume", ())]))
 
 
-def unit_json(unit: OpenedUnit) -> Json:
+def _unit_json(unit: OpenedUnit) -> Json:
     """Return an opened unit as JSON."""
     cases = [
         {"name": c.name, "stage": c.stage, "equal": list(c.equal), "case": case_json(c.case)}

@@ -50,14 +50,14 @@ class Placement:
         """Return the place of what is stated in the frame of `outer`."""
         return Placement(outer.origin + self.origin @ outer.axes, self.axes @ outer.axes)
 
+    @staticmethod
+    def of(part: Part, inner: tuple[int, ...] = ()) -> Placement | None:
+        """Return where a component stands, None where the file does not say; `inner` as of `frame_of`."""
+        origin = _vector(part, "support_vector", "place")
+        return None if origin is None else _in_reference(part, origin, inner)
+
 
 FIXED = Placement(np.zeros(3), np.eye(3))
-
-
-def placement(part: Part, inner: tuple[int, ...] = ()) -> Placement | None:
-    """Return where a component stands, None where the file does not say; `inner` as of `frame_of`."""
-    origin = _vector(part, "support_vector", "place")
-    return None if origin is None else _in_reference(part, origin, inner)
 
 
 def frame_of(part: Part, inner: tuple[int, ...] = ()) -> Placement:
@@ -66,12 +66,12 @@ def frame_of(part: Part, inner: tuple[int, ...] = ()) -> Placement:
     On a shaft it stands at its u coordinate, along the shaft's axes; without one it has the origin of the
     component that its place refers to.
     `inner` are the components whose places refer to this one, the innermost first. Raises `BadInput` as
-    `placement`.
+    `Placement.of`.
     """
     if part.id in inner or len(inner) > _MOST_REFERENCES:
         bound = "a component that is not placed by this one itself"
         raise part.refusal(_REFERENCE, inner[-1], bound, "Refer to the gear unit.")
-    stated, shaft = placement(part, inner), part.shaft
+    stated, shaft = Placement.of(part, inner), part.shaft
     if stated is not None:
         return stated
     if shaft is None or shaft.id == part.id:
@@ -86,8 +86,8 @@ def u_on_shaft(part: Part) -> float | None:
 
     One writer gives the begin of a gear as its coordinate: its place, that of its middle, counts.
     """
-    shaft, place = part.shaft, placement(part)
-    base = None if shaft is None else placement(shaft)
+    shaft, place = part.shaft, Placement.of(part)
+    base = None if shaft is None else Placement.of(shaft)
     stated = part.number("u_coordinate_on_shaft", "place along the shaft")
     return stated if place is None or base is None else base.along(place.origin)
 

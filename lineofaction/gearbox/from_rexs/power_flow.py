@@ -60,26 +60,26 @@ class OperatingPoint:
     powers: Mapping[int, float]
     forces: Mapping[int, tuple[float, ...]]
 
-
-def operating_points(unit: GearUnit) -> tuple[OperatingPoint, ...]:
-    """Return the load cases of the first spectrum, or what the components themselves state as one case."""
-    own = unit.of_type("shaft", "external_load", "gear_unit")
-    cases = unit.load_cases()
-    for number, spectrum in enumerate(unit.model.spectra[1:], 2):
-        for part in (part for case in spectrum.cases for part in case.components):
-            unit.account.say(part, "", "refused", f"load spectrum {number}; the first is taken")
-    if not cases:
-        return (_point("nominal", (1, 1.0), own, ()),)
-    shares = [_share(case) for case in cases]
-    whole = sum(share for share in shares if share is not None)
-    if whole > 0.0 and None not in shares:
-        parts = [(share or 0.0) / whole for share in shares]
-    else:
-        parts = [1.0 / len(cases)] * len(cases)
-        for root in unit.of_type("gear_unit"):
-            root.say(_SHARES[0], "defaulted", "equal shares: not every load case states one")
-    rows = enumerate(zip(cases, parts, strict=True), 1)
-    return tuple(_point(f"load case {number}", (number, share), own, case) for number, (case, share) in rows)
+    @staticmethod
+    def all_of(unit: GearUnit) -> tuple[OperatingPoint, ...]:
+        """Return the load cases of the first spectrum, or what components themselves state as one case."""
+        own = unit.of_type("shaft", "external_load", "gear_unit")
+        cases = unit.load_cases()
+        for number, spectrum in enumerate(unit.model.spectra[1:], 2):
+            for part in (part for case in spectrum.cases for part in case.components):
+                unit.account.say(part, "", "refused", f"load spectrum {number}; the first is taken")
+        if not cases:
+            return (_point("nominal", (1, 1.0), own, ()),)
+        shares = [_share(case) for case in cases]
+        whole = sum(share for share in shares if share is not None)
+        if whole > 0.0 and None not in shares:
+            parts = [(share or 0.0) / whole for share in shares]
+        else:
+            parts = [1.0 / len(cases)] * len(cases)
+            for root in unit.of_type("gear_unit"):
+                root.say(_SHARES[0], "defaulted", "equal shares: not every load case states one")
+        rows = enumerate(zip(cases, parts, strict=True), 1)
+        return tuple(_point(f"load case {n}", (n, share), own, case) for n, (case, share) in rows)
 
 
 def _share(case: tuple[Part, ...]) -> float | None:
@@ -221,30 +221,29 @@ class PowerFlow:
         """
         return 1 if self.on_gear(stage, 0) * self.relative_speed(stage, 0) > 0.0 else 0
 
-
-def power_flow(point: OperatingPoint, layout: Layout, train: Train) -> PowerFlow | str:
-    """Return the flow of power at an operating point, or the reason why there is none."""
-    problem = _Problem(point, layout, train)
-    if not problem.speeds_stated and not problem.owner:
-        return "neither a speed nor a torque is stated"
-    speeds = train.speeds(problem.speeds_stated or problem.default_speed)
-    if speeds is None:
-        stated = ", ".join(map(str, point.speeds)) or "none"
-        return (
-            f"the speeds stated (of shafts {stated}) contradict the ratios of the stages, or leave some open"
-        )
-    known = problem.known(speeds)
-    for loads, remark in problem.attempts(known):
-        opened = [load for load in problem.owner if load not in loads]
-        flow = problem.balanced(loads, opened)
-        if flow is not None:
-            torques = loads | {load: flow.outside[problem.rotor(load)] for load in opened}
-            torques |= problem.at_open_ends(flow, opened)
-            remarks = (*problem.remarks, *([remark] if remark else ()), *([SHARED] if flow.is_shared else ()))
-            replaced = tuple(load for load in known if load not in loads)
-            joined = frozenset(problem.joined)
-            return PowerFlow(point, layout, train, speeds, torques, flow, remarks, joined, replaced)
-    return "the torques stated do not balance, or leave some open"
+    @staticmethod
+    def of(point: OperatingPoint, layout: Layout, train: Train) -> PowerFlow | str:
+        """Return the flow of power at an operating point, or the reason why there is none."""
+        problem = _Problem(point, layout, train)
+        if not problem.speeds_stated and not problem.owner:
+            return "neither a speed nor a torque is stated"
+        speeds = train.speeds(problem.speeds_stated or problem.default_speed)
+        if speeds is None:
+            stated = f"the speeds stated (of shafts {', '.join(map(str, point.speeds)) or 'none'})"
+            return f"{stated} contradict the ratios of the stages, or leave some open"
+        known = problem.known(speeds)
+        for loads, remark in problem.attempts(known):
+            opened = [load for load in problem.owner if load not in loads]
+            flow = problem.balanced(loads, opened)
+            if flow is not None:
+                torques = loads | {load: flow.outside[problem.rotor(load)] for load in opened}
+                torques |= problem.at_open_ends(flow, opened)
+                shared = [SHARED] if flow.is_shared else []
+                remarks = (*problem.remarks, *([remark] if remark else ()), *shared)
+                replaced = tuple(load for load in known if load not in loads)
+                joined = frozenset(problem.joined)
+                return PowerFlow(point, layout, train, speeds, torques, flow, remarks, joined, replaced)
+        return "the torques stated do not balance, or leave some open"
 
 
 class _Problem:

@@ -14,7 +14,7 @@ from lineofaction.gearbox.from_rexs.gear_unit import NO_STAGE, GearStage, Part, 
 from lineofaction.gearbox.from_rexs.gears import StageCase, scene_discs, scene_gears
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.loads import AppliedTorque, SceneMotion
-from lineofaction.gearbox.from_rexs.placement import FIXED, SAME_PLACE, PlacedShaft, placement
+from lineofaction.gearbox.from_rexs.placement import FIXED, SAME_PLACE, PlacedShaft, Placement
 from lineofaction.gearbox.from_rexs.power_flow import FORCES, OperatingPoint, PowerFlow
 from lineofaction.gearbox.from_rexs.scene_bearings import SceneBearings
 from lineofaction.gearbox.from_rexs.scene_shafts import Names, SceneShafts
@@ -61,7 +61,7 @@ class BearingPart:
 
 
 @dataclass(frozen=True)
-class MeshPart:
+class _MeshPart:
     """A stage.
 
     Attributes
@@ -87,7 +87,7 @@ class SceneParts:
 
     shafts: Mapping[str, ShaftPart] = field(default_factory=dict)
     bearings: Mapping[str, BearingPart] = field(default_factory=dict)
-    meshes: Mapping[str, MeshPart] = field(default_factory=dict)
+    meshes: Mapping[str, _MeshPart] = field(default_factory=dict)
 
 
 def _scene_parts(
@@ -102,7 +102,7 @@ def _scene_parts(
     A carrier is a shaft of them only if the component of its rotor is a shaft of its own.
     """
     of_meshes = {
-        name: MeshPart(stage.stage.id, case.name, _face_sense(layout, flow, stage, case))
+        name: _MeshPart(stage.stage.id, case.name, _face_sense(layout, flow, stage, case))
         for stage, (name, case) in zip(shafts.stages, meshes, strict=True)
     }
     of_shafts = {}
@@ -267,46 +267,46 @@ class SceneTable:
     forces: tuple[_SceneForce, ...]
     parts: SceneParts
 
-
-def scene_table(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> SceneTable:
-    """Return the scene at the operating point of the first flow; stages without a case are cut off."""
-    flow = flows[0]
-    by_stage, names = _by_stage(cases), Names()
-    computed = [
-        s for s in layout.stages if s.stage.id in by_stage and layout.is_computed(s) and flow.moves(s)
-    ]
-    cut = [stage for stage in layout.stages if stage not in computed]
-    shafts = SceneShafts.of(layout, computed, names)
-    _say_without_mesh(layout, cases, computed, shafts)
-    bearings = SceneBearings(layout, shafts)
-    gears, meshes = scene_gears(layout, shafts, by_stage)
-    motion = SceneMotion(flow, shafts, cut)
-    forces = tuple(_forces(layout, [each.point for each in flows], shafts))
-    table: dict[str, Any] = {
-        "run": {"duration_s": _duration(layout, motion.slowest_mesh())},
-        "gravity_m_per_s2": _gravity(layout),
-        "shafts": [shaft.table for shaft in shafts.all],
-        "gears": gears,
-        "discs": scene_discs(layout, shafts),
-        "bushings": bearings.bushings,
-        "rolling_bearings": bearings.rolling_bearings,
-        "planet_bearings": bearings.planet_bearings,
-        "couplings": bearings.couplings,
-        "housings": bearings.housings,
-        "planets": _planets(layout, {shaft.rotor: shaft.name for shaft in shafts.by_rotor.values()}),
-        "meshes": meshes,
-        **motion.tables(),
-        "forces": [force.table(flow.point) for force in forces],
-    }
-    named = [
-        (mesh["name"], by_stage[stage.stage.id]) for stage, mesh in zip(shafts.stages, meshes, strict=True)
-    ]
-    return SceneTable(
-        {key: value for key, value in table.items() if value != []},
-        motion.drivers[0] if motion.drivers else None,
-        forces,
-        _scene_parts(layout, flow, shafts, bearings.seats, named),
-    )
+    @staticmethod
+    def of(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> SceneTable:
+        """Return the scene at the operating point of the first flow; stages without a case are cut off."""
+        flow = flows[0]
+        by_stage, names = _by_stage(cases), Names()
+        known = [stage for stage in layout.stages if stage.stage.id in by_stage]
+        computed = [stage for stage in known if layout.is_computed(stage) and flow.moves(stage)]
+        cut = [stage for stage in layout.stages if stage not in computed]
+        shafts = SceneShafts.of(layout, computed, names)
+        _say_without_mesh(layout, cases, computed, shafts)
+        bearings = SceneBearings(layout, shafts)
+        gears, meshes = scene_gears(layout, shafts, by_stage)
+        motion = SceneMotion(flow, shafts, cut)
+        forces = tuple(_forces(layout, [each.point for each in flows], shafts))
+        table: dict[str, Any] = {
+            "run": {"duration_s": _duration(layout, motion.slowest_mesh())},
+            "gravity_m_per_s2": _gravity(layout),
+            "shafts": [shaft.table for shaft in shafts.all],
+            "gears": gears,
+            "discs": scene_discs(layout, shafts),
+            "bushings": bearings.bushings,
+            "rolling_bearings": bearings.rolling_bearings,
+            "planet_bearings": bearings.planet_bearings,
+            "couplings": bearings.couplings,
+            "housings": bearings.housings,
+            "planets": _planets(layout, {shaft.rotor: shaft.name for shaft in shafts.by_rotor.values()}),
+            "meshes": meshes,
+            **motion.tables(),
+            "forces": [force.table(flow.point) for force in forces],
+        }
+        named = [
+            (mesh["name"], by_stage[stage.stage.id])
+            for stage, mesh in zip(shafts.stages, meshes, strict=True)
+        ]
+        return SceneTable(
+            {key: value for key, value in table.items() if value != []},
+            motion.drivers[0] if motion.drivers else None,
+            forces,
+            _scene_parts(layout, flow, shafts, bearings.seats, named),
+        )
 
 
 def _by_stage(cases: Sequence[StageCase]) -> dict[int, StageCase]:
@@ -351,7 +351,7 @@ def _gravity(layout: Layout) -> list[float]:
         if length == 0.0 or not math.isfinite(length):
             part.say("account_for_gravity", "refused", "the file gives gravity no direction")
             break
-        place = placement(part) or FIXED
+        place = Placement.of(part) or FIXED
         turned = layout.axes.turn(place) @ vector / length * (size or STANDARD_GRAVITY)
         return [float(value) + 0.0 for value in np.round(turned, 12)]
     return [0.0, 0.0, 0.0]

@@ -16,13 +16,12 @@ from dynamics.joints.housing import DEFINITE
 from lineofaction.gearbox.from_rexs.bearings import (
     BearingGeometry,
     BearingStiffness,
-    bearing_geometry,
     operating_point,
     stated_stiffness,
 )
 from lineofaction.gearbox.from_rexs.gear_unit import Connection, Part, rounded
 from lineofaction.gearbox.from_rexs.layout import Layout
-from lineofaction.gearbox.from_rexs.placement import FIXED, placement
+from lineofaction.gearbox.from_rexs.placement import FIXED, Placement
 from lineofaction.gearbox.from_rexs.scene_shafts import Names, SceneShafts
 from lineofaction.gearbox.schemas.declared import figures
 
@@ -118,7 +117,7 @@ class SceneBearings:
             return "its stiffness is stated"
         if part.value("radial_force_absorption") is False:
             return "it carries no radial force"
-        geometry = bearing_geometry(part)
+        geometry = BearingGeometry.of(part)
         if isinstance(geometry, str):
             return geometry
         sense = 1 if float(self._layout.turn(part, entry.held)[2, 0]) > 0.0 else -1
@@ -148,7 +147,7 @@ class SceneBearings:
 
     def _z(self, part: Part, held: Part, side: str) -> float:
         if held.id not in self._layout.shafts:
-            place = placement(part)
+            place = Placement.of(part)
             return 0.0 if place is None else float(self._layout.axes.point(place.origin)[2])
         return self._layout.z_on(self._layout.shafts[held.id], part, f"u_coordinate_on_shaft_{side}_side")
 
@@ -319,7 +318,7 @@ def _housings(layout: Layout, seats: dict[int, str]) -> Iterator[Table]:
         if not any(bearings):
             group.say("", "refused", "no reduction point refers to a bearing of the scene")
             continue
-        turn = np.kron(np.eye(2 * len(points)), layout.axes.turn(placement(group) or FIXED))
+        turn = np.kron(np.eye(2 * len(points)), layout.axes.turn(Placement.of(group) or FIXED))
         turned = turn @ matrix @ turn.T
         kept = [index for index, name in enumerate(bearings) if name]
         group.say("", "taken", "elastic housing")

@@ -10,7 +10,7 @@ from typing import Any
 from dynamics.shafts import BeamSection, Inertia, hollow_cylinder
 from lineofaction.gearbox.from_rexs.gear_unit import GearStage, Part
 from lineofaction.gearbox.from_rexs.layout import Layout
-from lineofaction.gearbox.from_rexs.placement import PlacedShaft, placement
+from lineofaction.gearbox.from_rexs.placement import PlacedShaft, Placement
 from lineofaction.gearbox.units import MM
 
 LONGEST = 64
@@ -102,7 +102,7 @@ def _pieces(layout: Layout, part: Part, axis: tuple[float, float]) -> Iterator[_
             yield _Piece(inertia, left + z, radius, left, left + section.length)
             left += section.length
         return
-    place = placement(part)
+    place = Placement.of(part)
     outer, bore, length = (part.number(item, "size of the side plate, mm") for item in _SIZES)
     if place is None or not outer or not length or (bore or 0.0) >= outer:
         part.say("", "refused", "a side plate needs its place, diameters and length; its mass is left out")

@@ -9,7 +9,7 @@ from pathlib import Path
 from rexs_stage import PINION, PINION_RIGHT, STAGE, WHEEL, WHEEL_LEFT, WHEEL_RIGHT, relation, stage_unit
 
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.gears import stage_cases
+from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.modifications import READERS, UNREAD
 from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.schemas.bearings import BallRowInput, RollerRowInput, RollingBearingInput
@@ -167,7 +167,7 @@ def read_attributes() -> set[str]:
     """Return the attributes of these units that the import takes or derives something from."""
     items = set()
     for unit in whole_units():
-        assert len(stage_cases(unit, {})) == 1, [line for line in unit.account.lines() if not line.item]
+        assert len(StageCase.all_of(unit, {})) == 1, [line for line in unit.account.lines() if not line.item]
         items |= {
             line.item
             for line in unit.account.lines()

@@ -25,7 +25,7 @@ from fe_contact.geometry import Toothing
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.gears import stage_cases
+from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, Meshing
 from lineofaction.gearbox.schemas import Case
 from tests.fakes.opened_unit import said
@@ -108,7 +108,7 @@ def modified(
 
 def only_case(unit: GearUnit, torque: float = 10.0) -> Case:
     """Return the case of the stage, by default for the torque that loads right flanks."""
-    (stage,) = stage_cases(unit, {STAGE: (torque,)})
+    (stage,) = StageCase.all_of(unit, {STAGE: (torque,)})
     return stage.case
 
 

@@ -22,12 +22,12 @@ from rexs_stage import (
 
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
+from lineofaction.gearbox.from_rexs.gears import StageCase
 from tests.fakes.opened_unit import said
 
 
 def only(unit: GearUnit, **options: Any) -> StageCase:
-    (case,) = stage_cases(unit, **{"torques": {}, **options})
+    (case,) = StageCase.all_of(unit, **{"torques": {}, **options})
     return case
 
 
@@ -66,7 +66,7 @@ def test_a_missing_shift_follows_from_the_center_distance_and_the_mate() -> None
 def test_without_any_shift_there_is_no_case_and_the_account_says_why() -> None:
     both = (PINION_LEFT, PINION_RIGHT, WHEEL_LEFT, WHEEL_RIGHT)
     unit = stage_unit({flank: {"addendum_modification_coefficient": None} for flank in both})
-    assert stage_cases(unit, {}) == ()
+    assert StageCase.all_of(unit, {}) == ()
     fate, words = said(unit, STAGE, "")
     assert fate == "refused"
     assert "addendum_modification_coefficient" in words
@@ -126,7 +126,7 @@ def test_the_helix_hand_is_that_of_the_driving_gear(hand: int) -> None:
 def test_external_gears_of_one_hand_do_not_mate() -> None:
     helix = {"helix_angle_reference_diameter": 15.0}
     unit = stage_unit({PINION: helix, WHEEL: helix})
-    assert stage_cases(unit, {}) == ()
+    assert StageCase.all_of(unit, {}) == ()
     words = said(unit, STAGE, "")[1]
     assert "of opposite hands" in words and "right hand, 15 deg" in words
 

@@ -37,7 +37,7 @@ from dynamics.deflection import BearingLoad
 from fe_contact.ste import Metadata
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import BEARINGS, COUPLINGS, GearUnit
-from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
+from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.from_rexs.scene import BearingPart
 from lineofaction.gearbox.rexs.files import parsed, read_rexs, serialized
@@ -46,7 +46,7 @@ from lineofaction.gearbox.rexs.upgrade import upgrade
 from lineofaction.gearbox.rexs.values import KINDS, kind_of
 from lineofaction.gearbox.rexs.vocabulary import units, words
 from lineofaction.gearbox.schemas.case import PairInput
-from lineofaction.gearbox.to_rexs import bearing_results, deflected, exported
+from lineofaction.gearbox.to_rexs import _bearing_results, deflected, exported
 from tests.fakes.opened_unit import deflection_of_unit
 from tests.fakes.rexs_unit import MOTOR, two_stages
 
@@ -179,7 +179,7 @@ def test_what_is_written_of_an_example_is_valid(path: Path) -> None:
 
 def test_a_stage_with_results_is_valid() -> None:
     document = Document(stage_unit().model)
-    cases = stage_cases(GearUnit(document.model), {})
+    cases = StageCase.all_of(GearUnit(document.model), {})
     table = replace(small_table(), metadata=Metadata(case=case_json(cases[0].case)))
     written = exported(document, cases, [table])
     _validate(written)
@@ -218,7 +218,7 @@ def test_a_deflection_is_valid_and_its_attributes_belong_to_their_components(
 def test_every_kind_of_bearing_has_the_attributes_of_results() -> None:
     load = BearingLoad("", "", 0.0, np.ones(5), 1.0, np.ones(5), np.ones(5), np.ones(5))
     owned = owners("2.0.0")
-    for entry in bearing_results(BearingPart(1, np.eye(3), shaft_inside=True), load):
+    for entry in _bearing_results(BearingPart(1, np.eye(3), shaft_inside=True), load):
         assert {*BEARINGS, *COUPLINGS} <= owned[entry.id]
 
 
@@ -260,7 +260,7 @@ EXAMPLES = pytest.mark.parametrize("path", examples(), ids=lambda path: path.nam
 
 def unit_of(path: object) -> tuple[GearUnit, tuple[StageCase, ...]]:
     unit = GearUnit(upgrade(read_rexs(path).model)[0])  # type: ignore[arg-type]
-    return unit, stage_cases(unit, {})
+    return unit, StageCase.all_of(unit, {})
 
 
 @EXAMPLES

@@ -19,12 +19,12 @@ from dynamics.mechanism.line_of_action import table_sense
 from fe_contact.ste import Metadata, SteDatabase
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.gears import StageCase, stage_cases
+from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import parsed, serialized
 from lineofaction.gearbox.rexs.model import Attribute, Component, Document
-from lineofaction.gearbox.rexs.vocabulary import si_value
+from lineofaction.gearbox.rexs.vocabulary import _si_value
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection
 from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.to_rexs import deflected, exported, left_out
@@ -51,7 +51,7 @@ def one_stage() -> GearUnit:
 
 
 def stages() -> tuple[StageCase, ...]:
-    return stage_cases(one_stage(), {})
+    return StageCase.all_of(one_stage(), {})
 
 
 def table() -> SteDatabase:
@@ -72,7 +72,7 @@ def test_the_unit_stays_as_it_was_and_reads_back_to_the_same_case() -> None:
     for name in ("a.rexs", "a.rexsj", "a.rexsz"):
         read = parsed(serialized(written, name))
         assert read == written
-        assert stage_cases(GearUnit(read.model), {}) == stages()
+        assert StageCase.all_of(GearUnit(read.model), {}) == stages()
     for before, after in zip(document.model.components, written.model.components, strict=True):
         assert [entry for entry in after.attributes if entry.origin is None] == list(before.attributes)
 
@@ -197,9 +197,9 @@ def results(document: Document, case: int | None = None) -> dict[int, Values]:
     components = model.components if case is None else model.spectra[0].cases[case].components
     return {
         part.id: {
-            entry.id: np.array([si_value(float(v), entry.unit, str(entry.unit), "") for v in values])
+            entry.id: np.array([_si_value(float(v), entry.unit, str(entry.unit), "") for v in values])
             if isinstance(values := entry.value, tuple)
-            else si_value(float(values), entry.unit, str(entry.unit), "")  # type: ignore[arg-type]
+            else _si_value(float(values), entry.unit, str(entry.unit), "")  # type: ignore[arg-type]
             for entry in part.attributes
             if entry.origin == "calculated"
         }

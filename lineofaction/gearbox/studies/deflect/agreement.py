@@ -80,6 +80,27 @@ class MeshContact:
             center_distance_change=change,
         )
 
+    @staticmethod
+    def of(case: Case, database: SteDatabase, torques: Sequence[float], run: Run) -> MeshContact:
+        """Return the contact of a case for loads on its pinion, N m.
+
+        A case whose model the planner may choose, and one in three dimensions, is condensed across the face.
+        """
+        pair, loads = gear_pair(case), _distinct(torques)
+        levels = np.array([LOWEST * loads[0], *loads, HIGHEST * loads[-1]])
+        across, is_plane = database, case.accuracy.model in PLANE
+        too_low = loads[-1] > database.torque[-1] * (1.0 + ALIKE)
+        if not is_plane and (too_low or database.metadata.receipt["plan"]["model"] in PLANE):
+            axes = TableAxes(torques=loads, misalignments=[-FIRST_MISALIGNMENT, FIRST_MISALIGNMENT])
+            options = replace(analysis_options(case), receipt="minimal", positions=8)
+            across = ste_database(pair, axes, options, run)
+        elif too_low:
+            options = replace(analysis_options(case), receipt="minimal")
+            across = ste_database(pair, TableAxes(torques=loads), options, run)
+        bodies = condensed_pair(pair, across, dict(case.effects), run.cache, compute=True)
+        assert bodies is not None
+        return MeshContact(pair, bodies, levels)
+
 
 @dataclass
 class DividedTables:
@@ -113,27 +134,6 @@ def _table_at(contacts: Mapping[str, MeshContact], at: tuple[str, float]) -> Ste
     """Return the table of a mesh at a misalignment, m: one task."""
     contact = contacts[at[0]]
     return contact.bodies.table(contact.pair, contact.torques, at[1])
-
-
-def mesh_contact(case: Case, database: SteDatabase, torques: Sequence[float], run: Run) -> MeshContact:
-    """Return the contact of a case for loads on its pinion, N m.
-
-    A case whose model the planner may choose, and one in three dimensions, is condensed across the face.
-    """
-    pair, loads = gear_pair(case), _distinct(torques)
-    levels = np.array([LOWEST * loads[0], *loads, HIGHEST * loads[-1]])
-    across = database
-    too_low = loads[-1] > database.torque[-1] * (1.0 + ALIKE)
-    if case.accuracy.model not in PLANE and (too_low or database.metadata.receipt["plan"]["model"] in PLANE):
-        axes = TableAxes(torques=loads, misalignments=[-FIRST_MISALIGNMENT, FIRST_MISALIGNMENT])
-        options = replace(analysis_options(case), receipt="minimal", positions=8)
-        across = ste_database(pair, axes, options, run)
-    elif too_low:
-        options = replace(analysis_options(case), receipt="minimal")
-        across = ste_database(pair, TableAxes(torques=loads), options, run)
-    bodies = condensed_pair(pair, across, dict(case.effects), run.cache, compute=True)
-    assert bodies is not None
-    return MeshContact(pair, bodies, levels)
 
 
 def _distinct(torques: Sequence[float]) -> list[float]:

@@ -95,6 +95,27 @@ class Outline:
     bearing_shaft: IntArray = field(metadata={"dimensions": ("bearing",)})
     bearing: FloatArray = field(metadata=in_unit("m", "bearing"))
 
+    @staticmethod
+    def of(scene: Scene) -> Outline:
+        """Return the outline of a scene; bearings are those to the ground and planet bearings."""
+        index = {shaft.name: k for k, shaft in enumerate(scene.shafts)}
+        supports = (*scene.ground_bearings, *scene.planet_bearings)
+        pieces = [(k, *piece) for k, shaft in enumerate(scene.shafts) for piece in _pieces(shaft)]
+        diameter = _pitch_diameters(scene)
+        return Outline(
+            tuple(shaft.name for shaft in scene.shafts),
+            tuple(gear.name for gear in scene.gears),
+            tuple(part.name for part in supports),
+            np.array([shaft.origin for shaft in scene.shafts], dtype=float).reshape(-1, 3),
+            np.array([shaft.length for shaft in scene.shafts]),
+            np.array([piece[0] for piece in pieces], dtype=np.int64),
+            np.array([piece[1:] for piece in pieces], dtype=float).reshape(-1, 4),
+            np.array([index[gear.shaft] for gear in scene.gears], dtype=np.int64),
+            np.array([(g.position, g.face_width, diameter[g.name]) for g in scene.gears]).reshape(-1, 3),
+            np.array([index[part.shaft] for part in supports], dtype=np.int64),
+            np.array([part.position for part in supports]),
+        )
+
 
 @dataclass(frozen=True)
 class GearboxDeflection:
@@ -129,27 +150,6 @@ class GearboxDeflection:
 
 RIGID_DIAMETER = 0.08
 """Of a shaft without sections over its length: it is drawn as a line of some width."""
-
-
-def outline_of(scene: Scene) -> Outline:
-    """Return the outline of a scene; bearings are those to the ground and planet bearings."""
-    index = {shaft.name: k for k, shaft in enumerate(scene.shafts)}
-    supports = (*scene.ground_bearings, *scene.planet_bearings)
-    pieces = [(k, *piece) for k, shaft in enumerate(scene.shafts) for piece in _pieces(shaft)]
-    diameter = _pitch_diameters(scene)
-    return Outline(
-        tuple(shaft.name for shaft in scene.shafts),
-        tuple(gear.name for gear in scene.gears),
-        tuple(part.name for part in supports),
-        np.array([shaft.origin for shaft in scene.shafts], dtype=float).reshape(-1, 3),
-        np.array([shaft.length for shaft in scene.shafts]),
-        np.array([piece[0] for piece in pieces], dtype=np.int64),
-        np.array([piece[1:] for piece in pieces], dtype=float).reshape(-1, 4),
-        np.array([index[gear.shaft] for gear in scene.gears], dtype=np.int64),
-        np.array([(g.position, g.face_width, diameter[g.name]) for g in scene.gears]).reshape(-1, 3),
-        np.array([index[part.shaft] for part in supports], dtype=np.int64),
-        np.array([part.position for part in supports]),
-    )
 
 
 def _pieces(shaft: Shaft) -> list[tuple[float, float, float, float]]:

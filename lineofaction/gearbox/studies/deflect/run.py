@@ -28,10 +28,9 @@ from lineofaction.gearbox.studies.deflect.agreement import (
     DividedTables,
     MeshContact,
     in_agreement,
-    mesh_contact,
 )
 from lineofaction.gearbox.studies.deflect.figures import figures_by_case, write_spectrum
-from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks, outline_of
+from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks, Outline
 from model_studies.workers import divided, spent
 
 ALONG_FACE, ALONG_PROFILE = 41, 40
@@ -73,7 +72,7 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
             agreed.passes,
             agreed.change,
             agreed.reached,
-            outline_of(scene),
+            Outline.of(scene),
             written,
             spent(means.workers) - began,
             scene_of(tabled.inputs),
@@ -141,7 +140,7 @@ def _contacts(tabled: TabledScene, cases: tuple[CaseDeflection, ...], means: Mea
     for mesh_input in {known.name: known for known in inputs.values()}.values():
         database, own = tabled.databases[mesh_input.name], torques[mesh_input.name]
         assert isinstance(mesh_input.case, Case)
-        made[mesh_input.name] = mesh_contact(mesh_input.case, database, own, means.analysis)
+        made[mesh_input.name] = MeshContact.of(mesh_input.case, database, own, means.analysis)
     return {name: made[known.name] for name, known in inputs.items()}
 
 

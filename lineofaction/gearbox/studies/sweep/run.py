@@ -44,7 +44,7 @@ _SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment; part of the center dist
 
 
 @dataclass(frozen=True)
-class Swept:
+class _Swept:
     """Something of a case that can be swept.
 
     Attributes
@@ -88,18 +88,18 @@ class Swept:
 
 
 CONDITIONS = (
-    Swept(TORQUE, "load.torque_n_m", "torque on the driving gear"),
-    Swept("misalignment", "errors.misalignment_um", "misalignment"),
-    Swept(CENTER_DISTANCE, "errors.center_distance_change_mm", "change of the center distance"),
+    _Swept(TORQUE, "load.torque_n_m", "torque on the driving gear"),
+    _Swept("misalignment", "errors.misalignment_um", "misalignment"),
+    _Swept(CENTER_DISTANCE, "errors.center_distance_change_mm", "change of the center distance"),
 )
 _FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 SWEEPABLE = {
     swept.name: swept
     for swept in (
         *CONDITIONS,
-        *(Swept(f.name, f"pair.*.{f.field}", f"{f.words} of both gears", f) for f in _FIGURES),
+        *(_Swept(f.name, f"pair.*.{f.field}", f"{f.words} of both gears", f) for f in _FIGURES),
         *(
-            Swept(f"{gear}.{f.name}", f"pair.{gear}.{f.field}", f"{f.words} of the {gear}", f)
+            _Swept(f"{gear}.{f.name}", f"pair.{gear}.{f.field}", f"{f.words} of the {gear}", f)
             for gear in GEARS
             for f in _FIGURES
         ),
@@ -121,7 +121,7 @@ def _axis_of(case: CheckedCase, text: str) -> SweepAxis:
     return SweepAxis(swept.name, tuple(value * swept.factor for value in numbers))
 
 
-def _named(text: str, name: str) -> Swept:
+def _named(text: str, name: str) -> _Swept:
     for swept in SWEEPABLE.values():
         if name in swept.spellings:
             return swept
@@ -134,7 +134,7 @@ def _named(text: str, name: str) -> Swept:
     raise BadInput.of("over", text, bound, advice)
 
 
-def _usual(checked: CheckedCase, swept: Swept) -> list[float]:
+def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
     """Return the values of an axis of which only the name is given, in the unit of the boundary."""
     pair, case = checked.pair, checked.case
     if swept.what is not None:  # about the case's own values, or about a usual one where it has none
@@ -163,7 +163,7 @@ def _evenly(first: float, last: float) -> list[float]:
 
 
 @dataclass(frozen=True)
-class Shown:
+class _Shown:
     """A quantity at the boundary.
 
     Attributes
@@ -188,13 +188,13 @@ class Shown:
 
 
 QUANTITIES = {
-    "peak_to_peak": Shown("peak-to-peak STE", "µm", UM, "peak_to_peak{}_um"),
+    "peak_to_peak": _Shown("peak-to-peak STE", "µm", UM, "peak_to_peak{}_um"),
     **{
-        f"harmonic_{n}": Shown(f"mesh harmonic {n} of STE", "µm", UM, f"harmonic_{n}{{}}_um")
+        f"harmonic_{n}": _Shown(f"mesh harmonic {n} of STE", "µm", UM, f"harmonic_{n}{{}}_um")
         for n in (1, 2, 3)
     },
-    "max_pressure": Shown("largest flank pressure", "MPa", 1e6, "max_pressure{}_mpa"),
-    "face_load_factor": Shown("K_Hbeta of the cycle", "", 1.0, "k_h_beta{}"),
+    "max_pressure": _Shown("largest flank pressure", "MPa", 1e6, "max_pressure{}_mpa"),
+    "face_load_factor": _Shown("K_Hbeta of the cycle", "", 1.0, "k_h_beta{}"),
 }
 """By name in `fe_contact.microgeometry.sweep.SWEPT`."""
 
@@ -213,7 +213,7 @@ class SweepResult:
     shown: tuple[str, ...]
 
     @property
-    def axes(self) -> tuple[Swept, ...]:
+    def axes(self) -> tuple[_Swept, ...]:
         """What is swept."""
         return tuple(SWEEPABLE[name] for name in self.sweep.axes)
 

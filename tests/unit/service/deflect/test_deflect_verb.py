@@ -25,7 +25,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.deflect import Inputs
 from lineofaction.gearbox.studies.deflect.figures import _optimization_inputs, write_spectrum
-from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, outline_of
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, Outline
 from lineofaction.gearbox.studies.deflect.run import RUN, load_cases
 from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
 from lineofaction.report.deflection.deflect import (
@@ -165,7 +165,7 @@ def result() -> GearboxDeflection:
     scene = two_stages()
     found = deflect(scene, CASES, 3)
     flanks = tuple(flanks_of(case, mesh) for case in found.cases for mesh in case.meshes)
-    return GearboxDeflection(found, flanks, 3, 1e-8, True, outline_of(scene), {"first": {"pair": {}}}, 1.0)
+    return GearboxDeflection(found, flanks, 3, 1e-8, True, Outline.of(scene), {"first": {"pair": {}}}, 1.0)
 
 
 def test_a_scene_is_deflected_under_its_own_load(tmp_path: Path) -> None:

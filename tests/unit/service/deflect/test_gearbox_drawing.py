@@ -11,7 +11,7 @@ import pytest
 from two_stage_scenes import two_stages
 
 from dynamics.deflection import deflect
-from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, Outline, outline_of
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, Outline
 from lineofaction.gearbox.studies.deflect.run import _pattern
 from lineofaction.report.deflection.gearbox_drawing import _gear_names, _view_direction, gearbox_drawing
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, panel_height
@@ -20,7 +20,7 @@ from lineofaction.report.drawing.interactive import plotly_figure
 
 @pytest.fixture(scope="module")
 def outline() -> Outline:
-    found = outline_of(two_stages())
+    found = Outline.of(two_stages())
     return replace(found, gears=("first pinion", "wheel of the first stage", "second pinion", "second wheel"))
 
 
