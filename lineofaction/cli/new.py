@@ -24,7 +24,7 @@ from lineofaction.cli.pair_sketch import (
 )
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
 from lineofaction.gearbox.from_rexs.account import FATES, Assumption
-from lineofaction.gearbox.from_rexs.opened import OpenedUnit, headline, opened, report_lines, unit_files
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, validated
@@ -396,7 +396,7 @@ def run_open(file: Path, out: Path | None, assume: Sequence[str] = (), *, as_jso
     folder = out or Path(file.name).with_suffix("")
     written = _write_unit(unit, folder)
     counts = Counter[str](line.fate for line in unit.lines)
-    left_out = headline(unit.lines)
+    left_out = unit.headline
     if left_out and not as_json:
         console().print(left_out, soft_wrap=True)
     warn(left_out_warnings(unit.left_out))
@@ -408,7 +408,7 @@ def run_open(file: Path, out: Path | None, assume: Sequence[str] = (), *, as_jso
                 "scene": unit.scene is not None,
                 "load_cases": [case.table() for case in unit.load_cases],
                 "account": {fate: counts[fate] for fate in FATES},
-                "lines": list(report_lines(unit.lines)),
+                "lines": list(unit.summary()),
             }
         )
         return
@@ -423,7 +423,7 @@ def _write_unit(unit: OpenedUnit, folder: Path) -> list[Path]:
     except OSError as error:
         raise BadInput.of("out", str(folder), f"a folder that can be made ({error.strerror})") from None
     written = []
-    for name, text in unit_files(unit).items():
+    for name, text in unit.files().items():
         path = folder / name
         path.write_text(text, encoding="utf-8")
         written.append(path)
@@ -434,7 +434,7 @@ def _show_unit(unit: OpenedUnit, counts: Counter[str], written: list[Path]) -> N
     out = console()
     values = ", ".join(f"{counts[fate]} {fate}" for fate in FATES if counts[fate])
     out.print(f"{len(unit.lines)} components and values: {values}", soft_wrap=True)
-    for line in report_lines(unit.lines, ("assumed", "defaulted", "derived")):
+    for line in unit.summary(("assumed", "defaulted", "derived")):
         out.print(line, soft_wrap=True)
     for case in unit.cases:
         others = f" (and {len(case.equal)} equal)" if case.equal else ""

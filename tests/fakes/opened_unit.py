@@ -13,7 +13,7 @@ from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.opened import SCENE_FILE, OpenedUnit, opened, unit_files
+from lineofaction.gearbox.from_rexs.opened import SCENE_FILE, OpenedUnit, opened
 from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -41,7 +41,7 @@ def deflection_of_unit(unit: OpenedUnit) -> GearboxDeflection:
     cases = {case.name: case.case.model_dump(mode="json") for case in unit.cases}
     by_mesh = {name: cases[part.case] for name, part in unit.parts.meshes.items()}
     outline = Outline.of(scene)
-    kept = kept_scene(validated(SceneInput, tomllib.loads(unit_files(unit)[SCENE_FILE])))
+    kept = kept_scene(validated(SceneInput, tomllib.loads(unit.files()[SCENE_FILE])))
     return GearboxDeflection(found, flanks, 2, 1e-9, True, outline, by_mesh, 1.0, kept)
 
 

@@ -83,9 +83,8 @@ from gear_case import housing_of, seats_of
 import lineofaction as loa
 import warnings
 warnings.simplefilter("ignore")
-from lineofaction.gearbox.from_rexs.opened import unit_files
 import tomllib
-scene = unit_files(loa.open_unit("unit.rexs"))["scene.toml"]
+scene = loa.open_unit("unit.rexs").files()["scene.toml"]
 pathlib.Path("scene.toml").write_text(scene)
 subprocess.run([sys.executable, {example!r} + "/gear_case.py", "scene.toml", "gear_case.step"], check=True)
 case = housing_of(seats_of(tomllib.loads(scene)), "gear_case.step", modes=10, element_size_mm=40.0)

@@ -42,16 +42,6 @@ _OF_TYPE = {
 }
 
 
-def headline(lines: Iterable[Line]) -> str:
-    """Return all that is left out on one line, with its attributes in brackets; empty for nothing."""
-    parts: dict[str, list[str]] = {}
-    for line in _refused(lines):
-        parts.setdefault(_named(line), []).append(line.item)
-    brackets = {named: ", ".join(dict.fromkeys(filter(None, items))) for named, items in parts.items()}
-    texts = [f"{named} ({items})" if items else named for named, items in brackets.items()]
-    return f"left out of the scene: {'; '.join(texts)}" if parts else ""
-
-
 def _statements(lines: Iterable[Line]) -> tuple[str, ...]:
     """Return what is left out with lines of the file and the reason, a sentence for each reason.
 
@@ -125,6 +115,43 @@ class OpenedUnit:
     def left_out(self) -> tuple[str, ...]:
         """What the file has and the scene has not, a sentence for each reason; as the scene states it."""
         return _statements(self.lines)
+
+    @property
+    def headline(self) -> str:
+        """Return all that is left out on one line, with its attributes in brackets; empty for nothing."""
+        parts: dict[str, list[str]] = {}
+        for line in _refused(self.lines):
+            parts.setdefault(_named(line), []).append(line.item)
+        brackets = {named: ", ".join(dict.fromkeys(filter(None, items))) for named, items in parts.items()}
+        texts = [f"{named} ({items})" if items else named for named, items in brackets.items()]
+        return f"left out of the scene: {'; '.join(texts)}" if parts else ""
+
+    def files(self) -> dict[str, str]:
+        """Return the texts of the files by their names."""
+        files = {f"{case.name}.toml": toml_text(_plain(case.case)) for case in self.cases}
+        if self.scene is not None:
+            files[SCENE_FILE] = toml_text(_plain(self.scene))
+        if self.load_cases:
+            files[LOAD_CASES_FILE] = toml_text({"load_cases": [case.table() for case in self.load_cases]})
+        files[ACCOUNT_FILE] = _account_csv(self.lines)
+        return files
+
+    def summary(
+        self, fates: tuple[str, ...] = ("refused", "assumed", "defaulted", "derived")
+    ) -> Iterator[str]:
+        """Yield the lines of the account that an engineer reads, in order of the fates.
+
+        Components of one type of which the same is said share a line.
+        """
+        groups: dict[tuple[str, str, str, str], list[Line]] = {}
+        for line in self.lines:
+            if line.fate in fates:
+                groups.setdefault((line.fate, line.kind, line.item, line.words), []).append(line)
+        for fate, kind, item, reason in sorted(groups, key=lambda key: fates.index(key[0])):
+            group = groups[fate, kind, item, reason]
+            ids = ", ".join(dict.fromkeys(str(line.component) for line in group))
+            name = f' "{group[0].name}"' if len(group) == 1 and group[0].name else ""
+            yield f"{fate:9} {kind} {ids}{name}{', ' + item if item else ''}: {reason}"
 
 
 def opened(document: Document, assumptions: Iterable[Assumption] = ()) -> OpenedUnit:
@@ -233,17 +260,6 @@ SCENE_FILE, LOAD_CASES_FILE, ACCOUNT_FILE = "scene.toml", "load_cases.toml", "im
 _FILE_DIGITS = 12
 
 
-def unit_files(unit: OpenedUnit) -> dict[str, str]:
-    """Return the texts of the files by their names."""
-    files = {f"{case.name}.toml": toml_text(_plain(case.case)) for case in unit.cases}
-    if unit.scene is not None:
-        files[SCENE_FILE] = toml_text(_plain(unit.scene))
-    if unit.load_cases:
-        files[LOAD_CASES_FILE] = toml_text({"load_cases": [case.table() for case in unit.load_cases]})
-    files[ACCOUNT_FILE] = _account_csv(unit.lines)
-    return files
-
-
 def _account_csv(lines: Iterable[Line]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -267,24 +283,6 @@ def _rounded(value: Any) -> Any:
     if isinstance(value, list):
         return [_rounded(item) for item in value]
     return float(f"{value:.{_FILE_DIGITS}g}") if isinstance(value, float) else value
-
-
-def report_lines(
-    lines: Iterable[Line], fates: tuple[str, ...] = ("refused", "assumed", "defaulted", "derived")
-) -> Iterator[str]:
-    """Yield the lines of the account that an engineer reads, in order of the fates.
-
-    Components of one type of which the same is said share a line.
-    """
-    groups: dict[tuple[str, str, str, str], list[Line]] = {}
-    for line in lines:
-        if line.fate in fates:
-            groups.setdefault((line.fate, line.kind, line.item, line.words), []).append(line)
-    for fate, kind, item, reason in sorted(groups, key=lambda key: fates.index(key[0])):
-        group = groups[fate, kind, item, reason]
-        ids = ", ".join(dict.fromkeys(str(line.component) for line in group))
-        name = f' "{group[0].name}"' if len(group) == 1 and group[0].name else ""
-        yield f"{fate:9} {kind} {ids}{name}{', ' + item if item else ''}: {reason}"
 
 
 # An opened gear unit as the answer of the service; a process of its own reads the file.
@@ -317,7 +315,7 @@ def _unit_json(unit: OpenedUnit) -> Json:
         "scene": None if unit.scene is None else _whole(unit.scene, cases),
         "load_cases": [{"forces": [], **case.table()} for case in unit.load_cases],
         "lines": [asdict(line) for line in unit.lines],
-        "summary": list(report_lines(unit.lines)),
+        "summary": list(unit.summary()),
     }
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from command_line import loa
 
-from lineofaction.gearbox.from_rexs.opened import LOAD_CASES_FILE, OpenedUnit, _unit_json, opened, unit_files
+from lineofaction.gearbox.from_rexs.opened import LOAD_CASES_FILE, OpenedUnit, _unit_json, opened
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import serialized
 from lineofaction.gearbox.rexs.model import Document
@@ -154,7 +154,7 @@ def test_a_load_case_sets_what_it_states_and_keeps_the_rest() -> None:
         case[ROOT] = ("gear_unit", {"operating_time_fraction": share})
     unit = opened(two_stages(**loads))
     assert forces_of(two_stages(**loads)) == {"external_load 44": ((100.0, 5.0, 0.0), (0.0, 0.0, 0.0))}
-    tables = tomllib.loads(unit_files(unit)[LOAD_CASES_FILE])
+    tables = tomllib.loads(unit.files()[LOAD_CASES_FILE])
     read = [case.forces for case in load_cases(validated(Inputs, tables))]
     assert [[(part.name, part.force, part.moment) for part in case] for case in read] == [
         [("external_load 44", (200.0, 5.0, 0.0), (0.0, 0.0, 0.0))],

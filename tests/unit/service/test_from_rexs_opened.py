@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lineofaction.gearbox.from_rexs.opened import opened, unit_files
+from lineofaction.gearbox.from_rexs.opened import opened
 from lineofaction.gearbox.rexs.model import Document
 from tests.fakes.opened_unit import content, said, scene_of
 from tests.fakes.rexs_stage import relation
@@ -265,7 +265,7 @@ def test_every_value_is_accounted_for_once() -> None:
 
 
 def test_the_files_are_a_case_a_stage_the_scene_and_the_account() -> None:
-    names = list(unit_files(opened(two_stages())))
+    names = list(opened(two_stages()).files())
     assert names == [
         "cylindrical_stage_21.toml",
         "cylindrical_stage_22.toml",

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from hostile_rexs import JSON, XML, ZIP, damaged_files, hostile_files
 
-from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened, unit_files
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import parsed, serialized
 from lineofaction.gearbox.rexs.model import Document
@@ -158,7 +158,7 @@ def test_a_damaged_unit_is_opened_or_refused_with_one_error(make: Any, seeds: in
             assert len(str(error)) < 2_000
         else:
             changed += unit.lines != whole.lines
-            json.dumps(unit_files(unit))
+            json.dumps(unit.files())
     assert refused >= seeds // 40 and changed > seeds // 3
 
 

@@ -97,63 +97,6 @@ class Flanks(Part):
     centroid_difference_mm: float | None
 
 
-class LoadCase(Part):
-    """A load case."""
-
-    class Mesh(Part):
-        """A mesh under a load case."""
-
-        name: str
-        force_n: float
-        misalignment_um: float
-        misalignment_over_cycle_um: Annotated[
-            tuple[float, float], Source(lambda mesh: (mesh.least, mesh.largest))
-        ]
-        causes_um: dict[str, float]
-        center_distance_change_um: float
-        lead_torsion_um: float
-        face_centroid_mm: float | None
-        in_table: bool
-        flanks: Flanks | None
-
-    class Bearing(Part):
-        """A bearing under a load case, in the axes x, y, z; no life in hours: `rating_life` says why."""
-
-        name: str
-        shaft: str
-        speed_rpm: float
-        force_n: Annotated[list[float], Source(lambda load: load.force[:3])]
-        moment_n_m: Annotated[list[float], Source(lambda load: load.force[3:])]
-        radial_force_n: Annotated[float, Source("radial")]
-        axial_force_n: Annotated[float, Source("axial")]
-        largest_radial_force_n: Annotated[float, Source("largest_radial")]
-        elastic_um: Annotated[list[float], Source(lambda load: load.elastic[:3])]
-        clearance_um: Annotated[list[float], Source(lambda load: load.clearance[:3])]
-        seat_um: Annotated[list[float], Source(lambda load: load.seat[:3])]
-        tilt_mrad: Annotated[list[float], Source(lambda load: (load.elastic + load.clearance)[3:])]
-        rating_life_hours: float | None
-        rating_life: RatingLife
-
-    class Force(Part):
-        """A force of the scene under a load case in the axes x, y, z, before the factor of its course."""
-
-        name: str
-        shaft: str
-        force_n: list[float]
-        moment_n_m: list[float]
-
-    name: str
-    direction: str
-    share: float
-    torque_n_m: float
-    speed_rpm: float
-    status: str
-    residual: float | None
-    forces: list[Force]
-    meshes: list[Mesh]
-    bearings: list[Bearing]
-
-
 class DeflectFigures(Figures):
     """Misalignment by cause, flanks and bearings under every load case."""
 
@@ -184,6 +127,62 @@ class DeflectFigures(Figures):
         equivalent_axial_force_n: dict[str, float]
         rating_life_hours: float | None
         rating_life: RatingLife
+
+    class LoadCase(Part):
+        """A load case."""
+
+        class Mesh(Part):
+            """A mesh under a load case."""
+
+            name: str
+            force_n: float
+            misalignment_um: float
+            misalignment_over_cycle_um: Annotated[
+                tuple[float, float], Source(lambda mesh: (mesh.least, mesh.largest))
+            ]
+            causes_um: dict[str, float]
+            center_distance_change_um: float
+            lead_torsion_um: float
+            face_centroid_mm: float | None
+            in_table: bool
+            flanks: Flanks | None
+
+        class Bearing(Part):
+            """A bearing under a load case, in the axes x, y, z; no life in hours: `rating_life` says why."""
+
+            name: str
+            shaft: str
+            speed_rpm: float
+            force_n: Annotated[list[float], Source(lambda load: load.force[:3])]
+            moment_n_m: Annotated[list[float], Source(lambda load: load.force[3:])]
+            radial_force_n: Annotated[float, Source("radial")]
+            axial_force_n: Annotated[float, Source("axial")]
+            largest_radial_force_n: Annotated[float, Source("largest_radial")]
+            elastic_um: Annotated[list[float], Source(lambda load: load.elastic[:3])]
+            clearance_um: Annotated[list[float], Source(lambda load: load.clearance[:3])]
+            seat_um: Annotated[list[float], Source(lambda load: load.seat[:3])]
+            tilt_mrad: Annotated[list[float], Source(lambda load: (load.elastic + load.clearance)[3:])]
+            rating_life_hours: float | None
+            rating_life: RatingLife
+
+        class Force(Part):
+            """A force of the scene under a load case in the axes x, y, z, before the factor of its course."""
+
+            name: str
+            shaft: str
+            force_n: list[float]
+            moment_n_m: list[float]
+
+        name: str
+        direction: str
+        share: float
+        torque_n_m: float
+        speed_rpm: float
+        status: str
+        residual: float | None
+        forces: list[Force]
+        meshes: list[Mesh]
+        bearings: list[Bearing]
 
     leading_shaft: Annotated[str, Source("deflection.leading_shaft")]
     agreement: Annotated[Agreement, Source(lambda result: result)]

@@ -76,26 +76,6 @@ class RegionSound(Part):
     share: float
 
 
-class LoudPoint(Part):
-    """An order at a speed at which it is louder than at the speeds beside it."""
-
-    order: float
-    speed_rpm: float
-    frequency_hz: float
-    level_db: Annotated[float, Source("level")]
-    level_db_a: Annotated[float, Source("weighted_level")]
-    radiation_efficiency: Annotated[float, Source("efficiency")]
-    housing: Annotated[str, Source("mode_housing")]
-    mode: int
-    natural_frequency_hz: float
-    mode_share: float
-    bearing: str
-    bearing_alone_db_a: Annotated[float, Source("bearing_level")]
-    without_bearing_db_a: Annotated[float, Source("level_without_bearing")]
-    in_contact: bool
-    regions: list[RegionSound]
-
-
 class LevelBandFigures(Part):
     """A level, its band, and the deviations that make it by what is guessed."""
 
@@ -164,6 +144,25 @@ class NoiseFigures(Figures):
 
         alone_db_a: list[list[float]]
         without_db_a: list[list[float]]
+
+    class LoudPoint(Part):
+        """An order at a speed at which it is louder than at the speeds beside it."""
+
+        order: float
+        speed_rpm: float
+        frequency_hz: float
+        level_db: Annotated[float, Source("level")]
+        level_db_a: Annotated[float, Source("weighted_level")]
+        radiation_efficiency: Annotated[float, Source("efficiency")]
+        housing: Annotated[str, Source("mode_housing")]
+        mode: int
+        natural_frequency_hz: float
+        mode_share: float
+        bearing: str
+        bearing_alone_db_a: Annotated[float, Source("bearing_level")]
+        without_bearing_db_a: Annotated[float, Source("level_without_bearing")]
+        in_contact: bool
+        regions: list[RegionSound]
 
     leading_shaft: str
     speed_rpm: list[float]
