@@ -25,7 +25,7 @@ from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
 from lineofaction.cli.ste import open_ste, positions
 from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import read_rexs, serialized
@@ -245,7 +245,7 @@ def _export_rexs(file: Path, rexs: Path, output: Path, point: Point, *, as_json:
     """Add the results of a table or a deflection to the unit."""
     check_writable(output)
     document = read_rexs(rexs)
-    unit = opened(document)
+    unit = OpenedUnit.of(document)
     warn(left_out_warnings(unit.left_out))
     facts: dict[str, Any] = {"file": str(output)}
     readable = file.is_file() and file.suffix not in (".toml", ".json")

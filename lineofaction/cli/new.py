@@ -24,7 +24,7 @@ from lineofaction.cli.pair_sketch import (
 )
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
 from lineofaction.gearbox.from_rexs.account import FATES, Assumption
-from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, validated
@@ -392,7 +392,7 @@ def run_open(file: Path, out: Path | None, assume: Sequence[str] = (), *, as_jso
 
     What is left out of the scene comes first and last.
     """
-    unit = opened(read_rexs(file), [Assumption.of(text) for text in assume])
+    unit = OpenedUnit.of(read_rexs(file), [Assumption.of(text) for text in assume])
     folder = out or Path(file.name).with_suffix("")
     written = _write_unit(unit, folder)
     counts = Counter[str](line.fate for line in unit.lines)

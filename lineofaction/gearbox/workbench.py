@@ -21,7 +21,7 @@ from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.from_rexs.account import Assumption
-from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.rexs.files import read_rexs
@@ -69,7 +69,7 @@ def open_unit(
     BadInput
         The file is none, or one of its values has the wrong type or unit.
     """
-    unit = opened(read_rexs(Path(file)), [Assumption.of(text) for text in assume])
+    unit = OpenedUnit.of(read_rexs(Path(file)), [Assumption.of(text) for text in assume])
     if overrides and unit.scene is not None:
         table = _over(overrides, Path(file)).applied(unit.scene.model_dump(mode="json", exclude_unset=True))
         unit = replace(unit, scene=validated(SceneInput, written_out(table, beside(Path()), READERS)))

@@ -17,7 +17,7 @@ SPEC.loader.exec_module(structure)
 BUDGETS = {
     ("fe_contact",): (37_031, 636),
     ("dynamics",): (39_766, 740),
-    ("lineofaction.gearbox",): (21_624, 426),
+    ("lineofaction.gearbox",): (21_624, 425),
     ("lineofaction.report",): (10_471, 198),
     ("service",): (14_647, 331),
     ("lineofaction.client",): (2_732, 54),

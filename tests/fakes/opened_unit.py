@@ -13,7 +13,7 @@ from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.opened import SCENE_FILE, OpenedUnit, opened
+from lineofaction.gearbox.from_rexs.opened import SCENE_FILE, OpenedUnit
 from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -57,7 +57,7 @@ def _flanks(case: CaseDeflection, mesh: MeshAlignment) -> MeshFlanks:
 
 
 def scene_of(document: Document) -> SceneInput:
-    unit = opened(document)
+    unit = OpenedUnit.of(document)
     scene_in_si(unit)
     assert unit.scene is not None
     return unit.scene

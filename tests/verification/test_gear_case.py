@@ -22,7 +22,7 @@ from dynamics.housings import (
     mesh_step,
     reduced_housing,
 )
-from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas.toml import toml_text
 
@@ -44,7 +44,7 @@ POSITIONS = {
 def step(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The STEP file of the case, for the scene of the opened unit."""
     folder = tmp_path_factory.mktemp("case")
-    scene: Any = opened(read_rexs(EXAMPLE / "two_stage.rexs")).scene
+    scene: Any = OpenedUnit.of(read_rexs(EXAMPLE / "two_stage.rexs")).scene
     (folder / "scene.toml").write_text(toml_text(scene.model_dump(mode="json", exclude_none=True)), "utf-8")
     file = folder / "gear_case.step"
     command = [sys.executable, EXAMPLE / "gear_case.py", folder / "scene.toml", file]

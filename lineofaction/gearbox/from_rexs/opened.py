@@ -153,44 +153,44 @@ class OpenedUnit:
             name = f' "{group[0].name}"' if len(group) == 1 and group[0].name else ""
             yield f"{fate:9} {kind} {ids}{name}{', ' + item if item else ''}: {reason}"
 
+    @staticmethod
+    def of(document: Document, assumptions: Iterable[Assumption] = ()) -> OpenedUnit:
+        """Return the cases and the scene of a gear unit.
 
-def opened(document: Document, assumptions: Iterable[Assumption] = ()) -> OpenedUnit:
-    """Return the cases and the scene of a gear unit.
+        The scene runs at the load case of the largest share of the time.
 
-    The scene runs at the load case of the largest share of the time.
+        Parameters
+        ----------
+        document : Document
+            Of any version of REXS.
+        assumptions : iterable of Assumption
+            Values over those of the file.
 
-    Parameters
-    ----------
-    document : Document
-        Of any version of REXS.
-    assumptions : iterable of Assumption
-        Values over those of the file.
-
-    Raises
-    ------
-    BadInput
-        A value has the wrong type or unit, or a place, a section, the version or an assumption is none.
-    """
-    newest, changes = upgrade(document.model)
-    model = assumed(newest, assumptions)
-    unit = GearUnit(model)
-    layout = Layout.of(unit)
-    flows = _flows(layout)
-    drivers = {s.stage.id: s.gears[flows[0].driver(s)].id for s in layout.stages if flows}
-    cases = StageCase.all_of(unit, _torques(layout, flows), drivers)
-    table = SceneTable.of(layout, flows, cases) if flows and cases else None
-    if not flows:
-        unit.say("scene", "refused", "no load case fits the train")
-    elif not cases:
-        unit.say("scene", "refused", "no stage has a case")
-    descriptive = words("descriptive_components")
-    for component in () if table is None else model.components:
-        if component.type not in descriptive and not unit.account.is_stated(component):
-            unit.part(component.id).say("", "refused", _OF_TYPE.get(component.type, _NO_REASON))
-    scene = None if table is None else _scene(layout, table)
-    loads = _load_cases(flows, table)
-    parts = SceneParts() if table is None or scene is None else table.parts
-    return OpenedUnit(cases, scene, loads, unit.account.lines(), tuple(changes), parts)
+        Raises
+        ------
+        BadInput
+            A value has the wrong type or unit, or a place, a section, the version or an assumption is none.
+        """
+        newest, changes = upgrade(document.model)
+        model = assumed(newest, assumptions)
+        unit = GearUnit(model)
+        layout = Layout.of(unit)
+        flows = _flows(layout)
+        drivers = {s.stage.id: s.gears[flows[0].driver(s)].id for s in layout.stages if flows}
+        cases = StageCase.all_of(unit, _torques(layout, flows), drivers)
+        table = SceneTable.of(layout, flows, cases) if flows and cases else None
+        if not flows:
+            unit.say("scene", "refused", "no load case fits the train")
+        elif not cases:
+            unit.say("scene", "refused", "no stage has a case")
+        descriptive = words("descriptive_components")
+        for component in () if table is None else model.components:
+            if component.type not in descriptive and not unit.account.is_stated(component):
+                unit.part(component.id).say("", "refused", _OF_TYPE.get(component.type, _NO_REASON))
+        scene = None if table is None else _scene(layout, table)
+        loads = _load_cases(flows, table)
+        parts = SceneParts() if table is None or scene is None else table.parts
+        return OpenedUnit(cases, scene, loads, unit.account.lines(), tuple(changes), parts)
 
 
 def _flows(layout: Layout) -> list[PowerFlow]:
@@ -294,13 +294,13 @@ Json = dict[str, Any]
 def unit_of_rexs(inputs: Json, _folder: Path) -> Json:
     """Return a gear unit as JSON; its scene has the cases of its meshes written out.
 
-    Raises `BadInput`: no base64, no REXS, no assumption, or as `opened`.
+    Raises `BadInput`: no base64, no REXS, no assumption, or as `OpenedUnit.of`.
     """
     try:
         data = base64.b64decode(inputs["rexs_base64"], validate=True)
     except (binascii.Error, ValueError):
         raise BadInput.of("rexs_base64", inputs["rexs_base64"][:20], "base64 of the file's bytes") from None
-    return _unit_json(opened(parsed(data), [Assumption.of(text) for text in inputs.get("assume", ())]))
+    return _unit_json(OpenedUnit.of(parsed(data), [Assumption.of(text) for text in inputs.get("assume", ())]))
 
 
 def _unit_json(unit: OpenedUnit) -> Json:

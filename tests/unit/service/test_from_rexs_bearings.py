@@ -14,7 +14,7 @@ from rexs_reference import needs_reference, reference
 from bounds.types import FloatArray
 from dynamics.bearings.loaded_bearing import LoadedBearing
 from lineofaction.gearbox.convert.scene import _rolling_bearing_of
-from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas.bearings import RollingBearingInput
@@ -68,7 +68,7 @@ def test_the_thrust_of_drive_and_coast_goes_where_the_file_says(arrangement: str
     crossed = arrangement == "cross-located"
     sides = ("negative", "positive") if crossed else ("both_directions", "no_direction")
     own = [{"axial_force_absorption": side} for side in sides]
-    unit = opened(on_lines(*own, torques=(NORMAL_LOAD, -NORMAL_LOAD)))
+    unit = OpenedUnit.of(on_lines(*own, torques=(NORMAL_LOAD, -NORMAL_LOAD)))
     thrust = {}
     for case in deflection_of_unit(unit).deflection.cases:
         loads = {int(load.name.split()[-1]): load for load in case.bearings}
@@ -83,7 +83,7 @@ def test_the_thrust_of_drive_and_coast_goes_where_the_file_says(arrangement: str
 
 
 def test_a_catalog_line_is_stated_as_it_is() -> None:
-    (bearing, *_) = by_name(opened(on_lines({"axial_force_absorption": "both_directions"}))).values()
+    (bearing, *_) = by_name(OpenedUnit.of(on_lines({"axial_force_absorption": "both_directions"}))).values()
     assert bearing.catalog is not None
     stated = {"bore_mm": 25.0, "outside_diameter_mm": 62.0, "static_rating_n": 11600.0, "clearance_um": 10.0}
     assert bearing.catalog.model_dump() == stated
@@ -105,7 +105,7 @@ def test_a_deep_groove_bearing_holds_the_shaft_in_the_directions_of_its_own_u(
     stated: str, held: tuple[bool, bool], u: float
 ) -> None:
     turned = {"axial_force_absorption": stated, "u_axis_vector": (u, 0.0, 0.0)}
-    along, against = thrusts(by_name(opened(on_lines(turned)))[LEFT])
+    along, against = thrusts(by_name(OpenedUnit.of(on_lines(turned)))[LEFT])
     assert (along > 100.0, against < -100.0) == (held if u > 0.0 else held[::-1])
     assert all(force == 0.0 or abs(force) > 100.0 for force in (along, against))
 
@@ -114,7 +114,7 @@ def test_a_bearing_without_a_place_has_the_u_of_its_shaft() -> None:
     shaft = {"support_vector": (150.0, 0.0, 0.0), "u_axis_vector": (-1.0, 0.0, 0.0)}
     more = at(LEFT, "catalog", LINE | {"axial_force_absorption": "positive"})
     values = {k: v for k, v in more[LEFT][1].items() if k not in ROLES}
-    bearing = by_name(opened(two_stages({INPUT: shaft}, more={LEFT: (more[LEFT][0], values)})))[LEFT]
+    bearing = by_name(OpenedUnit.of(two_stages({INPUT: shaft}, more={LEFT: (more[LEFT][0], values)})))[LEFT]
     assert bearing.position_mm == pytest.approx(135.0)  # type: ignore[attr-defined]
     along, against = thrusts(bearing)
     assert along == 0.0 and against < -100.0
@@ -135,7 +135,7 @@ def test_rows_with_a_contact_angle_hold_the_side_that_the_file_states(
     own = [{f"axial_force_absorption{of}": side, "bearing_type": kind} for side in sides]
     own = [values | {"u_axis_vector": (u, 0.0, 0.0)} for values in own]
     element = ROLLER if "roller" in kind else BALL
-    found = by_name(opened(inside(*own, element=element)))
+    found = by_name(OpenedUnit.of(inside(*own, element=element)))
     row = "roller" if "roller" in kind else "ball"
     angles = [getattr(found[number], row).contact_angle_deg for number in (LEFT, RIGHT)]
     assert np.sign(u) * np.array(angles) == pytest.approx(
@@ -159,7 +159,7 @@ def test_rows_with_a_contact_angle_hold_the_side_that_the_file_states(
     ],
 )
 def test_a_contact_angle_without_a_side_is_a_bushing(left: Stated, words: str) -> None:
-    unit = opened(inside(left, {"axial_force_absorption": "positive"}))
+    unit = OpenedUnit.of(inside(left, {"axial_force_absorption": "positive"}))
     assert words in why(unit, LEFT)
     assert list(by_name(unit)) == [RIGHT]
 
@@ -183,7 +183,7 @@ def test_a_contact_angle_without_a_side_is_a_bushing(left: Stated, words: str) -
 def test_the_clearance_nearest_to_operation_counts(
     values: Stated, clearance: float, fate: str | None
 ) -> None:
-    unit = opened(on_lines({"operating_radial_bearing_clearance": None} | dict(values)))
+    unit = OpenedUnit.of(on_lines({"operating_radial_bearing_clearance": None} | dict(values)))
     catalog = by_name(unit)[LEFT].catalog
     assert catalog is not None and catalog.clearance_um == pytest.approx(clearance, abs=1e-9)  # type: ignore[attr-defined]
     if fate is not None:
@@ -205,7 +205,7 @@ def test_clearance_and_preload_of_a_contact_angle_are_along_the_axis(
     values: Stated, clearance: float, preload: float
 ) -> None:
     own = [dict(values) | {"axial_force_absorption": side} for side in ("negative", "positive")]
-    found = by_name(opened(inside(*own)))
+    found = by_name(OpenedUnit.of(inside(*own)))
     for number, sign in ((LEFT, -1.0), (RIGHT, 1.0)):
         bearing = found[number]
         assert bearing.roller is not None
@@ -216,7 +216,7 @@ def test_clearance_and_preload_of_a_contact_angle_are_along_the_axis(
 def test_cylindrical_rollers_hold_nothing_and_ribs_are_a_bushing() -> None:
     own = {"bearing_type": "radial_roller_bearing"}
     sides = [own | {"axial_force_absorption": side} for side in ("no_direction", "both_directions")]
-    unit = opened(inside(*sides, row=ROW | {"pressure_angle": 0.0}))
+    unit = OpenedUnit.of(inside(*sides, row=ROW | {"pressure_angle": 0.0}))
     (bearing,) = by_name(unit).values()
     assert thrusts(bearing) == (0.0, 0.0) and bearing.roller is not None
     assert "ribs carry axial force" in why(unit, RIGHT)
@@ -238,28 +238,28 @@ def test_cylindrical_rollers_hold_nothing_and_ribs_are_a_bushing() -> None:
     ],
 )
 def test_a_bushing_says_why(values: Stated, words: str) -> None:
-    unit = opened(on_lines(values, {}))
+    unit = OpenedUnit.of(on_lines(values, {}))
     assert words in why(unit, LEFT)
     assert list(by_name(unit)) == [RIGHT]
 
 
 def test_a_stiffness_without_end_is_ignored_beside_the_geometry() -> None:
-    unit = opened(on_lines({"radial_stiffness": 1e23, "axial_stiffness": 0.0}))
+    unit = OpenedUnit.of(on_lines({"radial_stiffness": 1e23, "axial_stiffness": 0.0}))
     assert LEFT in by_name(unit)
     assert said(unit, LEFT, "radial_stiffness") == ("ignored", "the stiffness follows from the geometry")
 
 
 def test_a_rating_or_preload_that_no_bearing_has_is_left_out_and_said() -> None:
-    unit = opened(on_lines({"radial_dynamic_load_rating": 1e9}))
+    unit = OpenedUnit.of(on_lines({"radial_dynamic_load_rating": 1e9}))
     assert by_name(unit)[LEFT].dynamic_capacity_n is None  # type: ignore[attr-defined]
     words = "1000000000.0 kN is not from 1 to 1e+09 N"
     assert said(unit, LEFT, "radial_dynamic_load_rating") == ("refused", words)
     own = [{"axial_force_absorption": side, "preload_force": 1e12} for side in ("negative", "positive")]
-    assert by_name(opened(inside(*own)))[LEFT].axial_preload_n == 0.0  # type: ignore[attr-defined]
+    assert by_name(OpenedUnit.of(inside(*own)))[LEFT].axial_preload_n == 0.0  # type: ignore[attr-defined]
 
 
 def test_a_direction_that_the_file_lacks_is_defaulted_and_said() -> None:
-    unit = opened(on_lines({}))
+    unit = OpenedUnit.of(on_lines({}))
     assert by_name(unit)[LEFT].locating == "both"  # type: ignore[attr-defined]
     assert said(unit, LEFT, "axial_force_absorption")[0] == "defaulted"
 
@@ -268,7 +268,7 @@ def test_a_shaft_in_the_outer_ring_is_on_a_bushing() -> None:
     number = 37
     more = {number: ("rolling_bearing_with_catalog_geometry", LINE | place(70.0, 0.0, 0.0))}
     side = relation(2000, "side", assembly=number, inner_part=CASING, outer_part=INPUT)
-    assert "outer side" in why(opened(two_stages(more=more, further=[side])), number)
+    assert "outer side" in why(OpenedUnit.of(two_stages(more=more, further=[side])), number)
 
 
 def matrix_of(stiffness: FloatArray) -> dict[str, Any]:
@@ -302,7 +302,7 @@ def on_input_shaft(stiffness: FloatArray) -> SceneInput:
 def test_bearings_of_a_casing_are_bushings_where_nothing_holds_it_and_say_so(held: bool) -> None:
     group = place(0.0, 0.0, 0.0) | matrix_of(np.diag([1e6] * 5 + [1e6 * held]))
     more = at(LEFT, "catalog", LINE) | at(RIGHT, "catalog", LINE)
-    unit = opened(housed(group, {51: LEFT}, more))
+    unit = OpenedUnit.of(housed(group, {51: LEFT}, more))
     if held:
         assert list(by_name(unit)) == [LEFT, RIGHT]
         assert unit.scene is not None and unit.scene.housings[0].bushings
@@ -316,7 +316,7 @@ ROLES = {"support_vector", "u_axis_vector", "w_axis_vector", "reference_componen
 
 @needs_reference
 def test_cross_located_pairs_of_a_real_unit_hold_outwards() -> None:
-    unit = opened(read_rexs(reference("examples/SEW_3-stage_cylindrical_gearbox_1.0.rexs")))
+    unit = OpenedUnit.of(read_rexs(reference("examples/SEW_3-stage_cylindrical_gearbox_1.0.rexs")))
     assert unit.scene is not None
     found = [(b.shaft, b.position_mm, b.locating) for b in unit.scene.rolling_bearings]  # type: ignore[attr-defined]
     shafts = {shaft for shaft, *_ in found}
@@ -336,11 +336,11 @@ def test_a_rigid_bearing_is_stiff_and_a_floating_one_free_along_the_axis() -> No
     assert (first.radial_stiffness_n_per_m, first.axial_stiffness_n_per_m) == (1e10, 1e10)
     assert first.stiffness_matrix is not None and first.stiffness_matrix[3][3] == 1e7
     assert (second.radial_stiffness_n_per_m, second.axial_stiffness_n_per_m) == (2e8, 0.0)
-    assert said(opened(document), 31, "radial_stiffness")[1].startswith("1e+23 N/m means rigid")
+    assert said(OpenedUnit.of(document), 31, "radial_stiffness")[1].startswith("1e+23 N/m means rigid")
 
 
 def test_a_bearing_without_any_stiffness_is_defaulted_and_said() -> None:
-    unit = opened(two_stages({32: {"radial_stiffness": None}}))
+    unit = OpenedUnit.of(two_stages({32: {"radial_stiffness": None}}))
     assert said(unit, 32, "radial_stiffness")[0] == "defaulted"
 
 
@@ -384,7 +384,7 @@ EXAMPLE = Path(__file__).parents[3] / "examples" / "two_stage" / "two_stage.rexs
 
 def test_the_example_opens_with_bearings_by_geometry_on_its_housing() -> None:
     document = read_rexs(EXAMPLE)
-    unit, scene = opened(document), scene_of(document)
+    unit, scene = OpenedUnit.of(document), scene_of(document)
     assert not [line for line in unit.lines if line.fate == "refused"]
     (housing,) = scene.housings
     assert housing.bushings == tuple(bearing.name for bearing in scene.rolling_bearings)

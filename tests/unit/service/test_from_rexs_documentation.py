@@ -11,7 +11,7 @@ from rexs_stage import PINION, PINION_RIGHT, STAGE, WHEEL, WHEEL_LEFT, WHEEL_RIG
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.modifications import READERS, UNREAD
-from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.schemas.bearings import BallRowInput, RollerRowInput, RollingBearingInput
 from lineofaction.gearbox.schemas.case import WheelInput
 from lineofaction.gearbox.schemas.gear import GearInput
@@ -217,7 +217,7 @@ def read_of_bearings() -> set[str]:
     grooves |= {f"raceway_radius_of_{ring}_ring": 4.7 for ring in ("inner", "outer")}
     ball = {"bearing_type": "angular_contact_ball_bearing"}
     units += [inside(*sides, row=lengths), inside(*(side | ball for side in sides), grooves, BALL)]
-    lines = [line for unit in units for line in opened(unit).lines if "rolling" in line.kind]
+    lines = [line for unit in units for line in OpenedUnit.of(unit).lines if "rolling" in line.kind]
     stated = {line.item for line in lines if line.item and line.fate in ("taken", "derived")}
     return stated - ROLES - {"u_coordinate_on_shaft_inner_side"}
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from command_line import loa
 
-from lineofaction.gearbox.from_rexs.opened import LOAD_CASES_FILE, OpenedUnit, _unit_json, opened
+from lineofaction.gearbox.from_rexs.opened import LOAD_CASES_FILE, OpenedUnit, _unit_json
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import serialized
 from lineofaction.gearbox.rexs.model import Document
@@ -74,10 +74,10 @@ def test_an_overhung_force_is_carried_as_computed_by_hand() -> None:
     torques = (80.0, -40.0, 60.0)
     for case, torque in zip(loads["cases"], torques, strict=True):
         case[MOTOR] = ("external_load", {"torque_around_u_axis": torque})
-    unit = opened(two_stages(**loads))
+    unit = OpenedUnit.of(two_stages(**loads))
     assert [case.direction for case in unit.load_cases] == ["drive", "coast", "drive"]
     plain = [{BELT: ("external_load", {}), MOTOR: case[MOTOR]} for case in loads["cases"]]
-    without = opened(two_stages(**{**loads, "cases": plain}))
+    without = OpenedUnit.of(two_stages(**{**loads, "cases": plain}))
     assert without.scene is not None and without.scene.forces == ()
     pushed = reactions(unit) - reactions(without)
     hand = [
@@ -97,7 +97,7 @@ def reactions(unit: OpenedUnit) -> Any:
 
 
 def test_beyond_the_end_of_its_shaft_a_force_acts_with_its_lever() -> None:
-    unit, at = opened(two_stages(**pulled(u_coordinate_on_shaft=END + 20.0, **VALUES))), BELT
+    unit, at = OpenedUnit.of(two_stages(**pulled(u_coordinate_on_shaft=END + 20.0, **VALUES))), BELT
     assert unit.scene is not None
     (force,) = unit.scene.forces
     assert (force.shaft, force.position_mm) == ("shaft 3", pytest.approx(END, rel=1e-12))
@@ -121,7 +121,9 @@ def test_forces_are_along_the_axes_of_their_shaft() -> None:
 
 def test_a_shaft_described_from_its_other_end_is_pulled_the_same_way() -> None:
     loads = pulled(u_coordinate_on_shaft=100.0, **VALUES)
-    plain, other = (opened(document) for document in (two_stages(**loads), antiparallel(INPUT, END, **loads)))
+    plain, other = (
+        OpenedUnit.of(document) for document in (two_stages(**loads), antiparallel(INPUT, END, **loads))
+    )
     assert plain.scene is not None and other.scene is not None
     for own, seen in zip(plain.scene.forces, other.scene.forces, strict=True):
         assert seen.position_mm == pytest.approx(own.position_mm, rel=1e-12)
@@ -139,7 +141,7 @@ def test_the_mirrored_unit_is_pulled_to_the_other_side() -> None:
 
 def test_the_torque_of_a_load_drives_and_is_no_moment_of_its_force() -> None:
     changes = {MOTOR: {"force_v_direction": 70.0, "torque_around_w_axis": 3.0}}
-    plain, unit = (opened(two_stages(changed)) for changed in ({}, changes))
+    plain, unit = (OpenedUnit.of(two_stages(changed)) for changed in ({}, changes))
     assert plain.scene is not None and unit.scene is not None
     assert (unit.scene.loads, unit.scene.drives) == (plain.scene.loads, plain.scene.drives)
     assert forces_of(two_stages(changes)) == {"external_load 41": ((70.0, 0.0, 0.0), (0.0, 3.0, 0.0))}
@@ -152,7 +154,7 @@ def test_a_load_case_sets_what_it_states_and_keeps_the_rest() -> None:
     loads = pulled(u_coordinate_on_shaft=END, force_v_direction=100.0, force_w_direction=5.0, cases=cases)
     for case, share in zip(loads["cases"], (20.0, 40.0, 20.0, 20.0), strict=True):
         case[ROOT] = ("gear_unit", {"operating_time_fraction": share})
-    unit = opened(two_stages(**loads))
+    unit = OpenedUnit.of(two_stages(**loads))
     assert forces_of(two_stages(**loads)) == {"external_load 44": ((100.0, 5.0, 0.0), (0.0, 0.0, 0.0))}
     tables = tomllib.loads(unit.files()[LOAD_CASES_FILE])
     read = [case.forces for case in load_cases(validated(Inputs, tables))]
@@ -167,7 +169,7 @@ def test_a_load_case_sets_what_it_states_and_keeps_the_rest() -> None:
 def test_the_answer_and_the_verb_show_the_forces_that_differ(tmp_path: Path) -> None:
     cases = [{"force_v_direction": 200.0}, {}]
     document = two_stages(**pulled(u_coordinate_on_shaft=END, force_w_direction=5.0, cases=cases))
-    answer = UnitBody.model_validate(_unit_json(opened(document)))
+    answer = UnitBody.model_validate(_unit_json(OpenedUnit.of(document)))
     assert [[force.force_n for force in case.forces] for case in answer.load_cases] == [[], [[0.0, 5.0, 0.0]]]
     (tmp_path / "unit.rexs").write_bytes(serialized(document, "unit.rexs"))
     shown = loa("open", tmp_path / "unit.rexs", "--out", tmp_path / "unit")
@@ -185,7 +187,7 @@ def test_every_component_of_a_force_is_accounted_for_in_every_case() -> None:
         width_of_external_load=30.0,
         cases=[VALUES, {**VALUES, "force_w_direction": 0.0}],
     )
-    lines = lines_of(opened(two_stages(**loads)), BELT)
+    lines = lines_of(OpenedUnit.of(two_stages(**loads)), BELT)
     assert [fate for fate, _ in lines["force_v_direction"]] == ["taken", "taken"]
     assert lines["force_w_direction"] == [("taken", "force along w of the shaft, N"), ("ignored", "0")]
     assert lines["torque_around_w_axis"][0] == ("taken", "moment about w of the shaft, N m")
@@ -199,7 +201,7 @@ def test_a_force_that_no_scene_can_have_is_refused_with_its_reason() -> None:
     apart["further"] += BEVEL_RELATIONS
     for loads, reason in ((nowhere, "acts on no shaft"), (apart, "acts on a shaft that the scene has not")):
         assert forces_of(two_stages(**loads)) == {}
-        lines = lines_of(opened(two_stages(**loads)), BELT)
+        lines = lines_of(OpenedUnit.of(two_stages(**loads)), BELT)
         assert all(set(lines[item]) == {("refused", reason)} for item in FORCES)
         assert len(lines["force_v_direction"]) == 1 + len(loads["cases"])
 
@@ -208,7 +210,7 @@ def test_a_force_that_no_scene_can_have_is_refused_with_its_reason() -> None:
 def test_a_force_that_is_no_size_is_refused_by_its_component(value: float) -> None:
     loads = pulled(u_coordinate_on_shaft=END, cases=[{"force_v_direction": value}])
     with pytest.raises(BadInput, match=r"load case 1.*44.*force_v_direction"):
-        opened(two_stages(**loads))
+        OpenedUnit.of(two_stages(**loads))
 
 
 @pytest.mark.parametrize(
@@ -225,4 +227,4 @@ def test_forces_on_a_planetary_set_act_on_its_axis_alone(shaft: int, taken: bool
         assert found["external_load 44"] == ((1000.0, -300.0, 40.0), (6.0, -9.0, 0.0))
     else:
         reason = "acts on a planet, and a scene has one for all of its set"
-        assert lines_of(opened(document), BELT)["force_v_direction"] == [("refused", reason)]
+        assert lines_of(OpenedUnit.of(document), BELT)["force_v_direction"] == [("refused", reason)]

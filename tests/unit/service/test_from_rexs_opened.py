@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.rexs.model import Document
 from tests.fakes.opened_unit import content, said, scene_of
 from tests.fakes.rexs_stage import relation
@@ -91,7 +91,7 @@ def test_a_mirrored_unit_is_the_mirrored_scene() -> None:
         assert after["origin_mm"] == [-x + 0.0, y, z]
     assert image["drives"][0]["speed_rpm"] == [-plain["drives"][0]["speed_rpm"][0]]
     assert image["loads"] == plain["loads"]
-    cases = [opened(document).cases for document in (two_stages(), mirrored())]
+    cases = [OpenedUnit.of(document).cases for document in (two_stages(), mirrored())]
     assert [(case.driver, case.driven) for case in cases[0]] == [
         (case.driver, case.driven) for case in cases[1]
     ]
@@ -105,13 +105,13 @@ def test_shafts_without_places_follow_from_the_angles_of_the_stages() -> None:
 
     bare = two_stages(each=each)
     assert content(scene_of(bare)) == content(scene_of(two_stages()))
-    assert said(opened(bare), OUTPUT, "support_vector")[0] == "derived"
+    assert said(OpenedUnit.of(bare), OUTPUT, "support_vector")[0] == "derived"
 
 
 def test_a_load_that_states_nothing_balances_the_torques() -> None:
     silent = {MACHINE: {"transmits_torque": None}}
     assert content(scene_of(two_stages(silent))) == content(scene_of(two_stages()))
-    assert said(opened(two_stages(silent)), MACHINE, "torque_around_u_axis")[0] == "derived"
+    assert said(OpenedUnit.of(two_stages(silent)), MACHINE, "torque_around_u_axis")[0] == "derived"
     turned_about = {MOTOR: {"torque_around_u_axis": None}} | {
         MACHINE: {"transmits_torque": None, "torque_around_u_axis": -RATIO * NORMAL_LOAD}
     }
@@ -125,16 +125,16 @@ def test_a_train_without_a_load_at_its_other_end_is_loaded_at_the_shaft() -> Non
     (load,) = scene_of(document).loads
     assert (load.shaft, load.position_mm) == ("shaft 5", 0.0)
     assert load.torque_n_m == (pytest.approx(RATIO * NORMAL_LOAD, rel=1e-11),)
-    fate, words = said(opened(document), OUTPUT, "external_load")
+    fate, words = said(OpenedUnit.of(document), OUTPUT, "external_load")
     assert fate == "refused" and "none at this end" in words
-    torques = [case.torque_n_m for case in opened(document).load_cases]
+    torques = [case.torque_n_m for case in OpenedUnit.of(document).load_cases]
     assert torques == pytest.approx([NORMAL_LOAD, 0.5 * NORMAL_LOAD])
 
 
 @pytest.mark.parametrize("mass", [1.0, 0.0, -1.0, None])
 def test_a_disc_has_a_mass_above_zero_or_is_left_out(mass: float | None) -> None:
     stated = {"u_coordinate_on_shaft": 150.0} | ({} if mass is None else {"mass_of_component": mass})
-    unit = opened(two_stages(more={MACHINE: ("additional_mass", stated)}))
+    unit = OpenedUnit.of(two_stages(more={MACHINE: ("additional_mass", stated)}))
     assert unit.scene is not None
     whole = mass is not None and mass > 0.0
     assert [disc.inertia.mass_kg for disc in unit.scene.discs] == ([mass] if whole else [])
@@ -142,7 +142,7 @@ def test_a_disc_has_a_mass_above_zero_or_is_left_out(mass: float | None) -> None
 
 
 def test_teeth_below_zero_make_no_ring_of_an_external_gear() -> None:
-    unit = opened(two_stages({GEARS[0]: {"number_of_teeth": -20}}))
+    unit = OpenedUnit.of(two_stages({GEARS[0]: {"number_of_teeth": -20}}))
     fate, words = said(unit, STAGES[0], "")
     assert fate == "refused" and "number_of_teeth = -20" in words and "above 0" in words
     assert unit.scene is not None
@@ -155,7 +155,7 @@ def test_the_motor_drives_and_statics_gives_the_load() -> None:
     (drive,), (load,) = scene.drives, scene.loads
     assert (drive.shaft, drive.speed_rpm) == ("shaft 3", (NORMAL_SPEED,))
     assert (load.shaft, load.torque_n_m) == ("shaft 5", (pytest.approx(RATIO * NORMAL_LOAD, rel=1e-11),))
-    assert said(opened(two_stages()), MACHINE, "torque_around_u_axis") == (
+    assert said(OpenedUnit.of(two_stages()), MACHINE, "torque_around_u_axis") == (
         "derived",
         "-600 N m in nominal: statics of the train",
     )
@@ -163,7 +163,7 @@ def test_the_motor_drives_and_statics_gives_the_load() -> None:
 
 def test_power_from_the_other_end_drives_the_other_gears() -> None:
     changes = {MOTOR: {"torque_around_u_axis": -NORMAL_LOAD}}
-    unit, scene = opened(two_stages(changes)), scene_of(two_stages(changes))
+    unit, scene = OpenedUnit.of(two_stages(changes)), scene_of(two_stages(changes))
     assert [case.driver for case in unit.cases] == [12, 14]
     assert scene.drives[0].shaft == "shaft 5"
     assert scene.drives[0].speed_rpm == (pytest.approx(NORMAL_SPEED / RATIO, rel=1e-11),)
@@ -185,7 +185,7 @@ def test_the_scene_runs_at_the_load_case_of_the_largest_share() -> None:
         }
 
     document = two_stages(cases=(case(20.0, 50.0, 900.0), case(70.0, 80.0, 1200.0), case(10.0, -30.0, 600.0)))
-    unit = opened(document)
+    unit = OpenedUnit.of(document)
     rows = [(c.share, c.torque_n_m, c.speed_rpm, c.direction) for c in unit.load_cases]
     assert rows == [(0.2, 50.0, 900.0, "drive"), (0.7, 80.0, 1200.0, "drive"), (0.1, 30.0, 600.0, "coast")]
     assert scene_of(document).drives[0].speed_rpm == (1200.0,)
@@ -193,7 +193,9 @@ def test_the_scene_runs_at_the_load_case_of_the_largest_share() -> None:
 
 
 def test_sections_without_a_place_are_summed_in_order() -> None:
-    unit = opened(two_stages({130: {"u_coordinate_on_shaft": None}, 131: {"u_coordinate_on_shaft": None}}))
+    unit = OpenedUnit.of(
+        two_stages({130: {"u_coordinate_on_shaft": None}, 131: {"u_coordinate_on_shaft": None}})
+    )
     assert unit.scene is not None
     assert unit.scene.shafts[0].length_mm == pytest.approx(150.0, rel=1e-12)
     assert said(unit, 131, "u_coordinate_on_shaft") == ("derived", "50 mm, the sum of the lengths before it")
@@ -201,7 +203,7 @@ def test_sections_without_a_place_are_summed_in_order() -> None:
 
 def test_the_bore_is_the_diameter_of_the_shaft_under_the_middle_of_the_gear() -> None:
     """One writer gives the begin of a gear as its coordinate: there the shaft is thinner."""
-    unit = opened(two_stages({11: {"u_coordinate_on_shaft": 45.0}}))
+    unit = OpenedUnit.of(two_stages({11: {"u_coordinate_on_shaft": 45.0}}))
     assert unit.cases[0].case.pair.pinion.bore_diameter_mm == 30.0
     assert said(unit, 11, "inner_diameter") == (
         "derived",
@@ -219,7 +221,7 @@ def test_a_planetary_set_turns_and_carries_by_willis() -> None:
     (planets,) = scene.planets
     assert (planets.planet, planets.number, planets.angles_deg) == (f"shaft {PLANETS[0]}", 3, None)
     assert {shaft.frame for shaft in scene.shafts} == {f"shaft {CARRIER}"}
-    cases = opened(planetary()).cases
+    cases = OpenedUnit.of(planetary()).cases
     assert [len(case.equal) for case in cases] == [2, 2]
     assert cases[0].case.load.torque_n_m == (pytest.approx(30.0, rel=1e-8),)
 
@@ -248,7 +250,7 @@ def test_a_bearing_between_two_shafts_leaves_their_speeds_alone() -> None:
     changes = {OUTPUT: {"support_vector": (155.0, 0.0, 0.0)}}
     sides = relation(2000, "side", assembly=60, inner_part=INPUT, outer_part=OUTPUT)
     more = {60: ("concept_bearing", {"radial_stiffness": 1e8, "u_coordinate_on_shaft_inner_side": 150.0})}
-    unit = opened(two_stages(changes, more=more, further=[sides]))
+    unit = OpenedUnit.of(two_stages(changes, more=more, further=[sides]))
     assert unit.scene is not None
     (coupling,) = unit.scene.couplings
     assert coupling.torsional_stiffness_n_m_per_rad == 0.0
@@ -257,7 +259,7 @@ def test_a_bearing_between_two_shafts_leaves_their_speeds_alone() -> None:
 
 def test_every_value_is_accounted_for_once() -> None:
     document = two_stages()
-    lines = opened(document).lines
+    lines = OpenedUnit.of(document).lines
     stated = [(place, a.id) for place, part in document.model.all_components() for a in part.attributes]
     known = [(line.place, line.item) for line in lines]
     assert len(known) == len(set(known))
@@ -265,7 +267,7 @@ def test_every_value_is_accounted_for_once() -> None:
 
 
 def test_the_files_are_a_case_a_stage_the_scene_and_the_account() -> None:
-    names = list(opened(two_stages()).files())
+    names = list(OpenedUnit.of(two_stages()).files())
     assert names == [
         "cylindrical_stage_21.toml",
         "cylindrical_stage_22.toml",

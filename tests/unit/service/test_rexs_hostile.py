@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from hostile_rexs import JSON, XML, ZIP, damaged_files, hostile_files
 
-from lineofaction.gearbox.from_rexs.opened import OpenedUnit, opened
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import parsed, serialized
 from lineofaction.gearbox.rexs.model import Document
@@ -109,7 +109,7 @@ def test_a_unit_with_a_wrong_number_is_opened_or_refused_with_one_error() -> Non
 
 def _end(data: bytes) -> OpenedUnit | str:
     try:
-        return opened(parsed(data))
+        return OpenedUnit.of(parsed(data))
     except BadInput as error:
         assert len(str(error)) < 2_000
         return str(error)
@@ -149,10 +149,10 @@ def _without(document: Document, seed: int) -> Document:
 @pytest.mark.parametrize("make", [two_stages, planetary])
 @pytest.mark.parametrize("seeds", [40, pytest.param(80, marks=pytest.mark.nightly)])
 def test_a_damaged_unit_is_opened_or_refused_with_one_error(make: Any, seeds: int) -> None:
-    whole, refused, changed = opened(make()), 0, 0
+    whole, refused, changed = OpenedUnit.of(make()), 0, 0
     for seed in range(seeds):
         try:
-            unit = opened(_without(make(), seed))
+            unit = OpenedUnit.of(_without(make(), seed))
         except BadInput as error:
             refused += 1
             assert len(str(error)) < 2_000
@@ -164,5 +164,5 @@ def test_a_damaged_unit_is_opened_or_refused_with_one_error(make: Any, seeds: in
 
 @pytest.mark.parametrize("stage", STAGES)
 def test_a_stage_without_a_gear_leaves_the_other(stage: int) -> None:
-    unit = opened(two_stages({11 if stage == STAGES[0] else 13: {"number_of_teeth": None}}))
+    unit = OpenedUnit.of(two_stages({11 if stage == STAGES[0] else 13: {"number_of_teeth": None}}))
     assert [case.stage for case in unit.cases] == [other for other in STAGES if other != stage]

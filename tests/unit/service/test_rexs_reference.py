@@ -38,7 +38,7 @@ from fe_contact.ste import Metadata
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import BEARINGS, COUPLINGS, GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase
-from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.from_rexs.scene import BearingPart
 from lineofaction.gearbox.rexs.files import parsed, read_rexs, serialized
 from lineofaction.gearbox.rexs.model import Document
@@ -201,7 +201,7 @@ def test_a_deflection_is_valid_and_its_attributes_belong_to_their_components(
     make: Callable[[], Document],
 ) -> None:
     document = make()
-    unit = opened(document)
+    unit = OpenedUnit.of(document)
     written = deflected(document, unit, deflection_of_unit(unit))
     _validate(written)
     known, owned = attributes_of("2.0.0"), owners("2.0.0")

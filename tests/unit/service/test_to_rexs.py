@@ -20,7 +20,7 @@ from fe_contact.ste import Metadata, SteDatabase
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase
-from lineofaction.gearbox.from_rexs.opened import opened
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import parsed, serialized
 from lineofaction.gearbox.rexs.model import Attribute, Component, Document
@@ -186,7 +186,7 @@ def with_sides_exchanged(document: Document, bearing: int) -> Document:
 
 
 def written(document: Document) -> tuple[Document, GearboxDeflection]:
-    unit = opened(document)
+    unit = OpenedUnit.of(document)
     result = deflection_of_unit(unit)
     return deflected(document, unit, result), result
 
@@ -219,11 +219,11 @@ def deflected_unit() -> tuple[Document, GearboxDeflection]:
 def test_the_unit_reads_back_to_the_same_scene_and_cases(
     deflected_unit: tuple[Document, GearboxDeflection],
 ) -> None:
-    document, before = deflected_unit[0], opened(spectrum())
+    document, before = deflected_unit[0], OpenedUnit.of(spectrum())
     for name in ("a.rexs", "a.rexsj", "a.rexsz"):
         read = parsed(serialized(document, name))
         assert read == document
-        after = opened(read)
+        after = OpenedUnit.of(read)
         assert (after.scene, after.cases, after.load_cases) == (before.scene, before.cases, before.load_cases)
     assert document.model.components == spectrum().model.components
     for own, case in zip(document.model.spectra[0].cases, spectrum().model.spectra[0].cases, strict=True):
@@ -242,7 +242,7 @@ def test_every_load_case_has_its_own_results(deflected_unit: tuple[Document, Gea
             own = found[int(mesh.name.split()[-1])]
             size = own["effective_equivalent_misalignment_iso_6336_2019"]
             assert size == pytest.approx(abs(mesh.misalignment), rel=1e-12)
-            along_u = opened(spectrum()).parts.meshes[mesh.name].sense * SIDES[number]
+            along_u = OpenedUnit.of(spectrum()).parts.meshes[mesh.name].sense * SIDES[number]
             assert own["custom_misalignment"] == pytest.approx(along_u * mesh.misalignment, rel=1e-12)
             load = own["load_distribution_along_face_width"]
             assert np.all(along_u * np.diff(load) < 0.0)
@@ -332,7 +332,7 @@ UNITS = {
 @pytest.mark.parametrize("name", UNITS)
 @pytest.mark.parametrize("direction", ["drive", "coast"])
 def test_the_face_counts_as_dynamics_counts_it(name: str, direction: str) -> None:
-    unit = opened(UNITS[name])
+    unit = OpenedUnit.of(UNITS[name])
     scene = loaded_scene(scene_in_si(unit), LoadCase("load", direction=direction))
     system, turned = assemble(scene), 1 if direction == "drive" else -1
     for index, mesh in enumerate(scene.meshes):
@@ -373,7 +373,7 @@ def test_without_a_spectrum_results_are_the_components_own() -> None:
 
 
 def test_planets_copies_are_named_as_left_out() -> None:
-    unit = opened(planetary())
+    unit = OpenedUnit.of(planetary())
     result = deflection_of_unit(unit)
     names = left_out(unit, result)
     assert "shaft 6 2" in names
@@ -399,15 +399,15 @@ OTHER_TIP = {11: {"tip_diameter": 43.0}}
 def test_a_unit_of_another_scene_is_refused_with_the_first_difference(
     changes: dict[int, dict[str, Any]], words: str
 ) -> None:
-    result = deflection_of_unit(opened(two_stages()))
+    result = deflection_of_unit(OpenedUnit.of(two_stages()))
     other = two_stages(changes)
     with pytest.raises(BadInput, match=words):
-        deflected(other, opened(other), result)
+        deflected(other, OpenedUnit.of(other), result)
 
 
 def test_settings_of_the_computation_may_differ() -> None:
     document = two_stages()
-    unit = opened(document)
+    unit = OpenedUnit.of(document)
     result = deflection_of_unit(unit)
     scene = result.scene | {"run": {"duration_s": 9.0}, "effects": {"friction": "off"}}
     assert deflected(document, unit, replace(result, scene=scene)) == deflected(document, unit, result)
@@ -416,7 +416,7 @@ def test_settings_of_the_computation_may_differ() -> None:
 def test_other_load_cases_and_lost_ones_are_refused(
     deflected_unit: tuple[Document, GearboxDeflection],
 ) -> None:
-    result, unit = deflected_unit[1], opened(spectrum())
+    result, unit = deflected_unit[1], OpenedUnit.of(spectrum())
 
     def with_case(**changes: Any) -> GearboxDeflection:
         first, *others = result.deflection.cases
