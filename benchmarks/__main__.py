@@ -14,6 +14,7 @@ from benchmarks import (
     cold_start,
     corrected_plane,
     derivatives,
+    divided_studies,
     dynamic_influence_estimates,
     dynamics_cost,
     error_coverage,
@@ -89,6 +90,7 @@ SUBJECTS = (
     cluster_rate,
     worker_cost,
     shared_table,
+    divided_studies,
     cold_start,
 )
 

@@ -21,6 +21,7 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
+from model_studies.workers import InProcess, Workers, pays, spent
 
 SAMPLES_PER_PITCH = 64  # at least; as many powers of 2 more as there are steps
 
@@ -293,6 +294,7 @@ def steady_states(
     periods: int = SETTLING,
     time: float = 0.0,
     progress: Callable[[str, float], None] | None = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> SteadyStates:
     """Return the steady states of `system` at rising and falling speeds, and the branch between them.
 
@@ -311,6 +313,8 @@ def steady_states(
         Time at which loads are evaluated, s.
     progress : callable, optional
         Called with the curve (`CURVES`) and the fraction of it done; an exception in it ends the study.
+    workers : Workers
+        They take a sweep each.
 
     Raises
     ------
@@ -328,11 +332,11 @@ def steady_states(
     def stage(name: str) -> Callable[[float], None]:
         return lambda fraction: None if progress is None else progress(name, fraction)
 
-    began = cpu_seconds()
+    began = spent(workers)
     problem = periodic_problem(system, sense * speeds[0], repeat, time)
-    up = sweep(problem, sense * speeds, periods, stage(CURVES[UP]))
-    down = sweep(problem, sense * speeds[::-1], periods, stage(CURVES[DOWN])) if speeds.size > 1 else ()
-    seconds["sweeps"] = cpu_seconds() - began
+    courses = [sense * speeds, sense * speeds[::-1]] if speeds.size > 1 else [sense * speeds]
+    up, down = _sweeps(problem, courses, periods, stage, workers)
+    seconds["sweeps"] = spent(workers) - began
     began = cpu_seconds()
     followed = None
     if branch and speeds.size > 1:
@@ -345,6 +349,43 @@ def steady_states(
     figures = _figures_of(problem, [orbit for orbits in curves for orbit in orbits])
     seconds["figures"] = cpu_seconds() - began
     return _study(problem, curves, followed, figures, seconds)
+
+
+def _sweeps(
+    problem: PeriodicProblem,
+    courses: Sequence[FloatArray],
+    periods: int,
+    stage: Callable[[str], Callable[[float], None]],
+    workers: Workers,
+) -> tuple[tuple[Orbit, ...], tuple[Orbit, ...]]:
+    """Return the motions at rising speeds, and at falling ones if there are several."""
+    reports = [stage(CURVES[curve]) for curve in (UP, DOWN)]
+    if len(courses) > 1 and pays(workers, _settling_seconds(problem, courses, periods)):
+        swept = []
+        for orbits in workers.run(_swept, (problem, periods), courses):
+            reports[len(swept)](1.0)
+            swept.append(orbits)
+    else:
+        swept = [
+            sweep(problem, speeds, periods, report) for speeds, report in zip(courses, reports, strict=False)
+        ]
+    return swept[0], swept[1] if len(swept) > 1 else ()
+
+
+def _swept(shared: tuple[PeriodicProblem, int], speeds: FloatArray) -> tuple[Orbit, ...]:
+    """Return the motions at speeds in turn: one task."""
+    problem, periods = shared
+    return sweep(problem, speeds, periods)
+
+
+def _settling_seconds(problem: PeriodicProblem, courses: Sequence[FloatArray], periods: int) -> float:
+    """Return the CPU seconds in which all speeds settle, by two periods: the first loads code."""
+    over_period, seconds = PeriodMap(problem, float(courses[0][0])), 0.0
+    for _ in range(2):
+        began = cpu_seconds()
+        over_period(problem.rest)
+        seconds = cpu_seconds() - began
+    return seconds * (periods + 1) * sum(map(len, courses))
 
 
 def _study(

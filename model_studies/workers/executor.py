@@ -292,6 +292,12 @@ class OrHere:
 
 START_SECONDS = 5.0
 """CPU seconds in which a new process has loaded program and compiled code: less work stays in this one."""
+AWAKE_SECONDS = 1.0
+"""The same of workers that have done tasks: they may have to load what others need."""
+
+
+def _least(workers: Workers) -> float:
+    return min(START_SECONDS, AWAKE_SECONDS) if workers.cost.tasks else START_SECONDS
 
 
 def divided(
@@ -306,9 +312,9 @@ def divided(
     Parameters
     ----------
     seconds : float, optional
-        CPU seconds that all items are predicted to take; above `START_SECONDS` the workers do all of them.
-        Else items are done here until those left would take more, each as long as the last. The first one
-        tells nothing, it loads code.
+        CPU seconds that all items are predicted to take; above `START_SECONDS`, or `AWAKE_SECONDS`, the
+        workers do all of them. Else items are done here until those left would take more, each as long as the
+        last. The first one tells nothing, it loads code.
 
     Raises
     ------
@@ -316,7 +322,7 @@ def divided(
         As `Workers.run`, and what the function raises.
     """
     done, expected = 0, seconds or 0.0
-    while len(items) - done > 1 and expected <= START_SECONDS:
+    while len(items) - done > 1 and expected <= _least(workers):
         began = cpu_seconds()
         result = function(shared, items[done])
         last, done = cpu_seconds() - began, done + 1
@@ -328,7 +334,7 @@ def divided(
 
 def pays(workers: Workers, seconds: float) -> bool:
     """Return whether work of so many predicted CPU seconds goes to workers, if it is not `divided`."""
-    return not isinstance(workers, InProcess) and seconds > START_SECONDS
+    return not isinstance(workers, InProcess) and seconds > _least(workers)
 
 
 def spent(workers: Workers) -> float:

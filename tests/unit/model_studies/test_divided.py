@@ -17,7 +17,16 @@ from running_service import until
 
 from host import MissingExtra, cpu_seconds
 from model_studies import LeftOut, run_fidelities, run_variants
-from model_studies.workers import ByExecutor, InProcess, RunCost, WorkersLost, divided, local_processes, spent
+from model_studies.workers import (
+    ByExecutor,
+    InProcess,
+    RunCost,
+    WorkersLost,
+    divided,
+    local_processes,
+    pays,
+    spent,
+)
 from model_studies.workers import executor as executors
 
 
@@ -61,6 +70,17 @@ def test_only_work_that_takes_longer_than_a_process_starts_is_sent(
     workers = Noting()
     assert list(divided(workers, burned, None, items, seconds)) == items
     assert workers.sent == items[len(items) - sent :]
+
+
+def test_workers_that_are_awake_take_less(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(executors, "START_SECONDS", 0.2)
+    monkeypatch.setattr(executors, "AWAKE_SECONDS", 0.05)
+    for tasks, sent in ((0, 0), (1, 3)):
+        workers = Noting(RunCost(tasks))
+        assert list(divided(workers, burned, None, [0.0, 0.0, 0.0], 0.1)) == [0.0, 0.0, 0.0]
+        assert len(workers.sent) == sent
+        assert pays(workers, 0.1) is (tasks > 0) and pays(workers, 0.3) and not pays(workers, 0.01)
+    assert not pays(InProcess(), 99.0)
 
 
 def test_time_of_the_caller_between_results_is_no_time_of_tasks(monkeypatch: pytest.MonkeyPatch) -> None:

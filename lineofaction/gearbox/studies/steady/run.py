@@ -33,6 +33,7 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
                 repeat=inputs.repeat,
                 periods=inputs.settling_periods,
                 progress=means.report,
+                workers=means.workers,
             )
         return with_reduction_costs(states, subject)
 
