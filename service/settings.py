@@ -114,7 +114,7 @@ class Settings(BaseSettings):
     quarantine_days : float
         How long a removed result can be had back.
     workers : int
-        Jobs that run at the same time.
+        Jobs that run at the same time on this machine.
     processes : int
         Processes that answer requests.
     queue_limit : int
@@ -128,7 +128,7 @@ class Settings(BaseSettings):
     attempts : int
         How often a computation whose worker died is started.
     scheduler : str or None
-        Address of a Dask scheduler whose workers share the work of jobs; None: each is done by one process.
+        Address of a Dask scheduler whose workers do the jobs; None: children of this machine do.
     keys_file : Path or None
         The file of access keys; None: ``keys.json`` in the data directory.
     webhook_origins : str

@@ -132,11 +132,11 @@ def _build_info() -> Info:
     return info
 
 
-def _of_scheduler(scheduler: Scheduler, most_workers: int) -> Iterable[Metric]:
+def _of_scheduler(scheduler: Scheduler) -> Iterable[Metric]:
     age = "Seconds since the scheduler's last turn"
     for name, text, value in (
         ("loa_workers_busy", "Workers that run", scheduler.busy),
-        ("loa_workers_limit", "Workers that may run at the same time (LOA_WORKERS)", most_workers),
+        ("loa_workers_limit", "Workers that may run at the same time", scheduler.most),
         ("loa_workers_warm", "Warm processes that workers are forked from", scheduler.warm),
         ("loa_scheduler_up", "Whether the scheduler's thread runs", scheduler.alive),
         ("loa_scheduler_turn_age_seconds", age, scheduler.turn_age_s),
@@ -188,7 +188,7 @@ def process_registry(
     ):
         registry.register(_Collected(read))
     if scheduler is not None:
-        registry.register(_Collected(partial(_of_scheduler, scheduler, settings.workers)))
+        registry.register(_Collected(partial(_of_scheduler, scheduler)))
         registry.register(scheduler.figures)
     return registry
 

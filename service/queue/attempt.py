@@ -5,31 +5,79 @@ from __future__ import annotations
 import shutil
 import time
 import uuid
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import Any, TypeAlias
 
 import structlog
 from prometheus_client import Counter, Histogram, Metric
 from prometheus_client.registry import Collector
 
 from bounds import engineering
-from host import family_cpu_seconds
+from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.stages import PacedFraction
 from model_studies.progress import stage_name
 from service.queue.claims import Claim, Claims
+from service.queue.cluster import Cluster, Task
 from service.queue.terms import LOWER_COST
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.store.results import ResultStore
 from service.tracing.tracer import Fact, Span, trace_facts, tracer
-from service.worker.forks import Launch
+from service.worker.forks import Forks
 from service.worker.order import Outcome, WorkOrder
 from service.worker.process import Process
 from service.worker.usage import BYTES_PER_MB, Usage, machine_memory_mb, no_space
 from service.worker.worker import Step, Worker
 
 logger = structlog.get_logger(__name__)
+files_read = on_demand("service.worker.preparations:files_read")
+
+
+# Who works: children of this machine, or tasks of a Dask scheduler.
+
+
+Run: TypeAlias = Worker | Task
+"""Work on one order."""
+
+
+class Children:
+    """Child processes of this one, `settings.workers` at a time.
+
+    Attributes
+    ----------
+    keeps : bool
+        Whether what it runs outlives this process, and is found again by the name it was begun under.
+    """
+
+    keeps = False
+
+    def __init__(self, settings: Settings, modules: Iterable[str]) -> None:
+        self.most = settings.workers
+        self.memory_mb = max(LEAST_MEMORY_MB, machine_memory_mb() // settings.workers)
+        self._forks = Forks(modules, settings.data_directory / "log" / "warm.log")
+
+    @property
+    def warm(self) -> bool:
+        """Whether there is a warm process to fork workers from."""
+        return self._forks.has_warmed_up
+
+    def start(self, _heard: Callable[[], None]) -> None:
+        """Do nothing: the first child is started anew."""
+
+    def begin(self, order: WorkOrder, _name: str, log: Path) -> Worker:
+        """Start a child, or fork one; raises OSError: the system does neither."""
+        return Worker(order, log, self._forks.launch)
+
+    def close(self) -> None:
+        """End the warm process."""
+        self._forks.close()
+
+
+Crew: TypeAlias = Children | Cluster
+"""Who begins work on orders."""
+
 
 # What the workers of one scheduler did: counted by the process they worked for.
 
@@ -72,10 +120,10 @@ class WorkerFigures(Collector):
         for outcome in _ALARMING:
             self._ends.labels(process, outcome)
 
-    def ended(self, process: str, outcome: str, worker: Worker) -> None:
+    def ended(self, process: str, outcome: str, worker: Run) -> None:
         """Count a worker that ended, and what it took if it was reaped."""
         self._ends.labels(process, outcome).inc()
-        self._warnings.labels(process).inc(worker.warnings)
+        self._warnings.labels(process).inc(len(worker.warnings))
         self._reads.labels("hit").inc(worker.compliance_reads.hits)
         self._reads.labels("miss").inc(worker.compliance_reads.misses)
         if worker.usage is not None:
@@ -100,7 +148,7 @@ _MOST_STAGES = 200
 class _AttemptTrace:
     """Spans that end as the attempt goes on; no stage begins before it was `launched`, s since 1970."""
 
-    def __init__(self, claim: Claim, pid: int, launched: float) -> None:
+    def __init__(self, claim: Claim, named: dict[str, Any], launched: float) -> None:
         facts: dict[str, Fact] = {
             "loa.computation": claim.id,
             "loa.process": claim.process,
@@ -108,7 +156,7 @@ class _AttemptTrace:
         }
         begun = datetime.fromisoformat(claim.waited_from).timestamp() if claim.waited_from else launched
         tracer().begin("queue", claim.traceparent, min(begun, launched), facts).end(launched, {})
-        facts |= {"process.pid": pid}
+        facts |= {f"process.{name}": value for name, value in named.items()}
         self._attempt = tracer().begin(f"attempt {claim.process}", claim.traceparent, launched, facts)
         self._name, self._cpu_s, self._left = "", 0.0, _MOST_STAGES
         self._stage = self._begun(_START, launched, 0.0)
@@ -139,12 +187,12 @@ class _AttemptTrace:
 
 @dataclass(frozen=True)
 class Attempt:
-    """A claim and the process that works on it.
+    """A claim and what works on it.
 
     Attributes
     ----------
     claim : Claim
-    worker : Worker
+    worker : Run
     workspace : Path
         Directory of the computation alone.
     log : Path
@@ -155,26 +203,31 @@ class Attempt:
         Its spans.
     fraction : PacedFraction
         Of the work, where it does not predict its cost.
+    first : int
+        Number of this attempt, before Dask began it again.
     """
 
     claim: Claim
-    worker: Worker
+    worker: Run
     workspace: Path
     log: Path
     figures: WorkerFigures
     trace: _AttemptTrace
     fraction: PacedFraction
+    first: int
 
     def note_end(self, how: str) -> None:
         """Count and log how the worker ended and, if it has been reaped, what it took."""
         self.figures.ended(self.claim.process, how, self.worker)
+        for reason in self.worker.warnings:
+            logger.warning("worker warns", **self.worker.facts, reason=reason)
         self.trace.end(how, self.worker.usage)
         usage = {} if self.worker.usage is None else self.worker.usage.as_json()
         logger.info(
             "worker ended",
             computation=self.claim.id,
             process=self.claim.process,
-            pid=self.worker.pid,
+            **self.worker.facts,
             attempt=self.claim.attempts,
             outcome=how,
             **usage,
@@ -188,7 +241,7 @@ class Attempt:
         """
         if self.claim.max_cost_s is None:
             return None
-        spent = family_cpu_seconds(self.worker.pid)
+        spent = self.worker.spent()
         if spent is None or spent <= self.claim.max_cost_s:
             return None
         limit = claims.max_cost_s(self.claim)
@@ -198,47 +251,50 @@ class Attempt:
 
 
 def begun(
-    settings: Settings, process: Process, claim: Claim, launch: Launch, figures: WorkerFigures
+    settings: Settings, process: Process, claim: Claim, crew: Crew, store: ResultStore, figures: WorkerFigures
 ) -> Attempt:
-    """Launch a worker for a claim; raises what keeps the system from it."""
+    """Let a claim be worked on; raises what keeps the system from it, or that a result it reads is gone."""
     workspace = _workspace_of(settings, claim)
     log = settings.data_directory / "log" / f"{claim.id}.log"
     workspace.mkdir(parents=True, exist_ok=True)
     launched = time.time()  # before the worker can reach its first stage
-    worker = Worker(_order(settings, process.entry, claim), log, launch)
+    stored = _files_read(claim, store)
+    worker = crew.begin(_order(settings, process.entry, claim, stored, crew.memory_mb), claim.id, log)
     figures.started(claim.process)
     facts = {"computation": claim.id, "process": claim.process, "key": claim.key}
     facts |= trace_facts(claim.traceparent)
-    logger.info("worker started", **facts, pid=worker.pid, attempt=claim.attempts)
-    trace = _AttemptTrace(claim, worker.pid, launched)
-    return Attempt(claim, worker, workspace, log, figures, trace, PacedFraction(process.stages))
+    logger.info("worker started", **facts, **worker.facts, attempt=claim.attempts)
+    trace = _AttemptTrace(claim, worker.facts, launched)
+    return Attempt(
+        claim, worker, workspace, log, figures, trace, PacedFraction(process.stages), claim.attempts
+    )
 
 
 def _workspace_of(settings: Settings, claim: Claim) -> Path:
     return settings.data_directory / "work" / claim.id
 
 
-def _order(settings: Settings, entry: str, claim: Claim) -> WorkOrder:
+def _files_read(claim: Claim, store: ResultStore) -> dict[str, Path]:
+    """Return the stored results that a claim reads; its inputs are looked into if there may be any."""
+    if claim.inputs.get("scene") is None and claim.inputs.get("run") is None:
+        return {}
+    found: dict[str, Path] = files_read(claim.inputs, store.within(claim.project))
+    return found
+
+
+def _order(
+    settings: Settings, entry: str, claim: Claim, stored: dict[str, Path], memory_mb: int | None
+) -> WorkOrder:
     return WorkOrder(
         entry=entry,
         inputs=claim.inputs,
         key=claim.key,
-        project=claim.project,
         workspace=_workspace_of(settings, claim),
         data_directory=settings.data_directory,
-        memory_limit_mb=_memory_mb(settings),
-        database_url=settings.database_address,
-        results_url=settings.results_url,
-        results_keys=settings.results_keys,
+        memory_limit_mb=settings.memory_limit_mb or memory_mb,
+        stored=stored,
         scheduler=settings.scheduler,
     )
-
-
-def _memory_mb(settings: Settings) -> int:
-    """Return what one worker may have, MB: what is set, or its share of the machine's memory."""
-    if settings.memory_limit_mb is not None:
-        return settings.memory_limit_mb
-    return max(LEAST_MEMORY_MB, machine_memory_mb() // settings.workers)
 
 
 # The end of an attempt: its products are stored, or the table states why there are none.

@@ -40,6 +40,8 @@ class Claim:
         When it was entered or put back, RFC 3339; empty where that is not known.
     project : str
         Whose jobs wanted it.
+    program : str
+        Version that entered it.
     """
 
     id: str
@@ -51,6 +53,7 @@ class Claim:
     traceparent: str = field(default="", compare=False)
     waited_from: str = field(default="", compare=False)
     project: str = COMMON
+    program: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True)
@@ -143,6 +146,10 @@ class Claims:
         facts = {"faults": json.dumps(list(faults)), "reference": reference}
         self._end_with(claim, {"state": "failed", "message": message.replace("\0", "")} | facts)
 
+    def count(self, claim: Claim, message: str) -> None:
+        """Note that an attempt ended and the next one, that of the claim, goes on elsewhere."""
+        self._change([(claim, {"attempts": claim.attempts, "message": message})])
+
     def put_back(self, claim: Claim, message: str, *, counted: bool) -> None:
         """Let it wait again; an attempt that ended through no fault of its own is not counted."""
         attempts = claim.attempts if counted else claim.attempts - 1
@@ -195,7 +202,7 @@ def _running(claims: Collection[Claim]) -> ColumnElement[bool]:
 def _claimed(row: Row[Any]) -> Claim:
     inputs, (project, key) = json.loads(row.inputs), at_address(row.key)
     facts = (row.id, row.process, key, inputs, row.attempts, row.max_cost_s, row.traceparent)
-    return Claim(*facts, project=project)
+    return Claim(*facts, project=project, program=row.program)
 
 
 def _columns(reached: Reached) -> dict[str, Any]:

@@ -13,25 +13,25 @@ import shutil
 import threading
 import time
 import uuid
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import structlog
 from sqlalchemy import Engine
 
 from host import never_wait_at, require_sessions
 from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable, ServiceError, StoreUnavailable
-from service.queue.attempt import Attempt, Ended, Settlement, WorkerFigures, begun
+from service.queue.attempt import Attempt, Children, Crew, Ended, Run, Settlement, WorkerFigures, begun
 from service.queue.claims import Claim, Claims, Reached
+from service.queue.cluster import Cluster
 from service.queue.retention import Housekeeper, Retention
 from service.queue.submissions import Submissions
 from service.settings import Settings
 from service.store.database import Ownership, Schema, open_database
+from service.store.deployment import Deployment
 from service.store.places import DATABASE_FILE, result_store
 from service.store.results import ResultStore
-from service.worker.forks import Forks
 from service.worker.order import Outcome
 from service.worker.process import Registry
-from service.worker.worker import Worker
 
 _TURN_S = 0.5
 """Between two turns in which nothing is heard."""
@@ -45,7 +45,7 @@ logger = structlog.get_logger(__name__)
 
 
 class Scheduler:
-    """Runs what waits, at most `settings.workers` at a time."""
+    """Lets a crew do what waits: children of this machine, or the workers of a Dask cluster."""
 
     def __init__(
         self,
@@ -55,12 +55,13 @@ class Scheduler:
         store: ResultStore,
         owner: Ownership,
         housekeeper: Housekeeper | None = None,
+        crew: Crew | None = None,
     ) -> None:
         self._settings, self._registry, self._claims = settings, registry, claims
         self._owner, self._housekeeper = owner, housekeeper
-        self._settlement = Settlement(claims, store, settings.attempts)
-        self._forks = Forks(registry.modules, settings.data_directory / "log" / "warm.log")
-        self._running: dict[int, Attempt] = {}
+        self._store, self._settlement = store, Settlement(claims, store, settings.attempts)
+        self._crew: Crew = crew or Children(settings, registry.modules)
+        self._running: dict[str, Attempt] = {}
         self._reached: dict[str, tuple[Claim, Reached]] = {}
         self._unsettled: list[Ended] = []
         self._stopping = threading.Event()
@@ -78,9 +79,6 @@ class Scheduler:
         self._owner.acquire()
         for name in ("work", "log"):
             (self._settings.data_directory / name).mkdir(parents=True, exist_ok=True)
-        for claim in self._claims.running():
-            self._settlement.again_or_fail(claim, "The service ended while it ran.")
-        self._clear()
         self._selector = selectors.DefaultSelector()
         self._wake_out, self._wake_in = os.pipe()
         for end in (self._wake_out, self._wake_in):
@@ -88,6 +86,9 @@ class Scheduler:
         self._selector.register(self._wake_out, selectors.EVENT_READ)
         self._stopping.clear()
         self._turned_at = time.monotonic()
+        self._crew.start(self.wake)
+        self._take_up()
+        self._clear()
         if self._housekeeper is not None:
             self._housekeeper.start()
         self._thread = threading.Thread(target=self._loop, name="scheduler", daemon=True)
@@ -127,7 +128,12 @@ class Scheduler:
     @property
     def warm(self) -> bool:
         """Whether there is a warm process to fork workers from."""
-        return self._forks.has_warmed_up
+        return self._crew.warm
+
+    @property
+    def most(self) -> int:
+        """Workers that may run at the same time."""
+        return self._crew.most
 
     def wake(self) -> None:
         """Look at the table now: something was submitted or dismissed."""
@@ -154,11 +160,11 @@ class Scheduler:
                 self._stopping.wait(_TURN_S)
             self._turned_at = time.monotonic()
         self._put_all_back()
-        self._forks.close()
+        self._crew.close()
 
     def _put_all_back(self) -> None:
-        """End all workers; what the database does not take now it is told at the next start."""
-        running = list(self._running.values())
+        """End all workers but those that go on; what the database does not take waits for the next start."""
+        running = [] if self._crew.keeps else list(self._running.values())
         for run in running:
             run.worker.end_group()
         deadline = time.monotonic() + _STOPPING_S
@@ -177,12 +183,13 @@ class Scheduler:
         self._own_table()
         self._put_back_strays()
         self._settle_all()
+        self._count_begins()
         self._enforce_dismissals()
         self._enforce_costs()
         self._note_progress()
         self._clear()
         self._claims.advance_batches()
-        while len(self._running) < self._settings.workers and (claim := self._claims.claim()) is not None:
+        while len(self._running) < self._crew.most and (claim := self._claims.claim()) is not None:
             self._begin(claim)
 
     def _listen_to_all(self) -> None:
@@ -190,21 +197,27 @@ class Scheduler:
         for key, _ in self._selector.select(_TURN_S):
             if key.fd == self._wake_out:
                 os.read(self._wake_out, 65536)
-            elif key.fd in self._running:
-                self._listen(self._running[key.fd])
+        for running in list(self._running.values()):
+            self._listen(running)
 
     def _begin(self, claim: Claim) -> None:
         try:
             process = self._registry[claim.process]
-            attempt = begun(self._settings, process, claim, self._forks.launch, self.figures)
+            attempt = begun(self._settings, process, claim, self._crew, self._store, self.figures)
+        except _OUTAGES:
+            raise  # what runs by the table alone is put back
+        except ServiceError as error:
+            self._claims.fail(claim, str(error))
+            return
         except Exception:
             reference = uuid.uuid4().hex[:12]
             logger.exception("no worker could be started", computation=claim.id, reference=reference)
             text = f"No worker could be started. The log has the details under {reference}."
             self._claims.fail(claim, text, reference=reference)
             return
-        self._running[attempt.worker.channel] = attempt
-        self._selector.register(attempt.worker.channel, selectors.EVENT_READ)
+        self._running[claim.id] = attempt
+        if attempt.worker.channel is not None:
+            self._selector.register(attempt.worker.channel, selectors.EVENT_READ)
 
     def _listen(self, running: Attempt) -> None:
         """Note progress; take the outcome when the channel ends."""
@@ -223,9 +236,10 @@ class Scheduler:
         """Let an attempt be settled."""
         self._unsettled.append(Ended(running.claim, outcome, running.workspace, running.log))
 
-    def _forget(self, running: Attempt) -> Worker:
-        self._selector.unregister(running.worker.channel)
-        del self._running[running.worker.channel]
+    def _forget(self, running: Attempt) -> Run:
+        if running.worker.channel is not None:
+            self._selector.unregister(running.worker.channel)
+        del self._running[running.claim.id]
         self._reached.pop(running.claim.id, None)
         return running.worker
 
@@ -278,6 +292,27 @@ class Scheduler:
             if claim.id not in known:
                 self._claims.put_back(claim, "Waits: the database was lost.", counted=False)
         self._doubtful = False
+
+    def _take_up(self) -> None:
+        """Find again what a dead service left running, or let it wait for its next attempt."""
+        for claim in self._claims.running():
+            if self._crew.keeps and claim.program == self._claims.program:
+                self._begin(claim)
+            else:
+                self._settlement.again_or_fail(claim, "The service ended while it ran.")
+
+    def _count_begins(self) -> None:
+        """Count attempts that a Dask worker did not survive; beyond the last one the work ends."""
+        text, most = "The Dask worker that ran it was lost.", self._settings.attempts
+        for running in list(self._running.values()):
+            attempt = running.first + max(running.worker.begins, 1) - 1
+            if attempt > most:
+                self._kill(running, "died")
+                self._end(running, Outcome(failure=f"{text} That was attempt {most} of {most}."))
+            elif attempt > running.claim.attempts:
+                claim = replace(running.claim, attempts=attempt)
+                self._claims.count(claim, f"{text} Attempt {attempt} of {most}.")
+                self._running[claim.id] = replace(running, claim=claim)
 
     def _note_progress(self) -> None:
         """Write down how far works are, at most every `_NOTED_EVERY_S`."""
@@ -374,6 +409,16 @@ def _scheduler(settings: Settings, registry: Registry, engine: Engine, store: Re
     retention = Retention(engine, store, settings.data_directory, settings.quarantine_days)
     days = settings.retention_days
     housekeeper = None if days is None else Housekeeper(retention, days)
+    crew = crew_of(settings, registry, Deployment(engine, store))
     owner = Ownership(engine)
     owner.acquire()
-    return Scheduler(settings, registry, Claims(engine), store, owner, housekeeper)
+    return Scheduler(settings, registry, Claims(engine), store, owner, housekeeper, crew)
+
+
+def crew_of(settings: Settings, registry: Registry, deployment: Deployment) -> Crew:
+    """Return who works; a Dask scheduler that cannot is refused by name."""
+    if settings.scheduler is None:
+        return Children(settings, registry.modules)
+    cluster = Cluster(settings.scheduler, deployment.identifier() or "")
+    cluster.check()
+    return cluster

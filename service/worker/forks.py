@@ -13,6 +13,7 @@ import select
 import socket
 import subprocess
 import sys
+import threading
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -179,6 +180,7 @@ class _Server:
         self._channel, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._channel.settimeout(_PATIENCE_S)
         self._ready, self._forks, self.living, self._gone = False, 0, 0, False
+        self._asking = threading.Lock()  # threads of a Dask worker reap their children
         with theirs, log.open("wb") as stream:
             try:
                 self._process = subprocess.Popen(
@@ -227,8 +229,9 @@ class _Server:
     def ask(self, request: dict[str, Any], descriptors: Iterable[int] = ()) -> Any:
         """Return the answer to a request; ConnectionError: the process is gone."""
         try:
-            socket.send_fds(self._channel, [json.dumps(request).encode()], descriptors)
-            answer = self._channel.recv(MESSAGE_BYTES)
+            with self._asking:
+                socket.send_fds(self._channel, [json.dumps(request).encode()], descriptors)
+                answer = self._channel.recv(MESSAGE_BYTES)
         except OSError:
             answer = b""
         if not answer:

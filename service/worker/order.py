@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
-
-from service.project import COMMON
 
 
 class Progress(Protocol):
@@ -15,6 +13,10 @@ class Progress(Protocol):
 
     def __call__(self, stage: str, fraction: float, whole: float | None = None, /) -> None:
         """Report both, from 0 to 1; without `whole` it follows from the shares that the process declares."""
+
+
+PARTS = "parts"
+"""The file in a workspace by which a child says that it gives tasks to the cluster."""
 
 
 @dataclass(frozen=True)
@@ -33,19 +35,13 @@ class WorkOrder:
         Directory of this computation alone; removed afterwards. Another attempt after a worker died finds
         what that one left.
     data_directory : Path
-        Where results and the compliance cache are, to read.
+        Where the compliance cache is.
     memory_limit_mb : int, optional
         Memory the work may have, MB.
-    database_url : str, optional
-        Where the index of results is, if not in the data directory.
-    results_url : str, optional
-        Where the files of results are, if not in the data directory.
-    results_keys : tuple of str, optional
-        Access key and secret of that place; they come here, as workers inherit none.
+    stored : dict of str to Path
+        Files of the stored results that the work reads, by their hashes.
     scheduler : str, optional
         Address of the scheduler whose workers do the tasks, if the service has one.
-    project : str, optional
-        Whose results the work may read.
     """
 
     entry: str
@@ -54,22 +50,19 @@ class WorkOrder:
     workspace: Path
     data_directory: Path
     memory_limit_mb: int | None = None
-    database_url: str | None = None
-    results_url: str | None = None
     scheduler: str | None = None
-    project: str = COMMON
-    results_keys: tuple[str, str] | None = None
+    stored: dict[str, Path] = field(default_factory=dict)
 
     def line(self) -> bytes:
         """Return the order as one line of JSON."""
-        facts = asdict(self) | {"workspace": str(self.workspace), "data_directory": str(self.data_directory)}
-        return json.dumps(facts).encode() + b"\n"
+        return json.dumps(asdict(self), default=str).encode() + b"\n"
 
     @classmethod
     def from_line(cls, line: bytes) -> WorkOrder:
         """Read the line of an order."""
         facts = json.loads(line)
         facts["workspace"], facts["data_directory"] = Path(facts["workspace"]), Path(facts["data_directory"])
+        facts["stored"] = {key: Path(file) for key, file in facts["stored"].items()}
         return cls(**facts)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import lru_cache
+from pathlib import Path
 from typing import Any, NoReturn
 
 from pydantic import ValidationError
@@ -12,7 +13,7 @@ from fe_contact.analysis.request.model_choice import decide
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
-from lineofaction.gearbox.convert.case import CheckedCases, boundary_errors
+from lineofaction.gearbox.convert.case import CheckedCases, boundary_errors, case_json
 from lineofaction.gearbox.convert.plausibility import case_warnings, scene_warnings, unique, within
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
@@ -91,6 +92,28 @@ def prepare_analyze(inputs: BoundaryModel, store: ResultStore) -> Json:
 def name_database(inputs: Json) -> str:
     """Return the content hash that the database of a case will carry itself."""
     return content_hash(inputs["case"], SOLVER_VERSION, SCHEMA_VERSION)
+
+
+def name_of_table(mesh: MeshInput) -> str:
+    """Return the content hash of the table of a mesh of a scene."""
+    if mesh.case is None:
+        return str(mesh.database_hash)
+    return name_database({"case": case_json(mesh.case)})
+
+
+def files_read(inputs: Json, store: ResultStore) -> dict[str, Path]:
+    """Return the files of the stored results that normalized inputs name, or that stand for their cases.
+
+    Raises `NotFound`, `DamagedFile`: one that they name is not there any more; and as `ResultStore.verified`.
+    """
+    names = [] if inputs.get("run") is None else [(inputs["run"], "run")]
+    if inputs.get("scene") is not None:
+        scene = SceneInput.model_validate_json(json.dumps(inputs["scene"]))
+        for _, mesh in scene.with_database:
+            key = name_of_table(mesh)
+            if mesh.case is None or store.find(key, "database") is not None:
+                names.append((key, "database"))
+    return {key: store.verified(key, kind).path for key, kind in names}
 
 
 def prepare_scene(inputs: BoundaryModel, store: ResultStore) -> Json:

@@ -14,10 +14,9 @@ from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
 from service.store.results import ResultStore
-from service.worker.cluster import cluster_of, table_workers
 from service.worker.order import Product, Progress, WorkOrder
 from service.worker.preparations import CASES, check_run, check_scene_inputs
-from service.worker.simulation_work import housed_scene, ordered_scene, store_of
+from service.worker.simulation_work import cluster_of, housed_scene, ordered_scene, table_workers
 
 Json = dict[str, Any]
 Work = Callable[[WorkOrder, Progress], tuple[Product, ...]]
@@ -51,7 +50,7 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
     inputs = study.inputs.model_validate_json(json.dumps(varied))
     with (table_workers if study.run.resumed else cluster_of)(order) as workers:
         key = getattr(inputs, "run", None)
-        run = None if key is None else RunResult.from_netcdf(store_of(order).verified(key, "run").path)
+        run = None if key is None else RunResult.from_netcdf(order.stored[key])
         means = Means(order.data_directory, progress, workers, folder=order.workspace / "runs", run=run)
         found = study.run.compute(subject, inputs, means)
     file = order.workspace / f"{study.kind}{SUFFIX}"

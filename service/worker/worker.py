@@ -9,15 +9,11 @@ import time
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import structlog
-
 from fe_contact.cache_reads import CacheReads
-from host import Ended, ending_signal, kill_group, never_wait_at
+from host import Ended, ending_signal, family_cpu_seconds, kill_group, never_wait_at
 from service.worker.forks import Ends, Launch, start_child
 from service.worker.order import Outcome, Product, WorkOrder
 from service.worker.usage import BYTES_PER_MB, Usage
-
-logger = structlog.get_logger(__name__)
 
 _LEAVING_S = 2.0
 _OF_LITTLE_MEMORY = ("SIGKILL", "SIGABRT")  # by the system, and by libraries that cannot go on
@@ -53,7 +49,8 @@ class Worker:
         self.started = time.monotonic()
         self.usage: Usage | None = None
         self.compliance_reads = CacheReads()
-        self.warnings = 0
+        self.begins = 1
+        self.warnings: list[str] = []
         self._outcome: Outcome | None = None
         self._ended: Ended | None = None
         self._peak_mb: float | None = None
@@ -85,6 +82,15 @@ class Worker:
         """Seconds since the start."""
         return time.monotonic() - self.started
 
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What names it in the log."""
+        return {"pid": self.pid}
+
+    def spent(self) -> float | None:
+        """Return the CPU seconds of the child and its children so far; None: it has ended."""
+        return family_cpu_seconds(self.pid)
+
     def listen(self) -> tuple[list[Step], bool]:
         """Return the progress since the last call, and whether the child closed its channel."""
         piece = b""
@@ -105,8 +111,7 @@ class Worker:
         if "stage" in message:
             return Step(**message)
         if "warning" in message:
-            self.warnings += 1
-            logger.warning("worker warns", pid=self.pid, reason=message["warning"])
+            self.warnings.append(message["warning"])
             return None
         self._peak_mb = message.get("peak_mb")
         self.compliance_reads = CacheReads(**message.get("compliance_reads", {}))

@@ -19,14 +19,14 @@ BUDGETS = {
     ("dynamics",): (39_807, 740),
     ("lineofaction.gearbox",): (21_625, 425),
     ("lineofaction.report",): (10_471, 198),
-    ("service",): (14_647, 331),
+    ("service",): (15_235, 339),
     ("lineofaction.client",): (2_732, 54),
     ("lineofaction.cli",): (4_608, 67),
     ("lineofaction.hardcases",): (3_834, 35),
     ("bounds", "host", "model_studies"): (4_168, 143),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 746
+MOST_FILES = 747
 LONGEST = 500
 
 

@@ -26,7 +26,9 @@ FIELDS = {name.upper(): field for name, field in Settings.model_fields.items()}
 VARIABLES = {f"LOA_{name}" for name in FIELDS} | {
     f"LOA_{name}_FILE" for name, field in FIELDS.items() if is_secret(field)
 }
-PARTS = ("serve", "schema")
+PARTS = ("serve", "schema", "scheduler", "work")
+OURS = ("serve", "schema")
+"""Those that do a verb of the program; the others are of Dask."""
 
 
 @cache
@@ -94,7 +96,7 @@ def test_a_manifest_that_is_not_valid_is_found(kubernetes_validate: ModuleType) 
         kubernetes_validate.validate(wrong, "1.34", strict=True)
 
 
-@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("part", OURS)
 def test_every_variable_of_a_pod_is_a_setting(part: str) -> None:
     assert set(variables_of(part)) <= VARIABLES
 
@@ -112,9 +114,11 @@ def test_pods_hold_no_secret_and_mount_those_they_name() -> None:
         assert not any(
             is_secret(field) and f"LOA_{name}" in variables_of(part) for name, field in FIELDS.items()
         )
-        assert [list(source) for source in container(part)["envFrom"]] == [["configMapRef"]]
+        assert [list(source) for source in container(part).get("envFrom", [])] == (
+            [["configMapRef"]] if part in OURS else []
+        )
         mounted = [Path(mount["mountPath"]) for mount in container(part)["volumeMounts"]]
-        for name, value in variables_of(part).items():
+        for name, value in variables_of(part).items() if part in OURS else ():
             if name.endswith("_FILE"):
                 assert Path(value).parent in mounted, (part, name)
         assert {mount["name"] for mount in container(part)["volumeMounts"]} == {
@@ -122,7 +126,7 @@ def test_pods_hold_no_secret_and_mount_those_they_name() -> None:
         }
 
 
-@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("part", OURS)
 def test_commands_are_verbs_of_the_program(part: str) -> None:
     for words in (
         container(part)["args"],
@@ -146,8 +150,8 @@ def test_ports_and_paths_agree() -> None:
     assert "LOA_MANAGEMENT_PORT" in check and "LOA_PORT" not in check
     ports = {port["name"]: port["containerPort"] for port in container("serve")["ports"]}
     assert ports == {"http": http, "management": management}
-    (service,) = of_kind("service", "Service")
-    assert [port["targetPort"] for port in service["spec"]["ports"]] == ["http"]
+    targets = [port["targetPort"] for one in of_kind("service", "Service") for port in one["spec"]["ports"]]
+    assert sorted(targets) == ["dask", "http"]
     assert f":{http}" in compose()["services"]["service"]["ports"][0]
     parts = compose()["services"]["service"]
     assert parts["environment"]["LOA_MANAGEMENT_PORT"] == management
@@ -192,19 +196,66 @@ def test_containers_of_compose_are_bounded() -> None:
 
 
 def test_there_is_one_server_and_the_former_has_ended_before_the_next_starts() -> None:
-    (server,) = of_kind("service", "Deployment")
+    server = next(
+        one for one in of_kind("service", "Deployment") if one["metadata"]["name"].endswith("serve")
+    )
     assert (server["spec"]["replicas"], server["spec"]["strategy"]) == (1, {"type": "Recreate"})
 
 
+def test_the_server_and_the_workers_find_the_scheduler() -> None:
+    services = {
+        one["metadata"]["name"]: one["spec"]["ports"][0]["port"] for one in of_kind("service", "Service")
+    }
+    address = f"tcp://lineofaction-scheduler:{services['lineofaction-scheduler']}"
+    assert variables_of("serve")["LOA_SCHEDULER"] == address == container("work")["args"][2]
+    of_compose = compose()["services"]
+    assert of_compose["service"]["environment"]["LOA_SCHEDULER"] == of_compose["work"]["command"][2]
+    assert of_compose["scheduler"]["command"][3] == "8786" == address.rpartition(":")[2]
+
+
+@pytest.mark.law
+def test_only_the_server_and_dask_reach_the_ports_of_dask() -> None:
+    """They run the code that they are sent."""
+    policies = {one["metadata"]["name"]: one["spec"] for one in of_kind("service", "NetworkPolicy")}
+    (rule,) = policies["dask"]["ingress"]
+    (peer,) = rule["from"]
+    (chosen,) = peer["podSelector"]["matchExpressions"]
+    assert set(chosen["values"]) == {"serve", "scheduler", "work"}
+    ports = {port["containerPort"] for part in ("scheduler", "work") for port in container(part)["ports"]}
+    (opened,) = rule["ports"]
+    assert all(opened["port"] <= port <= opened["endPort"] for port in ports)
+    others = [spec for name, spec in policies.items() if name not in ("dask", "nothing-else")]
+    named = {
+        port.get("port") for spec in others for rule in spec.get("ingress", ()) for port in rule["ports"]
+    }
+    assert named == {"http", "management"}
+    for name in ("scheduler", "work"):
+        assert (
+            compose()["services"][name]["networks"] == ["inside"]
+            and "ports" not in compose()["services"][name]
+        )
+    assert compose()["networks"]["inside"] == {"internal": True}
+
+
 def test_a_worker_fails_by_its_own_limit_before_the_container_does() -> None:
-    limit = int(variables_of("serve")["LOA_MEMORY_LIMIT_MB"]) * int(variables_of("serve")["LOA_WORKERS"])
-    assert container("serve")["resources"]["limits"]["memory"] == "6Gi"
-    assert limit + 2500 < 6 * 1024  # the server, its live worker, and the warm process it forks workers from
+    limit = int(variables_of("serve")["LOA_MEMORY_LIMIT_MB"])
+    assert container("work")["resources"]["limits"]["memory"] == "4Gi"
+    assert limit + 600 < 4 * 1024  # the Dask worker, and the warm process it forks children from
+
+
+def test_scaling_follows_a_metric_of_the_program() -> None:
+    (scaler,) = of_kind("service", "HorizontalPodAutoscaler")
+    (metric,) = [entry["external"]["metric"]["name"] for entry in scaler["spec"]["metrics"]]
+    assert any(f'"{metric}"' in file.read_text() for file in (ROOT / "service").rglob("*.py"))
+    scaled = scaler["spec"]["scaleTargetRef"]["name"]
+    work = next(one for one in of_kind("service", "Deployment") if one["metadata"]["name"] == scaled)
+    assert "replicas" not in work["spec"]  # two would set it against each other
 
 
 def test_selectors_select_pods() -> None:
     labels = [one["spec"]["template"]["metadata"]["labels"] for one in of_kind("service", "Deployment")]
     chosen = [one["spec"]["selector"] for one in of_kind("service", "Service")]
+    chosen += [one["spec"]["selector"]["matchLabels"] for one in of_kind("service", "PodDisruptionBudget")]
     chosen += [
         one["spec"]["podSelector"].get("matchLabels", {}) for one in of_kind("service", "NetworkPolicy")
     ]

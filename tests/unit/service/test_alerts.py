@@ -145,7 +145,7 @@ CASES = {
     ),
     "LoaClusterAway": Case(
         {'loa_worker_warnings_total{process="analyze"': "4x70 5x10"},
-        "The Dask cluster is away: jobs go on in their own processes, and take longer",
+        "The Dask cluster is away: jobs wait, or go on alone and take longer",
         ALL,
     ),
     "LoaServerErrors": Case(

@@ -22,7 +22,7 @@ from lineofaction.gearbox.problems import BadInput
 from model_studies.workers import RunCost, dask_cluster
 from service.queue.claims import Claim
 from service.settings import Settings, load_settings
-from service.worker import cluster
+from service.worker import simulation_work as cluster
 from service.worker.order import WorkOrder
 from service.worker.process import ANALYZE, Process, default_registry
 
@@ -200,7 +200,7 @@ def test_the_address_goes_from_the_environment_to_the_worker(
     monkeypatch.setattr("service.settings.find_spec", lambda _: object())
     monkeypatch.setenv("LOA_SCHEDULER", "tcp://gears.example:8786")
     claim = Claim("c", "analyze", "k", {}, 1)
-    order = _order(load_settings(data_directory=tmp_path), "a:b", claim)
+    order = _order(load_settings(data_directory=tmp_path), "a:b", claim, {}, None)
     assert WorkOrder.from_line(order.line()).scheduler == "tcp://gears.example:8786"
     monkeypatch.setenv("LOA_SCHEDULER", "")
     assert load_settings().scheduler is None

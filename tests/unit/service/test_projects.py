@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -14,9 +15,14 @@ from small_table import small_table
 from sqlalchemy import text
 
 from lineofaction.gearbox.problems import NoSuchJob, NotFound
+from lineofaction.gearbox.schemas.reading import validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 from service.access.keyring import Holder
 from service.project import COMMON, PROJECT, address_of, at_address
+from service.queue.attempt import _files_read
+from service.queue.claims import Claim
 from service.queue.job import Job
+from service.schemas.examples import SCENE
 from service.store.database import writing
 from service.store.deployment import Deployment
 from service.store.files import ResultName, new_name
@@ -170,15 +176,19 @@ def test_what_a_former_program_enters_is_common(machine: Bench) -> None:
     assert machine.store.within("axle").page("database", 9) == []
 
 
-def test_a_worker_takes_tables_of_its_project_alone(tmp_path: Path) -> None:
+def test_a_job_reads_tables_of_its_project_alone(tmp_path: Path) -> None:
     machine = bench(tmp_path, REGISTRY)
     file = tmp_path / "table.nc"
     small_table().to_netcdf(file)
     machine.store.within("axle").put(KEY, "database", file)
     mesh: Any = SimpleNamespace(case=None, database_hash=KEY)
+    of_table = {name: value for name, value in SCENE["meshes"][0].items() if name != "case"}
+    scene = validated(SceneInput, {**SCENE, "meshes": [{**of_table, "database_hash": KEY}]})
+    claim = Claim("c", "simulate", "k", {"scene": scene.model_dump(mode="json")}, 1)
 
     def table(project: str) -> Any:
-        order = WorkOrder("", {}, "", tmp_path, tmp_path, project=project)
+        stored = _files_read(replace(claim, project=project), machine.store)
+        order = WorkOrder("", {}, "", tmp_path, tmp_path, stored=stored)
         return _table(WorkOrder.from_line(order.line()), 0, mesh, [], lambda _fraction: None)
 
     assert table("axle").facts == small_table().facts

@@ -20,7 +20,6 @@ from service.store.deployment import NOTE
 from service.store.files import DirectoryFiles
 from service.store.places import ObjectFiles, object_files, result_files, result_store, stored_results
 from service.store.results import ResultStore
-from service.worker.order import WorkOrder
 
 KEY = hashlib.sha256(b"input").hexdigest()
 OTHER = hashlib.sha256(b"other").hexdigest()
@@ -198,18 +197,14 @@ def test_a_store_that_does_not_answer_is_said(
     assert store.verified(OTHER, "database").path.read_bytes() == b"other"
 
 
-def test_credentials_of_a_bucket_come_from_files_and_reach_workers_in_their_orders(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_credentials_of_a_bucket_come_from_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("ACCESS_KEY_ID", "SECRET_ACCESS_KEY"):
         monkeypatch.delenv(f"AWS_{name}", raising=False)
         (tmp_path / name).write_text(f"of {name}\n")
         monkeypatch.setenv(f"LOA_RESULTS_{name}_FILE", str(tmp_path / name))
     keys = Settings().results_keys
     assert keys == ("of ACCESS_KEY_ID", "of SECRET_ACCESS_KEY")
-    order = WorkOrder("module:function", {}, KEY, tmp_path, tmp_path, results_keys=keys)
-    told = WorkOrder.from_line(order.line()).results_keys
-    files = result_files(tmp_path, "s3://bucket/prefix", keys=told)
+    files = result_files(tmp_path, "s3://bucket/prefix", keys=keys)
     assert isinstance(files, ObjectFiles)
     config = files._store.config
     assert (config["access_key_id"], config["secret_access_key"]) == keys

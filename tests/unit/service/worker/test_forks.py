@@ -29,7 +29,7 @@ def machine(tmp_path: Path) -> Iterator[Bench]:
 
 def warm_process(machine: Bench) -> int:
     """Return the process id of the warm process, once it is warm."""
-    forks = machine.scheduler._forks
+    forks = machine.scheduler._crew._forks
     until(lambda: forks.warm)
     assert forks._server is not None
     return forks._server._process.pid
@@ -57,7 +57,7 @@ def test_the_third_child_is_forked(machine: Bench) -> None:
 
 
 def test_a_child_outlives_the_warm_process_and_others_follow(machine: Bench) -> None:
-    machine.scheduler._forks.warm_up()
+    machine.scheduler._crew._forks.warm_up()
     warm = warm_process(machine)
     slow = machine.submit(mode="slow", text="slow")
     assert parent_of_last(machine, slow.key) == warm
@@ -71,7 +71,7 @@ def test_a_child_outlives_the_warm_process_and_others_follow(machine: Bench) -> 
 
 
 def test_a_stop_ends_the_warm_process(machine: Bench) -> None:
-    machine.scheduler._forks.warm_up()
+    machine.scheduler._crew._forks.warm_up()
     warm = warm_process(machine)
     machine.scheduler.stop()
     assert not lives(warm)
@@ -81,7 +81,7 @@ def test_after_so_many_children_another_takes_its_place(
     machine: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("service.worker.forks.MOST_FORKS", 2)
-    machine.scheduler._forks.warm_up()
+    machine.scheduler._crew._forks.warm_up()
     warm = warm_process(machine)
     for text in ("a", "b", "c"):
         assert machine.ended(machine.submit(text=text)).status == "successful"

@@ -1,0 +1,314 @@
+"""Jobs as tasks of a Dask scheduler, one each: found again by their names, cancelled, counted, brought home.
+
+A thread with an event loop of its own speaks with Dask. What it is to do follows from the tasks that are
+wanted: those that a fresh connection does not know are submitted, under names by which Dask finds the ones it
+has. So a scheduler that was lost, and a server that was started again, are the same case. Each task is
+published: it stays when the server is gone.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import structlog
+
+from fe_contact.cache_reads import CacheReads
+from lineofaction.gearbox.problems import BadInput
+from service.worker.order import Outcome, WorkOrder
+from service.worker.task import Done, do_job, program
+from service.worker.usage import Usage
+from service.worker.worker import Step
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+CONNECT_S = 10.0
+"""How long scheduler and workers may take to answer at the start."""
+_LOOK_S = 1.0
+"""Between two looks at the connection and at who works."""
+logger = structlog.get_logger(__name__)
+
+
+class Task:
+    """A job that was handed to Dask, as `service.worker.worker.Worker` is one in a child of this machine."""
+
+    channel: int | None = None
+    """It wakes the scheduler by itself."""
+
+    def __init__(self, name: str, order: WorkOrder, log: Path, drop: Callable[[str], None]) -> None:
+        self.name, self._log, self._drop = name, log, drop
+        self._workspace = order.workspace
+        self.line = order.line()
+        self.files: Mapping[str, bytes] = {key: file.read_bytes() for key, file in order.stored.items()}
+        self.usage: Usage | None = None
+        self.compliance_reads, self.warnings = CacheReads(), list[str]()
+        self.begins = 0
+        self._begin = ""
+        self._started: float | None = None
+        self._spent: float | None = None
+        self._steps: deque[Step] = deque()
+        self._outcome: Outcome | None = None
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What names it in the log."""
+        return {"task": self.name}
+
+    @property
+    def age(self) -> float:
+        """Seconds since a worker began it; 0 before."""
+        return 0.0 if self._started is None else time.monotonic() - self._started
+
+    def spent(self) -> float | None:
+        """Return the CPU seconds of its child so far, as last reported."""
+        return self._spent
+
+    def hear(self, event: Mapping[str, Any]) -> None:
+        """Take the report of a worker; another beginning is that of another attempt."""
+        if event["begin"] != self._begin:
+            self._begin, self.begins = event["begin"], self.begins + 1
+        self._started, self._spent = time.monotonic() - event["age"], event["spent"]
+        self._steps.extend(Step(*step) for step in event["steps"])
+
+    def take(self, done: Done) -> None:
+        """Take what a worker has done; its files are put where a child of this machine leaves them."""
+        products = []
+        for number, (product, content) in enumerate(zip(done.outcome.products, done.contents, strict=True)):
+            file = self._workspace / f"{number}_{product.file.name}"
+            file.write_bytes(content)
+            products.append(replace(product, file=file))
+        self._log.write_bytes(done.log)
+        self.usage, self.compliance_reads = done.usage, done.compliance_reads
+        self.warnings = list(done.warnings)
+        self._outcome = replace(done.outcome, products=tuple(products))
+
+    def fail(self, reason: str) -> None:
+        """Take that it ended without an outcome; worth another attempt."""
+        self._outcome = Outcome(failure=reason, died=True)
+
+    def listen(self) -> tuple[list[Step], bool]:
+        """Return the progress since the last call, and whether it has ended."""
+        ended = self._outcome is not None
+        return [self._steps.popleft() for _ in range(len(self._steps))], ended
+
+    def finish(self) -> Outcome:
+        """Return how it ended."""
+        self._drop(self.name)
+        assert self._outcome is not None
+        return self._outcome
+
+    def end_group(self) -> None:
+        """Cancel it."""
+        self._drop(self.name)
+
+    def kill(self, _patience_s: float | None = None) -> None:
+        """Cancel it; its worker kills the child within half a second."""
+        self._drop(self.name)
+
+
+class Cluster:
+    """The tasks of a server on a Dask scheduler.
+
+    Parameters
+    ----------
+    address : str
+        Of the scheduler.
+    deployment : str
+        Whose tasks these are: others may use the same scheduler.
+
+    Attributes
+    ----------
+    most : int
+        Jobs that run at the same time: one for each thread of its workers; 0 while they are away.
+    keeps : bool
+        Whether what it runs outlives the server.
+    """
+
+    keeps = True
+    memory_mb = None
+    """The share of memory of a job: its Dask worker knows."""
+    warm = False
+
+    def __init__(self, address: str, deployment: str) -> None:
+        self._address, self._name = address, f"loa-{deployment[:12]}"
+        self.most = 0
+        self._tasks: dict[str, Task] = {}
+        self._known: set[str] = set()
+        self._away = ""
+        self._lock, self._stopping = threading.Lock(), False
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._thread: threading.Thread | None = None
+
+    def check(self) -> None:
+        """Refuse a scheduler that does not answer or has no workers, or workers that cannot do our jobs.
+
+        Raises `BadInput`: it says what to start.
+        """
+        bound, tip = asyncio.run(self._fault_at_start())
+        if bound:
+            raise BadInput.of("scheduler", self._address, bound, tip)
+
+    async def _fault_at_start(self) -> tuple[str, str]:
+        try:
+            async with self._client() as client:
+                with suppress(TimeoutError):
+                    await client.wait_for_workers(1, timeout=CONNECT_S)
+                return await self._fault(client)
+        except (OSError, TimeoutError) as error:
+            port = self._address.rpartition(":")[2]
+            return (
+                f"that of a Dask scheduler that answers ({error})",
+                f"Start one: dask scheduler --port {port}",
+            )
+
+    async def _fault(self, client: Client) -> tuple[str, str]:
+        """Return why no work is sent, and what to do; empty: it is. Counts the threads that work."""
+        threads = await client.nthreads()  # type: ignore[no-untyped-call]
+        self._known &= threads.keys()
+        start = f"dask worker {self._address} --nthreads 1 --nworkers 4"
+        fault = "" if threads else "that of a scheduler with workers"
+        fresh = sorted(threads.keys() - self._known)
+        found = await client.run(program, workers=fresh, on_error="return") if fresh else {}
+        for worker, versions in found.items():
+            if versions == program():
+                self._known.add(worker)
+            else:
+                fault = f"of workers with {program()}: {worker} has {versions}"
+        self.most = 0 if fault else sum(threads.values())
+        return fault, f"Start them: {start}, from an installation of this version with its extras."
+
+    def _client(self) -> Client:
+        from distributed import Client  # noqa: PLC0415 (an extra)
+
+        options: dict[str, Any] = {"asynchronous": True, "set_as_default": False, "timeout": CONNECT_S}
+        return Client(self._address, **options)  # type: ignore[no-untyped-call]
+
+    def start(self, heard: Callable[[], None]) -> None:
+        """Connect, and stay connected; `heard` is called when a task reports, ends, or when workers come."""
+        self._heard, self._stopping = heard, False
+        self._thread = threading.Thread(target=lambda: asyncio.run(self._main()), name="dask", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Disconnect; the tasks stay with Dask."""
+        self._stopping = True
+        self._wake()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+        self._tasks.clear()
+
+    def begin(self, order: WorkOrder, name: str, log: Path) -> Task:
+        """Hand a job to Dask, or find the task of this name that it has."""
+        task = Task(f"{self._name}-{order.key}-{name}", order, log, self._drop)
+        with self._lock:
+            self._tasks[task.name] = task
+        self._wake()
+        return task
+
+    def _drop(self, name: str) -> None:
+        with self._lock:
+            self._tasks.pop(name, None)
+        self._wake()
+
+    def _wake(self) -> None:
+        with suppress(RuntimeError):  # the loop has ended
+            if self._loop is not None:
+                self._loop.call_soon_threadsafe(self._changed.set)
+
+    async def _main(self) -> None:
+        """Until stopped: connect, serve; a connection that is lost is made again."""
+        self._loop, self._changed = asyncio.get_running_loop(), asyncio.Event()
+        while not self._stopping:
+            try:
+                async with self._client() as client:
+                    client.subscribe_topic(self._name, self._hear)
+                    await self._serve(client)
+            except Exception as error:  # noqa: BLE001 (the next connection may do)
+                self._say(f"the scheduler {self._address} is lost: {error or type(error).__name__}")
+                await asyncio.sleep(_LOOK_S)
+            self.most = 0
+
+    async def _serve(self, client: Client) -> None:
+        """Submit what is wanted, cancel what is not; end when the connection is lost."""
+        following: dict[str, asyncio.Task[None]] = {}
+        left = set(await client.list_datasets())  # type: ignore[no-untyped-call]
+        left = {str(name) for name in left if str(name).startswith(self._name)}
+        looked = 0.0
+        try:
+            while not self._stopping:
+                self._changed.clear()
+                if str(client.status) != "running":
+                    raise OSError("the connection broke")
+                if time.monotonic() - looked > _LOOK_S:
+                    fault, tip = await self._fault(client)
+                    self._say(f"scheduler {self._address}: not {fault}. {tip}" if fault else "")
+                    looked = time.monotonic()
+                with self._lock:
+                    wanted = dict(self._tasks)
+                for name in (following.keys() | left) - wanted.keys():
+                    if name in following:
+                        following.pop(name).cancel()
+                    await self._forget(client, name)
+                left = set()
+                for name, task in wanted.items():
+                    if name not in following or following[name].done():
+                        following[name] = asyncio.create_task(self._follow(client, task))
+                with suppress(TimeoutError):
+                    await asyncio.wait_for(self._changed.wait(), _LOOK_S)
+        finally:
+            for follower in following.values():
+                follower.cancel()
+
+    async def _forget(self, client: Client, name: str) -> None:
+        """Cancel a task that nobody wants, or whose result is here."""
+        from distributed import Future  # noqa: PLC0415 (an extra)
+
+        await client.cancel([Future(name, client)], force=True)  # type: ignore[no-untyped-call]
+        await client.unpublish_dataset(name)
+
+    async def _follow(self, client: Client, task: Task) -> None:
+        """Submit a task, or join the one that there is, and take what comes of it."""
+        from distributed import KilledWorker  # noqa: PLC0415 (an extra)
+
+        arguments = (task.line, task.files, self._name)
+        future = client.submit(do_job, *arguments, key=task.name, pure=False)
+        await client.publish_dataset(future, name=task.name, override=True)
+        try:
+            done = await future
+        except KilledWorker as error:
+            task.fail(f"It ended every Dask worker that tried it: {error}")
+        except Exception as error:
+            logger.exception("task failed", task=task.name)
+            task.fail(f"The Dask worker could not start it: {type(error).__name__}: {error}.")
+        else:
+            if done is None:  # cancelled for an earlier submission of this name
+                await self._forget(client, task.name)
+                return
+            task.take(done)
+        self._heard()
+
+    def _hear(self, event: tuple[float, Mapping[str, Any]]) -> None:
+        report = event[1]
+        with self._lock:
+            task = self._tasks.get(report["task"])
+        if task is not None:
+            task.hear(report)
+            self._heard()
+
+    def _say(self, fault: str) -> None:
+        """Log what keeps jobs waiting, once; and that it is over."""
+        if fault != self._away:
+            (logger.warning if fault else logger.info)(
+                "cluster away" if fault else "cluster back", reason=fault
+            )
+            self._away = fault
+            self._heard()

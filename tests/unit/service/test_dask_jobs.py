@@ -1,0 +1,307 @@
+"""Jobs as tasks of a real Dask scheduler and real workers: each ends, whoever is killed meanwhile."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from dask_processes import DaskProcesses, dask_processes
+from running_service import Bench, bench, lives, until
+from service_fake_work import SECRET
+from service_fakes import REGISTRY
+
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.problems import BadInput
+from service.queue import cluster
+from service.queue.job import Job
+from service.queue.scheduler import crew_of
+from service.settings import Settings
+from service.store.deployment import Deployment
+from service.version import solver_version
+from service.worker.process import ANALYZE, default_registry
+
+pytest.importorskip("distributed", reason="the extra dask is not installed")
+
+MakeServer = Callable[..., Bench]
+BUSY = 10.0
+"""How many times longer than on an idle machine a step may take."""
+
+GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 60.0}
+CASE: dict[str, Any] = {
+    "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": GEAR, "wheel": GEAR},
+    "load": {"torque_n_m": [40.0, 80.0]},
+    "accuracy": {"level": "draft", "model": "plane_strain", "positions": 16},
+}
+STUDY = {
+    "variables": {"pinion": {"profile_crowning_um": [0.0, 20.0]}},
+    "search": {"method": "nelder_mead", "starts": 2, "evaluations": 8, "positions": 16},
+}
+
+
+@pytest.fixture(scope="module")
+def dask(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DaskProcesses]:
+    """Two workers with one thread each, whose data directory is that of all servers of this file."""
+    folder = tmp_path_factory.mktemp("dask")
+    with dask_processes(folder, 2, LOA_DATA_DIRECTORY=str(folder / "data")) as running:
+        yield running
+
+
+@pytest.fixture
+def server(dask: DaskProcesses, tmp_path: Path) -> Iterator[MakeServer]:
+    """Return what makes servers on one table whose jobs the workers do."""
+    made: list[Bench] = []
+
+    def make(**settings: Any) -> Bench:
+        dask.await_workers(2)
+        made.append(bench(tmp_path / "server", REGISTRY, scheduler=dask.address, **settings))
+        made[-1].scheduler._crew = cluster.Cluster(dask.address, tmp_path.name)
+        made[-1].scheduler.start()
+        return made[-1]
+
+    yield make
+    for job in made[-1].submissions.page(100):
+        made[-1].submissions.dismiss(job.id)  # it would go on without a server
+    made[-1].scheduler.wake()
+    for file in (dask.folder / "data").glob("started_*"):
+        until(lambda file=file: not lives(int(file.read_text().split()[-3])))  # type: ignore[misc]
+    for file in (*(dask.folder / "data").glob("started_*"), *(dask.folder / "data").glob("grandchild_*")):
+        file.unlink()
+    for one in made:
+        one.close()
+
+
+def note(dask: DaskProcesses, name: str, job: Job) -> Path:
+    """Return what the fake work leaves in the data directory of the workers, once it is there."""
+    file = dask.folder / "data" / f"{name}_{job.key[:8]}"
+    until(lambda: file.exists() and file.read_text() != "")
+    return file
+
+
+def child(dask: DaskProcesses, job: Job) -> int:
+    return int(note(dask, "started", job).read_text().splitlines()[-1].split()[0])
+
+
+def starts(dask: DaskProcesses, job: Job) -> int:
+    return len(note(dask, "started", job).read_text().splitlines())
+
+
+def worker_of(dask: DaskProcesses, pid: int) -> int:
+    """Return the Dask worker above a child, which it started or which its warm process forked."""
+    workers = set(dask.pids())
+    while pid not in workers:
+        pid = int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
+        assert pid > 1
+    return pid
+
+
+def test_a_job_is_done_by_a_worker_and_its_files_come_home(dask: DaskProcesses, server: MakeServer) -> None:
+    machine = server()
+    job = machine.ended(machine.submit(text="hello"))
+    assert (job.status, job.fraction, job.attempts) == ("successful", 1.0, 1)
+    assert machine.store.verified(job.key, "database").path.read_text() == "hello"
+    until(lambda: not list((machine.settings.data_directory / "work").iterdir()))
+    assert worker_of(dask, child(dask, machine.submit(mode="hang"))) in dask.pids()
+
+
+@pytest.mark.law
+def test_a_table_of_a_worker_is_that_of_this_machine_to_the_last_bit(
+    dask: DaskProcesses, tmp_path: Path
+) -> None:
+    tables = []
+    for name, address in (("here", None), ("dask", dask.address)):
+        machine = bench(tmp_path / name, default_registry(), scheduler=address)
+        machine.scheduler._crew = crew_of(
+            machine.settings, default_registry(), Deployment(machine.engine, machine.store)
+        )
+        inputs = ANALYZE.prepare(ANALYZE.inputs.model_validate({"case": CASE}), machine.store)
+        machine.scheduler.start()
+        job = machine.submissions.submit("analyze", ANALYZE.key(inputs), inputs, stored=False)
+        ended = machine.ended(job)
+        assert ended.status == "successful", ended.message
+        tables.append(SteDatabase.from_netcdf(machine.store.verified(job.key, "database").path))
+        machine.close()
+    for field in ("static_transmission_error", "tangent_compliance", "error_estimate", "residuals"):
+        here, there = (getattr(table, field) for table in tables)
+        np.testing.assert_array_equal(here, there, err_msg=field)
+
+
+def test_progress_ends_and_reasons_are_those_of_a_child_here(dask: DaskProcesses, server: MakeServer) -> None:
+    machine = server()
+    hangs = machine.submit(mode="hang")
+    until(lambda: machine.submissions.find(hangs.id).stage == "first")
+    seen = machine.submissions.find(hangs.id)
+    assert (seen.status, seen.stage_fraction, seen.fraction) == ("running", 0.5, 0.125)
+    ends = {mode: machine.ended(machine.submit(mode=mode)) for mode in ("mesh", "input", "defect", "die")}
+    assert {(job.status, job.attempts) for job in ends.values()} == {("failed", 1), ("failed", 2)}
+    assert ends["mesh"].message == "element 7 has a negative Jacobian"
+    assert ends["input"].faults[0]["field"] == "pair.pinion.bore_diameter_mm"
+    assert ends["die"].message == "The worker ended early with exit code 7. That was attempt 2 of 2."
+    assert SECRET not in ends["defect"].message
+    log = machine.settings.data_directory / "log" / f"{ends['defect'].computation}.log"
+    assert SECRET in log.read_text()
+
+
+def test_a_child_over_its_memory_or_killed_ends_alone(dask: DaskProcesses, server: MakeServer) -> None:
+    machine, workers = server(memory_limit_mb=256, attempts=1), sorted(dask.pids())
+    assert "256 MB (LOA_MEMORY_LIMIT_MB)" in machine.ended(machine.submit(mode="hog")).message
+    hangs = machine.submit(mode="hang")
+    os.kill(child(dask, hangs), signal.SIGKILL)
+    text = "The worker was ended by SIGKILL (it may have run out of memory). That was attempt 1 of 1."
+    assert machine.ended(hangs).message == text
+    assert sorted(dask.pids()) == workers
+
+
+def test_dismissal_kills_the_child_within_half_a_second(dask: DaskProcesses, server: MakeServer) -> None:
+    machine = server()
+    job = machine.submit(mode="hang")
+    pids = [child(dask, job), int(note(dask, "grandchild", job).read_text())]
+    assert all(map(lives, pids))
+    began = time.monotonic()
+    machine.submissions.dismiss(job.id)
+    machine.scheduler.wake()
+    until(lambda: not any(map(lives, pids)))
+    assert time.monotonic() - began < 0.5 * BUSY
+    assert machine.submissions.find(job.id).status == "dismissed"
+    machine.submit(mode="hang")  # equal work, for which the name of the cancelled task is none
+    until(lambda: starts(dask, job) == 2)
+    assert lives(child(dask, job))
+
+
+def test_deadline_and_cost_limit_end_the_work(dask: DaskProcesses, server: MakeServer) -> None:
+    machine = server(deadline_s=2.0)
+    ended = machine.ended(machine.submit(mode="hang"))
+    assert ended.message.startswith("The deadline of 2 s (LOA_DEADLINE_S) passed.")
+    until(lambda: not lives(child(dask, ended)))
+
+
+def test_a_cost_limit_ends_the_work(dask: DaskProcesses, server: MakeServer) -> None:
+    from service.queue.terms import Terms  # noqa: PLC0415
+
+    machine = server()
+    inputs = {"wish": {"mode": "burn", "text": "", "number": 0.0}}
+    key = REGISTRY["fake"].key(inputs)
+    job = machine.submissions.submit("fake", key, inputs, stored=False, terms=Terms(max_cost_s=1.0))
+    ended = machine.ended(job)
+    assert ended.message.startswith("The limit of 1 CPU s (max_cost_s) was reached.")
+
+
+def test_work_whose_worker_is_killed_is_begun_again_by_another(
+    dask: DaskProcesses, server: MakeServer
+) -> None:
+    machine = server()
+    hangs, others = machine.submit(mode="hang"), [machine.submit(text=str(n)) for n in range(3)]
+    first = child(dask, hangs)
+    os.kill(worker_of(dask, first), signal.SIGKILL)
+    began = time.monotonic()
+    until(lambda: starts(dask, hangs) == 2)
+    assert time.monotonic() - began < 5.0 * BUSY
+    assert not lives(first)
+    until(lambda: machine.submissions.find(hangs.id).attempts == 2)
+    assert [machine.ended(job).status for job in others] == ["successful"] * 3
+    os.kill(worker_of(dask, child(dask, hangs)), signal.SIGKILL)
+    ended = machine.ended(hangs)
+    assert ended.message == "The Dask worker that ran it was lost. That was attempt 2 of 2."
+
+
+def test_a_server_that_is_started_again_finds_its_tasks(dask: DaskProcesses, server: MakeServer) -> None:
+    machine = server()
+    hangs, slow = machine.submit(mode="hang"), machine.submit(mode="slow", text="found")
+    pid = child(dask, hangs)
+    child(dask, slow)
+    machine.close()
+    time.sleep(2.0)  # one ends meanwhile, and its result stays
+    assert machine.submissions.find(slow.id).status == "running"
+    again = server()
+    assert (again.ended(slow).status, again.submissions.find(slow.id).attempts) == ("successful", 1)
+    assert (starts(dask, slow), starts(dask, hangs), lives(pid)) == (1, 1, True)
+    again.submissions.dismiss(hangs.id)
+    again.scheduler.wake()
+    until(lambda: not lives(pid))
+
+
+def test_what_was_dismissed_while_the_server_was_away_is_cancelled(
+    dask: DaskProcesses, server: MakeServer
+) -> None:
+    machine = server()
+    job = machine.submit(mode="hang")
+    pid = child(dask, job)
+    machine.close()
+    machine.submissions.dismiss(job.id)
+    assert lives(pid)
+    server()
+    until(lambda: not lives(pid))
+
+
+@pytest.mark.law
+def test_a_scheduler_that_is_lost_costs_no_job(dask: DaskProcesses, server: MakeServer) -> None:
+    machine = server()
+    jobs = [machine.submit(mode="slow", text=f"lost {n}") for n in range(4)]
+    child(dask, jobs[0])
+    dask.end_scheduler()
+    until(lambda: machine.scheduler.most == 0)
+    dask.end_workers()
+    dask.start_scheduler()
+    dask.start_workers(2)
+    assert [machine.ended(job).status for job in jobs] == ["successful"] * 4
+
+
+def test_one_worker_with_one_thread_does_a_job_and_its_parts(tmp_path: Path) -> None:
+    """The job waits for parts that it gives to the scheduler whose only thread it would hold."""
+    optimize = default_registry()["optimize"]
+    with dask_processes(tmp_path, 1, LOA_DATA_DIRECTORY=str(tmp_path / "data")) as alone:
+        machine = bench(tmp_path / "server", default_registry(), scheduler=alone.address)
+        machine.scheduler._crew = cluster.Cluster(alone.address, "alone")
+        machine.scheduler.start()
+        stated = optimize.inputs.model_validate_json(json.dumps({"case": CASE, **STUDY}))
+        inputs = optimize.prepare(stated, machine.store)
+        job = machine.submissions.submit("optimize", optimize.key(inputs), inputs, stored=False)
+        ended = machine.ended(job)
+        assert ended.status == "successful", ended.message
+        (keys,) = alone.run(lambda dask_worker: {str(e[0]) for e in dask_worker.state.log}).values()
+        assert len([key for key in keys if "search_one" in key]) == 2
+        machine.close()
+
+
+# Refusals at the start.
+
+
+def refused(address: str, tmp_path: Path) -> str:
+    machine = bench(tmp_path, REGISTRY)
+    settings = Settings(data_directory=tmp_path, scheduler=address)
+    try:
+        with pytest.raises(BadInput) as caught:
+            crew_of(settings, REGISTRY, Deployment(machine.engine, machine.store))
+    finally:
+        machine.close()
+    (fault,) = caught.value.faults
+    assert (fault.field, fault.value) == ("scheduler", address)
+    return f"{fault.bound} {fault.suggestion}"
+
+
+def test_a_scheduler_that_does_not_answer_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, "CONNECT_S", 0.5)
+    text = refused("tcp://127.0.0.1:1", tmp_path)
+    assert "a Dask scheduler that answers" in text and "dask scheduler --port 1" in text
+
+
+def test_missing_and_other_workers_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, "CONNECT_S", 0.5)
+    names = tmp_path / "names" / "lineofaction-0.0.9.dist-info"
+    names.mkdir(parents=True)
+    (names / "METADATA").write_text("Metadata-Version: 2.1\nName: lineofaction\nVersion: 0.0.9\n")
+    with dask_processes(tmp_path, 0) as found:
+        text = refused(found.address, tmp_path / "data")
+        assert "a scheduler with workers" in text and f"dask worker {found.address} --nthreads 1" in text
+        path = f"{names.parent}{os.pathsep}{found.environment['PYTHONPATH']}"
+        found.start_workers(PYTHONPATH=path)
+        found.await_workers(1)
+        text = refused(found.address, tmp_path / "data")
+        assert f"workers with lineofaction {solver_version()}, Python 3." in text
+        assert "has lineofaction 0.0.9" in text
