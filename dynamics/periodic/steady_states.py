@@ -359,9 +359,9 @@ def _sweeps(
     workers: Workers,
 ) -> tuple[tuple[Orbit, ...], tuple[Orbit, ...]]:
     """Return the motions at rising speeds, and at falling ones if there are several."""
+    swept: list[tuple[Orbit, ...]] = []
     reports = [stage(CURVES[curve]) for curve in (UP, DOWN)]
     if len(courses) > 1 and pays(workers, _settling_seconds(problem, courses, periods)):
-        swept = []
         for orbits in workers.run(_swept, (problem, periods), courses):
             reports[len(swept)](1.0)
             swept.append(orbits)
