@@ -219,14 +219,14 @@ class _Walk:
         return True
 
 
-USUAL_STEPS = 7
-"""Of a walk that is followed to its end."""
+USUAL_DESIGNS = 100
+"""Of all walks of a search: workers that are woken by its first walks serve the others, too."""
 
 
 def _followed(walks: Sequence[_Walk], most: int | None = None) -> Iterator[_Walk]:
     """Follow walks that do not wait for each other, to their ends or so far at most, and yield each."""
     merit = walks[0].merit
-    if not pays(merit.workers, merit.seconds * (most or USUAL_STEPS) * len(walks)):
+    if len(walks) < 2 or not pays(merit.workers, merit.seconds * USUAL_DESIGNS):
         for walk in walks:
             walk.follow(most)
             yield walk

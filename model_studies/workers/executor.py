@@ -290,8 +290,8 @@ class OrHere:
 
 # Which work is divided: what costs more than the start of a process.
 
-START_SECONDS = 5.0
-"""CPU seconds in which a new process has loaded program and compiled code: less work stays in this one."""
+START_SECONDS = 10.0
+"""CPU seconds that pay for two new processes, which load program and compiled code: less work stays here."""
 AWAKE_SECONDS = 1.0
 """The same of workers that have done tasks: they may have to load what others need."""
 

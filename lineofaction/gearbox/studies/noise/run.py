@@ -41,7 +41,6 @@ from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.noise.sound_over_time import BLOCK
 from dynamics.results import RunResult
 from dynamics.vibration import BearingHarmonics
-from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.housings import FOLDER
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -52,6 +51,7 @@ from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import bearing_forces, no_surface, reduction_costs, require_surface
 from lineofaction.gearbox.studies.noise import Inputs, NoiseFigures, SoundOverTimeFigures
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
+from model_studies.workers import spent
 
 PLANE, MONOPOLES = EquivalentRadiatedPower(), ElementalRadiators()
 MODELS: dict[str, PanelModel] = {model.model_name: model for model in (PLANE, MONOPOLES)}
@@ -82,7 +82,7 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
             inputs = inputs.model_copy(update={"band": False})
         response = bearing_forces(subject, inputs, means)
         with boundary_errors():
-            began = cpu_seconds()
+            began = spent(means.workers)
             housings = [
                 _SoundingHousing(part.name, body, part.bushings, _radiation(response, body, inputs, means))
                 for part in subject.scene.housings
@@ -101,7 +101,7 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
             radiation = {housing.name: housing.radiation for housing in housings}
             heard = None if means.run is None else _over_time(subject, means.run, radiation)
         about = response.facts
-        seconds = {**about["seconds"], "sound": cpu_seconds() - began}
+        seconds = {**about["seconds"], "sound": spent(means.workers) - began}
         own = {name: about.get(name) for name in ("leading_shaft", "equilibrium", "effect_ledger", "forces")}
         own["over_time"] = heard and figures_of(
             SoundOverTimeFigures, heard, third_octave_db=sound_power_level(heard.power.T)
