@@ -13,6 +13,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from concurrent.futures import CancelledError
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -77,6 +78,11 @@ class Task:
             self._begin, self.begins = event["begin"], self.begins + 1
         self._started, self._spent = time.monotonic() - event["age"], event["spent"]
         self._steps.extend(Step(*step) for step in event["steps"])
+
+    def await_anew(self) -> None:
+        """Count no attempt when it is begun anew: a scheduler was lost, which is not its fault."""
+        if self._begin:
+            self._begin, self.begins = "", self.begins - 1
 
     def take(self, done: Done) -> None:
         """Take what a worker has done; its files are put where a child of this machine leaves them."""
@@ -279,11 +285,14 @@ class Cluster:
         """Submit a task, or join the one that there is, and take what comes of it."""
         from distributed import KilledWorker  # noqa: PLC0415 (an extra)
 
+        task.await_anew()
         arguments = (task.line, task.files, self._name)
         future = client.submit(do_job, *arguments, key=task.name, pure=False)
         await client.publish_dataset(future, name=task.name, override=True)
         try:
             done = await future
+        except CancelledError:
+            return  # by a connection that was lost: it is followed anew
         except KilledWorker as error:
             task.fail(f"It ended every Dask worker that tried it: {error}")
         except Exception as error:

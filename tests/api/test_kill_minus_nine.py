@@ -18,6 +18,7 @@ from typing import Any
 
 import pytest
 from cut_connections import relay
+from dask_processes import dask_processes
 from killed_service import KilledService
 from postgres_server import migrated, running_server
 from running_service import until
@@ -33,14 +34,21 @@ FIGURES = Path(__file__).parents[2] / "out"
 
 @pytest.fixture
 def service(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[KilledService]:
-    """On a SQLite file, or on PostgreSQL, which is reached over a relay and harmed, too.
+    """On a SQLite file, with the workers of Dask beside it or not, or on PostgreSQL over a relay.
 
-    It has connections ended by its administrator, and is itself stopped without notice and started again.
+    A Dask worker and its scheduler are killed, too; PostgreSQL has connections ended by its administrator,
+    and is itself stopped without notice and started again.
     """
     settings = COMMON | {"LOA_RESULTS_URL": (tmp_path / "results").as_uri()}
-    if request.getfixturevalue("database") == "sqlite":
+    if request.getfixturevalue("database") != "postgresql":
         settings["LOA_DATABASE_URL"] = f"sqlite:///{tmp_path / 'shared.sqlite3'}"
+    if request.getfixturevalue("database") == "sqlite":
         yield KilledService(tmp_path, settings)
+        return
+    if request.getfixturevalue("database") == "dask":
+        with dask_processes(tmp_path, 2, LOA_DATA_DIRECTORY=str(tmp_path / "worker")) as dask:
+            harms = {"Dask worker": dask.kill_worker, "Dask scheduler": dask.fall_and_rise}
+            yield KilledService(tmp_path, settings | {"LOA_SCHEDULER": dask.address}, harms)
         return
     with running_server() as server, relay(server.socket) as between:
         direct = migrated(server.new_database())
@@ -60,6 +68,7 @@ def service(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[KilledSe
         ("sqlite", 3),
         pytest.param("sqlite", 50, marks=pytest.mark.nightly),
         pytest.param("postgresql", 50, marks=pytest.mark.nightly),
+        pytest.param("dask", 36, marks=pytest.mark.nightly),
     ],
 )
 def test_nothing_is_lost_when_parts_are_killed_at_random_moments(
@@ -82,7 +91,7 @@ def test_nothing_is_lost_when_parts_are_killed_at_random_moments(
         assert service.stop() == 0
         until(lambda: service.marked() == [])
     assert service.witness.faults == []
-    assert "Traceback" not in service.server.log.read_text()
+    assert "Traceback" not in service.server.log.read_text() or database == "dask"  # its library logs them
     texts = ["undisturbed", *(f"case {number}" for number in range(moments))]
     served = {text: len(digests) for text, digests in service.witness.served.items()}
     assert served == dict.fromkeys(texts, 1)

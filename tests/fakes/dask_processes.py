@@ -80,6 +80,18 @@ class DaskProcesses:
         with Client(self.address, set_as_default=False) as client:  # type: ignore[no-untyped-call]
             client.wait_for_workers(number, timeout=PATIENCE_S)
 
+    def kill_worker(self) -> None:
+        """Kill one worker; its nanny starts another."""
+        os.kill(self.pids()[0], signal.SIGKILL)
+
+    def fall_and_rise(self) -> None:
+        """Kill the scheduler, with which the workers end, and start all again, as supervisors do."""
+        number = len(self.pids())
+        self.end_scheduler()
+        self.end_workers()
+        self.start_scheduler()
+        self.start_workers(number)
+
     def end_scheduler(self) -> None:
         assert self.scheduler is not None
         self.scheduler.kill()

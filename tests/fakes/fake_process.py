@@ -14,7 +14,7 @@ import structlog
 from service_fakes import REGISTRY
 
 from lineofaction.cli.connections import http_server
-from lineofaction.gearbox.problems import DatabaseUnavailable
+from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable
 from service import app as application
 from service.settings import load_settings
 
@@ -28,11 +28,11 @@ def serve(descriptor: int) -> None:
 
 
 def main() -> None:
-    """Serve; a database that is gone at the start is no defect."""
+    """Serve; a database or Dask workers that are gone at the start are no defect."""
     structlog.configure(logger_factory=structlog.PrintLoggerFactory(sys.stderr))
     try:
         serve(int(sys.argv[1]))
-    except DatabaseUnavailable as error:
+    except (BadInput, DatabaseUnavailable) as error:
         sys.exit(str(error))
 
 

@@ -240,8 +240,10 @@ def test_what_was_dismissed_while_the_server_was_away_is_cancelled(
 
 
 @pytest.mark.law
-def test_a_scheduler_that_is_lost_costs_no_job(dask: DaskProcesses, server: MakeServer) -> None:
-    machine = server()
+def test_a_scheduler_that_is_lost_costs_no_job_and_no_attempt(
+    dask: DaskProcesses, server: MakeServer
+) -> None:
+    machine = server(attempts=1)
     jobs = [machine.submit(mode="slow", text=f"lost {n}") for n in range(4)]
     child(dask, jobs[0])
     dask.end_scheduler()
