@@ -35,6 +35,8 @@ CONNECT_S = 10.0
 """How long scheduler and workers may take to answer at the start."""
 _LOOK_S = 1.0
 """Between two looks at the connection and at who works."""
+_STOPPING_S = 2.0
+"""How long a stop waits for a connection that is being made."""
 logger = structlog.get_logger(__name__)
 
 
@@ -208,7 +210,7 @@ class Cluster:
         self._stopping = True
         self._wake()
         if self._thread is not None:
-            self._thread.join()
+            self._thread.join(_STOPPING_S)
             self._thread = None
         self._tasks.clear()
 
