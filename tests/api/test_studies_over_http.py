@@ -101,7 +101,7 @@ def test_a_rung_that_fails_is_named_and_the_others_survive(
             raise failure
 
     rungs = [rung for rung in FIDELITIES if rung.name in CLOSED]
-    importlib.import_module("lineofaction.gearbox.studies.frontier.run")  # which keeps the fidelities it finds
+    importlib.import_module("lineofaction.gearbox.studies.frontier.run")  # keeps those it finds
     module = importlib.import_module("fe_contact.analysis.studies.frontier")
     monkeypatch.setattr(module, "FIDELITIES", (rungs[0], Failing(), rungs[1]))
     made, progress = worked(prepared(FRONTIER, case=CASE, rungs=[*CLOSED, "corrected"]), tmp_path)
