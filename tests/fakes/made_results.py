@@ -12,6 +12,7 @@ from lineofaction.gearbox.result_files import stamp
 from service.store.places import stored_results
 from service.store.results import StoredResult
 from service.worker.order import WorkOrder
+from service.worker.preparations import files_read
 from service.worker.process import default_registry
 
 Json = dict[str, Any]
@@ -26,7 +27,8 @@ def make(home: Path, process: str, inputs: Json) -> list[StoredResult]:
     prepared = offered.prepare(offered.inputs.model_validate_json(json.dumps(inputs)), store)
     module, _, name = offered.entry.partition(":")
     with TemporaryDirectory(dir=home) as folder:
-        order = WorkOrder(offered.entry, prepared, offered.key(prepared), Path(folder), home)
+        stored = files_read(prepared, store)
+        order = WorkOrder(offered.entry, prepared, offered.key(prepared), Path(folder), home, stored=stored)
         products = getattr(import_module(module), name)(order, lambda *_: None)
         for product in products:
             stamp(product.file, product.warnings or [])

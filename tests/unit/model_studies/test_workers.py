@@ -353,8 +353,8 @@ def test_searches_by_workers_are_in_the_cost_of_an_optimization() -> None:
     workers = DearWorkers()
     request = design_request(LONG_RELIEFS, [100.0], (relief,), search=search, map_torques=[100.0], **DRAFT)
     result = optimize(request, Run(workers))
-    assert workers.cost.tasks == 2
-    assert 2.0 * DEAR < result.cost["cpu_seconds"] < 3.0 * DEAR
+    assert workers.cost.tasks == 4  # two starts; the first design and the best are analyzed
+    assert 4.0 * DEAR < result.cost["cpu_seconds"] < 5.0 * DEAR
     assert result.cost["stages"]["search"]["cpu_seconds"] > 2.0 * DEAR
 
 

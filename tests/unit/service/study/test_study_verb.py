@@ -142,7 +142,7 @@ def test_a_killed_study_goes_on_where_it_was(scene: Path, tmp_path: Path) -> Non
         return _run_batch(task, batch)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("dynamics.study.run_study.run_batch", counted)
+        patch.setattr("dynamics.study.run_study._run_batch", counted)
         assert loa(*arguments).exit_code == 0
     assert len(done) == 10 - len(before)  # of 80 runs, 8 in a batch
     assert not list(kept.glob("*"))
