@@ -150,13 +150,14 @@ def rests_on(file: Path) -> tuple[frozenset[Path], frozenset[str]]:
         path = waiting.pop()
         files.add(path)
         for module in structure.imported(path):
-            fake = TESTS / "fakes" / f"{module.split('.')[0]}.py"
-            if fake.exists() and fake not in files:
-                waiting.append(fake)
-            elif module.split(".")[0] in STARTS_PROCESSES or module == "lineofaction":
-                houses.update(structure.HOUSES)
+            name = module.removeprefix("tests.fakes.").split(".")[0]
+            fake = TESTS / "fakes" / f"{name}.py"
+            if fake.exists():
+                waiting += [fake] * (fake not in files)
             elif house := structure.house_of(module):
                 houses.update(_with_those_below(house))
+            elif name in (*STARTS_PROCESSES, "lineofaction"):
+                houses.update(structure.HOUSES)
     return frozenset(files), frozenset(houses)
 
 
@@ -172,9 +173,16 @@ def _named_in(file: Path) -> Iterator[Path]:
     for statement in ast.parse(file.read_text("utf-8")).body:
         match statement:
             case ast.Assign(targets=[ast.Name("RESTS_ON")], value=value):
-                for path in map(ROOT.joinpath, ast.literal_eval(value)):
-                    inner = (part for part in path.rglob("*") if part.is_file())
-                    yield from [path] if path.is_file() else inner
+                for name in ast.literal_eval(value):
+                    if not (ROOT / name).exists():
+                        raise pytest.UsageError(f"{name_of(file)}: RESTS_ON names {name}, which is not there")
+                    yield from _files_of(ROOT / name)
+
+
+def _files_of(path: Path) -> list[Path]:
+    """Return a file, or those in a folder without what Python compiled of them."""
+    inner = (part for part in path.rglob("*") if part.is_file() and "__pycache__" not in part.parts)
+    return [path] if path.is_file() else sorted(inner)
 
 
 def _conftests(file: Path) -> Iterator[Path]:
@@ -188,7 +196,6 @@ def _conftests(file: Path) -> Iterator[Path]:
 @cache
 def _of_house(house: str) -> bytes:
     sums = hashlib.sha256()
-    for path in sorted((ROOT / house.replace(".", "/")).rglob("*")):
-        if path.is_file() and "__pycache__" not in path.parts:
-            sums.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+    for path in _files_of(ROOT / house.replace(".", "/")):
+        sums.update(name_of(path).encode() + b"\0" + path.read_bytes() + b"\0")
     return sums.digest()

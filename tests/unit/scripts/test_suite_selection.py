@@ -146,19 +146,60 @@ def test_the_digest_follows_every_file_of_a_house(monkeypatch: pytest.MonkeyPatc
     assert copied == before != of_house("bounds")
 
 
-def test_the_digest_follows_what_a_file_names_and_versions(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+@pytest.fixture
+def page_test(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """Return a test that rests on itself, a folder of pages and `versions`, which both have a file."""
     monkeypatch.setattr(suite_selection, "ROOT", tmp_path)
-    versions, page = tmp_path / "versions", tmp_path / "pages" / "inner" / "page.md"
-    monkeypatch.setattr(suite_selection, "VERSIONS", versions)
-    page.parent.mkdir(parents=True)
+    monkeypatch.setattr(suite_selection, "VERSIONS", tmp_path / "versions")
+    monkeypatch.setattr(suite_selection, "rests_on", lambda file: (frozenset({file}), frozenset()))
+    (tmp_path / "pages" / "inner").mkdir(parents=True)
+    (tmp_path / "pages" / "inner" / "page.md").write_text("one")
+    (tmp_path / "versions").write_text("1")
     test = tmp_path / "test_pages.py"
     test.write_text('RESTS_ON = ("pages", "versions")')
-    monkeypatch.setattr(suite_selection, "rests_on", lambda file: (frozenset({file}), frozenset()))
-    seen = set()
-    for version, text in (("1", "one"), ("1", "two"), ("2", "two")):
-        versions.write_text(version)
-        page.write_text(text)
-        seen.add(digest.__wrapped__(test))
-    assert len(seen) == 3
+    return test
+
+
+def test_the_digest_follows_what_a_file_names_and_versions(page_test: Path) -> None:
+    digests = {digest.__wrapped__(page_test)}
+    for name, text in (("pages/inner/page.md", "two"), ("versions", "2")):
+        (page_test.parent / name).write_text(text)
+        digests.add(digest.__wrapped__(page_test))
+    assert len(digests) == 3
+
+
+def test_the_digest_is_blind_to_bytecode(page_test: Path) -> None:
+    before = digest.__wrapped__(page_test)
+    compiled = page_test.parent / "pages" / "inner" / "__pycache__" / "page.cpython-312.pyc"
+    compiled.parent.mkdir()
+    compiled.write_bytes(b"of this interpreter")
+    assert digest.__wrapped__(page_test) == before
+
+
+def test_a_path_that_is_not_there_is_refused(page_test: Path) -> None:
+    page_test.write_text('RESTS_ON = ("sheets",)')
+    with pytest.raises(pytest.UsageError, match=r"test_pages\.py: RESTS_ON names sheets, which is not there"):
+        digest.__wrapped__(page_test)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "from spur_gears import pinion",
+        "import spur_gears",
+        "import tests.fakes.spur_gears as gears",
+        "from tests.fakes import spur_gears",
+        "from tests.fakes.spur_gears import pinion",
+    ],
+)
+def test_a_test_rests_on_a_fake_however_it_is_imported(tmp_path: Path, line: str) -> None:
+    test = tmp_path / "test_gears.py"
+    test.write_text(line)
+    assert TESTS / "fakes" / "spur_gears.py" in rests_on(test)[0]
+
+
+@pytest.mark.parametrize("line", ["import lineofaction as loa", "from lineofaction import analyze"])
+def test_a_test_of_the_public_names_rests_on_all_houses(tmp_path: Path, line: str) -> None:
+    test = tmp_path / "test_public.py"
+    test.write_text(line)
+    assert rests_on(test)[1] == set(suite_selection.structure.HOUSES)
