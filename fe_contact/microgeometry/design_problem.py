@@ -162,11 +162,11 @@ class Budget:
 
     def __init__(self, total: int, cancel: Callable[[], bool], report: Callable[[float], None]) -> None:
         self.total, self.used = total, 0
-        self._cancel, self._report = cancel, report
+        self.cancelled, self._report = cancel, report
 
     def take(self, most: int) -> None:
         """Take one design, if fewer than `most` were taken; raises `BudgetUsed` or `Cancelled`."""
-        if self._cancel():
+        if self.cancelled():
             raise Cancelled
         if self.used >= min(most, self.total):
             raise BudgetUsed

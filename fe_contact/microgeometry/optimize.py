@@ -34,7 +34,7 @@ from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray
-from model_studies.workers import InProcess, divided
+from model_studies.workers import InProcess, OrHere, Workers, WorkersLost, divided
 
 # Assessed designs on disk: a search that was killed, or may use more evaluations, continues.
 
@@ -179,7 +179,7 @@ def _choose(
         designs = own, problem.values(runs[best].place)
         seconds = len(designs) * study.decided.checked.predicted(study.decided.plan, None).cpu_seconds
         shared = problem, study, run.cache
-        start, optimum = divided(run.workers, _confirmed, shared, designs, seconds)
+        start, optimum = divided(_to_the_end(run.workers, cancel), _confirmed, shared, designs, seconds)
     choice = _Choice(problem, start, optimum, runs, best)
     for _ in range(ROUNDS):
         if choice.optimum.violation <= SLACK or choice.run.assessed.violation > SLACK or cancel():
@@ -387,6 +387,18 @@ def _remotely(
     return runs
 
 
+def _to_the_end(workers: Workers, cancel: Cancel) -> Workers:
+    """Return who does what follows a search: this process once that is cancelled."""
+    if cancel() or isinstance(workers, InProcess):
+        return InProcess()
+
+    def told(lost: WorkersLost) -> None:
+        if not cancel():
+            raise lost
+
+    return OrHere(workers, told)
+
+
 def _search_one(shared: tuple[DesignProblem, Search], begin: tuple[int, FloatArray]) -> SearchRun:
     """Search from one start: one task; an interrupted worker gives what it has."""
     return search_from(*shared, begin[1], begin[0], ending=(Cancelled, KeyboardInterrupt))
@@ -434,7 +446,8 @@ def optimize(
     run.progress("confirmation", 1.0)
     with clock.stage("sensitivity"):
         place = choice.problem, choice.run, request.scatter
-        aside = tuple(divided(run.workers, _perturbation, place, request.variables))
+        workers = _to_the_end(run.workers, cancel)
+        aside = tuple(divided(workers, _perturbation, place, request.variables))
     return _result(request, study, choice, aside, clock)
 
 

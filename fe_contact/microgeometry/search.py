@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import count
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from scipy.optimize import Bounds, differential_evolution, minimize
@@ -19,12 +19,13 @@ from fe_contact.microgeometry.design_problem import (
     BudgetUsed,
     Cancelled,
     CountedMerit,
+    Design,
     DesignProblem,
 )
 from fe_contact.microgeometry.objective import LinearMerit
 from fe_contact.types import FloatArray, Json
 from model_studies.progress import unreported
-from model_studies.workers import InProcess, Workers, pays, spent
+from model_studies.workers import InProcess, Workers, WorkersLost, pays, spent
 
 SIMPLEX_SIZE, SIMPLEX_MERIT = 1e-3, 1e-4
 """A simplex this small has converged: parts of the range of a variable, and of the merit of the start."""
@@ -131,22 +132,18 @@ class SequentialLinearProgramming:
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search; the sequence and the points beside an end are random."""
-        walks = [_Walk(merit, start)]
-        walks[0].begin()
-        for point in self._best(rough, start.size, seed):
-            walks.append(_Walk(merit, point))
-            walks[-1].begin()
+        walks = [_begun(merit, _Walk(start))]
+        walks += [_begun(merit, _Walk(point)) for point in self._best(rough, start.size, seed)]
         if len(walks) > 1:
-            walks = list(_followed(walks, TRIED))
-        best = min(walks, key=lambda walk: walk.value)
-        best.follow()
+            walks = list(_each_followed(merit, walks, TRIED))
+        best = _followed(merit, min(walks, key=lambda walk: walk.value))
         random, misses = np.random.default_rng(seed.spawn(1)[0]), 0
         draws: list[FloatArray] = []
         while misses < MISSES and np.isfinite(best.value):
             fresh = MISSES - misses - len(draws)
             draws += [random.uniform(-1.0, 1.0, start.size) for _ in range(fresh)]
             asides = [np.clip(best.place + ASIDE * draw, 0.0, 1.0) for draw in draws]
-            for other in _followed([_Walk(merit, aside, 2.0 * ASIDE) for aside in asides]):
+            for other in _each_followed(merit, [_Walk(aside, 2.0 * ASIDE) for aside in asides]):
                 draws.pop(0)
                 misses = 0 if other.value < (1.0 - LEAST_GAIN) * best.value else misses + 1
                 if other.value < best.value:
@@ -171,87 +168,77 @@ class SequentialLinearProgramming:
         return {"method": "sequential_linear_programming", "sample": self.sample, "trials": self.trials}
 
 
+@dataclass(frozen=True)
 class _Walk:
-    """Steps of linear programmes from one design on; `place` (d,) is the best so far, `value` its merit."""
+    """Where steps of linear programmes have come to: `place` (d,) is the best so far, `value` its merit."""
 
-    def __init__(self, merit: CountedMerit, start: FloatArray, region: float = FIRST_REGION) -> None:
-        self.merit, self.place, self.value = merit, start, np.inf
-        self._region = region
-        self._linear: LinearMerit | None = None
+    place: FloatArray
+    region: float = FIRST_REGION
+    value: float = np.inf
+    linear: LinearMerit | None = None
 
-    def begin(self) -> None:
-        """Assess the design that it starts from."""
-        self.value, self._linear = self.merit.linearize(self.place)
 
-    def follow(self, most: int | None = None) -> None:
-        """Begin, and step until converged, or so often at most."""
-        if self._linear is None:
-            self.begin()
-        for _ in range(most) if most is not None else count():
-            if not np.isfinite(self.value) or self._region <= SIMPLEX_SIZE or not self._step():
-                return
+def _begun(merit: CountedMerit, walk: _Walk) -> _Walk:
+    """Assess the design that a walk starts from."""
+    value, linear = merit.linearize(walk.place)
+    return replace(walk, value=value, linear=linear)
 
-    @property
-    def state(self) -> Any:
-        """What it is but for its merit."""
-        return {name: value for name, value in vars(self).items() if name != "merit"}
 
-    def take(self, state: Any) -> None:
-        """Go on from the state of another."""
-        vars(self).update(state)
+def _followed(merit: CountedMerit, walk: _Walk, most: int | None = None) -> _Walk:
+    """Begin, and step until converged, or so often at most."""
+    walk = _begun(merit, walk) if walk.linear is None else walk
+    for _ in range(most) if most is not None else count():
+        if not np.isfinite(walk.value) or walk.region <= SIMPLEX_SIZE:
+            break
+        further = _stepped(merit, walk)
+        if further is None:
+            break
+        walk = further
+    return walk
 
-    def _step(self) -> bool:
-        """Take a step if one promises anything; shorten the region where it keeps too little of it."""
-        ends = np.maximum(-self._region, -self.place), np.minimum(self._region, 1.0 - self.place)
-        assert self._linear is not None
-        step, promised = self._linear.least(*ends)
-        if self.value - promised <= SIMPLEX_MERIT * self.value:
-            return False
-        point = np.clip(self.place + step, 0.0, 1.0)
-        value, linear = self.merit.linearize(point)
-        kept = (self.value - value) / (self.value - promised)
-        if kept < POOR:
-            self._region = POORER * float(np.abs(step).max())
-        elif kept > GOOD:
-            self._region = min(2.0 * self._region, 1.0)
-        if value < self.value:
-            self.place, self.value, self._linear = point, value, linear
-        return True
+
+def _stepped(merit: CountedMerit, walk: _Walk) -> _Walk | None:
+    """Take a step if one promises anything; shorten the region where it keeps too little of it."""
+    ends = np.maximum(-walk.region, -walk.place), np.minimum(walk.region, 1.0 - walk.place)
+    assert walk.linear is not None
+    step, promised = walk.linear.least(*ends)
+    if walk.value - promised <= SIMPLEX_MERIT * walk.value:
+        return None
+    point = np.clip(walk.place + step, 0.0, 1.0)
+    value, linear = merit.linearize(point)
+    kept, region = (walk.value - value) / (walk.value - promised), walk.region
+    if kept < POOR:
+        region = POORER * float(np.abs(step).max())
+    elif kept > GOOD:
+        region = min(2.0 * region, 1.0)
+    return _Walk(point, region, value, linear) if value < walk.value else replace(walk, region=region)
 
 
 USUAL_DESIGNS = 100
 """Of all walks of a search: workers that are woken by its first walks serve the others, too."""
 
 
-def _followed(walks: Sequence[_Walk], most: int | None = None) -> Iterator[_Walk]:
+def _each_followed(merit: CountedMerit, walks: Sequence[_Walk], most: int | None = None) -> Iterator[_Walk]:
     """Follow walks that do not wait for each other, to their ends or so far at most, and yield each."""
-    merit = walks[0].merit
     if len(walks) < 2 or not pays(merit.workers, merit.seconds * USUAL_DESIGNS):
-        for walk in walks:
-            walk.follow(most)
-            yield walk
+        yield from (_followed(merit, walk, most) for walk in walks)
         return
-    tasks = [(walk.state, most, merit.left) for walk in walks]
-    for walk, (state, designs) in zip(walks, merit.workers.run(_walked, merit.problem, tasks), strict=True):
+    tasks = [(walk, most, merit.left + 1) for walk in walks]
+    for walk, designs in merit.workers.run(_walked, merit.problem, tasks):
         merit.replay(designs)
-        walk.take(state)
         yield walk
 
 
-def _walked(
-    problem: DesignProblem, task: tuple[Any, int | None, int]
-) -> tuple[Any, list[tuple[Assessed, FloatArray]]]:
-    """Follow a walk from its state: one task. An interrupted worker gives what it has.
+def _walked(problem: DesignProblem, task: tuple[_Walk, int | None, int]) -> tuple[_Walk, list[Design]]:
+    """Follow a walk: one task.
 
-    Its designs are counted by the caller, whose budget ends where this one does at the latest.
+    It may assess one design more than are left: the caller, who counts them, ends there as it would here.
     """
-    state, most, left = task
-    merit = CountedMerit(problem, Budget(left, never, unreported), left)
-    walk = _Walk(merit, state["place"])
-    walk.take(state)
-    with suppress(BudgetUsed, KeyboardInterrupt):
-        walk.follow(most)
-    return walk.state, merit.designs
+    walk, most, designs = task
+    merit = CountedMerit(problem, Budget(designs, never, unreported), designs)
+    with suppress(BudgetUsed):
+        walk = _followed(merit, walk, most)
+    return walk, merit.designs
 
 
 @dataclass(frozen=True)
@@ -398,7 +385,7 @@ def search_from(
     report : callable, optional
         Called with the part of the evaluations used.
     cancel : callable, optional
-        Asked before each design whether to end with the best so far.
+        Asked before each design whether to end with the best so far, and when workers are lost.
     ending : tuple of exception types
         By which it is cancelled.
     workers : Workers
@@ -415,6 +402,10 @@ def search_from(
     except BudgetUsed:
         ended = Ended.SPENT
     except ending:
+        ended = Ended.CANCELLED
+    except WorkersLost:
+        if not budget.cancelled():
+            raise
         ended = Ended.CANCELLED
     assessed, point = _best(problem, merit, rough, start)
     seconds = spent(workers) - begun

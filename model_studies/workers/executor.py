@@ -125,7 +125,10 @@ class _Done(Generic[R]):
 def do_task(function: Callable[[Any, Any], R], item: Any, packed: Packed) -> _Done[R]:
     """Do one task, on a worker."""
     begun = _cpu_seconds()
-    result = function(packed.unpacked(), item)
+    try:
+        result = function(packed.unpacked(), item)
+    except KeyboardInterrupt:  # a Ctrl-C reaches the processes of a pool, too
+        raise WorkersLost("A worker was interrupted.") from None
     return _Done(result, _cpu_seconds() - begun, peak_memory())
 
 

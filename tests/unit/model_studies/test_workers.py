@@ -12,6 +12,7 @@ from enum import Enum
 from math import radians
 from multiprocessing import get_context
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from fe_contact import Gear, GearPair, PitchDeviation, analyze
 from fe_contact.analysis.pairs import contact_lines
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.microgeometry.optimize import optimize
-from fe_contact.microgeometry.search import NelderMead, Search
+from fe_contact.microgeometry.search import Ended, NelderMead, Search, SequentialLinearProgramming
 from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, ToleranceStudy, scatter
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Run
@@ -133,6 +134,47 @@ def test_a_single_start_is_divided_and_finds_the_same(
     files = [sorted((tmp_path / alone).glob("designs-*.bin")) for alone in ("True", "False")]
     mine, theirs = ({file.name: file.read_bytes() for file in own} for own in files)
     assert mine and theirs == mine  # what is kept of a search goes on by whom it may
+
+
+@dataclass(frozen=True)
+class InterruptedPool:
+    """A pool whose tasks of one kind are interrupted, as by a Ctrl-C, and that says so as a verb does."""
+
+    pool: ByExecutor
+    task: str
+    stop: Event = field(default_factory=Event)
+
+    @property
+    def cost(self) -> RunCost:
+        return self.pool.cost
+
+    def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
+        if function.__name__ == self.task:
+            self.stop.set()
+            return self.pool.run(interrupted, None, items)
+        return self.pool.run(function, shared, items)
+
+
+def interrupted(_shared: None, _item: Any) -> None:
+    raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("task", ["_assess", "_walked", "_confirmed"])
+def test_an_interrupted_optimization_of_a_single_start_gives_the_best_so_far(
+    pair: GearPair, compliances: Path, pool: ByExecutor, task: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In its sample, in its walks, and in the analyses behind them."""
+    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
+    variables = [DesignVariable(f"{gear}.profile_crowning", 0.0, 2e-5) for gear in ("pinion", "wheel")]
+    search = Search(SequentialLinearProgramming(sample=4), evaluations=20, positions=16, exploration=8)
+    request = design_request(pair, [100.0], variables, search=search, map_torques=[200.0], **DRAFT)
+    workers = InterruptedPool(ByExecutor(pool.executor), task)
+    best = optimize(request, Run(workers=workers, cache=compliances), cancel=workers.stop.is_set)
+    assert workers.stop.is_set()
+    (run,) = best.runs
+    assert (run.ended is Ended.CANCELLED) is (task != "_confirmed")
+    assert ("interrupted" in best.reason) is (task != "_confirmed")
+    assert best.optimum.objective.value <= best.start.objective.value
 
 
 def test_a_failing_task_fails_the_whole(pool: ByExecutor) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from threading import Event
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -30,7 +32,7 @@ from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import Estimate, FloatArray
-from model_studies.workers import InProcess
+from model_studies.workers import ByExecutor, InProcess, RunCost, WorkersLost, executor
 
 START = np.array([0.9, 0.1, 0.5])
 BOTTOM = np.array([0.3, 0.6, 0.2])
@@ -195,6 +197,57 @@ def test_cancelled_before_the_first_design_the_start_is_left(workers: Any) -> No
     )
     np.testing.assert_array_equal(run.place, START)
     assert run.ended is Ended.CANCELLED and run.evaluations == 1
+
+
+@pytest.mark.law
+def test_walks_by_others_end_for_the_same_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever the number of designs: also where a walk by itself ends with the last of them."""
+    monkeypatch.setattr(executor, "START_SECONDS", -1.0)
+    method = SequentialLinearProgramming(sample=4, trials=2)
+    with ThreadPoolExecutor(1) as one, ThreadPoolExecutor(2) as two:
+        reasons = set()
+        for evaluations in range(1, 150):
+            search = Search(method, evaluations=evaluations)
+            here, *others = (
+                search_from(cast(DesignProblem, Bowl()), search, START, 0, workers=workers)
+                for workers in (InProcess(), ByExecutor(one), ByExecutor(two))
+            )
+            reasons.add(here.ended)
+            for run in others:
+                np.testing.assert_array_equal(run.place, here.place)
+                assert replace(run, place=here.place, cpu_seconds=here.cpu_seconds) == here
+    assert reasons == {Ended.SPENT, Ended.CONVERGED}
+
+
+@dataclass(frozen=True)
+class Interrupted:
+    """Workers that a Ctrl-C ends after some results."""
+
+    after: int
+    stop: Event = field(default_factory=Event)
+    cost: RunCost = field(default_factory=lambda: RunCost(tasks=1))
+
+    def run(self, function: Any, shared: Any, items: Sequence[Any]) -> Iterator[Any]:
+        for item in items:
+            if self.cost.tasks > self.after:
+                self.stop.set()
+                raise WorkersLost("A worker was interrupted.")
+            self.cost.tasks += 1
+            yield function(shared, item)
+
+
+@pytest.mark.parametrize("after", [1, 3, 6])
+def test_a_start_whose_workers_are_interrupted_keeps_the_best_so_far(
+    after: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(executor, "START_SECONDS", -1.0)
+    bowl, workers = cast(DesignProblem, Bowl()), Interrupted(after)
+    search = Search(SequentialLinearProgramming(sample=4, trials=2))
+    run = search_from(bowl, search, START, 0, cancel=workers.stop.is_set, workers=workers)
+    assert run.ended is Ended.CANCELLED and run.evaluations > 0
+    assert run.assessed == Bowl().assess(run.place)
+    with pytest.raises(WorkersLost):  # nobody requested that
+        search_from(bowl, search, START, 0, cancel=lambda: False, workers=Interrupted(after))
 
 
 @dataclass(frozen=True)
