@@ -19,7 +19,7 @@ from fe_contact.geometry import Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.mesh.sector_grid import BoreSupport, PlaneStrain, bore_support
 from model_studies.progress import Report, unreported
-from model_studies.workers import InProcess, Remembering, Workers
+from model_studies.workers import InProcess, Remembering, Workers, kept
 
 # Size of the part of a compliance that is cached: it is not computed, and takes as much memory.
 
@@ -52,10 +52,6 @@ def section_kept(
         return 0
     count = condensed_teeth(gear, recipe, teeth)
     return kept_size(cache, compliance_key(gear, recipe, hypothesis, count))
-
-
-FEWEST = 2
-"""Gears that pay to hand out: a single one is condensed here in the same time."""
 
 
 @dataclass(frozen=True)
@@ -91,8 +87,8 @@ def condense_remotely(
 ) -> None:
     """Let workers condense the gears that are not in the cache, and keep them there.
 
-    Nothing is done where this process is the worker, or would wait for a single one. `report` is called with
-    the fraction done after each gear.
+    A cluster does each of them once, whoever asks. Nothing is done where this process is the worker.
+    `report` is called with the fraction done after each gear.
 
     Raises `MeshError` or `SolveError` as `flank_compliance_3d`.
     """
@@ -101,7 +97,7 @@ def condense_remotely(
         return
     solids = {solid.key: solid for solid in map(_Solid.of, gears, recipes)}
     missing = {key: solid for key, solid in solids.items() if not kept_size(cache, key)}
-    if len(missing) < FEWEST:
+    if not missing:
         return
     compliances = workers.run(condense, None, list(missing.values()))
     for count, (key, compliance) in enumerate(zip(missing, compliances, strict=True), start=1):
@@ -109,6 +105,7 @@ def condense_remotely(
         report(count / len(missing))
 
 
+@kept
 def condense(_: None, solid: _Solid) -> FlankCompliance3D:
     """Condense a gear: one task."""
     return compute_flank_compliance_3d(solid.gear, solid.recipe, solid.reach, solid.support)

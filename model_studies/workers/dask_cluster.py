@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
 from functools import partial
@@ -29,6 +29,9 @@ _LOOK_S = 1.0
 """How often it is looked whether there are any."""
 _AT_ONCE = 256
 """Results that are fetched by one message, at most."""
+KEPT_RESULTS = 64
+"""Results of `kept` tasks that stay in a cluster: a gear over its face has up to 100 MB."""
+_KEPT = "kept-"
 CONNECT_S = 10.0
 """How long a scheduler may take to answer."""
 
@@ -53,7 +56,8 @@ class ByDask:
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
         """Submit everything, yield in order; what is not yielded any more is left.
 
-        A task is named by its content: what several callers want at the same time is done once.
+        A task is named by its content: what several callers want at the same time is done once, and what is
+        `kept` is done once while the cluster lasts.
         """
         import dask  # noqa: PLC0415 (an extra)
 
@@ -65,7 +69,7 @@ class ByDask:
             keys = [f"{name}-{digest}-{Packed.of(item).digest}" for item in items]
             # one graph: a submission each costs the scheduler as much as the task
             futures = self.client.map(partial(do_task, function), items, packed=packed, key=keys)
-        return self._in_order(futures)
+        return self._in_order(futures, keep=getattr(function, "kept", False))
 
     def _send(self, shared: object) -> tuple[str, Any]:
         """Return digest and future of what is shared, sent unless it was before."""
@@ -80,17 +84,35 @@ class ByDask:
             known = self._sent[id(shared)] = (shared, packed.digest, future)
         return known[1:]
 
-    def _in_order(self, futures: Sequence[Any]) -> Iterator[Any]:
+    def _in_order(self, futures: Sequence[Any], *, keep: bool) -> Iterator[Any]:
         """Yield the results; let go of the rest when the caller stops or a task fails."""
+        kept_before = {key for _, key in self._published()} if keep else set()
         count = 0
         try:
             while count < len(futures):
                 for done in self._results(futures, count):
-                    yield self.cost.add(done)
+                    yield done.result if futures[count].key in kept_before else self.cost.add(done)
                     count += 1
+            if keep:
+                self._publish({future.key: future for future in futures})
         finally:
             for future in () if self._gone else futures:
                 future.release()
+
+    def _published(self) -> list[tuple[str, str]]:
+        """Return names of kept results, the oldest first, and the keys of their tasks."""
+        names: tuple[str, ...] = self.client.list_datasets()  # type: ignore[no-untyped-call]
+        return [(name, name.partition(" ")[2]) for name in sorted(names) if name.startswith(_KEPT)]
+
+    def _publish(self, futures: Mapping[str, Any]) -> None:
+        """Leave results with the workers, which write to disk what their memory has no room for."""
+        published, now = self._published(), f"{_KEPT}{time.time():.3f}"
+        new: dict[Any, Any] = {
+            f"{now} {key}": futures[key] for key in futures.keys() - {key for _, key in published}
+        }
+        self.client.publish_dataset(new)
+        older: list[Any] = [name for name, _ in published]
+        self.client.unpublish_dataset(older[: max(0, len(older) + len(new) - KEPT_RESULTS)])
 
     def _results(self, futures: Sequence[Any], first: int) -> list[Any]:
         """Wait for a result as long as there is somebody to make it; return it with those ready after it."""

@@ -255,6 +255,15 @@ class InProcess:
         return (function(shared, item) for item in items)
 
 
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def kept(function: Function) -> Function:
+    """Mark a function of tasks whose results a cluster keeps for whoever asks for the same later."""
+    function.kept = True  # type: ignore[attr-defined]
+    return function
+
+
 # Tasks by others as long as there are any, then here: the results are the same.
 
 

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import radians
 from pathlib import Path
 from typing import Any
@@ -16,12 +16,15 @@ from typing import Any
 import numpy as np
 import pytest
 from analysis_requests import table_request
+from compliance_gears import SPUR as FEW_TEETH
+from compliance_gears import coarse
 
 from fe_contact import Gear, GearPair, SteDatabase, analyze, study_sensitivity
 from fe_contact.analysis.pairs import contact_lines
+from fe_contact.compliance.remote_condensation import condense_remotely
 from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, scatter
 from fe_contact.options import AnalysisOptions, Run
-from model_studies.workers import ByDask, InProcess, OrHere, RunCost, Workers, WorkersLost
+from model_studies.workers import ByDask, InProcess, OrHere, RunCost, Workers, WorkersLost, dask_cluster
 
 distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
 pytestmark = pytest.mark.filterwarnings("ignore")
@@ -196,6 +199,30 @@ def test_what_two_callers_want_at_once_is_done_once(cluster: Cluster, tmp_path: 
         third.close()  # type: ignore[attr-defined]
         assert list(first) == list(second) == [None] * len(links)
     assert sorted(map(os.readlink, links)) == ["nowhere"] * len(links)
+
+
+@pytest.mark.law
+def test_a_gear_is_condensed_once_for_all_machines_and_the_oldest_one_goes(
+    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cluster.at_least(2)
+    monkeypatch.setattr(dask_cluster, "KEPT_RESULTS", 2)
+    first, second = replace(FEW_TEETH, teeth=10), FEW_TEETH
+
+    def tasks(machine: str, *gears: Gear) -> int:
+        """Return how many were condensed for a machine that has none of them."""
+        (tmp_path / machine).mkdir()
+        with distributed.Client(cluster.address, set_as_default=False) as client:
+            workers = ByDask(client)
+            condense_remotely(gears, [coarse(each) for each in gears], tmp_path / machine, workers)
+            assert (workers.cost.cpu_seconds > 0.0) == (workers.cost.tasks > 0)
+        assert len(list((tmp_path / machine).glob("compliance-*.npz"))) == len(gears)
+        return workers.cost.tasks
+
+    assert [tasks("a", first), tasks("b", first, second), tasks("c", second, first)] == [1, 1, 0]
+    one, other = ({file.name: file.read_bytes() for file in (tmp_path / name).iterdir()} for name in "bc")
+    assert one == other
+    assert [tasks("d", replace(first, teeth=11)), tasks("e", second), tasks("f", first)] == [1, 0, 1]
 
 
 def test_what_a_cluster_leaves_whose_last_worker_is_killed_is_done_here(
