@@ -15,7 +15,7 @@ structure = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(structure)
 
 BUDGETS = {
-    ("fe_contact",): (37_035, 636),
+    ("fe_contact",): (37_032, 636),
     ("dynamics",): (39_807, 740),
     ("lineofaction.gearbox",): (21_625, 425),
     ("lineofaction.report",): (10_471, 198),
@@ -23,7 +23,7 @@ BUDGETS = {
     ("lineofaction.client",): (2_732, 54),
     ("lineofaction.cli",): (4_608, 67),
     ("lineofaction.hardcases",): (3_834, 35),
-    ("bounds", "host", "model_studies"): (4_171, 143),
+    ("bounds", "host", "model_studies"): (4_204, 144),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 747
