@@ -20,8 +20,8 @@ from lineofaction.client.cache import ResultCache
 from lineofaction.client.exchange import Exchange
 from lineofaction.client.job import AsyncJob, Job
 from lineofaction.client.job_calls import JobCalls
-from lineofaction.client.offers import ANALYZE, SIMULATE, libraries, offers, reader_of, subject_inputs
-from lineofaction.client.process import AsyncProcess, Offered, Process, obtained
+from lineofaction.client.offers import ANALYZE, libraries, offers, reader_of, subject_inputs
+from lineofaction.client.process import AsyncProcess, Process, obtained
 from lineofaction.client.result_calls import ResultCalls
 from lineofaction.client.status import Watch
 from lineofaction.client.steps import Steps
@@ -37,7 +37,7 @@ from lineofaction.client.surface import (
 from lineofaction.gearbox import schemas
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import Studies
-from lineofaction.gearbox.study import F, P, StudyOf
+from lineofaction.gearbox.study import F, Offered, P
 from lineofaction.gearbox.study import T as Answer
 from service.origin import is_loopback
 from service.version import solver_version
@@ -280,8 +280,8 @@ class Client(Studies, JobCalls, ResultCalls, _LookupCalls, _SceneCalls):
         The address is none.
     """
 
-    analyze: Offered[[CaseLike], SteDatabase, TableFigures] = Offered(ANALYZE)
-    simulate: Offered[[SceneLike], RunResult, RunFigures] = Offered(SIMULATE)
+    analyze: Offered[[CaseLike], SteDatabase, TableFigures] = Offered()
+    simulate: Offered[[SceneLike], RunResult, RunFigures] = Offered()
 
     def __init__(
         self,
@@ -336,9 +336,9 @@ class LineOfActionClient(Client, Blocking):
     def _connect(self, transport: httpx2.BaseTransport | None, options: dict[str, Any]) -> None:
         self.driver = BlockingDriver(transport, options)
 
-    def process(self, study: StudyOf[P, Answer, F]) -> Process[P, Answer, F]:
-        """Return the process of a study: the attribute of its name."""
-        return Process(self, offers()[study.name])
+    def process(self, offered: Offered[P, Answer, F]) -> Process[P, Answer, F]:
+        """Return the process of a study, `loa.modes`; it is the attribute of its name too."""
+        return Process(self, offers()[offered.name])
 
     def __enter__(self) -> Self:
         return self
@@ -369,9 +369,9 @@ class AsyncLineOfActionClient(Client, Awaiting):
     def _connect(self, transport: httpx2.AsyncBaseTransport | None, options: dict[str, Any]) -> None:
         self.driver = AwaitingDriver(transport, options)
 
-    def process(self, study: StudyOf[P, Answer, F]) -> AsyncProcess[P, Answer, F]:
-        """Return the process of a study: the attribute of its name."""
-        return AsyncProcess(self, offers()[study.name])
+    def process(self, offered: Offered[P, Answer, F]) -> AsyncProcess[P, Answer, F]:
+        """Return the process of a study, `loa.modes`; it is the attribute of its name too."""
+        return AsyncProcess(self, offers()[offered.name])
 
     async def __aenter__(self) -> Self:
         return self

@@ -6,7 +6,7 @@ import uuid
 from collections.abc import AsyncIterator, Callable, Iterable, Iterator
 from contextlib import aclosing, suppress
 from pathlib import Path
-from typing import Any, Generic, overload
+from typing import Any, Generic
 
 from lineofaction.client.batch import AsyncBatch, Batch
 from lineofaction.client.job import AsyncJob, Job
@@ -218,23 +218,3 @@ class AsyncProcess(_Calls[P, T, F]):
 
     def _job(self, state: JobState, result: Result | None = None) -> AsyncJob[T, F]:
         return AsyncJob(self._client, state, self._offer.read, result)
-
-
-class Offered(Generic[P, T, F]):
-    """The attribute of a client that is a process."""
-
-    def __init__(self, offer: Offer) -> None:
-        self.offer = offer
-        self.__doc__ = offer.description
-
-    @overload
-    def __get__(self, client: None, owner: type) -> Offered[P, T, F]: ...
-    @overload
-    def __get__(self, client: Blocking, owner: type) -> Process[P, T, F]: ...
-    @overload
-    def __get__(self, client: Awaiting, owner: type) -> AsyncProcess[P, T, F]: ...
-    def __get__(self, client: Any, owner: type) -> Any:
-        """Return the process of a client."""
-        if client is None:
-            return self
-        return (Process if isinstance(client, Blocking) else AsyncProcess)(client, self.offer)

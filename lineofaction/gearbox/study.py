@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from inspect import Signature, signature
-from typing import TYPE_CHECKING, Any, Generic, ParamSpec, Protocol, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Generic, ParamSpec, Protocol, Self, TypeVar, overload
 
 from lineofaction.gearbox.loading import LOADING
 
@@ -56,6 +56,29 @@ class Takes(Generic[P, T, F]):
     bare: bool = False
 
 
+class Offered(Generic[P, T, F]):
+    """An attribute of a class that is itself there, and of a client of that class a process.
+
+    Attributes
+    ----------
+    name : str
+        Of the process: that of the attribute.
+    """
+
+    name: str
+
+    def __set_name__(self, _owner: type, name: str) -> None:
+        object.__setattr__(self, "name", name.replace("_", "-"))
+
+    @overload
+    def __get__(self, caller: None, owner: type) -> Self: ...
+    @overload
+    def __get__(self, caller: _Caller[Self, C], owner: type) -> C: ...
+    def __get__(self, caller: Any, owner: type) -> Any:
+        """Return the attribute of a class, the process of a client."""
+        return self if caller is None else caller.process(self)
+
+
 @dataclass(frozen=True)
 class Study:
     """A row of the registry.
@@ -103,9 +126,6 @@ class Study:
     aliases: tuple[str, ...] = ()
     name: str = field(default="", init=False)
 
-    def __set_name__(self, _owner: type, name: str) -> None:
-        object.__setattr__(self, "name", name.replace("_", "-"))
-
     @property
     def argument(self) -> str:
         """Name of what is studied, as the client's method and the verb have it."""
@@ -146,8 +166,8 @@ class Study:
 
 
 @dataclass(frozen=True)
-class StudyOf(Study, Generic[P, T, F]):
-    """A study that is called, and that is a process of the clients whose classes have it."""
+class StudyOf(Study, Offered[P, T, F]):
+    """A study that is called, and that clients offer."""
 
     takes: Takes[P, T, F]
 
@@ -162,14 +182,6 @@ class StudyOf(Study, Generic[P, T, F]):
     def __signature__(self) -> Signature:
         """That of its calls: an object with ``__get__`` may have none."""
         return signature(self.__call__)
-
-    @overload
-    def __get__(self, caller: None, owner: type) -> StudyOf[P, T, F]: ...
-    @overload
-    def __get__(self, caller: _Caller[StudyOf[P, T, F], C], owner: type) -> C: ...
-    def __get__(self, caller: Any, owner: type) -> Any:
-        """Return the study of a class, the process of a client."""
-        return self if caller is None else caller.process(self)
 
     def __call__(
         self,

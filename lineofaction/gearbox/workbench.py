@@ -244,7 +244,7 @@ def _source(subject: Any) -> Any:
 def _warn(findings: Iterable[Mapping[str, Any]]) -> None:
     """Warn of what is implausible, each once, where the caller's own code stands."""
     frame, level = currentframe(), 0
-    while frame and frame.f_globals["__name__"].startswith("lineofaction."):
+    while frame and str(frame.f_globals.get("__name__")).startswith("lineofaction."):
         frame, level = frame.f_back, level + 1
     for warning in findings:
         warnings.warn(warning["message"], InputWarning, stacklevel=level + 1)

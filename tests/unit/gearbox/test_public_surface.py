@@ -14,6 +14,7 @@ import pytest
 import lineofaction as loa
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, validated
+from tests.fakes.faulty_units import LEFT_OUT, TWO_STAGE
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = ROOT / "examples"
@@ -77,6 +78,14 @@ def test_a_unit_without_a_scene_is_refused() -> None:
     unit = loa.Unit((), None, (), (), ())
     with pytest.raises(loa.BadInput, match="scene"):
         loa.modes(unit)
+
+
+def test_warnings_reach_a_caller_whose_code_has_no_name(tmp_path: Path) -> None:
+    """Code that is executed in a table of its own, as in a template, is of no module."""
+    file = tmp_path / "unit.rexs"
+    file.write_text(LEFT_OUT["center distance"][1](TWO_STAGE), encoding="utf-8")
+    with pytest.warns(loa.InputWarning, match="left out of the scene: cylindrical_stage 22"):
+        exec("unit = open_unit(file)", {"open_unit": loa.open_unit, "file": file})
 
 
 def test_every_study_has_an_example_whose_inputs_are_accepted() -> None:

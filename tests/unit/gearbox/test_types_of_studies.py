@@ -46,6 +46,7 @@ def test_every_row_is_a_process_of_both_clients() -> None:
     for row in STUDIES.values():
         assert isinstance(getattr(blocking, row.package), Process)
         assert isinstance(getattr(awaited, row.package), AsyncProcess)
+        assert str(signature(blocking.process(row))) == str(signature(getattr(awaited, row.package)))
         assert row.package in dir(blocking) and row.package in dir(loa)
         assert (row.takes.subject == "case or scene") == (row.argument == "subject")
 
