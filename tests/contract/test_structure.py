@@ -17,10 +17,10 @@ SPEC.loader.exec_module(structure)
 BUDGETS = {
     ("fe_contact",): (37_032, 636),
     ("dynamics",): (39_807, 740),
-    ("lineofaction.gearbox",): (21_625, 425),
+    ("lineofaction.gearbox",): (21_637, 426),
     ("lineofaction.report",): (10_471, 198),
     ("service",): (15_246, 339),
-    ("lineofaction.client",): (2_732, 54),
+    ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_608, 67),
     ("lineofaction.hardcases",): (3_834, 35),
     ("bounds", "host", "model_studies"): (4_204, 144),
