@@ -187,7 +187,7 @@ def rest_over(system: System, times: FloatArray) -> Rest:
     force[:, :, :rows] = np.moveaxis(on_bearings, 2, 0)[:, :, :rows]
     mesh_force = seen.force[system.driving_rows].T
     largest = float(np.max(np.abs(mesh_force), initial=0.0))
-    residual = max(solution.residual for solution in solutions)
+    residual = float(np.max([solution.residual for solution in solutions]))
     return Rest(
         status=max(solution.status for solution in solutions),
         residual=residual / largest if largest > 0.0 else float("inf"),

@@ -238,7 +238,7 @@ def steady_vibration(
 def _heard(force: ComplexArray) -> BoolArray:
     """Return which of H harmonics excite: of forces (..., H)."""
     heard = np.max(np.abs(force), axis=tuple(range(force.ndim - 1)), initial=0.0)
-    return np.asarray(heard > NOTHING * np.max(heard, initial=0.0))
+    return np.asarray(~(heard <= NOTHING * np.max(heard, initial=0.0)))  # what is not a number excites
 
 
 def _pushed(at: Excited, force: ComplexArray) -> ComplexArray:
@@ -351,7 +351,7 @@ def _solve(
     small = _modal_elimination(modal, per_meter, total, damping, mass) if first else None
     parts = np.stack([total, mass, damping]).astype(complex)
     block = max(BLOCK // max(omega.shape[1] * per_meter.size**2, 1), 1)
-    left = 0.0
+    left = np.float64(0.0)
     for start in range(0, omega.shape[0], block):
         part = slice(start, start + block)
         exciting = pushed if pushed.shape[0] == 1 else pushed[part]
@@ -367,16 +367,16 @@ def _solve(
             turning = [matrix[:, :first, :first] for matrix in swept]
             solved = small.solve(omega[part], right, turning)
             miss = np.abs(small.product(omega[part], solved[..., :1], turning) - right[..., :1])
-        left = max(left, float(np.max(miss, initial=0.0)))
+        left = np.maximum(left, np.max(miss, initial=0.0))  # not a number, if any of them is
         displacement[part] = solved * per_meter[:, None]
         if progress is not None:
             progress(min(start + block, omega.shape[0]) / omega.shape[0])
     largest = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
     moved = np.max(np.abs(displacement[..., 0] / per_meter), axis=(0, 1), initial=0.0)
-    elastic = float(np.max(np.abs(total) @ moved, initial=0.0))
-    if not max(left, np.finfo(float).eps * elastic) <= ROUNDED * largest:
+    elastic = np.max(np.abs(total) @ moved, initial=0.0)
+    if not np.maximum(left, np.finfo(float).eps * elastic) <= ROUNDED * largest:
         raise SolveError(UNBOUNDED)
-    return displacement, left / largest
+    return displacement, float(left / largest)
 
 
 def _solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:

@@ -21,6 +21,7 @@ from dynamics.linearize import (
     peaks,
     steady_vibration,
 )
+from dynamics.linearize.load_harmonics import load_harmonics
 from dynamics.loads import TimeLaw
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate
@@ -78,6 +79,35 @@ def test_an_undamped_resonance_is_refused_and_a_speed_beside_it_is_not(off):
     beside = forced_response(undamped, [natural / 20 * (1.0 + 1e-4)], 1)
     amplitude = np.abs(beside.dynamic_transmission_error).max() / RIPPLE
     assert amplitude == pytest.approx(0.5e4, rel=1e-3)
+
+
+@pytest.mark.parametrize("blocks", [1, 10**6])
+def test_a_vibration_that_is_not_a_number_is_refused(blocks, monkeypatch):
+    """An undamped mode at its very frequency divides by zero; a NaN passes any comparison that it loses."""
+    system, speed = assemble(gear_pair_scene()), np.linspace(50.0, 500.0, 3)
+    solved, calls = steady_vibration._solved, []
+
+    def divided_by_zero(matrix, right):
+        calls.append(matrix)
+        answer = solved(matrix, right)
+        if len(calls) == 1:
+            answer[0, 0, 0, 0] = np.nan
+        return answer
+
+    monkeypatch.setattr(steady_vibration, "BLOCK", blocks)
+    monkeypatch.setattr(steady_vibration, "_solved", divided_by_zero)
+    with pytest.raises(SolveError, match="unbounded"):
+        harmonic_response(system, speed, 4)
+    assert calls
+
+
+def test_loads_that_are_not_a_number_are_not_left_out(monkeypatch):
+    def no_number(*arguments):
+        return np.full_like(load_harmonics(*arguments), np.nan)
+
+    monkeypatch.setattr(steady_vibration, "load_harmonics", no_number)
+    with pytest.raises(SolveError):
+        harmonic_response(assemble(gear_pair_scene(spring_table(STIFFNESS, 0.0))), [100.0], 4)
 
 
 def test_blocks_of_speeds_change_nothing(monkeypatch):
