@@ -69,21 +69,19 @@ def _alone(directory: Path, key: str) -> Iterator[None]:
 
     The lock ends with its process. Its file goes while it is held: who waited for it finds the result first.
     """
-    file = directory / f"compliance-{key}.lock"
-    try:
+    file, descriptor, held = directory / f"compliance-{key}.lock", None, False
+    with suppress(OSError):
         directory.mkdir(parents=True, exist_ok=True)
         descriptor = os.open(file, os.O_CREAT | os.O_RDWR, 0o600)
-    except OSError:
-        yield
-        return
     try:
-        held = _locked(descriptor)
+        held = descriptor is not None and _locked(descriptor)
         yield
     finally:
         if held:
             with suppress(OSError):
                 file.unlink()
-        os.close(descriptor)
+        if descriptor is not None:
+            os.close(descriptor)
 
 
 def _locked(descriptor: int) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -116,6 +117,34 @@ def test_a_process_that_does_not_come_back_is_not_waited_for(
     assert len(tries) > 1
     assert held.exists()  # it is another's
     assert len(counted) == 1
+
+
+def test_an_interruption_while_it_waits_is_told_as_such(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, counted: list[Gear]
+) -> None:
+    gear, descriptors = make_gear(), []
+
+    def interrupted(descriptor: int) -> None:
+        descriptors.append(descriptor)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cache, "lock", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        flank_compliance(gear, coarse_plane(gear), cache=tmp_path)
+    with pytest.raises(OSError):
+        os.fstat(descriptors[0])  # closed
+    assert not counted
+
+
+def test_a_failure_where_nothing_can_be_locked_is_that_of_the_computation(tmp_path: Path) -> None:
+    def failing() -> FlankCompliance:
+        raise ZeroDivisionError
+
+    file = tmp_path / "no directory"
+    file.write_text("a file", "utf-8")
+    with pytest.raises(ZeroDivisionError) as failed:
+        cache.kept_or_computed(file, "key", FlankCompliance, failing)
+    assert failed.value.__context__ is None
 
 
 @pytest.mark.parametrize("damage", ["flipped bit", "truncated", "empty", "foreign", "another result"])
