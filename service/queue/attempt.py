@@ -203,8 +203,6 @@ class Attempt:
         Its spans.
     fraction : PacedFraction
         Of the work, where it does not predict its cost.
-    first : int
-        Number of this attempt, before Dask began it again.
     """
 
     claim: Claim
@@ -214,7 +212,6 @@ class Attempt:
     figures: WorkerFigures
     trace: _AttemptTrace
     fraction: PacedFraction
-    first: int
 
     def note_end(self, how: str) -> None:
         """Count and log how the worker ended and, if it has been reaped, what it took."""
@@ -259,15 +256,14 @@ def begun(
     workspace.mkdir(parents=True, exist_ok=True)
     launched = time.time()  # before the worker can reach its first stage
     stored = _files_read(claim, store)
-    worker = crew.begin(_order(settings, process.entry, claim, stored, crew.memory_mb), claim.id, log)
+    order = _order(settings, process.entry, claim, stored, crew.memory_mb)
+    worker = crew.begin(order, f"{claim.id}-{claim.attempts}", log)
     figures.started(claim.process)
     facts = {"computation": claim.id, "process": claim.process, "key": claim.key}
     facts |= trace_facts(claim.traceparent)
     logger.info("worker started", **facts, **worker.facts, attempt=claim.attempts)
     trace = _AttemptTrace(claim, worker.facts, launched)
-    return Attempt(
-        claim, worker, workspace, log, figures, trace, PacedFraction(process.stages), claim.attempts
-    )
+    return Attempt(claim, worker, workspace, log, figures, trace, PacedFraction(process.stages))
 
 
 def _workspace_of(settings: Settings, claim: Claim) -> Path:
@@ -302,12 +298,10 @@ def _order(
 
 @dataclass(frozen=True)
 class Ended:
-    """An attempt that has ended: its claim, how it ended, its workspace and the log of its worker."""
+    """An attempt that has ended, and how."""
 
-    claim: Claim
+    attempt: Attempt
     outcome: Outcome
-    workspace: Path
-    log: Path
 
 
 @dataclass(frozen=True)
@@ -332,22 +326,21 @@ class Settlement:
         The workspace of a worker that died stays for the next attempt, and that of one whose end cannot be
         noted stays for the next call.
         """
-        outcome = ended.outcome
-        span = tracer().begin("settle", ended.claim.traceparent, time.time(), {})
+        claim = ended.attempt.claim
+        span = tracer().begin("settle", claim.traceparent, time.time(), {})
         try:
-            self._note(ended)
+            self._note(claim, ended.outcome, ended.attempt.log)
         finally:
-            span.end(time.time(), {"loa.computation": ended.claim.id})
-        if not outcome.died or ended.claim.attempts >= self.most_attempts:
-            shutil.rmtree(ended.workspace, ignore_errors=True)
+            span.end(time.time(), {"loa.computation": claim.id})
+        if not ended.outcome.died or claim.attempts >= self.most_attempts:
+            shutil.rmtree(ended.attempt.workspace, ignore_errors=True)
 
-    def _note(self, ended: Ended) -> None:
-        claim, outcome = ended.claim, ended.outcome
+    def _note(self, claim: Claim, outcome: Outcome, log: Path) -> None:
         if outcome.died:
             self.again_or_fail(claim, outcome.failure)
         elif outcome.unexpected:
             reference = uuid.uuid4().hex[:12]
-            logger.error("worker failed", computation=claim.id, reference=reference, log=str(ended.log))
+            logger.error("worker failed", computation=claim.id, reference=reference, log=str(log))
             text = f"An unexpected failure occurred. The log has the details under {reference}."
             self.claims.fail(claim, text, reference=reference)
         elif outcome.failure:

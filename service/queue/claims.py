@@ -146,10 +146,6 @@ class Claims:
         facts = {"faults": json.dumps(list(faults)), "reference": reference}
         self._end_with(claim, {"state": "failed", "message": message.replace("\0", "")} | facts)
 
-    def count(self, claim: Claim, message: str) -> None:
-        """Note that an attempt ended and the next one, that of the claim, goes on elsewhere."""
-        self._change([(claim, {"attempts": claim.attempts, "message": message})])
-
     def put_back(self, claim: Claim, message: str, *, counted: bool) -> None:
         """Let it wait again; an attempt that ended through no fault of its own is not counted."""
         attempts = claim.attempts if counted else claim.attempts - 1

@@ -25,7 +25,7 @@ from fe_contact.cache_reads import CacheReads
 from lineofaction.gearbox.problems import BadInput
 from service.worker.order import Outcome, WorkOrder
 from service.worker.task import Done, do_job, program
-from service.worker.usage import Usage
+from service.worker.usage import Usage, no_space
 from service.worker.worker import Step
 
 if TYPE_CHECKING:
@@ -47,13 +47,9 @@ class Task:
     """It wakes the scheduler by itself."""
 
     def __init__(self, name: str, order: WorkOrder, log: Path, drop: Callable[[str], None]) -> None:
-        self.name, self._log, self._drop = name, log, drop
-        self._workspace = order.workspace
-        self.line = order.line()
-        self.files: Mapping[str, bytes] = {key: file.read_bytes() for key, file in order.stored.items()}
+        self.name, self.order, self._log, self._drop = name, order, log, drop
         self.usage: Usage | None = None
         self.compliance_reads, self.warnings = CacheReads(), list[str]()
-        self.begins = 0
         self._begin = ""
         self._started: float | None = None
         self._spent: float | None = None
@@ -75,51 +71,57 @@ class Task:
         return self._spent
 
     def hear(self, event: Mapping[str, Any]) -> None:
-        """Take the report of a worker; another beginning is that of another attempt."""
-        if event["begin"] != self._begin:
-            self._begin, self.begins = event["begin"], self.begins + 1
+        """Take the report of a worker; a second beginning ends this run: who began it first was lost."""
+        if self._begin not in ("", event["begin"]):
+            self.end(Outcome(failure="The Dask worker that ran it was lost.", died=True))
+        self._begin = event["begin"]
         self._started, self._spent = time.monotonic() - event["age"], event["spent"]
         self._steps.extend(Step(*step) for step in event["steps"])
 
     def await_anew(self) -> None:
-        """Count no attempt when it is begun anew: a scheduler was lost, which is not its fault."""
-        if self._begin:
-            self._begin, self.begins = "", self.begins - 1
+        """Take the next beginning for the first: a scheduler was lost, which is not its fault."""
+        self._begin, self._started = "", None
+
+    def contents(self) -> Mapping[str, bytes]:
+        """Return the contents of the stored results that it reads."""
+        return {key: file.read_bytes() for key, file in self.order.stored.items()}
 
     def take(self, done: Done) -> None:
         """Take what a worker has done; its files are put where a child of this machine leaves them."""
         products = []
         for number, (product, content) in enumerate(zip(done.outcome.products, done.contents, strict=True)):
-            file = self._workspace / f"{number}_{product.file.name}"
+            file = self.order.workspace / f"{number}_{product.file.name}"
             file.write_bytes(content)
             products.append(replace(product, file=file))
         self._log.write_bytes(done.log)
         self.usage, self.compliance_reads = done.usage, done.compliance_reads
         self.warnings = list(done.warnings)
-        self._outcome = replace(done.outcome, products=tuple(products))
+        self.end(replace(done.outcome, products=tuple(products)))
 
-    def fail(self, reason: str) -> None:
-        """Take that it ended without an outcome; worth another attempt."""
-        self._outcome = Outcome(failure=reason, died=True)
+    def end(self, outcome: Outcome) -> None:
+        """Take how it ended; what comes later is of no interest."""
+        self._outcome = self._outcome or outcome
+
+    @property
+    def ended(self) -> bool:
+        """Whether it is known how."""
+        return self._outcome is not None
 
     def listen(self) -> tuple[list[Step], bool]:
         """Return the progress since the last call, and whether it has ended."""
-        ended = self._outcome is not None
+        ended = self.ended
         return [self._steps.popleft() for _ in range(len(self._steps))], ended
 
     def finish(self) -> Outcome:
-        """Return how it ended."""
-        self._drop(self.name)
+        """Return how it ended; what Dask keeps of it is there until it is killed."""
         assert self._outcome is not None
         return self._outcome
 
-    def end_group(self) -> None:
-        """Cancel it."""
+    def kill(self, _patience_s: float | None = None) -> None:
+        """Cancel it, or drop its result; its worker kills the child within half a second."""
         self._drop(self.name)
 
-    def kill(self, _patience_s: float | None = None) -> None:
-        """Cancel it; its worker kills the child within half a second."""
-        self._drop(self.name)
+    end_group = kill
 
 
 class Cluster:
@@ -200,7 +202,7 @@ class Cluster:
         return Client(self._address, **options)  # type: ignore[no-untyped-call]
 
     def start(self, heard: Callable[[], None]) -> None:
-        """Connect, and stay connected; `heard` is called when a task reports, ends, or when workers come."""
+        """Connect, and stay connected; `heard` is called when a task ends, or when workers come."""
         self._heard, self._stopping = heard, False
         self._thread = threading.Thread(target=lambda: asyncio.run(self._main()), name="dask", daemon=True)
         self._thread.start()
@@ -247,9 +249,9 @@ class Cluster:
 
     async def _serve(self, client: Client) -> None:
         """Submit what is wanted, cancel what is not; end when the connection is lost."""
-        following: dict[str, asyncio.Task[None]] = {}
-        left = set(await client.list_datasets())  # type: ignore[no-untyped-call]
-        left = {str(name) for name in left if str(name).startswith(self._name)}
+        following: dict[Task, asyncio.Task[None]] = {}
+        names = map(str, await client.list_datasets())  # type: ignore[no-untyped-call]
+        left = {name for name in names if name.startswith(self._name)}
         looked = 0.0
         try:
             while not self._stopping:
@@ -262,14 +264,15 @@ class Cluster:
                     looked = time.monotonic()
                 with self._lock:
                     wanted = dict(self._tasks)
-                for name in (following.keys() | left) - wanted.keys():
-                    if name in following:
-                        following.pop(name).cancel()
+                dropped = following.keys() - wanted.values()
+                for task in dropped:
+                    following.pop(task).cancel()
+                for name in {task.name for task in dropped} | left - wanted.keys():
                     await self._forget(client, name)
                 left = set()
-                for name, task in wanted.items():
-                    if name not in following or following[name].done():
-                        following[name] = asyncio.create_task(self._follow(client, task))
+                for task in wanted.values():
+                    if not task.ended and (task not in following or following[task].done()):
+                        following[task] = asyncio.create_task(self._follow(client, task))
                 with suppress(TimeoutError):
                     await asyncio.wait_for(self._changed.wait(), _LOOK_S)
         finally:
@@ -277,35 +280,51 @@ class Cluster:
                 follower.cancel()
 
     async def _forget(self, client: Client, name: str) -> None:
-        """Cancel a task that nobody wants, or whose result is here."""
+        """Cancel a task that nobody wants, or whose result is stored."""
         from distributed import Future  # noqa: PLC0415 (an extra)
 
         await client.cancel([Future(name, client)], force=True)  # type: ignore[no-untyped-call]
         await client.unpublish_dataset(name)
 
     async def _follow(self, client: Client, task: Task) -> None:
-        """Submit a task, or join the one that there is, and take what comes of it."""
+        """Let a task be done, and take what comes of it."""
+        task.await_anew()
+        try:
+            done = await self._done(client, task, await asyncio.to_thread(task.contents))
+            if isinstance(done, Done):
+                await asyncio.to_thread(task.take, done)
+            elif done:
+                task.end(Outcome(failure=done, died=True))
+        except OSError as error:
+            logger.exception("files of a task", task=task.name)
+            task.end(Outcome(failure=no_space(error) or "unexpected", unexpected=not no_space(error)))
+        self._heard()
+
+    async def _done(self, client: Client, task: Task, files: Mapping[str, bytes]) -> Done | str | None:
+        """Submit a task, or join the one that there is; return what was done, or why nothing was.
+
+        None: it has to be followed anew, as after a connection that was lost.
+        """
         from distributed import KilledWorker  # noqa: PLC0415 (an extra)
 
-        task.await_anew()
-        arguments = (task.line, task.files, self._name)
+        arguments = (task.order.line(), files, self._name, program())
         future = client.submit(do_job, *arguments, key=task.name, pure=False)
-        await client.publish_dataset(future, name=task.name, override=True)
         try:
-            done = await future
-        except CancelledError:
-            return  # by a connection that was lost: it is followed anew
-        except KilledWorker as error:
-            task.fail(f"It ended every Dask worker that tried it: {error}")
-        except Exception as error:
-            logger.exception("task failed", task=task.name)
-            task.fail(f"The Dask worker could not start it: {type(error).__name__}: {error}.")
-        else:
+            await client.publish_dataset(future, name=task.name, override=True)
+            done: Done | None = await future
             if done is None:  # cancelled for an earlier submission of this name
                 await self._forget(client, task.name)
-                return
-            task.take(done)
-        self._heard()
+            return done
+        except CancelledError:
+            return None
+        except KilledWorker:
+            return "It ended every Dask worker that tried it; they may have run out of memory."
+        except Exception as error:
+            if isinstance(error, OSError) and future.status != "error":
+                return None  # in a transfer
+            logger.exception("task failed", task=task.name)
+            full = isinstance(error, OSError) and no_space(error, "the folder of the Dask worker")
+            return full or "The Dask worker could not do it; the log of the service has the reason."
 
     def _hear(self, event: tuple[float, Mapping[str, Any]]) -> None:
         report = event[1]
@@ -313,7 +332,6 @@ class Cluster:
             task = self._tasks.get(report["task"])
         if task is not None:
             task.hear(report)
-            self._heard()
 
     def _say(self, fault: str) -> None:
         """Log what keeps jobs waiting, once; and that it is over."""

@@ -13,7 +13,7 @@ import shutil
 import threading
 import time
 import uuid
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import structlog
 from sqlalchemy import Engine
@@ -86,8 +86,8 @@ class Scheduler:
         self._selector.register(self._wake_out, selectors.EVENT_READ)
         self._stopping.clear()
         self._turned_at = time.monotonic()
-        self._crew.start(self.wake)
         self._take_up()
+        self._crew.start(self.wake)  # after it knows which tasks of a former server are wanted
         self._clear()
         if self._housekeeper is not None:
             self._housekeeper.start()
@@ -183,7 +183,6 @@ class Scheduler:
         self._own_table()
         self._put_back_strays()
         self._settle_all()
-        self._count_begins()
         self._enforce_dismissals()
         self._enforce_costs()
         self._note_progress()
@@ -234,7 +233,7 @@ class Scheduler:
 
     def _end(self, running: Attempt, outcome: Outcome) -> None:
         """Let an attempt be settled."""
-        self._unsettled.append(Ended(running.claim, outcome, running.workspace, running.log))
+        self._unsettled.append(Ended(running, outcome))
 
     def _forget(self, running: Attempt) -> Run:
         if running.worker.channel is not None:
@@ -256,12 +255,17 @@ class Scheduler:
             except _OUTAGES:
                 raise
             except ServiceError:
-                logger.exception("outcome could not be settled", computation=ended.claim.id)
+                logger.exception("outcome could not be settled", computation=ended.attempt.claim.id)
+            ended.attempt.worker.kill()
             self._unsettled.pop(0)
+
+    def _known(self) -> list[Attempt]:
+        """Return the attempts that run or have to be settled."""
+        return [*self._running.values(), *(ended.attempt for ended in self._unsettled)]
 
     def _clear(self) -> None:
         """Remove the workspaces of computations that neither run nor wait for their next attempt."""
-        used = {run.workspace for run in self._running.values()} | {end.workspace for end in self._unsettled}
+        used = {run.workspace for run in self._known()}
         left = set((self._settings.data_directory / "work").iterdir()) - used
         waiting = self._claims.waiting() if left else ()
         for workspace in left:
@@ -287,7 +291,7 @@ class Scheduler:
         """Let wait what runs by the table but not here: a step broke off, or another server was killed."""
         if not self._doubtful:
             return
-        known = {run.claim.id for run in self._running.values()} | {end.claim.id for end in self._unsettled}
+        known = {run.claim.id for run in self._known()}
         for claim in self._claims.running():
             if claim.id not in known:
                 self._claims.put_back(claim, "Waits: the database was lost.", counted=False)
@@ -300,19 +304,6 @@ class Scheduler:
                 self._begin(claim)
             else:
                 self._settlement.again_or_fail(claim, "The service ended while it ran.")
-
-    def _count_begins(self) -> None:
-        """Count attempts that a Dask worker did not survive; beyond the last one the work ends."""
-        text, most = "The Dask worker that ran it was lost.", self._settings.attempts
-        for running in list(self._running.values()):
-            attempt = running.first + max(running.worker.begins, 1) - 1
-            if attempt > most:
-                self._kill(running, "died")
-                self._end(running, Outcome(failure=f"{text} That was attempt {most} of {most}."))
-            elif attempt > running.claim.attempts:
-                claim = replace(running.claim, attempts=attempt)
-                self._claims.count(claim, f"{text} Attempt {attempt} of {most}.")
-                self._running[claim.id] = replace(running, claim=claim)
 
     def _note_progress(self) -> None:
         """Write down how far works are, at most every `_NOTED_EVERY_S`."""

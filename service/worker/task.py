@@ -52,7 +52,7 @@ def program() -> str:
     return f"lineofaction {solver_version()}, Python {'.'.join(python_version_tuple()[:2])}{lacks}"
 
 
-def do_job(line: bytes, files: Mapping[str, bytes], topic: str) -> Done | None:
+def do_job(line: bytes, files: Mapping[str, bytes], topic: str, wanted: str) -> Done | None:
     """Do an order in a child process; None: nobody wants it any more.
 
     Parameters
@@ -63,7 +63,12 @@ def do_job(line: bytes, files: Mapping[str, bytes], topic: str) -> Done | None:
         Content of the stored results that it reads.
     topic : str
         Of the events that report how far it is.
+    wanted : str
+        `program` of the server; a worker of another does nothing.
     """
+    if program() != wanted:
+        text = f"The Dask worker has {program()}, the service {wanted}: start workers of that version."
+        return Done(Outcome(failure=text, died=True), None, CacheReads(), (), (), b"")
     from distributed import get_worker  # noqa: PLC0415 (an extra)
 
     worker = get_worker()

@@ -70,11 +70,11 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """No space, none left of a quota, none within the largest file a process may write."""
 
 
-def no_space(error: OSError) -> str:
+def no_space(error: OSError, where: str = "the data directory of the service (LOA_DATA_DIRECTORY)") -> str:
     """Return the message of a job whose files found no space; empty if that is not what went wrong."""
     if error.errno not in _FULL:
         return ""
     return (
-        "The result could not be written: there is no space left in the data directory of the service "
-        "(LOA_DATA_DIRECTORY). Make room there, or raise the quota, and submit again."
+        f"The result could not be written: there is no space left in {where}. "
+        "Make room there, or raise the quota, and submit again."
     )

@@ -49,7 +49,6 @@ class Worker:
         self.started = time.monotonic()
         self.usage: Usage | None = None
         self.compliance_reads = CacheReads()
-        self.begins = 1
         self.warnings: list[str] = []
         self._outcome: Outcome | None = None
         self._ended: Ended | None = None

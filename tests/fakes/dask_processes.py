@@ -74,6 +74,13 @@ class DaskProcesses:
         """Return the processes of the workers."""
         return list(self.run(os.getpid).values())
 
+    def results(self) -> list[str]:
+        """Return the names of the tasks that are kept for a server."""
+        from distributed import Client  # noqa: PLC0415 (an extra)
+
+        with Client(self.address, set_as_default=False) as client:  # type: ignore[no-untyped-call]
+            return list(map(str, client.list_datasets()))
+
     def await_workers(self, number: int) -> None:
         from distributed import Client  # noqa: PLC0415 (an extra)
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
+import errno
 import json
 import os
 import signal
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -20,12 +23,15 @@ from service_fakes import REGISTRY
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput
 from service.queue import cluster
+from service.queue.claims import Claims
 from service.queue.job import Job
 from service.queue.scheduler import crew_of
 from service.settings import Settings
 from service.store.deployment import Deployment
 from service.version import solver_version
+from service.worker.order import Outcome, Product, WorkOrder
 from service.worker.process import ANALYZE, default_registry
+from service.worker.task import Done, do_job
 
 pytest.importorskip("distributed", reason="the extra dask is not installed")
 
@@ -104,6 +110,7 @@ def worker_of(dask: DaskProcesses, pid: int) -> int:
 def test_a_job_is_done_by_a_worker_and_its_files_come_home(dask: DaskProcesses, server: MakeServer) -> None:
     machine = server()
     job = machine.ended(machine.submit(text="hello"))
+    until(lambda: dask.results() == [])
     assert (job.status, job.fraction, job.attempts) == ("successful", 1.0, 1)
     assert machine.store.verified(job.key, "database").path.read_text() == "hello"
     until(lambda: not list((machine.settings.data_directory / "work").iterdir()))
@@ -200,17 +207,20 @@ def test_work_whose_worker_is_killed_is_begun_again_by_another(
     first = child(dask, hangs)
     os.kill(worker_of(dask, first), signal.SIGKILL)
     began = time.monotonic()
-    until(lambda: starts(dask, hangs) == 2)
+    until(lambda: machine.submissions.find(hangs.id).attempts == 2)
     assert time.monotonic() - began < 5.0 * BUSY
     until(lambda: not lives(first))
-    until(lambda: machine.submissions.find(hangs.id).attempts == 2)
+    until(lambda: machine.submissions.find(hangs.id).stage == "first")
     assert [machine.ended(job).status for job in others] == ["successful"] * 3
     os.kill(worker_of(dask, child(dask, hangs)), signal.SIGKILL)
     ended = machine.ended(hangs)
     assert ended.message == "The Dask worker that ran it was lost. That was attempt 2 of 2."
 
 
-def test_a_server_that_is_started_again_finds_its_tasks(dask: DaskProcesses, server: MakeServer) -> None:
+def test_a_server_that_is_started_again_finds_its_tasks(
+    dask: DaskProcesses, server: MakeServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where the table answers later than Dask: none is cancelled that may be wanted."""
     machine = server()
     hangs, slow = machine.submit(mode="hang"), machine.submit(mode="slow", text="found")
     pid = child(dask, hangs)
@@ -218,6 +228,8 @@ def test_a_server_that_is_started_again_finds_its_tasks(dask: DaskProcesses, ser
     machine.close()
     time.sleep(2.0)  # one ends meanwhile, and its result stays
     assert machine.submissions.find(slow.id).status == "running"
+    running = Claims.running
+    monkeypatch.setattr(Claims, "running", lambda claims: time.sleep(2.0) or running(claims))
     again = server()
     assert (again.ended(slow).status, again.submissions.find(slow.id).attempts) == ("successful", 1)
     assert (starts(dask, slow), starts(dask, hangs), lives(pid)) == (1, 1, True)
@@ -269,6 +281,107 @@ def test_one_worker_with_one_thread_does_a_job_and_its_parts(tmp_path: Path) -> 
         (keys,) = alone.run(lambda dask_worker: {str(e[0]) for e in dask_worker.state.log}).values()
         assert len([key for key in keys if "search_one" in key]) == 2
         machine.close()
+
+
+# One task without a scheduler: what becomes of reports and errors.
+
+
+class Future:
+    """What a client returns for a task: it ends with an error, or with what was done."""
+
+    def __init__(self, ends: Done | Exception, status: str) -> None:
+        self.ends, self.status = ends, status
+
+    def __await__(self) -> Any:
+        yield from asyncio.sleep(0).__await__()
+        if isinstance(self.ends, Exception):
+            raise self.ends
+        return self.ends
+
+
+@pytest.fixture
+def dropped() -> list[str]:
+    return []
+
+
+@pytest.fixture
+def task(tmp_path: Path, dropped: list[str]) -> cluster.Task:
+    order = WorkOrder("a:b", {}, "k", tmp_path, tmp_path)
+    return cluster.Task("name", order, tmp_path / "log", dropped.append)
+
+
+def follow(task: cluster.Task, ends: Done | Exception, status: str = "finished") -> Outcome | None:
+    """Let a task end so; return its outcome, None if it is followed anew."""
+
+    async def publish(*_: Any, **__: Any) -> None:
+        return
+
+    client: Any = SimpleNamespace(submit=lambda *_, **__: Future(ends, status), publish_dataset=publish)
+    of_tasks = cluster.Cluster("tcp://127.0.0.1:1", "d")
+    of_tasks._heard = lambda: None
+    asyncio.run(of_tasks._follow(client, task))
+    return task.finish() if task.ended else None
+
+
+def made(*files: Path) -> Done:
+    products = tuple(Product("k", "database", file) for file in files)
+    return Done(Outcome(products), None, cluster.CacheReads(), (), (b"content",) * len(files), b"")
+
+
+def report(begin: str) -> dict[str, Any]:
+    return {"begin": begin, "age": 7.0, "spent": 1.0, "steps": []}
+
+
+def test_a_second_beginning_ends_the_run_but_not_after_a_lost_scheduler(task: cluster.Task) -> None:
+    task.hear(report("one"))
+    assert task.age > 6.0
+    task.await_anew()
+    assert task.age == 0.0  # the deadline is that of a run
+    task.hear(report("two"))
+    assert not task.ended
+    task.hear(report("three"))
+    assert task.finish() == Outcome(failure="The Dask worker that ran it was lost.", died=True)
+
+
+def test_what_breaks_in_a_transfer_is_followed_anew(task: cluster.Task, dropped: list[str]) -> None:
+    assert follow(task, OSError("tcp://10.0.0.1: broken")) is None
+    found = follow(task, made(Path("a.nc")))
+    assert found is not None and found.products[0].file.read_bytes() == b"content"
+    assert dropped == []  # Dask keeps the result until it is stored
+    task.kill()
+    assert dropped == ["name"]
+
+
+@pytest.mark.parametrize(
+    ("error", "text"),
+    [
+        (OSError(errno.ENOSPC, SECRET), "there is no space left in the folder of the Dask worker"),
+        (RuntimeError(SECRET), "could not do it; the log of the service has the reason."),
+    ],
+)
+def test_what_fails_on_a_worker_is_said_in_our_words(task: cluster.Task, error: Exception, text: str) -> None:
+    found = follow(task, error, "error")
+    assert found is not None and found.died
+    assert text in found.failure and SECRET not in found.failure
+
+
+def test_a_full_disk_of_the_server_ends_the_job_with_that_reason(
+    task: cluster.Task, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: Any) -> int:
+        raise OSError(errno.ENOSPC, SECRET)
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    found = follow(task, made(Path("a.nc")))
+    assert found is not None and not found.died
+    assert "no space left in the data directory of the service (LOA_DATA_DIRECTORY)" in found.failure
+
+
+def test_a_worker_of_another_version_does_nothing() -> None:
+    done = do_job(b"", {}, "", "lineofaction 0.0.9")
+    assert done is not None and done.outcome.died
+    text = f"The Dask worker has lineofaction {solver_version()}"
+    assert done.outcome.failure.startswith(text) and "the service lineofaction 0.0.9" in done.outcome.failure
 
 
 # Refusals at the start.
