@@ -191,14 +191,34 @@ def dask_workers(scheduler: str) -> ByDask:
     WorkersLost
         No scheduler answers there.
     """
-    require("dask")
-    from distributed import Client  # noqa: PLC0415 (an extra)
-
     try:
         address = scheduler if "://" in scheduler else _address_in(Path(scheduler))
-        return ByDask(Client(address, timeout=CONNECT_S, set_as_default=False))  # type: ignore[no-untyped-call]
+        return ByDask(connection(address))
     except (OSError, ValueError) as error:
         raise WorkersLost(f"No Dask scheduler answers at {scheduler}: {error}.") from None
+
+
+def connection(address: str, *, asynchronous: bool = False) -> Client:
+    """Return a client of a scheduler, connected unless it is asynchronous.
+
+    Raises
+    ------
+    MissingExtra
+        Dask is not installed.
+    OSError
+        Nobody answers there in `CONNECT_S`; or certificates are missing, or do not fit.
+    """
+    require("dask")
+    from distributed import Client, Security  # noqa: PLC0415 (an extra)
+
+    mine = Security().get_connection_args("client")  # type: ignore[no-untyped-call]
+    if address.startswith(("tls://", "wss://")) and mine["ssl_context"] is None:
+        files = "CA_FILE, DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT and ...CLIENT__KEY"
+        raise OSError(f"it wants certificates: name their files in DASK_DISTRIBUTED__COMM__TLS__{files}")
+    if mine["require_encryption"] and not address.startswith(("tls://", "wss://")):
+        raise OSError("DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION is set: its address begins with tls://")
+    options: dict[str, Any] = {"asynchronous": asynchronous, "timeout": CONNECT_S, "set_as_default": False}
+    return Client(address, **options)  # type: ignore[no-untyped-call]
 
 
 def _address_in(file: Path) -> str:

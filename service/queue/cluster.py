@@ -23,6 +23,7 @@ import structlog
 
 from fe_contact.cache_reads import CacheReads
 from lineofaction.gearbox.problems import BadInput
+from model_studies.workers import dask_cluster
 from service.worker.order import Outcome, WorkOrder
 from service.worker.task import Done, do_job, program
 from service.worker.usage import Usage, no_space
@@ -31,8 +32,6 @@ from service.worker.worker import Step
 if TYPE_CHECKING:
     from distributed import Client
 
-CONNECT_S = 10.0
-"""How long scheduler and workers may take to answer at the start."""
 _LOOK_S = 1.0
 """Between two looks at the connection and at who works."""
 _STOPPING_S = 2.0
@@ -170,7 +169,7 @@ class Cluster:
         try:
             async with self._client() as client:
                 with suppress(TimeoutError):
-                    await client.wait_for_workers(1, timeout=CONNECT_S)
+                    await client.wait_for_workers(1, timeout=dask_cluster.CONNECT_S)
                 return await self._fault(client)
         except (OSError, TimeoutError) as error:
             port = self._address.rpartition(":")[2]
@@ -196,10 +195,7 @@ class Cluster:
         return fault, f"Start them: {start}, from an installation of this version with its extras."
 
     def _client(self) -> Client:
-        from distributed import Client  # noqa: PLC0415 (an extra)
-
-        options: dict[str, Any] = {"asynchronous": True, "set_as_default": False, "timeout": CONNECT_S}
-        return Client(self._address, **options)  # type: ignore[no-untyped-call]
+        return dask_cluster.connection(self._address, asynchronous=True)
 
     def start(self, heard: Callable[[], None]) -> None:
         """Connect, and stay connected; `heard` is called when a task ends, or when workers come."""

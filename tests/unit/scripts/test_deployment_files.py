@@ -72,9 +72,11 @@ def dockerfile() -> str:
 
 def variables_of(part: str) -> dict[str, str]:
     """Return what a part's container finds in its environment, secrets apart."""
-    (settings,) = of_kind("service", "ConfigMap")
-    own = {entry["name"]: entry["value"] for entry in container(part).get("env", [])}
-    return {**settings["data"], **own}
+    maps = {one["metadata"]["name"]: one["data"] for one in of_kind("service", "ConfigMap")}
+    found: dict[str, str] = {}
+    for source in container(part).get("envFrom", []):
+        found |= maps[source["configMapRef"]["name"]]
+    return found | {entry["name"]: entry["value"] for entry in container(part).get("env", [])}
 
 
 @pytest.fixture
@@ -98,7 +100,7 @@ def test_a_manifest_that_is_not_valid_is_found(kubernetes_validate: ModuleType) 
 
 @pytest.mark.parametrize("part", OURS)
 def test_every_variable_of_a_pod_is_a_setting(part: str) -> None:
-    assert set(variables_of(part)) <= VARIABLES
+    assert {name for name in variables_of(part) if not name.startswith("DASK_")} <= VARIABLES
 
 
 def test_every_variable_of_compose_and_of_the_image_is_a_setting() -> None:
@@ -114,12 +116,10 @@ def test_pods_hold_no_secret_and_mount_those_they_name() -> None:
         assert not any(
             is_secret(field) and f"LOA_{name}" in variables_of(part) for name, field in FIELDS.items()
         )
-        assert [list(source) for source in container(part).get("envFrom", [])] == (
-            [["configMapRef"]] if part in OURS else []
-        )
+        assert all(list(source) == ["configMapRef"] for source in container(part).get("envFrom", []))
         mounted = [Path(mount["mountPath"]) for mount in container(part)["volumeMounts"]]
-        for name, value in variables_of(part).items() if part in OURS else ():
-            if name.endswith("_FILE"):
+        for name, value in variables_of(part).items():
+            if name.endswith(("_FILE", "__CERT", "__KEY")):
                 assert Path(value).parent in mounted, (part, name)
         assert {mount["name"] for mount in container(part)["volumeMounts"]} == {
             volume["name"] for volume in spec["volumes"]
@@ -206,11 +206,26 @@ def test_the_server_and_the_workers_find_the_scheduler() -> None:
     services = {
         one["metadata"]["name"]: one["spec"]["ports"][0]["port"] for one in of_kind("service", "Service")
     }
-    address = f"tcp://lineofaction-scheduler:{services['lineofaction-scheduler']}"
+    address = f"tls://lineofaction-scheduler:{services['lineofaction-scheduler']}"
     assert variables_of("serve")["LOA_SCHEDULER"] == address == container("work")["args"][2]
     of_compose = compose()["services"]
     assert of_compose["service"]["environment"]["LOA_SCHEDULER"] == of_compose["work"]["command"][2]
-    assert of_compose["scheduler"]["command"][3] == "8786" == address.rpartition(":")[2]
+    assert of_compose["scheduler"]["command"][-2] == "8786" == address.rpartition(":")[2]
+
+
+@pytest.mark.law
+def test_server_scheduler_and_workers_have_one_certificate_and_let_in_nobody_without() -> None:
+    of_compose = compose()["services"]
+    for name, part in {"service": "serve", "scheduler": "scheduler", "work": "work"}.items():
+        for own in (of_compose[name]["environment"], variables_of(part)):
+            dask = {key.removeprefix("DASK_").lower(): value for key, value in own.items() if "DASK_" in key}
+            certificates = {value for key, value in dask.items() if key.endswith(("__cert", "ca_file"))}
+            keys = {value for key, value in dask.items() if key.endswith("__key")}
+            assert (len(certificates), len(keys), len(dask)) == (1, 1, 8), name
+            assert dask["distributed__comm__require_encryption"] == "true"
+        assert {"dask_certificate", "dask_key"} <= set(of_compose[name]["secrets"])
+    for command in (of_compose["scheduler"]["command"], container("scheduler")["args"]):
+        assert command[2:4] == ["--protocol", "tls"]
 
 
 @pytest.mark.law

@@ -22,6 +22,7 @@ from service_fakes import REGISTRY
 
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput
+from model_studies.workers import dask_cluster
 from service.queue import cluster
 from service.queue.claims import Claims
 from service.queue.job import Job
@@ -401,13 +402,13 @@ def refused(address: str, tmp_path: Path) -> str:
 
 
 def test_a_scheduler_that_does_not_answer_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cluster, "CONNECT_S", 0.5)
+    monkeypatch.setattr(dask_cluster, "CONNECT_S", 0.5)
     text = refused("tcp://127.0.0.1:1", tmp_path)
     assert "a Dask scheduler that answers" in text and "dask scheduler --port 1" in text
 
 
 def test_missing_and_other_workers_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cluster, "CONNECT_S", 0.5)
+    monkeypatch.setattr(dask_cluster, "CONNECT_S", 0.5)
     names = tmp_path / "names" / "lineofaction-0.0.9.dist-info"
     names.mkdir(parents=True)
     (names / "METADATA").write_text("Metadata-Version: 2.1\nName: lineofaction\nVersion: 0.0.9\n")
