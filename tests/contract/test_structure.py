@@ -19,11 +19,11 @@ BUDGETS = {
     ("dynamics",): (39_807, 740),
     ("lineofaction.gearbox",): (21_637, 426),
     ("lineofaction.report",): (10_471, 198),
-    ("service",): (15_248, 339),
+    ("service",): (15_244, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_608, 67),
     ("lineofaction.hardcases",): (3_834, 35),
-    ("bounds", "host", "model_studies"): (4_204, 144),
+    ("bounds", "host", "model_studies"): (4_224, 145),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 747
