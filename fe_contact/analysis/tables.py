@@ -36,7 +36,7 @@ from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
 from model_studies.progress import Report, by_cost, unreported
-from model_studies.workers import InProcess
+from model_studies.workers import InProcess, pays
 
 # Positions of the database: equally spaced, or denser where the curves bend.
 
@@ -236,7 +236,7 @@ def solve_table(
     before: SolvedTable | None = None,
     decided: Decided | None = None,
 ) -> SolvedTable:
-    """Plan and solve a request.
+    """Plan and solve a request, by workers if that pays.
 
     Parameters
     ----------
@@ -250,6 +250,7 @@ def solve_table(
         decided = decided or decide(checked, run.cache)
         checked, plan, request = decided.checked, decided.plan, decided.checked.request
         prediction = checked.predicted(plan, run.cache, with_errors=full)
+        run = run if pays(run.workers, prediction.cpu_seconds) else replace(run, workers=InProcess())
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
     run.on_plan(prediction.stages)
     report = partial(run.progress, "compliance")

@@ -24,7 +24,16 @@ from fe_contact.analysis.pairs import contact_lines
 from fe_contact.compliance.remote_condensation import condense_remotely
 from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, scatter
 from fe_contact.options import AnalysisOptions, Run
-from model_studies.workers import ByDask, InProcess, OrHere, RunCost, Workers, WorkersLost, dask_cluster
+from model_studies.workers import (
+    ByDask,
+    InProcess,
+    OrHere,
+    RunCost,
+    Workers,
+    WorkersLost,
+    dask_cluster,
+    executor,
+)
 
 distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
 pytestmark = pytest.mark.filterwarnings("ignore")
@@ -101,6 +110,7 @@ def cluster() -> Iterator[Cluster]:
 @pytest.fixture(autouse=True)
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.01)
+    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
 
 
 @pytest.fixture(scope="module")

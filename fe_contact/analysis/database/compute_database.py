@@ -245,7 +245,8 @@ def _assessed(made: SolvedTable, clock: StageClock, run: Run) -> tuple[AssessedT
     stage = "error estimate"
     progress = by_cost(partial(run.progress, stage), made.prediction.parts[stage])
     report = partial(progress, "bodies")
-    bodies = condensed_bodies(made.checked, made.plan, clock, run, coarse=True, report=report)
+    divided = replace(run, workers=made.places.workers)
+    bodies = condensed_bodies(made.checked, made.plan, clock, divided, coarse=True, report=report)
     with clock.stage(stage):
         coarse = made.places.on_bodies(bodies)
         assessed = assessed_table(

@@ -409,8 +409,7 @@ def _sent_lines(
 ) -> Lines:
     """Gather the places that share a compliance into lines, each with the numbers of its places.
 
-    Empty where there is nobody else to solve them, or too little for others to do: that is decided by the
-    case alone.
+    Empty where there is nobody else to solve them, or less than one task of work.
     """
     if isinstance(workers, InProcess):
         return {}

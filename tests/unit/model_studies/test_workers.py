@@ -279,6 +279,7 @@ class Here:
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut small tables as large ones are."""
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.005)
+    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
 
 
 @pytest.fixture(scope="module")
