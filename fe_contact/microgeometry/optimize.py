@@ -177,7 +177,7 @@ def _choose(
     with clock.stage("confirmation"):
         own = dict(zip(problem.names, request.own, strict=True))
         designs = own, problem.values(runs[best].place)
-        seconds = len(designs) * study.decided.checked.predicted(study.decided.plan, None).cpu_seconds
+        seconds = len(designs) * study.decided.checked.predicted(study.decided.plan, run.cache).cpu_seconds
         shared = problem, study, run.cache
         start, optimum = divided(_to_the_end(run.workers, cancel), _confirmed, shared, designs, seconds)
     choice = _Choice(problem, start, optimum, runs, best)

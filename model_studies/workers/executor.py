@@ -304,12 +304,12 @@ class OrHere:
 
 START_SECONDS = 10.0
 """CPU seconds that pay for two new processes, which load program and compiled code: less work stays here."""
-AWAKE_SECONDS = 1.0
-"""The same of workers that have done tasks: they may have to load what others need."""
+AWAKE = 0.1
+"""Part of it that pays for workers that have done tasks: they may have to load what others need."""
 
 
 def _least(workers: Workers) -> float:
-    return min(START_SECONDS, AWAKE_SECONDS) if workers.cost.tasks else START_SECONDS
+    return START_SECONDS * AWAKE if workers.cost.tasks else START_SECONDS
 
 
 def divided(
@@ -324,9 +324,9 @@ def divided(
     Parameters
     ----------
     seconds : float, optional
-        CPU seconds that all items are predicted to take; above `START_SECONDS`, or `AWAKE_SECONDS`, the
-        workers do all of them. Else items are done here until those left would take more, each as long as the
-        last. The first one tells nothing, it loads code.
+        CPU seconds that all items are predicted to take; above `START_SECONDS`, or the part of it for workers
+        that are awake, they do all of them. Else items are done here until those left would take more, each
+        as long as the last. The first one tells nothing, it loads code.
 
     Raises
     ------

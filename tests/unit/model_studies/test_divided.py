@@ -16,7 +16,7 @@ import pytest
 from running_service import until
 
 from host import MissingExtra, cpu_seconds
-from model_studies import LeftOut, run_fidelities, run_variants
+from model_studies import LeftOut, run_variants
 from model_studies.workers import (
     ByExecutor,
     InProcess,
@@ -74,7 +74,7 @@ def test_only_work_that_takes_longer_than_a_process_starts_is_sent(
 
 def test_workers_that_are_awake_take_less(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(executors, "START_SECONDS", 0.2)
-    monkeypatch.setattr(executors, "AWAKE_SECONDS", 0.05)
+    monkeypatch.setattr(executors, "AWAKE", 0.25)
     for tasks, sent in ((0, 0), (1, 3)):
         workers = Noting(RunCost(tasks))
         assert list(divided(workers, burned, None, [0.0, 0.0, 0.0], 0.1)) == [0.0, 0.0, 0.0]
@@ -146,38 +146,6 @@ def test_variants_by_a_pool_have_results_reasons_and_errors_as_here() -> None:
     )
     assert [fraction for _, fraction in seen] == pytest.approx([k / 6 for k in range(7)])
     assert errors[0] == errors[1] == ("in a task",)
-
-
-@dataclass(frozen=True)
-class Way:
-    """A fidelity that returns who warmed up for it, and where it ran."""
-
-    name: str
-    title: str = ""
-    family: str = ""
-
-    def refusal(self, _request: float) -> str | None:
-        return None
-
-
-WARMED: dict[int, list[str]] = {}
-
-
-def warm(ways: Sequence[Way]) -> None:
-    WARMED.setdefault(os.getpid(), []).extend(way.name for way in ways)
-
-
-def ran(_way: Way) -> tuple[int, list[str]]:
-    return os.getpid(), WARMED[os.getpid()]
-
-
-def test_every_process_is_warm_before_it_is_timed_and_only_once() -> None:
-    ways = [Way("a"), Way("b"), Way("c"), Way("d"), Way("e"), Way("f")]
-    with local_processes(2) as pool:
-        outcomes, _ = run_fidelities(ways, 1.0, warm, ran, (Unsolved,), lambda *_: None, pool)
-    there = [outcome.result for outcome in outcomes if outcome.result[0] != os.getpid()]
-    assert len(there) == 4  # behind the two whose cost tells that it pays
-    assert all(warmed == [way.name for way in ways] for _, warmed in there)
 
 
 def test_what_is_missing_there_is_missing_here_by_the_same_error() -> None:
