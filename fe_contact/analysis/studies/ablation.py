@@ -22,6 +22,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.types import FloatArray
 from model_studies import LeftOut, in_unit, run_variants
+from model_studies.workers import InProcess, pays
 
 HARMONICS = 5
 """Mesh harmonics that are compared."""
@@ -129,7 +130,8 @@ def ablate(
         All tables have the mesh level that the accuracy requires and a minimal receipt; violated assumptions
         are reported.
     run : Run
-        With a cache the gears are condensed once for each body and model. Workers take an effect each.
+        With a cache the gears are condensed once for each body and model. Workers take the blocks of each
+        table where a single one pays for itself, and else an effect each.
     only : sequence of str, optional
         Effects to toggle; default all.
 
@@ -152,11 +154,12 @@ def ablate(
     estimates = estimated_influences(checked, names)
 
     ledger = {entry.name: entry for entry in checked.ledger if entry.name in names}
-    toggle = partial(_toggled, checked, nominal, estimates, run.cache)
-    predicted = nominal.predicted_cpu_seconds * sum(not entry.verdict.neutral for entry in ledger.values())
-    effects, left_out = run_variants(
-        "ablation", ledger, toggle, FAILURES, run.progress, run.workers, predicted
-    )
+    seconds = checked.predicted(checked.planned(run.cache), run.cache, with_errors=False).cpu_seconds
+    by_blocks = pays(run.workers, seconds)
+    each, workers = (run, InProcess()) if by_blocks else (Run(cache=run.cache), run.workers)
+    toggle = partial(_toggled, checked, nominal, estimates, each)
+    seconds *= sum(not entry.verdict.neutral for entry in ledger.values())
+    effects, left_out = run_variants("ablation", ledger, toggle, FAILURES, run.progress, workers, seconds)
     request = checked.request
     misalignment = request.whole_scene.largest_misalignment
     return Ablation(nominal, tuple(effects.values()), left_out, request.torque, request.load, misalignment)
@@ -166,13 +169,13 @@ def _toggled(
     checked: Checked,
     nominal: Figures,
     estimates: Mapping[str, Influence | None],
-    cache: Path | None,
+    run: Run,
     entry: LedgerEntry,
 ) -> EffectAblation:
     """Compute the table with one effect toggled."""
     if entry.verdict.neutral:
         raise LeftOut(entry.verdict.reason)
-    other = _figures(toggled(checked, entry.name, "off" if entry.on else "on"), Run(cache=cache))
+    other = _figures(toggled(checked, entry.name, "off" if entry.on else "on"), run)
     states = (nominal, other) if entry.on else (other, nominal)
     return EffectAblation(entry.name, entry.on, entry.verdict.reason, *states, estimates[entry.name])
 

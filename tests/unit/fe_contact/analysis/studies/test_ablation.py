@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,14 +13,16 @@ from spur_gears import GEAR
 
 from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, ablate, analyze, study_sensitivity
 from fe_contact.analysis.database.compute_database import compute_database
+from fe_contact.analysis.pairs import contact_lines
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Ablation
 from fe_contact.analysis.studies.sensitivity import RippleCurve
 from fe_contact.errors import InputError
-from fe_contact.options import TableAxes
+from fe_contact.options import Run, TableAxes
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.ablate.run import RUN
+from model_studies.workers import RunCost, executor
 
 RELIEVED = replace(GEAR, modification=FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3))
 PAIR = GearPair(RELIEVED, GEAR)
@@ -55,6 +58,31 @@ def test_estimates_are_within_a_factor_of_two(made: Ablation) -> None:
             if abs(getattr(measured, f"relative_{name}")) > 0.01:
                 ratio = getattr(estimate, name) / getattr(measured, name)
                 assert 0.5 < ratio < 2.0, (entry.name, ratio)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize(("start", "tasks"), [(0.0, "_solve_block"), (2.0, "_attempted"), (9.0, None)])
+def test_large_tables_are_shared_by_their_blocks_and_small_ones_whole(
+    made: Ablation, start: float, tasks: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`start`: seconds that pay for workers, in those that one of the tables takes."""
+    request = Ablation.request(PAIR, *table_request(**ASKED))  # type: ignore[arg-type]
+    seconds = request.predicted(request.planned(None), None, with_errors=False).cpu_seconds
+    monkeypatch.setattr(executor, "START_SECONDS", start * seconds)
+    monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e-3)
+    only, names = ["tooth_coupling", "corner_contact", "profile_modification"], set()
+
+    class Noting:
+        cost = RunCost()
+
+        def run(self, function: Any, shared: Any, items: Any) -> Any:
+            names.add(function.__name__)
+            return (function(shared, item) for item in items)
+
+    shared = ablate(PAIR, *table_request(**ASKED), Run(workers=Noting()), only=only)  # type: ignore[arg-type]
+    assert names == ({tasks} if tasks else set())
+    for effect, alone in zip(shared.effects, made.effects, strict=False):
+        assert effect.mean_change.tolist() == alone.mean_change.tolist()
 
 
 def test_what_is_left_out_is_named_and_an_unknown_effect_refused(made: Ablation) -> None:
