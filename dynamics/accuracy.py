@@ -27,7 +27,6 @@ from dynamics.scene import Outputs, Scene
 from dynamics.types import FloatArray, IntArray
 from model_studies import Progress, against_finest, in_unit, knee_above, run_fidelities, silent
 from model_studies.frontier import Errors
-from model_studies.workers import InProcess, Workers
 
 MOST_BLOCKS, ORDERS = 6, 5
 LEAST_SAMPLES = 32
@@ -370,7 +369,6 @@ def frontier(
     *,
     fidelities: Sequence[str] | None = None,
     progress: Progress = silent,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> Frontier:
     """Run every fidelity that says something about `scene`, and compare each to the finest.
 
@@ -382,8 +380,6 @@ def frontier(
         Names of fidelities to run; default all.
     progress : callable, optional
         Called with "ladder" and the fraction done.
-    workers : Workers
-        They run a fidelity each.
 
     Raises
     ------
@@ -402,7 +398,6 @@ def frontier(
         partial(_run, scene, blocks),
         (InputError, SolveError),
         progress,
-        workers,
     )
     results = tuple(  # every fidelity against the last, and that one by how the errors fell towards it
         _FidelityResult(

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
-from functools import cached_property
+from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
@@ -105,36 +104,11 @@ F = TypeVar("F", bound=Fidelity[Any])
 
 @dataclass(frozen=True)
 class Outcome(Generic[F, R]):
-    """The result of a fidelity, and its CPU time in the process that ran it, s."""
+    """The result of a fidelity, and its CPU time, s."""
 
     fidelity: F
     result: R
     cpu_seconds: float
-
-
-@dataclass(frozen=True)
-class _Timed(Generic[F, R]):
-    """Runs fidelities, and times them; what they run is loaded beforehand, once in every process."""
-
-    warm_up: Callable[[Sequence[F]], None]
-    compute: Callable[[F], R]
-    fidelities: Sequence[F]
-
-    def __call__(self, fidelity: F) -> Outcome[F, R]:
-        """Run one."""
-        _ = self.warm
-        began = cpu_seconds()
-        result = self.compute(fidelity)
-        return Outcome(fidelity, result, cpu_seconds() - began)
-
-    @cached_property
-    def warm(self) -> None:
-        """Load what they run, in this process."""
-        self.warm_up(self.fidelities)
-
-    def __reduce__(self) -> Any:
-        """Leave behind that this process is warm: another one is not."""
-        return type(self), tuple(getattr(self, field.name) for field in fields(self))
 
 
 def run_fidelities(
@@ -144,17 +118,17 @@ def run_fidelities(
     compute: Callable[[F], R],
     failures: tuple[type[Exception], ...],
     progress: Progress,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> tuple[list[Outcome[F, R]], dict[str, str]]:
-    """Run every fidelity that is valid for a request.
+    """Run every fidelity that is valid for a request, one after the other: their times are compared.
 
     Parameters
     ----------
     fidelities : sequence of Fidelity
         By their usual cost.
-    warm_up, compute : callable
-        As `compute` of `run_variants`. The first loads and compiles the code of these fidelities beforehand,
-        outside of their time.
+    warm_up : callable
+        Loads and compiles the code of these fidelities beforehand, outside of their time.
+    compute : callable
+        Runs one.
     failures : tuple of exception types
         Exceptions that omit a fidelity; the last of them is raised with fewer than two results.
 
@@ -166,10 +140,15 @@ def run_fidelities(
     refusals = {fidelity.name: fidelity.refusal(request) for fidelity in fidelities}
     refused = {name: reason for name, reason in refusals.items() if reason is not None}
     valid = [fidelity for fidelity in fidelities if fidelity.name not in refused]
-    timed = _Timed(warm_up, compute, valid)
-    _ = timed.warm
+    warm_up(valid)
+
+    def timed(fidelity: F) -> Outcome[F, R]:
+        began = cpu_seconds()
+        result = compute(fidelity)
+        return Outcome(fidelity, result, cpu_seconds() - began)
+
     by_name = {fidelity.name: fidelity for fidelity in valid}
-    outcomes, failed = run_variants("ladder", by_name, timed, failures, progress, workers)
+    outcomes, failed = run_variants("ladder", by_name, timed, failures, progress)
     left_out = refused | failed
     if len(outcomes) < 2:
         raise failures[-1](f"an error needs two fidelities to compare; left out: {left_out}")

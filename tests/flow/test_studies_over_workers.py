@@ -27,6 +27,8 @@ CASES = {"whole": 1.0, "half": 0.5, "less": 0.25}
 WHOLE = {
     "flank-case": "one load in the plane is a moment's work; over the face its blocks are those of tables",
     "root-stress-case": "as flank",
+    "frontier-case": "its fidelities are timed against each other, one after the other in one warm process",
+    "frontier-scene": "as that of a case",
     "modes-scene": "a linear study is a second's work at any number of speeds",
     "response-scene": "as modes",
     "vibration-scene": "as modes",

@@ -51,7 +51,6 @@ from model_studies import (
     silent,
 )
 from model_studies.frontier import Errors
-from model_studies.workers import InProcess, Workers
 
 # The accuracy study: ways to the transmission error from a closed form to fine finite elements.
 
@@ -378,7 +377,6 @@ def frontier(
     fidelities: Sequence[str] | None = None,
     full_contact: int | None = None,
     progress: Progress = silent,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> Frontier:
     """Run every fidelity of the accuracy study that is valid for a case, and compare each to the finest.
 
@@ -397,8 +395,6 @@ def frontier(
         Positions, 1 to 64, at which full finite-element contact is run beside it, under all loads: of
         solid spur and internal pairs in plane strain, about 2.5 CPU s each; of external spur pairs in three
         dimensions where `model` is "3d" or flanks vary or are inclined across the face, 70 CPU s each.
-    workers : Workers
-        They compute a fidelity each.
 
     Raises
     ------
@@ -418,7 +414,6 @@ def frontier(
         partial(_whole_table, checked),
         (MeshError, SolveError),
         progress,
-        workers,
     )
     read = [Outcome(outcome.fidelity, _result(outcome), outcome.cpu_seconds) for outcome in outcomes]
     errors = against_finest(read, _errors, _remaining)

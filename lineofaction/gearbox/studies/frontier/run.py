@@ -50,16 +50,15 @@ class _FrontierStudy(
     ) -> Frontier | SceneFrontier:
         """Study a case, over all pitches that differ and with the whole receipt, or a scene."""
         names = _requested(inputs, of_scene=not isinstance(subject, CheckedCase))
-        report, workers, full_contact = means.report, means.workers, inputs.full_contact
+        report, full_contact = means.report, inputs.full_contact
         with boundary_errors():
             if isinstance(subject, TabledScene):
-                return frontier_of_scene(subject.scene, fidelities=names, progress=report, workers=workers)
+                return frontier_of_scene(subject.scene, fidelities=names, progress=report)
             return frontier(
                 subject.request(_table, inputs),
                 fidelities=names,
                 full_contact=full_contact,
                 progress=report,
-                workers=workers,
             )
 
     def _derived(self, study: Frontier | SceneFrontier) -> Json:
