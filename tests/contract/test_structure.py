@@ -15,15 +15,15 @@ structure = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(structure)
 
 BUDGETS = {
-    ("fe_contact",): (37_030, 636),
-    ("dynamics",): (39_807, 740),
-    ("lineofaction.gearbox",): (21_637, 426),
+    ("fe_contact",): (37_029, 636),
+    ("dynamics",): (39_802, 740),
+    ("lineofaction.gearbox",): (21_636, 426),
     ("lineofaction.report",): (10_471, 198),
     ("service",): (15_244, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_608, 67),
     ("lineofaction.hardcases",): (3_834, 35),
-    ("bounds", "host", "model_studies"): (4_224, 145),
+    ("bounds", "host", "model_studies"): (4_203, 145),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 747
