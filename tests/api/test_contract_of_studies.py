@@ -301,7 +301,7 @@ def test_an_interrupted_verb_says_so_and_leaves_no_file(
 
         yield report
 
-    monkeypatch.setattr("lineofaction.cli.study.progress_bar", interrupting)
+    monkeypatch.setattr("lineofaction.cli.run_study.progress_bar", interrupting)
     handler = signal.signal(signal.SIGINT, signal.default_int_handler)
     output = runs.folder / ("stopped" if runs.study.folder else "stopped.nc")
     try:

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from lineofaction.cli.commands import app
 from lineofaction.cli.output import print_json
-from lineofaction.cli.study import _show, _writers
+from lineofaction.cli.run_study import _show, _writers
 from lineofaction.client.report import Report
 from lineofaction.gearbox.registry import study_of
 from lineofaction.report.document import read_stored

@@ -57,7 +57,7 @@ def _verb(study: Study) -> Callable[..., None]:
     """Return the function of a verb, with the signature that it is called by."""
 
     def verb(**options: Any) -> None:
-        from lineofaction.cli.study import run_study  # noqa: PLC0415 (start-up time)
+        from lineofaction.cli.run_study import run_study  # noqa: PLC0415 (start-up time)
 
         run_study(study, options)
 

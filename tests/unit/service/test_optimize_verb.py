@@ -104,7 +104,7 @@ def test_an_interrupted_search_writes_its_best_and_says_so(
 
         yield cancel
 
-    monkeypatch.setattr("lineofaction.cli.study.until_interrupted", interrupted_after_twelve)
+    monkeypatch.setattr("lineofaction.cli.run_study.until_interrupted", interrupted_after_twelve)
     ran = loa("optimize", *files, "-o", tmp_path / "best.json")
     assert ran.exit_code == 130, ran.output
     told = json.loads((tmp_path / "best.json").read_text(encoding="utf-8"))

@@ -29,12 +29,12 @@ from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshF
 from lineofaction.gearbox.studies.deflect.run import RUN, load_cases
 from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
 from lineofaction.report.deflection.deflect import (
+    PAGE,
     _bearing_table,
     _force_table,
     _life_table,
     _mesh_table,
     _meshes_worst_first,
-    _page,
 )
 from lineofaction.report.deflection.gearbox_drawing import _exaggeration
 from lineofaction.report.document import write_report
@@ -195,7 +195,7 @@ def test_forces_of_all_cases_are_kept_and_shown(result: GearboxDeflection, tmp_p
     table = _force_table(pulled)
     assert table is not None and _force_table(result) is None
     assert table.rows[3] == ("belt", "in", "back (coast)", "0", "800.0", "-1.500", "0", "0", "20.00")
-    assert [section.title for section in _page(pulled).sections][-1] == "Forces"
+    assert [section.title for section in PAGE.page(pulled).sections][-1] == "Forces"
     RUN.file.write(pulled, tmp_path / "d.nc")
     back = RUN.file.read(tmp_path / "d.nc").deflection.cases[1].forces[0]
     assert np.array_equal(back.force, pull.force) and np.array_equal(back.moment, pull.moment)
@@ -209,7 +209,7 @@ def test_the_worst_mesh_comes_first(result: GearboxDeflection) -> None:
     first, second = _meshes_worst_first(result)
     assert largest[first] > largest[second]
     assert [row[0] for row in _mesh_table(result).rows] == [first] * 4 + [second] * 4
-    assert _page(result).headlines[0].remark.startswith(f"mesh {first}")
+    assert PAGE.page(result).headlines[0].remark.startswith(f"mesh {first}")
 
 
 def test_parts_of_the_table_sum_to_the_misalignment(result: GearboxDeflection) -> None:
@@ -283,7 +283,7 @@ def test_what_was_not_found_is_said(result: GearboxDeflection) -> None:
     assert "after 3 passes" in RUN.failure(replace(result, agreed=False, change=0.1))
     lost = replace(result.deflection.cases[0], status="unbalanced")
     broken = replace(result, deflection=replace(result.deflection, cases=(lost,)))
-    assert '"climb" (unbalanced)' in RUN.failure(broken) and "climb" in _page(broken).alarms[0]
+    assert '"climb" (unbalanced)' in RUN.failure(broken) and "climb" in PAGE.page(broken).alarms[0]
 
 
 def test_deflections_are_drawn_a_round_number_of_times_enlarged(result: GearboxDeflection) -> None:
@@ -374,7 +374,7 @@ def test_a_rotor_under_its_weight_hangs_in_its_bearings(tmp_path: Path) -> None:
 
 
 def test_the_cost_of_a_verb_is_that_of_its_process_and_children(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lineofaction.cli.study.cpu_seconds", lambda: 117.0)
+    monkeypatch.setattr("lineofaction.cli.run_study.cpu_seconds", lambda: 117.0)
     result = loa("deflect", ROTOR)
     assert [line for line in result.stdout.splitlines() if "CPU" in line] == ["cost 117 CPU s"]
 

@@ -1,4 +1,4 @@
-"""Jobs as tasks of a real Dask scheduler and real workers: each ends, whoever is killed meanwhile."""
+"""Whole jobs done by workers of a real Dask scheduler: each ends, whoever is killed meanwhile."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 from dask_processes import DaskProcesses, dask_processes
+from divided_work import CASE, SEARCH
 from running_service import Bench, bench, lives, until
 from service_fake_work import SECRET
 from service_fakes import REGISTRY
@@ -39,17 +40,6 @@ pytest.importorskip("distributed", reason="the extra dask is not installed")
 MakeServer = Callable[..., Bench]
 BUSY = 10.0
 """How many times longer than on an idle machine a step may take."""
-
-GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 60.0}
-CASE: dict[str, Any] = {
-    "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": GEAR, "wheel": GEAR},
-    "load": {"torque_n_m": [40.0, 80.0]},
-    "accuracy": {"level": "draft", "model": "plane_strain", "positions": 16},
-}
-STUDY = {
-    "variables": {"pinion": {"profile_crowning_um": [0.0, 20.0]}},
-    "search": {"method": "nelder_mead", "starts": 2, "evaluations": 8, "positions": 16},
-}
 
 
 @pytest.fixture(scope="module")
@@ -274,7 +264,7 @@ def test_one_worker_with_one_thread_does_a_job_and_its_parts(tmp_path: Path) -> 
         machine = bench(tmp_path / "server", default_registry(), scheduler=alone.address)
         machine.scheduler._crew = cluster.Cluster(alone.address, "alone")
         machine.scheduler.start()
-        stated = optimize.inputs.model_validate_json(json.dumps({"case": CASE, **STUDY}))
+        stated = optimize.inputs.model_validate_json(json.dumps({"case": CASE, **SEARCH}))
         inputs = optimize.prepare(stated, machine.store)
         job = machine.submissions.submit("optimize", optimize.key(inputs), inputs, stored=False)
         ended = machine.ended(job)

@@ -1,4 +1,4 @@
-"""Jobs of a service with a Dask cluster: which ones use it, and what becomes of them where it is away."""
+"""Tasks of a job: which are given to a Dask cluster, and what becomes of them where it is away."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from divided_work import CASE, GEAR, SEARCH
 from running_service import bench
 from service_fakes import REGISTRY
 from structlog.testing import capture_logs
@@ -27,16 +28,6 @@ from service.worker.order import WorkOrder
 from service.worker.process import ANALYZE, Process, default_registry
 
 ADDRESS = "tcp://127.0.0.1:1"  # nobody may listen there
-GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 60.0}
-CASE: dict[str, Any] = {
-    "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": GEAR, "wheel": GEAR},
-    "load": {"torque_n_m": [40.0, 80.0]},
-    "accuracy": {"level": "draft", "model": "plane_strain", "positions": 16},
-}
-STUDY = {
-    "variables": {"pinion": {"profile_crowning_um": [0.0, 20.0]}},
-    "search": {"method": "nelder_mead", "starts": 2, "evaluations": 8, "positions": 16},
-}
 WIDE = {"teeth": 21, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}
 OVER_FACE = {
     "case": {
@@ -101,7 +92,7 @@ class Recording:
     [
         (ANALYZE, {}, "_solve_block"),
         (default_registry()["sensitivity"], DEVIATIONS, "_solve_block"),
-        (default_registry()["optimize"], STUDY, "_search_one"),
+        (default_registry()["optimize"], SEARCH, "_search_one"),
         (default_registry()["scatter"], {"samples": 30}, "_ripple_of_samples"),
         (default_registry()["ablate"], {"only": ["profile_modification"]}, "_solve_block"),
         (default_registry()["flank"], OVER_FACE, "condense"),
