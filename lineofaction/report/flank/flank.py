@@ -130,10 +130,11 @@ def contact_pattern_figure(flanks: LoadDistribution) -> Figure:
     maps = [(1e3 * rows, 1e-6 * pressure) for rows, pressure in pressures]
     count = flanks.face_position.size
     drawn = _shaded if count > 1 else _curve
+    teeth = "/".join(map(str, flanks.scene.facts.teeth))
     stretches = f" and {count} stretches of the face; blank: nothing touches" if count > 1 else ""
     return Figure(
         key="contact_pattern",
-        title="Contact pattern",
+        title=f"Contact pattern, {teeth}, {_operating_point(flanks)}",
         caption="The Hertz pressure that passes over each point of the unrolled flanks, interpolated between "
         f"{flanks.position.size} positions{stretches}. At a tip edge the true pressure is "
         "singular, and this a measure only. Roll length: distance to the base circle along the "

@@ -16,9 +16,9 @@ from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes
 from lineofaction.report.drawing.image import _panel_sheet, png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.flank.flank import (
+    PAGE,
     _isolines,
     _operating_point,
-    _page,
     contact_lines,
     contact_pattern_figure,
     line_load_figure,
@@ -158,13 +158,13 @@ def test_findings_are_true_of_random_loads(flanks: LoadDistribution, seed: int) 
 
 
 def test_one_slice_has_a_curve_and_nothing_over_the_face(one_slice: LoadDistribution) -> None:
-    section = _page(one_slice).sections[0]
+    section = PAGE.page(one_slice).sections[0]
     (figure,) = section.figures
     for panel in panels(figure):
         assert panel.shade is None
         assert np.nanmax(panel.lines[0].y) == pytest.approx(1e-6 * one_slice.pressure.max())
     assert "plane" in section.text
-    assert [headline.name for headline in _page(one_slice).headlines] == ["largest flank pressure"]
+    assert [headline.name for headline in PAGE.page(one_slice).headlines] == ["largest flank pressure"]
 
 
 @pytest.fixture
@@ -177,7 +177,7 @@ def one_slice(flanks: LoadDistribution) -> LoadDistribution:
 
 
 def test_every_figure_is_drawn_both_ways(flanks: LoadDistribution) -> None:
-    section = _page(flanks).sections[0]
+    section = PAGE.page(flanks).sections[0]
     assert [f.key for f in section.figures] == [
         "contact_pattern",
         "contact_lines",
@@ -192,7 +192,8 @@ def test_every_figure_is_drawn_both_ways(flanks: LoadDistribution) -> None:
 def test_load_and_alignment_are_said(flanks: LoadDistribution) -> None:
     torque = flanks.scene.torque
     assert _operating_point(flanks) == f"{torque:.2f} N m, misalignment 30.0 µm"
-    assert [h.value for h in _page(flanks).headlines] == [
+    assert PAGE.figure(flanks).title == f"Contact pattern, 19/26, {_operating_point(flanks)}"
+    assert [h.value for h in PAGE.page(flanks).headlines] == [
         f"{1e-6 * flanks.pressure.max():.1f} MPa",
         f"{flanks.mean_face_load_factor:.2f}",
     ]
@@ -201,9 +202,9 @@ def test_load_and_alignment_are_said(flanks: LoadDistribution) -> None:
 def test_another_pair_than_the_databases_is_said_loudly(
     flanks: LoadDistribution, database: SteDatabase, tmp_path: Path
 ) -> None:
-    assert len(_page(flanks, database).alarms) == 1
+    assert len(PAGE.beside(flanks, database).alarms) == 1
     own = replace(flanks, scene=replace(flanks.scene, facts=database.facts))
-    assert _page(own, database).alarms == _page(flanks).alarms == ()
+    assert PAGE.beside(own, database).alarms == PAGE.page(flanks).alarms == ()
     flanks.to_netcdf(tmp_path / "flanks.nc")
     database.to_netcdf(tmp_path / "ste.nc")
     both = [tmp_path / "ste.nc", tmp_path / "flanks.nc"]
