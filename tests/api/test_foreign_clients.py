@@ -25,6 +25,7 @@ from written_service import Service, running_service, written_service
 
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.registry import NETCDF
+from lineofaction.report.document import stored_study
 from service.routes.media_types import RAW, WAV
 from service.schemas.answers import class_name
 from service.schemas.examples import INPUTS
@@ -73,8 +74,8 @@ def test_every_process_is_run() -> None:
     assert set(INPUTS) == set(default_registry())
 
 
-def run_by_generated_client(service: Service, generated: ModuleType, process: str, inputs: Json) -> None:
-    """Run a process from submission to the file of its result."""
+def run_by_generated_client(service: Service, generated: ModuleType, process: str, inputs: Json) -> Json:
+    """Run a process from submission to the file of its result; return the attributes of that."""
     models, name = part("models"), class_name(process)
     with generated.AuthenticatedClient(service.url, service.key, raise_on_unexpected_status=True) as client:
         body = getattr(models, f"Execute{name}").from_dict({"inputs": inputs})
@@ -88,8 +89,9 @@ def run_by_generated_client(service: Service, generated: ModuleType, process: st
         assert type(document) is getattr(models, f"{name}Results")
         ((output, reference),) = document.to_dict().items()
         file = part("api.results.result_file").sync(reference["hash"], client=client)
+        assert output == default_registry()[process].output
         with h5netcdf.File(file.payload) as content:
-            assert output in content.attrs.get("kind", output)
+            return dict(content.attrs)
 
 
 def run_by_owslib(service: Service, process: str, inputs: Json) -> None:
@@ -107,7 +109,8 @@ def run_by_owslib(service: Service, process: str, inputs: Json) -> None:
 @pytest.mark.drawn
 @pytest.mark.parametrize("process", INPUTS)
 def test_a_generated_client_runs_a_process(service: Service, generated: ModuleType, process: str) -> None:
-    run_by_generated_client(service, generated, process, INPUTS[process])
+    attributes = run_by_generated_client(service, generated, process, INPUTS[process])
+    assert attributes["kind"] == default_registry()[process].kind
 
 
 def test_a_generated_client_reads_a_refusal(service: Service, generated: ModuleType) -> None:
@@ -136,5 +139,7 @@ def test_foreign_clients_get_what_is_computed(working: Service, generated: Modul
     if process == "listen":
         with LineOfActionClient(working.url, key=working.key) as client:
             inputs["run"] = client.obtain("simulate", {"scene": inputs["scene"]}).key
-    run_by_generated_client(working, generated, process, inputs)
+    attributes = run_by_generated_client(working, generated, process, inputs)
+    study = stored_study(attributes)
+    assert process == (("simulate" if "schema" in attributes else "analyze") if study is None else study.name)
     run_by_owslib(working, process, inputs)
