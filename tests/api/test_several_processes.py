@@ -21,7 +21,7 @@ from typing import Any
 import pytest
 from own_process import children, command, python
 from running_service import PATIENCE_S, lives, until
-from whole_service import _CASE
+from whole_service import CASE
 
 from lineofaction.cli import serve as serving_processes
 from lineofaction.cli.serve import ServingProcesses
@@ -120,7 +120,7 @@ def test_a_killed_process_is_replaced_and_loses_only_what_it_answers(
 
 
 def _submitted(address: str) -> str:
-    body = json.dumps({"inputs": {"case": _CASE}}).encode()
+    body = json.dumps({"inputs": {"case": CASE}}).encode()
     request = urllib.request.Request(
         f"{address}/v1/processes/analyze/execution", body, {"Content-Type": "application/json"}
     )

@@ -28,6 +28,8 @@ BUDGETS = {
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 747
 LONGEST = 500
+MOST_PRIVATE = 249
+"""Imports of names with an underscore by tests, at most: the number may only fall."""
 
 
 @pytest.mark.parametrize("houses", BUDGETS, ids=" ".join)
@@ -44,6 +46,12 @@ def test_files_are_few_and_none_is_long() -> None:
     assert len(files) <= MOST_FILES
     sizes = {str(file.relative_to(ROOT)): file.read_text("utf-8").count("\n") for file in files}
     assert {name for name, size in sizes.items() if size > LONGEST} == set()
+
+
+def test_tests_import_fewer_and_fewer_private_names() -> None:
+    imported = (name for file in (ROOT / "tests").rglob("*.py") for name in structure.imported(file))
+    private = [name for name in imported if name.rpartition(".")[2].startswith("_")]
+    assert len(private) <= MOST_PRIVATE, private
 
 
 @pytest.mark.law

@@ -19,7 +19,7 @@ from service.app import create_app
 from service.settings import Settings
 
 _GEAR: dict[str, Any] = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
-_CASE: dict[str, Any] = {
+CASE: dict[str, Any] = {
     "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": _GEAR, "wheel": _GEAR},
     "load": {"torque_n_m": [0.5, 1.0]},
     "accuracy": {"level": "draft", "model": "plane_strain", "positions": 32, "receipt": "minimal"},
@@ -49,7 +49,7 @@ class WholeService:
 
 def whole_service(directory: Path) -> WholeService:
     with TestClient(create_app(Settings(data_directory=directory))) as client:
-        answer = client.post("/v1/processes/analyze/execution", json={"inputs": {"case": _CASE}})
+        answer = client.post("/v1/processes/analyze/execution", json={"inputs": {"case": CASE}})
         location = answer.headers["location"]
         until(lambda: client.get(location).json()["status"] == "successful")
         reference = client.get(f"{location}/results", params=REFERENCES).json()["database"]

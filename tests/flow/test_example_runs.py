@@ -14,7 +14,7 @@ from fe_contact import ste_database
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.convert.scene import dynamic_scene
-from lineofaction.gearbox.subjects import _case_of_mesh, scene_of
+from lineofaction.gearbox.subjects import scene_of, with_case
 
 DEAR = ("wind_turbine_scene",)  # its three helical tables take 40 CPU s; its balance closes to 3e-8
 LONG = ("geared_rotor_scene",)  # it turns slowly: 15 CPU s
@@ -33,7 +33,7 @@ def example(file: Path):
     given, folder = scene_of(file)
     tables = {}
     for index, mesh in given.with_database:
-        case = _case_of_mesh(mesh, f"meshes[{index}]", folder)
+        case = with_case(mesh, f"meshes[{index}]", folder).case
         assert case is not None
         options = replace(analysis_options(case).at_level("draft"), receipt="minimal")
         tables[mesh.name] = ste_database(gear_pair(case), table_axes(case), options)

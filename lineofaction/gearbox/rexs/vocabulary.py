@@ -44,7 +44,7 @@ def units() -> dict[str, _SiUnit]:
     return {name: _SiUnit(**unit) for name, unit in table("units").items()}
 
 
-def _si_value(value: float, unit: str | None, expected: str, place: str) -> float:
+def si_value(value: float, unit: str | None, expected: str, place: str) -> float:
     """Return a value in SI.
 
     Parameters
@@ -116,4 +116,4 @@ def _only(component: Component, name: str, place: str) -> Attribute | None:
 def _number(value: object, attribute: Attribute, place: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise BadInput.of(place, value, "a number")
-    return _si_value(float(value), attribute.unit, owners("quantities")[attribute.id], place)
+    return si_value(float(value), attribute.unit, owners("quantities")[attribute.id], place)

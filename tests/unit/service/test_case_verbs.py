@@ -15,8 +15,8 @@ from dynamics.ablation import ablate
 from lineofaction.gearbox.studies.ablate.run import RUN
 from lineofaction.gearbox.studies.root_stress.run import RUN as ROOT_STRESS
 from lineofaction.report.drawing.image import png
-from lineofaction.report.effects.ablate import _ablation_figure, _look
-from lineofaction.report.flank.root_stress import _root_stress_figure
+from lineofaction.report.effects.ablate import PAGE, _look
+from lineofaction.report.flank import root_stress
 
 RELIEF = "tip_relief_um = 15.0\ntip_relief_length_mm = 1.2"
 RELIEVED = (
@@ -65,7 +65,7 @@ def test_a_scene_is_drawn_with_and_without_an_effect() -> None:
     (lateral,) = found["effects"]
     assert np.shape(lateral["order_change_um"]) == (1, 5)
     assert np.shape(lateral["bearing_order_change_n"]) == (4, 5)
-    figure = _ablation_figure(made)
+    figure = PAGE.figure(made)
     assert [panel.title for panel in figure.content] == ["Transmission error", "Bearing force"]
     assert [line.name for line in figure.content[0].lines] == ["as decided", "without lateral"]
     assert png(figure).startswith(b"\x89PNG")
@@ -83,7 +83,7 @@ def test_roots_are_stressed_by_the_load_and_drawn_with_their_peaks(tmp_path: Pat
     half = told(tmp_path, PLAIN, "root-stress", "--torque", "50", "--image", picture)
     assert picture.read_bytes().startswith(b"\x89PNG")
     shown = loa("root-stress", tmp_path / "case.toml").stdout
-    figure = _root_stress_figure(ROOT_STRESS.figures(ROOT_STRESS.file.read(file)))
+    figure = root_stress.PAGE.figure(ROOT_STRESS.file.read(file))
     for gear, panel in zip(("pinion", "wheel"), figure.content, strict=True):
         tension = found[gear]["tension"]
         assert tension["stress_mpa"] == pytest.approx(73.0, rel=0.03)  # 25 MPa of F_t/(b m) by 1.71 by 1.78

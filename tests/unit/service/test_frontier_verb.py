@@ -25,7 +25,7 @@ from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.page import html
-from lineofaction.report.effects.frontier import _frontier_figure, _frontier_page, _frontier_table
+from lineofaction.report.effects.frontier import PAGE, _frontier_table
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 
@@ -43,7 +43,7 @@ def found() -> Frontier:
 
 
 def test_the_picture_marks_knee_chosen_and_reference(found: Frontier) -> None:
-    figure = _frontier_figure(found)
+    figure = PAGE.figure(found)
     texts = [note.text for note in figure.content[0].notes]
     assert texts == ["iso6336", "corrected (knee)", "3d fine (chosen, reference)"]
     assert png(figure).startswith(b"\x89PNG")
@@ -57,16 +57,14 @@ def test_the_picture_marks_knee_chosen_and_reference(found: Frontier) -> None:
 
 def test_full_contact_costs_its_known_time_on_the_pair_that_was_measured(found: Frontier) -> None:
     found = dataclasses.replace(found, known_full_contact=FULL_CONTACT)
-    peer = next(
-        line for line in _frontier_figure(found).content[0].lines if line.name.startswith("full contact")
-    )
+    peer = next(line for line in PAGE.figure(found).content[0].lines if line.name.startswith("full contact"))
     assert peer.x.tolist() == [12.0 * 64, 30.0 * 64, 75.0 * 64]
     np.testing.assert_allclose(peer.y, [0.06, 0.02, 0.02])
-    assert "CalculiX 2.20" in _frontier_figure(found).caption
+    assert "CalculiX 2.20" in PAGE.figure(found).caption
 
 
 def test_no_point_of_another_pair_stands_on_a_case(found: Frontier) -> None:
-    figure = _frontier_figure(found)
+    figure = PAGE.figure(found)
     assert [line.name for line in figure.content[0].lines if "contact" in line.name] == []
     assert "20/20" not in figure.caption and "Peer" not in figure.caption
     assert len(_frontier_table(found).rows) == len(found.results)
@@ -94,7 +92,7 @@ def test_full_contact_of_the_case_stands_beside_the_known_cost(found: Frontier) 
     )
     table = dataclasses.replace(table, position=np.array([0.0, 0.5]))
     live = MeasuredFullContact((table,), (0.0,), PLANE, 50.0, mean_error=0.03, plane_strain_mean=0.002)
-    figure = _frontier_figure(dataclasses.replace(found, full_contact=live))
+    figure = PAGE.figure(dataclasses.replace(found, full_contact=live))
     mean, swing = figure.content
     drawn = {line.name: line for line in mean.lines}["full contact, run on this case"]
     assert (drawn.x.tolist(), drawn.y.tolist()) == ([pytest.approx(30.0 * 64)], [pytest.approx(3.0)])
@@ -115,7 +113,7 @@ def test_full_contact_is_for_cases(tmp_path: Path) -> None:
 
 
 def test_the_page_says_what_was_not_run(found: Frontier) -> None:
-    page = _frontier_page(found)
+    page = PAGE.page(found)
     text = html(page, {"frontier": b""})
     assert "no mesh" in text
     assert len(_frontier_table(found).rows) == 3
@@ -129,7 +127,7 @@ def test_an_error_that_is_not_known_is_left_out(found: Frontier) -> None:
     assert whole["rungs"][0]["mean_um"] == [1.0 / 1e-6] and whole["rungs"][0]["mean_error"] == 0.3
     assert set(whole["rungs"][0]) - set(whole["rungs"][2]) == {"mean_error", "peak_to_peak_error"}
     assert whole["reference"] == "3d_fine" and "errors" not in whole["rungs"][0]
-    _frontier_figure(Frontier((*found.results[:2], lonely), {}, None, None, 64))
+    PAGE.figure(Frontier((*found.results[:2], lonely), {}, None, None, 64))
 
 
 # Of a scene.
@@ -148,7 +146,7 @@ def of_scene() -> SceneFrontier:
 
 
 def test_the_picture_of_a_scene_marks_knee_chosen_and_reference(of_scene: SceneFrontier) -> None:
-    figure = _frontier_figure(of_scene)
+    figure = PAGE.figure(of_scene)
     texts = [note.text for note in figure.content[0].notes]
     assert texts == ["quasi static", "torsion", "1 nm (knee, chosen)", "0.1 nm (reference)"]
     assert [note.text for note in figure.content[2].notes] == [t for t in texts if t != "torsion"]
@@ -156,7 +154,7 @@ def test_the_picture_of_a_scene_marks_knee_chosen_and_reference(of_scene: SceneF
 
 
 def test_the_page_of_a_scene_leaves_unknown_errors_out(of_scene: SceneFrontier) -> None:
-    assert "nothing more" in html(_frontier_page(of_scene), {"run_frontier": b""})
+    assert "nothing more" in html(PAGE.page(of_scene), {"run_frontier": b""})
     assert _frontier_table(of_scene).rows[1][4] == ""
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.model import Attribute, Component, Value
-from lineofaction.gearbox.rexs.vocabulary import _si_value, quantities, quantity
+from lineofaction.gearbox.rexs.vocabulary import quantities, quantity, si_value
 
 VALUES = [
     (3.0, "mm", "mm", 3e-3),
@@ -30,7 +30,7 @@ VALUES = [
 
 @pytest.mark.parametrize(("value", "unit", "expected", "si"), VALUES)
 def test_values_in_si(value: float, unit: str | None, expected: str, si: float) -> None:
-    assert _si_value(value, unit, expected, "here") == pytest.approx(si, rel=1e-15)
+    assert si_value(value, unit, expected, "here") == pytest.approx(si, rel=1e-15)
 
 
 OTHERS = [
@@ -46,7 +46,7 @@ OTHERS = [
 @pytest.mark.parametrize(("unit", "expected"), OTHERS)
 def test_a_unit_of_another_quantity_is_refused_by_name(unit: str | None, expected: str) -> None:
     with pytest.raises(BadInput, match="component 4, face_width, unit"):
-        _si_value(1.0, unit, expected, "component 4, face_width")
+        si_value(1.0, unit, expected, "component 4, face_width")
 
 
 def gear(name: str, value: Value, unit: str | None, *others: Attribute) -> Component:

@@ -19,7 +19,7 @@ from fe_contact import STEEL
 from lineofaction.gearbox.convert.scene import check_scene, dynamic_scene
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.subjects import _portable_scene
+from lineofaction.gearbox.subjects import scene_inputs
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = tomllib.loads((ROOT / "examples" / "flexible_shafts_scene.toml").read_text())
@@ -162,7 +162,7 @@ def test_a_ring_gear_is_larger_by_the_ratio_of_the_teeth() -> None:
 
 def test_a_service_takes_the_scene_as_it_is() -> None:
     given = validated(SceneInput, OSCILLATOR)
-    assert _portable_scene(given, ROOT) == given
+    assert scene_inputs(given) == {"scene": given.model_dump(mode="json")}
     assert given.with_database == []
     assert check_scene(given, {}).meshes[0].table.level.size == 2
 

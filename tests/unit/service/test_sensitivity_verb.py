@@ -25,7 +25,7 @@ from lineofaction.gearbox.studies.sensitivity.run import (
     _read_studies,
     _write_studies,
 )
-from lineofaction.report.design.sensitivity import _page, _sensitivity_figure, _sensitivity_table
+from lineofaction.report.design.sensitivity import PAGE, _sensitivity_table
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import Panel
 from model_studies.netcdf import UnreadableFile
@@ -116,7 +116,7 @@ def test_a_file_by_its_ending_is_the_only_one_written(
 
 
 def test_the_figure_has_a_line_per_pair_and_model_in_four_panels() -> None:
-    figure = _sensitivity_figure([study(), study("pair b", 2.0)])
+    figure = PAGE.figure([study(), study("pair b", 2.0)])
     assert isinstance(figure.content, tuple)
     assert len(figure.content) == 4
     relative, absolute, *_ = figure.content
@@ -222,7 +222,7 @@ def test_a_study_is_on_the_report_page(tmp_path: Path) -> None:
 
 
 def test_its_headlines_are_the_largest_ripples() -> None:
-    skew, distance = _page((study(), study("pair b", 2.0))).headlines
+    skew, distance = PAGE.page((study(), study("pair b", 2.0))).headlines
     assert (skew.name, skew.value) == ("largest peak-to-peak STE over misalignment", "10.0 µm")
     assert skew.remark == "± 0.20 µm at 30 µm, pair b: +150 % of the undeviated pair's"
     assert (distance.value, distance.remark[:15]) == ("4.00 µm", "± 0.40 µm at 0 ")

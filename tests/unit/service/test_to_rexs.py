@@ -24,7 +24,7 @@ from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import parsed, serialized
 from lineofaction.gearbox.rexs.model import Attribute, Component, Document
-from lineofaction.gearbox.rexs.vocabulary import _si_value
+from lineofaction.gearbox.rexs.vocabulary import si_value
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection
 from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.to_rexs import deflected, exported, left_out
@@ -197,9 +197,9 @@ def results(document: Document, case: int | None = None) -> dict[int, Values]:
     components = model.components if case is None else model.spectra[0].cases[case].components
     return {
         part.id: {
-            entry.id: np.array([_si_value(float(v), entry.unit, str(entry.unit), "") for v in values])
+            entry.id: np.array([si_value(float(v), entry.unit, str(entry.unit), "") for v in values])
             if isinstance(values := entry.value, tuple)
-            else _si_value(float(values), entry.unit, str(entry.unit), "")  # type: ignore[arg-type]
+            else si_value(float(values), entry.unit, str(entry.unit), "")  # type: ignore[arg-type]
             for entry in part.attributes
             if entry.origin == "calculated"
         }

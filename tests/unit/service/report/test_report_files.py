@@ -23,7 +23,7 @@ from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.comparison.compare import stored_comparison
 from lineofaction.report.document import page_json, page_of, read_inputs, stored_figures, write_report
 from lineofaction.report.drawing.figure import Panel
-from lineofaction.report.effects.frontier import _frontier_figure, _frontier_page, _frontier_table
+from lineofaction.report.effects.frontier import PAGE, _frontier_table
 from lineofaction.report.run.signals import (
     _order_amplitudes,
     signal_over_time,
@@ -171,14 +171,14 @@ def test_a_stored_table_has_the_figures_of_its_report(database: SteDatabase, tmp
 def test_a_stored_ladder_is_drawn_as_a_fresh_one(tmp_path: Path) -> None:
     file = tmp_path / "frontier.nc"
     RUN.file.write(LADDER, file)
-    fresh = page_json(_frontier_page(LADDER))
+    fresh = page_json(PAGE.page(LADDER))
     assert stored_figures({"kind": "frontier", "file": str(file)}) == fresh
     assert RUN.figures(RUN.file.read(file)) == RUN.figures(LADDER)
 
 
 def test_a_ladder_on_which_nothing_is_off_has_no_points() -> None:
     alone = replace(LADDER, results=(rung("3d_fine", float("nan"), 60.0),), knee=None, chosen="3d_fine")
-    for panel in _frontier_figure(alone).content:
+    for panel in PAGE.figure(alone).content:
         assert isinstance(panel, Panel) and panel.lines == () and panel.y.scale == "log"
     ((_, seconds, *_),) = _frontier_table(alone).rows
     assert float(seconds) == 60.0

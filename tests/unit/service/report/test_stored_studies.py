@@ -34,7 +34,7 @@ from lineofaction.gearbox.schemas.plan import InputWarning
 from lineofaction.gearbox.study import Study
 from lineofaction.report.design.optimize import _ripple_table
 from lineofaction.report.document import page_json, page_of, read_inputs, stored_figures
-from lineofaction.report.effects.ablate import _ablation_page
+from lineofaction.report.effects.ablate import PAGE
 from lineofaction.report.presentation import presentation_of
 from lineofaction.report.ste.curves import MOST_CURVES
 from model_studies.record_file import write_record
@@ -236,6 +236,6 @@ def test_an_ablation_of_nothing_has_its_reasons_and_no_plot(compliance: Path) ->
         run=Run(cache=compliance),
         only=["misalignment"],
     )
-    (section,) = _ablation_page(none).sections
+    (section,) = PAGE.page(none).sections
     assert not section.figures
     assert section.tables[-1].rows == (("misalignment", "the gears are aligned"),)

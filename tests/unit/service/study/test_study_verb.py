@@ -36,7 +36,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import Inputs, QuantityName
 from lineofaction.gearbox.studies.study.run import RUN, _design_of, _factor_places, _meshes_and_bearings
 from lineofaction.gearbox.studies.study.scenes import VariedScene, _part_name, places_of, with_value
-from lineofaction.gearbox.subjects import _portable_scene, scene_of
+from lineofaction.gearbox.subjects import scene_of, with_own_cases
 from lineofaction.report.document import write_report
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
@@ -266,7 +266,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> SceneInput:
     text = SCENE.format(duration=0.05, speed=300.0, rate=20e3)
     text = text.replace('database_file = "ste.nc"', 'case_file = "case.toml"')
     (folder / "scene.toml").write_text(text, encoding="utf-8")
-    return _portable_scene(*scene_of(folder / "scene.toml"))
+    return with_own_cases(*scene_of(folder / "scene.toml"))
 
 
 @pytest.fixture(scope="module")
