@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import ast
-import importlib.util
 from pathlib import Path
 
 import pytest
+import structure
 
 ROOT = Path(__file__).parents[2]
-SPEC = importlib.util.spec_from_file_location("structure", ROOT / "scripts" / "structure.py")
-assert SPEC is not None and SPEC.loader is not None
-structure = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(structure)
 
 BUDGETS = {
     ("fe_contact",): (37_029, 636),

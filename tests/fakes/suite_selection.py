@@ -1,12 +1,12 @@
 """Which tests a run has.
 
 By default: all that are quick, those marked `law` that are not long, and of the others those that rest on
-what changed since they last passed. A test rests on its file, on the fakes that file imports, on the houses
-both import and those below, on what its file names in `RESTS_ON`, and on the versions of packages; one that
-starts processes rests on all houses. Tests marked `chain` go on with what those before them in their file
-left: they run all or none, by the cost of all. `tests/records` holds what each slow test costs and what it
-rested on when it passed; the nightly run renews it. Files that are named on the command line run whole, and
-with `--all` everything does.
+what changed since they last passed. A test rests on its file, on the fakes and scripts that file imports, on
+the houses both import and those below, on what its file names in `RESTS_ON`, and on the versions of packages;
+one that starts processes rests on all houses. Tests marked `chain` go on with what those before them in their
+file left: they run all or none, by the cost of all. `tests/records` holds what each slow test costs and what
+it rested on when it passed; the nightly run renews it. Files that are named on the command line run whole,
+and with `--all` everything does.
 """
 
 from __future__ import annotations
@@ -14,14 +14,13 @@ from __future__ import annotations
 import ast
 import csv
 import hashlib
-import importlib.util
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 
 import pytest
+import structure
 
 TESTS = Path(__file__).parents[1]
 ROOT = TESTS.parent
@@ -32,19 +31,10 @@ SLOW = 1.0
 LONG = 3.0
 """CPU seconds from which on a law, too, runs only when what it rests on changed; a fixture that costs as much
 counts for each test of the file that shares it."""
+IMPORTED = (TESTS / "fakes", ROOT / "scripts")
+"""Folders whose modules tests import by their names."""
 VERSIONS = ROOT / "requirements-dev.lock"
 STARTS_PROCESSES = ("subprocess", "multiprocessing")
-
-
-def _structure() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("structure", ROOT / "scripts" / "structure.py")
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-structure = _structure()
 
 
 def add_options(parser: pytest.Parser) -> None:
@@ -151,9 +141,9 @@ def rests_on(file: Path) -> tuple[frozenset[Path], frozenset[str]]:
         files.add(path)
         for module in structure.imported(path):
             name = module.removeprefix("tests.fakes.").split(".")[0]
-            fake = TESTS / "fakes" / f"{name}.py"
-            if fake.exists():
-                waiting += [fake] * (fake not in files)
+            candidates = (folder / f"{name}.py" for folder in IMPORTED)
+            if helper := next(filter(Path.exists, candidates), None):
+                waiting += {helper} - files
             elif house := structure.house_of(module):
                 houses.update(_with_those_below(house))
             elif name in (*STARTS_PROCESSES, "lineofaction"):

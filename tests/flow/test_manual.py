@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import re
 import shutil
@@ -11,16 +10,13 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import manual
 import pytest
 from condensed_once import find_condensed
 
-RESTS_ON = ("README.md", "docs/tutorials", "docs/how-to", "examples", "scripts/manual.py")
+RESTS_ON = ("README.md", "docs/tutorials", "docs/how-to", "examples")
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-SPEC = importlib.util.spec_from_file_location("manual", ROOT / "scripts" / "manual.py")
-assert SPEC and SPEC.loader
-manual = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(manual)
 
 
 @pytest.fixture(scope="module")

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
-from types import ModuleType
 
-import pytest
+import case_file_page
 
 from fe_contact.flank.modification import FlankModification
 from lineofaction.gearbox.schemas.declared import figures
@@ -15,27 +13,19 @@ ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "case-file.md").read_text("utf-8")
 
 
-@pytest.fixture(scope="module")
-def script() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("case_file_page", ROOT / "scripts" / "case_file_page.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def test_the_lists_are_current() -> None:
+    assert case_file_page.page(PAGE) == PAGE, (
+        "write them anew: python scripts/case_file_page.py docs/case-file.md"
+    )
 
 
-def test_the_lists_are_current(script: ModuleType) -> None:
-    assert script.page(PAGE) == PAGE, "write them anew: python scripts/case_file_page.py docs/case-file.md"
+def test_every_declared_dataclass_has_a_list() -> None:
+    named = [found[2] for found in case_file_page.LIST.finditer(PAGE)]
+    assert sorted(named) == sorted(case_file_page.BY_NAME)
 
 
-def test_every_declared_dataclass_has_a_list(script: ModuleType) -> None:
-    named = [found[2] for found in script.LIST.finditer(PAGE)]
-    assert sorted(named) == sorted(script.BY_NAME)
-
-
-def test_an_entry_says_the_unit_the_bounds_and_the_default(script: ModuleType) -> None:
-    entries = script.definitions(figures(FlankModification)).split("\n\n")
+def test_an_entry_says_the_unit_the_bounds_and_the_default() -> None:
+    entries = case_file_page.definitions(figures(FlankModification)).split("\n\n")
     usual = entries[0].replace("\n", " ")
     assert (
         "`.._um`: 0 to 1000; default 0." in usual
@@ -47,25 +37,25 @@ def test_an_entry_says_the_unit_the_bounds_and_the_default(script: ModuleType) -
     assert any(entry.endswith(" 5 to 85; default 30.") for entry in entries)
 
 
-def test_a_list_keeps_the_entries_of_others_and_renews_its_own(script: ModuleType) -> None:
+def test_a_list_keeps_the_entries_of_others_and_renews_its_own() -> None:
     declared = figures(FlankModification)
     before = "`seat`\n: How the bore sits.\n\n`tip_relief_um`\n: As it was."
-    renewed = script.definitions(declared, before)
-    assert renewed == f"`seat`\n: How the bore sits.\n\n{script.definitions(declared)}"
+    renewed = case_file_page.definitions(declared, before)
+    assert renewed == f"`seat`\n: How the bore sits.\n\n{case_file_page.definitions(declared)}"
 
 
-def test_what_another_table_says_of_a_field_is_not_repeated(script: ModuleType) -> None:
+def test_what_another_table_says_of_a_field_is_not_repeated() -> None:
     declared, said = figures(FlankModification), dict[str, str]()
-    first = script.definitions(declared, "", said, "[first]")
-    again = script.definitions(declared, "", said, "[second]")
-    assert first == script.definitions(declared)
+    first = case_file_page.definitions(declared, "", said, "[first]")
+    again = case_file_page.definitions(declared, "", said, "[second]")
+    assert first == case_file_page.definitions(declared)
     entries = again.replace("\n", " ")
     assert "As of `[first]`: " in entries and all(f"`{figure.field}`" in entries for figure in declared)
-    assert script.definitions(declared, again, said, "[second]") == again
+    assert case_file_page.definitions(declared, again, said, "[second]") == again
 
 
-def test_no_list_holds_what_another_declares(script: ModuleType) -> None:
-    entries = {name: set(map(script.definition, own)) for name, own in script.BY_NAME.items()}
+def test_no_list_holds_what_another_declares() -> None:
+    entries = {name: set(map(case_file_page.definition, own)) for name, own in case_file_page.BY_NAME.items()}
     declared = set().union(*entries.values())
-    for found in script.LIST.finditer(PAGE):
+    for found in case_file_page.LIST.finditer(PAGE):
         assert not (set(found[3].split("\n\n")) - entries[found[2]]) & declared, found[2]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
 
+import client_wheel
 import httpx2
 import pytest
 
@@ -42,12 +42,8 @@ except ModuleNotFoundError as error:
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The sources of the distribution."""
-    spec = importlib.util.spec_from_file_location("client_wheel", ROOT / "scripts" / "client_wheel.py")
-    assert spec is not None and spec.loader is not None
-    script = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(script)
     folder = tmp_path_factory.mktemp("client")
-    script.collect(folder)
+    client_wheel.collect(folder)
     return folder
 
 

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
-import pytest
+import stability_page
 
-SCRIPT = Path(__file__).parents[3] / "scripts" / "stability_page.py"
 PAGE = (
     "# Stability\n\n<!-- scenes -->\nold scenes\n<!-- end of scenes -->\nbetween\n"
     "<!-- sweeps -->\nold sweeps\n<!-- end of sweeps -->\nend\n"
@@ -36,35 +33,25 @@ FIGURES = {
 }
 
 
-@pytest.fixture(scope="module")
-def script() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("stability_page", SCRIPT)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def _made(script: ModuleType, folder: Path) -> str:
+def _made(folder: Path) -> str:
     (folder / "scenes.json").write_text(json.dumps({"scenes": [SCENE]}))
     page = folder / "page.md"
     page.write_text(PAGE)
-    script.main(folder, page)
+    stability_page.main(folder, page)
     return page.read_text()
 
 
-def test_sweeps_that_were_not_run_stay(script: ModuleType, tmp_path: Path) -> None:
-    page = _made(script, tmp_path)
+def test_sweeps_that_were_not_run_stay(tmp_path: Path) -> None:
+    page = _made(tmp_path)
     assert "old scenes" not in page
     assert "- **`zero_load`** (1.5 CPU s). 0/0 *Criterion:* tends to the gap *Figures:* STE left" in page
-    assert max(map(len, page.splitlines())) <= script.LINE
+    assert max(map(len, page.splitlines())) <= stability_page.LINE
     assert "old sweeps" in page
 
 
-def test_sweeps_in_the_folder_replace_the_old(script: ModuleType, tmp_path: Path) -> None:
+def test_sweeps_in_the_folder_replace_the_old(tmp_path: Path) -> None:
     (tmp_path / "sweep-plane.jsonl").write_text(json.dumps({"end": "table", "figures": FIGURES}) + "\n")
-    page = _made(script, tmp_path)
+    page = _made(tmp_path)
     assert "old sweeps" not in page
     assert "| in the plane | 1 | 1 | 0 | 0 | 5 | 7 |" in page
     assert page.startswith("# Stability\n")
