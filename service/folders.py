@@ -17,6 +17,17 @@ from host.directories import private
 from lineofaction.gearbox.problems import BadInput
 
 
+def locked(path: Path, flags: int = os.O_RDWR | os.O_CREAT) -> int | None:
+    """Open a file or folder and lock it as long as it is open; None: another process has."""
+    descriptor = os.open(path, flags, 0o600)
+    try:
+        lock(descriptor)
+    except BlockingIOError:
+        os.close(descriptor)
+        return None
+    return descriptor
+
+
 @contextmanager
 def own_folder(home: Path) -> Iterator[Path]:
     """Make a folder below another and remove it at the end; it is locked until then."""
@@ -34,13 +45,9 @@ def own_folder(home: Path) -> Iterator[Path]:
 def remove_left(home: Path) -> None:
     """Remove folders below another that processes left which the system or somebody killed."""
     for folder in home.iterdir() if home.is_dir() else ():
-        descriptor = os.open(folder, os.O_RDONLY)
-        try:
-            lock(descriptor)
+        descriptor = locked(folder, os.O_RDONLY)
+        if descriptor is not None:  # of no process that lives: several share a data directory
             shutil.rmtree(folder, ignore_errors=True)
-        except BlockingIOError:  # of a process that lives: several share a data directory
-            pass
-        finally:
             os.close(descriptor)
 
 
@@ -110,23 +117,19 @@ class DirectoryLock:
             return
         try:
             private(self._directory)
-            descriptor = os.open(self._directory / "service.lock", os.O_RDWR | os.O_CREAT, 0o600)
+            self._descriptor = locked(self._directory / "service.lock")
         except OSError as error:
             suggestion = f"{error.strerror}. Choose another with --data-directory."
             raise BadInput.of(
                 "data_directory", str(self._directory), "a writable directory", suggestion
             ) from None
-        try:
-            lock(descriptor)
-        except BlockingIOError:
-            os.close(descriptor)
+        if self._descriptor is None:
             raise BadInput.of(
                 "data_directory",
                 str(self._directory),
                 "free: another service works in it",
                 "Stop that service or choose another directory with --data-directory.",
-            ) from None
-        self._descriptor = descriptor
+            )
 
     def release(self) -> None:
         """Lift the lock."""

@@ -6,7 +6,7 @@ import shutil
 import time
 import uuid
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -55,20 +55,16 @@ class Children:
 
     def __init__(self, settings: Settings, modules: Iterable[str]) -> None:
         self.most = settings.workers
-        self.memory_mb = max(LEAST_MEMORY_MB, machine_memory_mb() // settings.workers)
+        self._memory_mb = max(LEAST_MEMORY_MB, machine_memory_mb() // settings.workers)
         self._forks = Forks(modules, settings.data_directory / "log" / "warm.log")
-
-    @property
-    def warm(self) -> bool:
-        """Whether there is a warm process to fork workers from."""
-        return self._forks.has_warmed_up
 
     def start(self, _heard: Callable[[], None]) -> None:
         """Do nothing: the first child is started anew."""
 
     def begin(self, order: WorkOrder, _name: str, log: Path) -> Worker:
         """Start a child, or fork one; raises OSError: the system does neither."""
-        return Worker(order, log, self._forks.launch)
+        memory_mb = order.memory_limit_mb or self._memory_mb
+        return Worker(replace(order, memory_limit_mb=memory_mb), log, self._forks.launch)
 
     def close(self) -> None:
         """End the warm process."""
@@ -251,12 +247,19 @@ def begun(
     settings: Settings, process: Process, claim: Claim, crew: Crew, store: ResultStore, figures: WorkerFigures
 ) -> Attempt:
     """Let a claim be worked on; raises what keeps the system from it, or that a result it reads is gone."""
-    workspace = _workspace_of(settings, claim)
+    workspace = settings.data_directory / "work" / claim.id
     log = settings.data_directory / "log" / f"{claim.id}.log"
     workspace.mkdir(parents=True, exist_ok=True)
     launched = time.time()  # before the worker can reach its first stage
-    stored = _files_read(claim, store)
-    order = _order(settings, process.entry, claim, stored, crew.memory_mb)
+    order = WorkOrder(
+        entry=process.entry,
+        inputs=claim.inputs,
+        key=claim.key,
+        workspace=workspace,
+        data_directory=settings.data_directory,
+        memory_limit_mb=settings.memory_limit_mb,
+        stored=_files_read(claim, store),
+    )
     worker = crew.begin(order, f"{claim.id}-{claim.attempts}", log)
     figures.started(claim.process)
     facts = {"computation": claim.id, "process": claim.process, "key": claim.key}
@@ -266,31 +269,12 @@ def begun(
     return Attempt(claim, worker, workspace, log, figures, trace, PacedFraction(process.stages))
 
 
-def _workspace_of(settings: Settings, claim: Claim) -> Path:
-    return settings.data_directory / "work" / claim.id
-
-
 def _files_read(claim: Claim, store: ResultStore) -> dict[str, Path]:
     """Return the stored results that a claim reads; its inputs are looked into if there may be any."""
     if claim.inputs.get("scene") is None and claim.inputs.get("run") is None:
         return {}
     found: dict[str, Path] = files_read(claim.inputs, store.within(claim.project))
     return found
-
-
-def _order(
-    settings: Settings, entry: str, claim: Claim, stored: dict[str, Path], memory_mb: int | None
-) -> WorkOrder:
-    return WorkOrder(
-        entry=entry,
-        inputs=claim.inputs,
-        key=claim.key,
-        workspace=_workspace_of(settings, claim),
-        data_directory=settings.data_directory,
-        memory_limit_mb=settings.memory_limit_mb or memory_mb,
-        stored=stored,
-        scheduler=settings.scheduler,
-    )
 
 
 # The end of an attempt: its products are stored, or the table states why there are none.

@@ -82,7 +82,7 @@ class Claims:
         """Take the oldest waiting computation of the highest priority; None: none waits."""
         while (row := self._first()) is not None:
             if row.program != self.program:
-                self._end_former(row)
+                self.end_former(row)
             elif self._begin(row):
                 return replace(_claimed(row), attempts=row.attempts + 1, waited_from=row.updated)
         return None
@@ -106,12 +106,12 @@ class Claims:
             return connection.execute(begun).rowcount > 0
 
     @retried
-    def _end_former(self, row: Row[Any]) -> None:
+    def end_former(self, work: Row[Any] | Claim) -> None:
         """End what another version entered: the name of a result holds the version that makes it."""
-        text = f"The job was entered by version {row.program or '0.2.0 or older'}; submit it again."
-        waits = (computations.c.id == row.id) & (computations.c.state == "accepted")
+        text = f"The job was entered by version {work.program or '0.2.0 or older'}; submit it again."
+        goes_on = (computations.c.id == work.id) & computations.c.state.in_(("accepted", "running"))
         with writing(self._engine) as connection:
-            end_computations(connection, waits, {"state": "failed", "message": text})
+            end_computations(connection, goes_on, {"state": "failed", "message": text})
 
     @retried
     def held(self, claims: Collection[Claim]) -> set[str]:

@@ -142,9 +142,6 @@ class Cluster:
     """
 
     keeps = True
-    memory_mb = None
-    """The share of memory of a job: its Dask worker knows."""
-    warm = False
 
     def __init__(self, address: str, deployment: str) -> None:
         self._address, self._name = address, f"loa-{deployment[:12]}"
@@ -167,7 +164,7 @@ class Cluster:
 
     async def _fault_at_start(self) -> tuple[str, str]:
         try:
-            async with self._client() as client:
+            async with dask_cluster.connection(self._address, asynchronous=True) as client:
                 with suppress(TimeoutError):
                     await client.wait_for_workers(1, timeout=dask_cluster.CONNECT_S)
                 return await self._fault(client)
@@ -193,9 +190,6 @@ class Cluster:
                 fault = f"of workers with {program()}: {worker} has {versions}"
         self.most = 0 if fault else sum(threads.values())
         return fault, f"Start them: {start}, from an installation of this version with its extras."
-
-    def _client(self) -> Client:
-        return dask_cluster.connection(self._address, asynchronous=True)
 
     def start(self, heard: Callable[[], None]) -> None:
         """Connect, and stay connected; `heard` is called when a task ends, or when workers come."""
@@ -235,7 +229,7 @@ class Cluster:
         self._loop, self._changed = asyncio.get_running_loop(), asyncio.Event()
         while not self._stopping:
             try:
-                async with self._client() as client:
+                async with dask_cluster.connection(self._address, asynchronous=True) as client:
                     client.subscribe_topic(self._name, self._hear)
                     await self._serve(client)
             except Exception as error:  # noqa: BLE001 (the next connection may do)

@@ -126,11 +126,6 @@ class Scheduler:
         return len(self._running)
 
     @property
-    def warm(self) -> bool:
-        """Whether there is a warm process to fork workers from."""
-        return self._crew.warm
-
-    @property
     def most(self) -> int:
         """Workers that may run at the same time."""
         return self._crew.most
@@ -300,7 +295,9 @@ class Scheduler:
     def _take_up(self) -> None:
         """Find again what a dead service left running, or let it wait for its next attempt."""
         for claim in self._claims.running():
-            if self._crew.keeps and claim.program == self._claims.program:
+            if claim.program != self._claims.program:
+                self._claims.end_former(claim)
+            elif self._crew.keeps:
                 self._begin(claim)
             else:
                 self._settlement.again_or_fail(claim, "The service ended while it ran.")

@@ -12,8 +12,8 @@ from pathlib import Path
 from sqlalchemy import URL, Connection, Engine, MetaData, inspect, make_url, text
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
-from host import lock
 from lineofaction.gearbox.problems import BadInput
+from service.folders import locked
 from service.store.dialects import RESTORE, dialect_of, retried, unusable
 from service.store.migrations import REVISIONS, USABLE_SINCE, migrate
 
@@ -293,15 +293,8 @@ class Ownership:
         return self._engine.dialect.name == "sqlite"
 
     def _lock_file(self) -> bool:
-        path = Path(f"{self._engine.url.database}.owner")
-        descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
-        try:
-            lock(descriptor)
-        except BlockingIOError:
-            os.close(descriptor)
-            return False
-        self._file = descriptor
-        return True
+        self._file = locked(Path(f"{self._engine.url.database}.owner"))
+        return self._file is not None
 
     def _lock_session(self) -> bool:
         """Open a session that is in no pool, and request the lock in it."""

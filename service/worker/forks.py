@@ -141,12 +141,6 @@ class Forks:
         """Whether the next child is forked."""
         return self._server is not None and self._server.ready
 
-    @property
-    def has_warmed_up(self) -> bool:
-        """Whether a warm process has said that it is ready; for any thread."""
-        server = self._server
-        return server is not None and server.has_warmed_up
-
     def launch(self, ends: Ends, warm_within: float = 0.0) -> ChildProcess:
         """Fork a child, or start one; OSError: the system does neither.
 
@@ -211,11 +205,6 @@ class _Server:
     def await_word(self, seconds: float) -> None:
         """Wait until it says that it is ready, or has ended."""
         select.select([self._channel], [], [], seconds)
-
-    @property
-    def has_warmed_up(self) -> bool:
-        """Whether it said that it is ready, and has answered since."""
-        return self._ready and not self._gone
 
     def fork(self, ends: Ends) -> _ForkedChild:
         descriptors = [ends.orders, ends.channel, ends.log]

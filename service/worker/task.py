@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from fe_contact.cache_reads import CacheReads
 from host.directories import data_home
+from host.extras import MODULES
 from service.settings import LEAST_MEMORY_MB
 from service.version import solver_version
 from service.worker.forks import ChildProcess, Ends, Forks
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 _LOOK_S, _TELL_S = 0.1, 0.5
 """Between two looks whether the job is still wanted; between two reports."""
 _LOG_BYTES = 1_000_000
-_PACKAGES = ("numba", "gmsh", "skfem", "structlog", "prometheus_client")
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,8 @@ class Done:
 
 def program() -> str:
     """Return the versions that server and workers have to share, and what is missing of the packages."""
-    missing = [name for name in _PACKAGES if find_spec(name) is None]
+    needed = (*MODULES["analysis"], *MODULES["service"])
+    missing = [name for name in needed if find_spec(name) is None]
     lacks = f" without {', '.join(missing)}" if missing else ""
     return f"lineofaction {solver_version()}, Python {'.'.join(python_version_tuple()[:2])}{lacks}"
 
@@ -118,7 +119,7 @@ def _launch(module: str, log: Path, ends: Ends) -> ChildProcess:
     """Fork from the warm process of this worker; its threads take turns."""
     with _launching:
         if not _forks:
-            _forks.append(Forks([module], log))
+            _forks.append(Forks([module, "service.worker.simulation_work"], log))
         return _forks[0].launch(ends)
 
 

@@ -21,7 +21,6 @@ from fe_contact.analysis.pairs import contact_lines
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput
 from model_studies.workers import RunCost, dask_cluster, executor
-from service.queue.claims import Claim
 from service.settings import Settings, load_settings
 from service.worker import simulation_work as cluster
 from service.worker.order import WorkOrder
@@ -184,16 +183,10 @@ def test_what_a_worker_warns_of_is_in_the_log_of_the_service(tmp_path: Path) -> 
     assert warning["reason"] == "the cluster is away" and warning["log_level"] == "warning"
 
 
-def test_the_address_goes_from_the_environment_to_the_worker(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from service.queue.attempt import _order  # noqa: PLC0415
-
+def test_the_address_comes_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("service.settings.find_spec", lambda _: object())
     monkeypatch.setenv("LOA_SCHEDULER", "tcp://gears.example:8786")
-    claim = Claim("c", "analyze", "k", {}, 1)
-    order = _order(load_settings(data_directory=tmp_path), "a:b", claim, {}, None)
-    assert WorkOrder.from_line(order.line()).scheduler == "tcp://gears.example:8786"
+    assert load_settings().scheduler == "tcp://gears.example:8786"
     monkeypatch.setenv("LOA_SCHEDULER", "")
     assert load_settings().scheduler is None
 
