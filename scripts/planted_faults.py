@@ -37,7 +37,7 @@ OPERATORS: dict[type[ast.AST], tuple[str, str, str]] = {
     ast.Eq: ("condition", "==", "!="), ast.NotEq: ("condition", "!=", "=="),
     ast.And: ("condition", "and", "or"), ast.Or: ("condition", "or", "and"),
 }  # fmt: skip
-LOCKS = ("lock", "lease", "writing", "flock", "exclusive")
+LOCKS = ("lock", "writing", "flock", "exclusive")
 
 
 class Fault(NamedTuple):

@@ -34,7 +34,7 @@ _AT_ONCE = 500
 
 
 class Retention:
-    """Removes what a service needs no more; safe beside running ones.
+    """Removes what a service needs no more; safe beside one that runs.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ FIRST_S, EVERY_S = 60.0, 3600.0
 
 
 class Housekeeper:
-    """Collects beside the scheduler; several on one database do each other no harm.
+    """Collects beside the scheduler.
 
     Parameters
     ----------

@@ -113,7 +113,7 @@ def end_computations(connection: Connection, which: ColumnElement[bool], values:
 
 def _count(connection: Connection, row: Row[Any]) -> None:
     span = datetime.fromisoformat(row.finished) - datetime.fromisoformat(row.started)
-    seconds = max(span.total_seconds(), 0.0)  # machines' clocks differ
+    seconds = max(span.total_seconds(), 0.0)  # a clock was set
     key = {"process": row.process, "outcome": row.state, "le": bound_of(seconds)}
     insert = dialect_of(connection).insert(durations)
     statement = insert.values(**key, number=1, seconds=seconds, attempts=row.attempts)

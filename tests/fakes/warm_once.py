@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from condensed_once import FOLDER
@@ -23,25 +22,12 @@ from service.worker.forks import ChildProcess, Ends, Forks, _Server
 _ANALYSIS = "service.worker.simulation_work"
 
 
-class _Shared(_Server):
-    """A warm process that several schedulers ask, each from a thread of its own."""
-
-    def __init__(self, work: str, modules: list[str], log: Path) -> None:
-        self._asked = threading.Lock()
-        first = ["condensed_once"] if _ANALYSIS in modules else []
-        super().__init__(work, [*first, *modules], log)
-
-    def ask(self, request: dict[str, Any], descriptors: Iterable[int] = ()) -> Any:
-        with self._asked:
-            return super().ask(request, descriptors)
-
-
 class _WarmProcesses:
     """The warm processes by what they have imported."""
 
     def __init__(self, log: Path) -> None:
         self._log = log
-        self._found: dict[tuple[str, ...], _Shared] = {}
+        self._found: dict[tuple[str, ...], _Server] = {}
         self._starts = threading.Lock()
 
     def launch(self, forks: Forks, ends: Ends) -> ChildProcess:
@@ -51,7 +37,8 @@ class _WarmProcesses:
             server = self._found.get(key)
             if server is None or not server.usable:
                 log = self._log / f"warm{len(self._found)}.log"
-                server = self._found[key] = _Shared(forks._work, forks._modules, log)
+                first = ["condensed_once"] if _ANALYSIS in forks._modules else []
+                server = self._found[key] = _Server(forks._work, [*first, *forks._modules], log)
         until(lambda: server.ready)
         return server.fork(ends)
 

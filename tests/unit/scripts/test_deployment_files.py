@@ -252,6 +252,20 @@ def test_only_the_server_and_dask_reach_the_ports_of_dask() -> None:
     assert compose()["networks"]["inside"] == {"internal": True}
 
 
+@pytest.mark.law
+def test_only_the_server_and_the_schema_job_reach_database_and_store() -> None:
+    """A worker of Dask runs code that it is sent: it gets no way out but to names and to Dask."""
+    out = {
+        one["metadata"]["name"]: {port["port"] for rule in one["spec"]["egress"] for port in rule["ports"]}
+        for one in of_kind("service", "NetworkPolicy")
+        if "egress" in one["spec"]
+    }
+    assert out == {"to-names": {53}, "to-database-and-store": {5432, 443}, "dask": {8786}}
+    policies = {one["metadata"]["name"]: one["spec"] for one in of_kind("service", "NetworkPolicy")}
+    (chosen,) = policies["to-database-and-store"]["podSelector"]["matchExpressions"]
+    assert (chosen["operator"], set(chosen["values"])) == ("In", {"serve", "schema"})
+
+
 def test_a_worker_fails_by_its_own_limit_before_the_container_does() -> None:
     limit = int(variables_of("serve")["LOA_MEMORY_LIMIT_MB"])
     assert container("work")["resources"]["limits"]["memory"] == "4Gi"

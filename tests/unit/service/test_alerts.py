@@ -57,10 +57,11 @@ QUIET: Series = {
     'loa_worker_ends_total{process="analyze", outcome="died"': "0x70 1x10",
     'loa_worker_ends_total{process="analyze", outcome="defect"': "2x80",
     'loa_worker_warnings_total{process="analyze"': "4x80",
+    "loa_workers_limit{": "2x77 0x2",
     'loa_requests_total{status="200"': "0+100x80",
     'loa_requests_total{status="503"': "0+1x80",
 }
-"""A service with work to do, one value a minute: three computations wait, one worker died of late."""
+"""A service with work to do, one value a minute: three wait, one worker died, workers left just now."""
 
 
 class Case(NamedTuple):
