@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import groupby
 from pathlib import Path
-from typing import Any, ClassVar, Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from dynamics.study.responses import Response, responses_of
 from dynamics.types import FloatArray, IntArray, Json
 from model_studies import LeftOut, Progress, silent
 from model_studies.spread import quantile_bounds, rank_correlation
+from model_studies.workers import InProcess, Workers
 
 FRACTIONS = (0.05, 0.5, 0.95)
 POINT = ("point",)
@@ -177,22 +178,6 @@ class Scenes(Protocol):
         ...
 
 
-class _Workers(Protocol):
-    """Runs independent tasks, yields their results in order; see `model_studies.workers`, which conform."""
-
-    def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
-        """Yield ``function(shared, item)`` of every item."""
-        ...
-
-
-class _OneByOne:
-    """One task after the other, here."""
-
-    def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
-        """Yield results as they are computed."""
-        return (function(shared, item) for item in items)
-
-
 RUNS = 8
 """At most in a batch: what an interruption loses of each worker. It does not depend on who does the tasks."""
 
@@ -290,7 +275,7 @@ NEGLECTED = ("errors of steps and tables measured in windows of the run", "estim
 def study(
     task: StudyTask,
     design: Design,
-    workers: _Workers = _OneByOne(),  # noqa: B008 (no state)
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
     progress: Progress = silent,
     *,
     confidence: float = 0.95,
