@@ -95,19 +95,19 @@ class DesignProblem:
         return self._with_merit(*self._figures(self.values(point)))
 
     def keep(self, point: FloatArray, assessed: Assessed) -> None:
-        """Have the memory learn of a design that a worker assessed."""
+        """Have the memory learn of an assessed design, whoever assessed it."""
         key, position = np.array(list(self.values(point).values())), self.evaluator.position
         if self.memory is not None and self.memory.find(key, position) is None:
             self.memory.add(key, position, (assessed.objective, assessed.violation))
 
     def linearize(self, point: FloatArray) -> tuple[Assessed, LinearMerit]:
-        """Evaluate the design at a point (d,) with its derivatives; the memory learns of it.
+        """Evaluate the design at a point (d,) with its derivatives.
 
         Its merit to first order has NaN where the contact cannot be solved.
         """
         values = self.values(point)
         design = linearized(self.evaluator, values, self.names, self.limits)
-        objective, violation = self._assessed(design.evaluation, values)
+        objective, violation = self._assessed(design.evaluation)
         ranges = np.array([variable.high - variable.low for variable in self.variables])
         merit = LinearMerit(
             design.evaluation.ste / self.scale,
@@ -130,16 +130,12 @@ class DesignProblem:
         known = None if self.memory is None else self.memory.find(key, position)
         if known is not None:
             return known
-        return self._assessed(self.evaluator.evaluate(values), values)
+        return self._assessed(self.evaluator.evaluate(values))
 
-    def _assessed(self, evaluated: Evaluation, values: dict[str, float]) -> tuple[float, float]:
-        """Return objective in m and violation of an evaluated design, and have the memory keep them."""
+    def _assessed(self, evaluated: Evaluation) -> tuple[float, float]:
+        """Return objective in m and violation of an evaluated design."""
         objective = self.objective.of(self.evaluator.expected(evaluated))
-        violation = evaluated.violation(self.limits) if math.isfinite(objective) else math.inf
-        if self.memory is not None:
-            key = np.array(list(values.values()))
-            self.memory.add(key, self.evaluator.position, (objective, violation))
-        return objective, violation
+        return objective, evaluated.violation(self.limits) if math.isfinite(objective) else math.inf
 
 
 # The merit of designs as a search sees it: counted, ended when enough are evaluated, all remembered.
