@@ -327,7 +327,6 @@ def steady_states(
     if not speeds.size:
         raise InputError("speed", [], "at least one speed")
     sense = float(np.sign(system.scene.references[leading_law(system)].speed.extreme))
-    seconds: dict[str, float] = {}
 
     def stage(name: str) -> Callable[[float], None]:
         return lambda fraction: None if progress is None else progress(name, fraction)
@@ -336,13 +335,9 @@ def steady_states(
     problem = periodic_problem(system, sense * speeds[0], repeat, time)
     courses = [sense * speeds, sense * speeds[::-1]] if speeds.size > 1 else [sense * speeds]
     up, down = _sweeps(problem, courses, periods, stage, workers)
-    seconds["sweeps"] = spent(workers) - began
+    seconds = {"sweeps": spent(workers) - began}
     began = cpu_seconds()
-    followed = None
-    if branch and speeds.size > 1:
-        start = up[0].state if up[0].status.usable else None
-        ends = sense * speeds[0], sense * speeds[-1]
-        followed = follow_branch(problem, *ends, guess=start, progress=stage(CURVES[BRANCH]))
+    followed = _branch_from(problem, courses[0], up[0], stage(CURVES[BRANCH])) if branch else None
     seconds["branch"] = cpu_seconds() - began
     began = cpu_seconds()
     curves = (up, down, followed.orbits if followed is not None else ())
@@ -361,7 +356,8 @@ def _sweeps(
     """Return the motions at rising speeds, and at falling ones if there are several."""
     swept: list[tuple[Orbit, ...]] = []
     reports = [stage(CURVES[curve]) for curve in (UP, DOWN)]
-    if len(courses) > 1 and pays(workers, _settling_seconds(problem, courses, periods)):
+    others = len(courses) > 1 and not isinstance(workers, InProcess)
+    if others and pays(workers, _settling_seconds(problem, courses, periods)):
         for orbits in workers.run(_swept, (problem, periods), courses):
             reports[len(swept)](1.0)
             swept.append(orbits)
@@ -370,6 +366,16 @@ def _sweeps(
             sweep(problem, speeds, periods, report) for speeds, report in zip(courses, reports, strict=False)
         ]
     return swept[0], swept[1] if len(swept) > 1 else ()
+
+
+def _branch_from(
+    problem: PeriodicProblem, course: FloatArray, first: Orbit, report: Callable[[float], None]
+) -> Branch | None:
+    """Follow the branch of the first motion of a course to its end; None of a single speed."""
+    if course.size < 2:
+        return None
+    guess = first.state if first.status.usable else None
+    return follow_branch(problem, course[0], course[-1], guess=guess, progress=report)
 
 
 def _swept(shared: tuple[PeriodicProblem, int], speeds: FloatArray) -> tuple[Orbit, ...]:

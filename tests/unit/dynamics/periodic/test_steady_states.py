@@ -115,6 +115,11 @@ def test_a_motion_that_is_not_found_has_a_status_and_no_figures(monkeypatch):
     assert np.isnan(found.rms_error[0, 0])
 
 
+def test_alone_a_sweep_is_not_timed_for_others(monkeypatch):
+    monkeypatch.setitem(steady_states.__globals__, "_settling_seconds", None)  # were it called: TypeError
+    steady_states(assemble(gear_pair_scene()), np.array([300.0, 330.0]) * RPM, periods=0, branch=False)
+
+
 def test_progress_runs_over_all_curves():
     seen: list[tuple[str, float]] = []
     steady_states(
