@@ -31,7 +31,6 @@ from host import MissingExtra
 from model_studies.progress import Progress, Report, by_cost, silent, unreported
 from model_studies.workers import InProcess, Workers, divided
 
-_HERE = InProcess()
 MARGIN = 8
 """Spherical harmonics above the wavenumber times the radius, whose part of the far field is below 1e-6."""
 MIDDLES = 0.5 * (np.ones((3, 3)) - np.eye(3))  # barycentric coordinates of the edges' middles
@@ -66,7 +65,10 @@ BLOCK = 512
 
 
 def _layer_operators(
-    hull: Hull, wavenumber: float, done: Report = unreported, workers: Workers = _HERE
+    hull: Hull,
+    wavenumber: float,
+    done: Report = unreported,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return the dense single layer (T, T) and double layer (T, N), tested with the panels, m^3 and m^2.
 
@@ -193,7 +195,7 @@ class BoundaryElements:
 
     model_name: str = "boundary_elements"
     progress: Progress = field(default=silent, repr=False, compare=False)
-    workers: Workers = field(default=_HERE, repr=False, compare=False)
+    workers: Workers = field(default=InProcess(), repr=False, compare=False)
 
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
         """Return the resistance in the far field; see `surface_pressure` for what it raises."""
@@ -216,7 +218,7 @@ def surface_pressure(
     shapes: ComplexArray,
     air: Air,
     progress: Progress = silent,
-    workers: Workers = _HERE,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> _SurfacePressure:
     """Solve for the pressure on a hull that vibrates in `shapes` (T, M) at a frequency, Hz.
 

@@ -62,7 +62,7 @@ def _octaves(low: float, high: float) -> list[tuple[float, float]]:
 
 
 def _expected_knots(ka: float) -> float:
-    """Return how many frequencies `_knots_between` about takes in an octave up to a wavenumber times radius.
+    """Return about how many frequencies `_knots_of` takes in an octave up to a wavenumber times radius.
 
     Counted on cast boxes with 40 and 100 coordinates, ka of 0.6 to 28: within a quarter. Few simple modes
     need half as many.
@@ -258,7 +258,7 @@ def housing_radiation(
     model: RadiationModel,
     frequencies: ArrayLike,
     air: Air | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Callable[[float], None] = unreported,
     expected: Callable[[Cost], object] = lambda _cost: None,
     cache: Path | None = None,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
@@ -275,7 +275,7 @@ def housing_radiation(
         With a surface.
     frequencies : array
         Hz, above zero; the range grows outwards to the edges of third octaves.
-    progress : callable, optional
+    progress : callable
         Called with the fraction done.
     expected : callable, optional
         Called with the predicted cost before it is computed.
@@ -297,9 +297,7 @@ def housing_radiation(
     resolved = 0.0 if isinstance(model, EquivalentRadiatedPower) else resolved_frequency(outer, air)
     ends = _octaves(low, min(high, resolved))
     parted = [_Octave(*each, radiating_hull(outer, each[1], air.sound_speed)) for each in ends]
-    parts, cost = _resolved_parts(
-        parted, model, air, housing.modes[1], progress or unreported, expected, cache, workers
-    )
+    parts, cost = _resolved_parts(parted, model, air, housing.modes[1], progress, expected, cache, workers)
     panels = max((len(octave.hull.shapes) for octave in parted), default=len(outer.hull.triangles))
     if high > resolved:
         first = max(low, float(np.nextafter(resolved, np.inf)))
