@@ -12,7 +12,7 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import assemble
 from dynamics.forces.elements import evaluate
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.integrators.advance import _add_table_work
+from dynamics.integrators.advance import add_table_work
 from dynamics.integrators.explicit_step import accelerate, set_motion, write_powers
 from dynamics.integrators.march import march_on, start_march
 from dynamics.integrators.state_sink import MemorySink
@@ -67,7 +67,7 @@ def _powers(system: SystemArrays, work: Workspace, start: float, times: int) -> 
 @compiled
 def _tables(system: SystemArrays, work: Workspace, start: float, times: int) -> None:
     for _ in range(times):
-        _add_table_work(system, work, work.step_sizes[work.counts[Count.LEVEL]])
+        add_table_work(system, work, work.step_sizes[work.counts[Count.LEVEL]])
 
 
 PARTS: dict[str, Part] = {

@@ -321,7 +321,7 @@ LEAST_RATE = 1.5  # by which errors must fall from fidelity to fidelity to say w
 
 
 @dataclass(frozen=True)
-class _FidelityResult(model_studies.FidelityResult):
+class FidelityResult(model_studies.FidelityResult):
     """Errors and time of a fidelity.
 
     Attributes
@@ -345,7 +345,7 @@ class _FidelityResult(model_studies.FidelityResult):
 
 
 @dataclass(frozen=True)
-class Frontier(model_studies.Frontier[_FidelityResult]):
+class Frontier(model_studies.Frontier[FidelityResult]):
     """The accuracy study of one scene.
 
     Attributes
@@ -400,7 +400,7 @@ def frontier(
         progress,
     )
     results = tuple(  # every fidelity against the last, and that one by how the errors fell towards it
-        _FidelityResult(
+        FidelityResult(
             outcome.fidelity.name,
             outcome.fidelity.title,
             outcome.cpu_seconds,
@@ -470,6 +470,6 @@ def _remaining(coarser: Sequence[tuple[_Fidelity, Errors]], _finest: _Fidelity) 
     }
 
 
-def _knee_of_results(results: Sequence[_FidelityResult]) -> str | None:
+def _knee_of_results(results: Sequence[FidelityResult]) -> str | None:
     """Return the knee; differences below what steps and tables of the reference leave say nothing."""
     return knee_above(results, *(TABLE_REST * result.error for result in results if result.name == HALF))

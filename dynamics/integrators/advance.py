@@ -150,7 +150,7 @@ def _start_at_the_end(work: Workspace) -> None:
 
 
 @routine
-def _add_table_work(system: SystemArrays, work: Workspace, step: float) -> None:
+def add_table_work(system: SystemArrays, work: Workspace, step: float) -> None:
     """Add what the tables V(x, d; m, a) supply over the step that ends in ``work.local``.
 
     That is the integral of V_x x' + V_m m' + V_a a'. V_x follows the slope of the transmission error, which
@@ -323,7 +323,7 @@ AT_REST = 1e-100
 def prepare_steps(system: SystemArrays, work: Workspace, implicit: bool, audit: bool) -> None:
     """Compile the method that a run takes, and the powers if it audits them."""
     method = (implicit_step, solve_stage) if implicit else (explicit_step,)
-    for part in (accelerate, *method, *((write_powers, _add_table_work) if audit else ())):
+    for part in (accelerate, *method, *((write_powers, add_table_work) if audit else ())):
         part.prepare(system, work)
 
 
@@ -411,7 +411,7 @@ def _accept(system: SystemArrays, work: Workspace, control: Control, level: int,
     if control.audit:
         _add_works(work, control.implicit, step)
         add_drive_work(system, work)
-        _add_table_work(system, work, step)
+        add_table_work(system, work, step)
         _watch_losses(work)
     _move_on(work, control.implicit, step, end)
     work.counts[Count.ACCEPTED] += 1

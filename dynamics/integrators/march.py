@@ -117,7 +117,7 @@ def _by_part(names: list[str] | tuple[str, ...], peak: FloatArray, rms: FloatArr
     }
 
 
-def _stored_energy(
+def stored_energy(
     system: SystemArrays, time: float, q: FloatArray, v: FloatArray, moved: IntArray
 ) -> FloatArray:
     """Return kinetic, bushing and mesh energy, J, (3,).
@@ -265,7 +265,7 @@ def start_march(
         work.v[:] = velocity
     scene = system.scene
     samples = int(np.floor(scene.duration * system.sampling.rate * (1.0 + 1e-12))) + 1
-    initial = _stored_energy(system.arrays, 0.0, start.displacement, work.v, work.moved)
+    initial = stored_energy(system.arrays, 0.0, start.displacement, work.v, work.moved)
     control = _control(system, integration)
     sampler = Sampler.of(system)
     ring = SampleRing.of(system.arrays, sampler)
@@ -337,7 +337,7 @@ def ending(march: March, sink: StateSink, status: RunStatus, seconds: float) -> 
     held = by_address(counted), march.compiled.sampler, by_address(ring)
     continue_past_the_end(*held, march.sampler.taps.size // 2, by_address(room))
     sink.keep(before, samples - before)
-    final = _stored_energy(march.system.arrays, end, work.q, work.v, work.moved)
+    final = stored_energy(march.system.arrays, end, work.q, work.v, work.moved)
     return Ending(
         status,
         samples,

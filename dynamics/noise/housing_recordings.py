@@ -84,7 +84,7 @@ class _SoundPaths:
         return np.asarray(spread @ self.gain), first
 
 
-def _sound_paths(
+def sound_paths(
     hull: Hull, shapes: FloatArray, microphone: FloatArray, model: ElementalRadiators, air: Air
 ) -> _SoundPaths:
     """Return the paths from a hull that moves in shapes to a microphone.
@@ -158,7 +158,7 @@ def pressure_transfer(
     Raises
     ------
     InputError
-        As `outer_hull`, `_sound_paths` and `modal_amplitudes` do.
+        As `outer_hull`, `sound_paths` and `modal_amplitudes` do.
     """
     hertz = np.asarray(frequency, dtype=float)
     paths = _paths(housing, microphone, model, air)
@@ -193,7 +193,7 @@ def pressure_signal(
     Raises
     ------
     InputError
-        As `outer_hull`, `_sound_paths` and `motion_pieces` do.
+        As `outer_hull`, `sound_paths` and `motion_pieces` do.
     """
     paths = _paths(housing, microphone, model, air)
     rows = np.eye(len(housing.mass))
@@ -215,7 +215,7 @@ def _paths(
     housing: ReducedHousing, microphone: FloatArray, model: ElementalRadiators, air: Air | None
 ) -> _SoundPaths:
     outer = outer_hull(housing)
-    return _sound_paths(outer.hull, outer.shapes, microphone, model, air or Air())
+    return sound_paths(outer.hull, outer.shapes, microphone, model, air or Air())
 
 
 def _convolved(pieces: Iterator[FloatArray], response: FloatArray, first: int, samples: int) -> FloatArray:

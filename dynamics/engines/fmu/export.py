@@ -238,7 +238,7 @@ _FOLDERS = {("Linux", "x86_64"): ("linux64", ".so"), ("Darwin", "x86_64"): ("dar
 _SECONDS = 120
 
 
-class _CompilerError(DynamicsError):
+class CompilerError(DynamicsError):
     """The C compiler refused the FMU's sources; its message is the text."""
 
 
@@ -272,7 +272,7 @@ def _compile_library(folder: Path, sources: Sequence[str], library: str) -> None
     command = [*_find_compiler(), *FLAGS, *strip, "-o", library, *sources, "-lm"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=_SECONDS, check=False)
     if done.returncode != 0:
-        raise _CompilerError(f"{shlex.join(command)} failed:\n{done.stderr.strip()}")
+        raise CompilerError(f"{shlex.join(command)} failed:\n{done.stderr.strip()}")
 
 
 # The generated C header: value references, start values and the facts of the pair.

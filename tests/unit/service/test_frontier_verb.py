@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from command_line import loa
 
+from dynamics.accuracy import FidelityResult as SceneResult
 from dynamics.accuracy import Frontier as SceneFrontier
-from dynamics.accuracy import _FidelityResult as SceneResult
 from fe_contact.analysis.studies.frontier import FidelityResult, Frontier
 from fe_contact.analysis.studies.measured_full_contact import (
     FULL_CONTACT,

@@ -16,7 +16,7 @@ from dynamics.bearings import Bushing
 from dynamics.errors import InputError
 from dynamics.forces.laws import Law
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.integrators.march import _stored_energy
+from dynamics.integrators.march import stored_energy
 from dynamics.joints import Coupling
 from dynamics.linearize import natural_modes
 from dynamics.linearize.operating_speeds import common_period
@@ -124,7 +124,7 @@ def test_elastic_forces_are_the_slopes_of_the_energy_stored():
     for i in range(q.size):
         change = np.zeros(q.size)
         change[i] = 1e-7
-        high, low = (_stored_energy(arrays, time, q + s * change, 0.0 * q, none)[1] for s in (1.0, -1.0))
+        high, low = (stored_energy(arrays, time, q + s * change, 0.0 * q, none)[1] for s in (1.0, -1.0))
         assert (high - low) / 2e-7 == pytest.approx(push[i], rel=1e-6, abs=1e-6 * np.max(np.abs(push)))
 
 

@@ -28,7 +28,7 @@ from dynamics.bearings.row_law import row_law
 from dynamics.errors import InputError
 from dynamics.forces.laws import OF_BEARINGS
 from dynamics.integrators import static_equilibrium
-from dynamics.integrators.march import _stored_energy
+from dynamics.integrators.march import stored_energy
 from dynamics.linearize import natural_modes
 from dynamics.motion.observation import local_state
 
@@ -104,7 +104,7 @@ def test_elastic_forces_are_the_slopes_of_the_energy_stored(kind):
     for i in [i for i, name in enumerate(system.freedoms.name) if name.startswith("rotor")]:
         change = np.zeros(q.size)
         change[i] = 1e-8 / arrays.scale[i]
-        high, low = (_stored_energy(arrays, 0.0, q + s * change, 0.0 * q, none)[1] for s in (1.0, -1.0))
+        high, low = (stored_energy(arrays, 0.0, q + s * change, 0.0 * q, none)[1] for s in (1.0, -1.0))
         assert (high - low) / 2e-8 == pytest.approx(push[i] / arrays.scale[i], rel=1e-5, abs=1e-2)
 
 

@@ -17,7 +17,7 @@ from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table
 
 from dynamics.engines import MeshElement, mesh_element
 from dynamics.engines.fmu import export_fmu
-from dynamics.engines.fmu.export import _binary_folder, _CompilerError, _find_compiler
+from dynamics.engines.fmu.export import CompilerError, _binary_folder, _find_compiler
 from dynamics.errors import InputError
 
 fmpy = fmu_instance.fmpy
@@ -175,7 +175,7 @@ def test_without_a_compiler_the_error_says_what_to_do_and_sources_can_be_written
 
 def test_a_compiler_that_fails_is_quoted(element, tmp_path, monkeypatch):
     monkeypatch.setenv("CC", "cc -DTABLE_FILE_MISSING -include nowhere.h")
-    with pytest.raises(_CompilerError, match=r"nowhere\.h"):
+    with pytest.raises(CompilerError, match=r"nowhere\.h"):
         export_fmu(element, tmp_path / "m.fmu")
     assert not list(tmp_path.iterdir())
 

@@ -15,7 +15,7 @@ from dynamics.bearings import Bushing
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact, SpringCurve
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.integrators.march import _stored_energy
+from dynamics.integrators.march import stored_energy
 from dynamics.joints import Coupling
 from dynamics.linearize import natural_modes
 from dynamics.loads import TimeLaw
@@ -107,7 +107,7 @@ def test_elastic_forces_are_the_slopes_of_the_energy_stored():
     for i in range(q.size):
         change = np.zeros(q.size)
         change[i] = 1e-8 / arrays.scale[i]
-        high, low = (_stored_energy(arrays, 0.0, q + s * change, 0.0 * q, none)[1] for s in (1.0, -1.0))
+        high, low = (stored_energy(arrays, 0.0, q + s * change, 0.0 * q, none)[1] for s in (1.0, -1.0))
         assert (high - low) / 2e-8 == pytest.approx(push[i] / arrays.scale[i], rel=1e-5, abs=1e-2)
 
 

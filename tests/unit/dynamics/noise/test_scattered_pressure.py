@@ -11,7 +11,7 @@ from sounding_housings import rigid_housing
 from dynamics.acoustics import Air, ElementalRadiators, exterior_pressure
 from dynamics.acoustics.air import directions
 from dynamics.noise import pressure_transfer, scattered_pressure_transfer
-from dynamics.noise.housing_recordings import _sound_paths
+from dynamics.noise.housing_recordings import sound_paths
 
 AIR, RADIUS = Air(), 0.1
 PLACES = np.array([[0.0, 0.1, 0.2], [0.3, 0.4, 0.5], [0.0, 5.0, 5.0]])
@@ -60,7 +60,7 @@ def test_monopoles_are_off_by_what_the_manual_states() -> None:
     shapes = np.stack([np.ones(len(x)), *covers, hull.normals[:, 2]], axis=1)
     places, hertz = directions(5)[0], np.array([400.0])
     whole = np.abs(exterior_pressure(hull, 400.0, shapes + 0j, places, AIR))
-    paths = [_sound_paths(hull, shapes, place, ElementalRadiators(), AIR) for place in places]
+    paths = [sound_paths(hull, shapes, place, ElementalRadiators(), AIR) for place in places]
     monopoles = 2.0 * np.pi * 400.0 * np.abs([path.transfer(hertz)[0] for path in paths])
     error = 20.0 * np.log10(monopoles / whole)[whole > np.sqrt(0.1) * whole.max(axis=0)]
     assert -7.0 < error.min() < -4.0

@@ -37,7 +37,7 @@ from dynamics.noise import (
     sound_band,
     sound_limit,
 )
-from dynamics.noise.housing_recordings import _sound_paths
+from dynamics.noise.housing_recordings import sound_paths
 from dynamics.noise.sensitivities import Sensitivity, _ranked
 from dynamics.noise.sound_band import USUAL_RANGES, _missed_between, largest_level
 from dynamics.vibration import seat_forces
@@ -75,7 +75,7 @@ def test_a_pulsating_sphere_of_monopoles(ka: float) -> None:
     hull, k = sphere(12, RADIUS), ka / RADIUS
     hertz = k * AIR.sound_speed / (2.0 * np.pi)
     for distance in (1.5 * RADIUS, 20.0 * RADIUS):
-        paths = _sound_paths(hull, np.ones((len(hull.areas), 1)), np.array([0.0, 0.0, distance]), FREE, AIR)
+        paths = sound_paths(hull, np.ones((len(hull.areas), 1)), np.array([0.0, 0.0, distance]), FREE, AIR)
         per_acceleration = paths.transfer(np.array([hertz]))[0, 0]
         outgoing = AIR.density * hull.area * np.exp(-1j * k * distance) / (4.0 * np.pi * distance)
         assert per_acceleration == pytest.approx(outgoing * np.sin(ka) / ka, rel=0.01)
@@ -100,7 +100,7 @@ def test_a_piston_in_a_baffle_on_its_axis() -> None:
     hertz = np.array([500.0, 2000.0, 6000.0])
     k = 2.0 * np.pi * hertz / AIR.sound_speed
     for height in (0.03, 0.1, 1.0):
-        paths = _sound_paths(piston, np.ones((len(triangles), 1)), np.array([0, 0, height]), BAFFLED, AIR)
+        paths = sound_paths(piston, np.ones((len(triangles), 1)), np.array([0, 0, height]), BAFFLED, AIR)
         pressure = 2.0 * np.pi * hertz * np.abs(paths.transfer(hertz)[:, 0])
         expected = 2.0 * AIR.impedance * np.abs(np.sin(0.5 * k * (np.hypot(height, RADIUS) - height)))
         np.testing.assert_allclose(pressure, expected, atol=0.005 * 2.0 * AIR.impedance)

@@ -14,8 +14,8 @@ from analysis_requests import design_request, table_request
 from geared_scenes import gear_pair_scene
 
 from dynamics.ablation import ablate as ablate_scene
+from dynamics.accuracy import FidelityResult as SceneFidelity
 from dynamics.accuracy import Frontier as SceneFrontier
-from dynamics.accuracy import _FidelityResult as SceneFidelity
 from fe_contact.analysis.studies.ablation import ablate
 from fe_contact.geometry import FlankModification, Gear, GearPair
 from fe_contact.microgeometry.confirmation import HarrisMap
