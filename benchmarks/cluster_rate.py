@@ -7,8 +7,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,15 +24,19 @@ _TASKS = 20_000
 _TASK_S = 0.3
 """CPU time of a task of a table of ten alignments (`shared_table`), s."""
 _WORKERS = """
-import asyncio, sys
+import asyncio, dask, sys
 from distributed import Worker
+dask.config.set({"distributed.admin.tick.interval": "1h", "distributed.worker.profile.enabled": False})
+dask.config.set({"distributed.admin.system-monitor.interval": "1h"})
 async def work(address, count):
     quiet = {"nthreads": 1, "memory_limit": 0, "dashboard": False}
     workers = [await Worker(address, name=str(number), **quiet) for number in range(count)]
     await asyncio.gather(*(worker.finished() for worker in workers))
 asyncio.run(work(sys.argv[1], int(sys.argv[2])))
 """
-"""Threads of one process: they sleep, so that two cores are enough for 512 of them."""
+"""Threads of one process that sleep and do not watch themselves: two cores are enough for 512 of them."""
+_PATIENCE_S = 120.0
+"""How long a cluster may take to start."""
 
 
 @dataclass(frozen=True)
@@ -78,25 +82,40 @@ def _sleep(seconds: float, item: int) -> int:
 @contextmanager
 def _cluster(count: int) -> Iterator[tuple[ByDask, int]]:
     """Provide a cluster of that many workers, and the process id of its scheduler."""
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as ends:
         file = Path(folder) / "scheduler.json"
         options = ["--no-dashboard", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file)]
-        scheduler = _started("-m", "dask", "scheduler", *options)
-        while not file.exists():
-            time.sleep(0.05)
+        scheduler = ends.enter_context(_started("-m", "dask", "scheduler", *options))
+        _wait_for(lambda: file.exists() and file.stat().st_size > 0, scheduler)
         address = json.loads(file.read_text("utf-8"))["address"]
-        sleepers = _started("-c", _WORKERS, address, str(count))
+        sleepers = ends.enter_context(_started("-c", _WORKERS, address, str(count)))
         workers = dask_workers(address)
+        ends.enter_context(workers.client)
+        _wait_for(lambda: len(workers.client.nthreads()) >= count, sleepers)  # type: ignore[no-untyped-call]
+        yield workers, scheduler.pid
+
+
+@contextmanager
+def _started(*words: str) -> Iterator[subprocess.Popen[bytes]]:
+    """Run Python on words; end it with the block, whatever it does."""
+    process = subprocess.Popen([sys.executable, *words], stderr=subprocess.DEVNULL)
+    try:
+        yield process
+    finally:
+        process.terminate()
         try:
-            while len(workers.client.nthreads()) < count:  # type: ignore[no-untyped-call]
-                time.sleep(0.1)
-            yield workers, scheduler.pid
-        finally:
-            workers.client.close()  # type: ignore[no-untyped-call]
-            for process in (sleepers, scheduler):
-                process.terminate()
-                process.wait(timeout=30.0)
+            process.wait(timeout=30.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
 
 
-def _started(*words: str) -> subprocess.Popen[bytes]:
-    return subprocess.Popen([sys.executable, *words], stderr=subprocess.DEVNULL)
+def _wait_for(ready: Callable[[], bool], process: subprocess.Popen[bytes]) -> None:
+    """Wait until a process has made something ready; it may end or take too long."""
+    begun = time.monotonic()
+    while not ready():
+        if process.poll() is not None or time.monotonic() - begun > _PATIENCE_S:
+            raise RuntimeError(
+                f"the cluster did not start within {_PATIENCE_S:g} s, or a process of it ended"
+            )
+        time.sleep(0.1)
