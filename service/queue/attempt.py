@@ -66,6 +66,10 @@ class Children:
         memory_mb = order.memory_limit_mb or self._memory_mb
         return Worker(replace(order, memory_limit_mb=memory_mb), log, self._forks.launch)
 
+    def hurry(self) -> None:
+        """Begin what is being begun at once: it is to stop."""
+        self._forks.hurry()
+
     def close(self) -> None:
         """End the warm process."""
         self._forks.close()

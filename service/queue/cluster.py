@@ -197,6 +197,9 @@ class Cluster:
         self._thread = threading.Thread(target=lambda: asyncio.run(self._main()), name="dask", daemon=True)
         self._thread.start()
 
+    def hurry(self) -> None:
+        """Do nothing: to begin takes no time."""
+
     def close(self) -> None:
         """Disconnect; the tasks stay with Dask."""
         self._stopping = True

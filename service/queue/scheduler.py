@@ -100,6 +100,7 @@ class Scheduler:
         if self._thread is None or self._wake_in is None:
             return
         self._stopping.set()
+        self._crew.hurry()
         self.wake()
         self._thread.join()
         if self._housekeeper is not None:

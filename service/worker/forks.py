@@ -1,7 +1,7 @@
 """Child processes that work on one order each: started anew, or forked from a warm process.
 
-A child forked from it needs no imports and no compilation. It is started beside the second child; while it
-warms up, and where it cannot be had, children are started anew.
+A child forked from it needs no imports and no compilation. It is started for the first child, which waits for
+it: both take what that child alone would. Where it cannot be had, or not in time, children are started anew.
 """
 
 from __future__ import annotations
@@ -101,6 +101,8 @@ _FORK_SERVER = (sys.executable, "-P", "-m", "service.worker.fork_server")
 """Without the folder in which the service was started: its modules may be another program's."""
 MOST_FORKS = 500
 """Children of one warm process; then a new one takes its place."""
+WARM_WITHIN_S = 10.0
+"""How long a child waits for a warm process, which takes two on an idle machine."""
 _PATIENCE_S = 10.0
 """For an answer, which takes a hundredth of a second."""
 _LOST = Ended(-9, 0.0, 0)
@@ -123,7 +125,6 @@ class Forks:
     def __init__(self, modules: Iterable[str], log: Path, work: str = WORK) -> None:
         self._modules, self._log, self._work = sorted(set(modules)), log, work
         self._server: _Server | None = None
-        self._launched = 0
 
     def warm_up(self) -> None:
         """Start the warm process, if the system forks and there is none; return at once."""
@@ -141,24 +142,20 @@ class Forks:
         """Whether the next child is forked."""
         return self._server is not None and self._server.ready
 
-    def launch(self, ends: Ends, warm_within: float = 0.0) -> ChildProcess:
-        """Fork a child, or start one; OSError: the system does neither.
-
-        Parameters
-        ----------
-        ends : Ends
-        warm_within : float
-            Seconds in which a warm process may become ready; 0: what starts now serves later children.
-        """
-        self._launched += 1
-        if self._launched > 1 or warm_within > 0.0:
-            self.warm_up()
+    def launch(self, ends: Ends, warm_within: float = WARM_WITHIN_S) -> ChildProcess:
+        """Fork a child, or start one; OSError: the system does neither."""
+        self.warm_up()
         if self._server is not None and not self._server.ready:
             self._server.await_word(warm_within)
         if self._server is not None and self.warm:
             with contextlib.suppress(ConnectionError):
                 return self._server.fork(ends)
         return start_child(ends, self._work)
+
+    def hurry(self) -> None:
+        """Let no child wait for a warm process; for any thread."""
+        if (server := self._server) is not None:
+            server.end_unless_ready()
 
     def close(self) -> None:
         """End the warm process; its children live on."""
@@ -227,6 +224,10 @@ class _Server:
             self._gone = True
             raise ConnectionError
         return json.loads(answer)
+
+    def end_unless_ready(self) -> None:
+        if not self._ready:
+            self._process.kill()
 
     def close(self) -> None:
         self._channel.close()

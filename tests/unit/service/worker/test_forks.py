@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -43,17 +44,17 @@ def parent_of_last(machine: Bench, key: str) -> int:
     return int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
 
 
-def test_the_third_child_is_forked(machine: Bench) -> None:
-    for text in ("first", "second"):
-        assert machine.ended(machine.submit(text=text)).status == "successful"
-    warm = warm_process(machine)
+def test_the_first_child_is_forked(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It waits for what it would have to load itself."""
+    monkeypatch.setattr(Forks.launch, "__defaults__", (600.0,))
     job = machine.submit(mode="hang")
-    assert parent_of_last(machine, job.key) == warm
+    parent = parent_of_last(machine, job.key)
+    assert parent == warm_process(machine)
     machine.submissions.dismiss(job.id)
     machine.scheduler.wake()
     until(lambda: machine.submissions.find(job.id).ended)
-    third = machine.ended(machine.submit(text="third"))
-    assert machine.store.verified(third.key, "database").path.read_text() == "third"
+    second = machine.ended(machine.submit(text="second"))
+    assert machine.store.verified(second.key, "database").path.read_text() == "second"
 
 
 def test_a_child_outlives_the_warm_process_and_others_follow(machine: Bench) -> None:
@@ -68,6 +69,21 @@ def test_a_child_outlives_the_warm_process_and_others_follow(machine: Bench) -> 
     for text in ("a", "b"):
         assert machine.ended(machine.submit(text=text)).status == "successful"
     assert warm_process(machine) != warm
+
+
+def test_a_stop_does_not_wait_for_a_warm_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Forks.launch, "__defaults__", (600.0,))
+    (tmp_path / "long_to_load.py").write_text("import time\ntime.sleep(600)\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
+    machine = bench(tmp_path / "data", REGISTRY)
+    machine.scheduler._crew._forks._modules.append("long_to_load")
+    machine.scheduler.start()
+    machine.submit(mode="hang")
+    until(lambda: machine.scheduler._crew._forks._server is not None)
+    time.sleep(1.0)
+    began = time.monotonic()
+    machine.close()
+    assert time.monotonic() - began < 60.0
 
 
 def test_a_stop_ends_the_warm_process(machine: Bench) -> None:
