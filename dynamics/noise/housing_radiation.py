@@ -333,7 +333,9 @@ def _resolved_parts(
     computed: list[float] = []
 
     def resistances(points: Points) -> Iterator[ComplexArray]:
-        matrices = divided(workers, _resistance_at, radiators, points, reference.seconds)
+        # the first points are followed by all others
+        seconds = sum(cost_of_each[index] for index, _ in points) if computed else reference.seconds
+        matrices = divided(workers, _resistance_at, radiators, points, seconds)
         for (index, _), matrix in zip(points, matrices, strict=True):
             yield matrix
             computed.append(cost_of_each[index])

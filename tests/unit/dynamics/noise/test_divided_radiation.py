@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
 import numpy as np
 import pytest
 from hulls import box
@@ -10,7 +14,32 @@ from sounding_housings import smooth_motion, with_surface
 
 from dynamics.acoustics import ElementalRadiators
 from dynamics.noise import housing_radiation
-from model_studies.workers import InProcess, executor, local_processes
+from model_studies.host_speed import host_slowness
+from model_studies.workers import InProcess, RunCost, executor, local_processes
+
+
+@dataclass(frozen=True)
+class Noting:
+    """Workers that note how many tasks they get at a time."""
+
+    sent: list[int] = field(default_factory=list)
+    cost: RunCost = field(default_factory=RunCost)
+
+    def run(self, function: Any, shared: Any, items: Sequence[Any]) -> Iterator[Any]:
+        self.sent.append(len(items))
+        return (function(shared, item) for item in items)
+
+
+def test_the_first_frequencies_are_sent_for_the_whole_and_later_ones_by_what_they_take(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    bare, hull = bare_housing(modal=8), box((0.3, 0.2, 0.15), (6, 4, 3))
+    body, costs, workers = with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness))), [], Noting()
+    request = body, ElementalRadiators(), [100.0, 900.0]
+    housing_radiation(*request, expected=costs.append)
+    monkeypatch.setattr(executor, "START_SECONDS", 0.6 * costs[0].seconds / host_slowness(None))
+    computed = housing_radiation(*request, workers=workers)
+    assert len(workers.sent) == 1 and 1 < workers.sent[0] < computed.frequency.size
 
 
 @pytest.mark.law
