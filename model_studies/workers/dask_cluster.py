@@ -40,12 +40,7 @@ CONNECT_S = 10.0
 class ByDask:
     """A Dask cluster: tasks of workers that die are run again by others.
 
-    Attributes
-    ----------
-    client : distributed.Client
-        Stays the caller's to close.
-    patience : float
-        Seconds without any worker after which the run is given up.
+    The client stays the caller's to close; after `patience` seconds without any worker the run is given up.
     """
 
     client: Client

@@ -80,19 +80,11 @@ R = TypeVar("R")
 
 @dataclass
 class RunCost:
-    """Cost of remote tasks so far; the only state here that changes.
+    """Cost of remote tasks so far, without work that was lost with its worker: nobody can tell.
 
-    Work that is lost with its worker is not in it: nobody can tell.
-
-    Attributes
-    ----------
-    cpu_seconds : float
-        Of the threads that did them and of the processes they started. A worker that does its tasks in its
-        main thread, as those of a pool of processes, has no others: then of all its threads.
-    peak_memory_bytes : int
-        Largest resident memory of any of their processes.
-    lost : str
-        Why they were lost, and the rest was done here; empty if they were not.
+    The CPU time is that of the threads that did them, or of all threads of a worker that does them in its
+    main one as those of a pool do, and of the processes they started; the memory the largest of any of their
+    processes; `lost` says why they were lost and the rest was done here.
     """
 
     tasks: int = 0
@@ -149,10 +141,7 @@ LARGE = 100_000
 class ByExecutor:
     """Any `concurrent.futures.Executor` of this machine; it stays the caller's to shut down.
 
-    Attributes
-    ----------
-    executor : concurrent.futures.Executor
-        Processes are to be spawned, not forked: compiled code and numerical libraries do not survive a fork.
+    Its processes are spawned, not forked: compiled code and numerical libraries do not survive a fork.
     """
 
     executor: Executor
@@ -229,15 +218,10 @@ class Workers(Protocol):
         """Cost of remote tasks, beside the CPU time of this process."""
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Yield ``function(shared, item)`` of every item, in their order.
+        """Yield ``function(shared, item)`` of every item, in their order; `WorkersLost`: nobody is left.
 
         The function is one of a module; `shared`, items and results can be pickled. The same object shared by
         several runs is sent once.
-
-        Raises
-        ------
-        WorkersLost
-            There is nobody left to do the tasks.
         """
 
 
@@ -271,10 +255,7 @@ def kept(function: Function) -> Function:
 class OrHere:
     """Workers that may be lost; what they leave is done in this process.
 
-    Attributes
-    ----------
-    told : callable
-        Called once, with the reason, when they are lost; nobody looks for them again.
+    `told` is called once, with the reason, when they are lost; nobody looks for them again.
     """
 
     others: Workers

@@ -25,10 +25,7 @@ HOW_IT_CAME = ("from_cache", "seconds")
 def content_digest(content: object) -> str:
     """Return the SHA-256 of frozen data: dataclasses by their fields, arrays by type, shape and values.
 
-    Raises
-    ------
-    TypeError
-        Something else is in it, of which nobody knows what makes two of it equal.
+    Raises `TypeError`: something else is in it, of which nobody knows what makes two of it equal.
     """
     digest = hashlib.sha256()
     for part in _parts(content):
@@ -69,12 +66,8 @@ _CHECKSUM = 32
 class Remembering:
     """Workers with a folder for what they did.
 
-    Attributes
-    ----------
-    folder : Path
-        Of this study alone, and of nobody else: its files are unpickled. It is the caller's to remove.
-    version : str
-        Of what computes: other versions' results are not taken.
+    The folder is of this study alone, as its files are unpickled, and the caller's to remove. Results of
+    another `version` of what computes are not taken.
     """
 
     others: Workers

@@ -43,13 +43,7 @@ Run: TypeAlias = Worker | Task
 
 
 class Children:
-    """Child processes of this one, `settings.workers` at a time.
-
-    Attributes
-    ----------
-    keeps : bool
-        Whether what it runs outlives this process, and is found again by the name it was begun under.
-    """
+    """Child processes of this one, `settings.workers` at a time."""
 
     keeps = False
 
@@ -76,7 +70,7 @@ class Children:
 
 
 Crew: TypeAlias = Children | Cluster
-"""Who begins work on orders."""
+"""Who begins work on orders; what one runs that `keeps` outlives the server and is found again by name."""
 
 
 # What the workers of one scheduler did: counted by the process they worked for.
@@ -92,24 +86,19 @@ class WorkerFigures(Collector):
     """Counts of starts, ends and resources; what follows from them is for who reads them."""
 
     def __init__(self) -> None:
-        self._starts = Counter("loa_worker_starts", "Workers started", ["process"], registry=None)
-        self._ends = Counter("loa_worker_ends", "Workers ended", ["process", "outcome"], registry=None)
+        def counter(name: str, text: str, *labels: str) -> Counter:
+            return Counter(name, text, labels, registry=None)
+
+        self._starts = counter("loa_worker_starts", "Workers started", "process")
+        self._ends = counter("loa_worker_ends", "Workers ended", "process", "outcome")
         text = "Warnings of ended workers, as that the Dask cluster is away"
-        self._warnings = Counter("loa_worker_warnings", text, ["process"], registry=None)
-        self._cpu = Counter("loa_worker_cpu_seconds", "CPU time of ended workers", ["process"], registry=None)
-        self._memory = Histogram(
-            "loa_worker_peak_memory_bytes",
-            "Most resident memory of ended workers",
-            ["process"],
-            buckets=[bound * BYTES_PER_MB for bound in _MEMORY_MB],
-            registry=None,
-        )
-        self._reads = Counter(
-            "loa_compliance_cache_reads",
-            "Bodies that workers looked for in the compliance cache",
-            ["outcome"],
-            registry=None,
-        )
+        self._warnings = counter("loa_worker_warnings", text, "process")
+        self._cpu = counter("loa_worker_cpu_seconds", "CPU time of ended workers", "process")
+        text, bounds = "Most resident memory of ended workers", [bound * BYTES_PER_MB for bound in _MEMORY_MB]
+        name = "loa_worker_peak_memory_bytes"
+        self._memory = Histogram(name, text, ["process"], buckets=bounds, registry=None)
+        text = "Bodies that workers looked for in the compliance cache"
+        self._reads = counter("loa_compliance_cache_reads", text, "outcome")
         for outcome in ("hit", "miss"):
             self._reads.labels(outcome)
 
@@ -187,23 +176,7 @@ class _AttemptTrace:
 
 @dataclass(frozen=True)
 class Attempt:
-    """A claim and what works on it.
-
-    Attributes
-    ----------
-    claim : Claim
-    worker : Run
-    workspace : Path
-        Directory of the computation alone.
-    log : Path
-        What the worker writes to its standard error.
-    figures : WorkerFigures
-        Where its start and end are counted.
-    trace : _AttemptTrace
-        Its spans.
-    fraction : PacedFraction
-        Of the work, where it does not predict its cost.
-    """
+    """A claim and what works on it: in a directory of its own, with its log, its figures and its spans."""
 
     claim: Claim
     worker: Run
@@ -232,10 +205,7 @@ class Attempt:
         )
 
     def too_costly(self, claims: Claims) -> str | None:
-        """Return why it has to end, None as long as it is within the limit of its computation.
-
-        The limit is read again before it ends the work: a job that shares it may have extended it.
-        """
+        """Return why it has to end; the limit is read again before, as a job that shares it may extend it."""
         if self.claim.max_cost_s is None:
             return None
         spent = self.worker.spent()
@@ -255,6 +225,8 @@ def begun(
     log = settings.data_directory / "log" / f"{claim.id}.log"
     workspace.mkdir(parents=True, exist_ok=True)
     launched = time.time()  # before the worker can reach its first stage
+    reads = claim.inputs.get("scene") is not None or claim.inputs.get("run") is not None
+    stored = files_read(claim.inputs, store.within(claim.project)) if reads else {}
     order = WorkOrder(
         entry=process.entry,
         inputs=claim.inputs,
@@ -262,7 +234,7 @@ def begun(
         workspace=workspace,
         data_directory=settings.data_directory,
         memory_limit_mb=settings.memory_limit_mb,
-        stored=_files_read(claim, store),
+        stored=stored,
     )
     worker = crew.begin(order, f"{claim.id}-{claim.attempts}", log)
     figures.started(claim.process)
@@ -271,14 +243,6 @@ def begun(
     logger.info("worker started", **facts, **worker.facts, attempt=claim.attempts)
     trace = _AttemptTrace(claim, worker.facts, launched)
     return Attempt(claim, worker, workspace, log, figures, trace, PacedFraction(process.stages))
-
-
-def _files_read(claim: Claim, store: ResultStore) -> dict[str, Path]:
-    """Return the stored results that a claim reads; its inputs are looked into if there may be any."""
-    if claim.inputs.get("scene") is None and claim.inputs.get("run") is None:
-        return {}
-    found: dict[str, Path] = files_read(claim.inputs, store.within(claim.project))
-    return found
 
 
 # The end of an attempt: its products are stored, or the table states why there are none.
@@ -294,26 +258,14 @@ class Ended:
 
 @dataclass(frozen=True)
 class Settlement:
-    """Settles attempts; each step may be repeated until the database and the store take it.
-
-    Attributes
-    ----------
-    claims : Claims
-    store : ResultStore
-    most_attempts : int
-        At a computation.
-    """
+    """Settles attempts; each step may be repeated until the database and the store take it."""
 
     claims: Claims
     store: ResultStore
     most_attempts: int
 
     def settle(self, ended: Ended) -> None:
-        """Store what was made, or note why there is nothing; then remove the workspace.
-
-        The workspace of a worker that died stays for the next attempt, and that of one whose end cannot be
-        noted stays for the next call.
-        """
+        """Store what was made, or note why nothing is; remove the workspace unless an attempt follows."""
         claim = ended.attempt.claim
         span = tracer().begin("settle", claim.traceparent, time.time(), {})
         try:
@@ -327,10 +279,7 @@ class Settlement:
         if outcome.died:
             self.again_or_fail(claim, outcome.failure)
         elif outcome.unexpected:
-            reference = uuid.uuid4().hex[:12]
-            logger.error("worker failed", computation=claim.id, reference=reference, log=str(log))
-            text = f"An unexpected failure occurred. The log has the details under {reference}."
-            self.claims.fail(claim, text, reference=reference)
+            self.fail_by_log(claim, "An unexpected failure occurred.", log=str(log))
         elif outcome.failure:
             self.claims.fail(claim, outcome.failure, outcome.faults)
         else:
@@ -342,12 +291,16 @@ class Settlement:
             for product in outcome.products:
                 self.store.within(claim.project).put(product.key, product.kind, product.file)
         except OSError as error:
-            reference = uuid.uuid4().hex[:12]
-            logger.exception("result could not be stored", computation=claim.id, reference=reference)
-            text = f"The result could not be stored. The log has the details under {reference}."
-            self.claims.fail(claim, no_space(error) or text, reference=reference)
+            self.fail_by_log(claim, no_space(error) or "The result could not be stored.", exc_info=True)
         else:
             self.claims.succeed(claim)
+
+    def fail_by_log(self, claim: Claim, text: str, **facts: Any) -> None:
+        """End work without a result; the details are in the log, under a reference that the caller gets."""
+        reference = uuid.uuid4().hex[:12]
+        logger.error("worker failed", computation=claim.id, reference=reference, reason=text, **facts)
+        told = f"{text} The log has the details under {reference}."
+        self.claims.fail(claim, told, reference=reference)
 
     def again_or_fail(self, claim: Claim, reason: str) -> None:
         """Give work that died another attempt, as long as there are any."""

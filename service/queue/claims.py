@@ -23,25 +23,11 @@ from service.version import solver_version
 
 @dataclass(frozen=True)
 class Claim:
-    """A computation that runs.
+    """A computation that runs; `attempts` counts this one.
 
-    Attributes
-    ----------
-    id, process, key : str
-        Of the computation.
-    inputs : dict
-    attempts : int
-        With this one.
-    max_cost_s : float or None
-        CPU seconds that it may take, as far as known when it was claimed; None: no limit.
-    traceparent : str
-        Of the request that entered it; empty: it belongs to no trace.
-    waited_from : str
-        When it was entered or put back, RFC 3339; empty where that is not known.
-    project : str
-        Whose jobs wanted it.
-    program : str
-        Version that entered it.
+    `max_cost_s` (CPU s; None: no limit) is what was known when it was claimed, `waited_from` when it was
+    entered or put back (RFC 3339), `program` the version that entered it. An empty `traceparent` belongs to
+    no trace.
     """
 
     id: str
@@ -64,16 +50,15 @@ class Reached:
     stage_fraction: float
     fraction: float | None
 
+    def columns(self) -> dict[str, Any]:
+        """Return it as the job table has it."""
+        whole = {} if self.fraction is None else {"fraction": self.fraction}
+        at = {"stage": self.stage, "stage_fraction": self.stage_fraction}
+        return at | whole | {"message": f"Runs: {self.stage}."}
+
 
 class Claims:
-    """Computations as the scheduler sees them.
-
-    Parameters
-    ----------
-    engine : Engine
-    program : str
-        Version of this program.
-    """
+    """Computations as the scheduler of a version of this program sees them."""
 
     def __init__(self, engine: Engine, program: str = solver_version()) -> None:
         self._engine, self.program = engine, program
@@ -132,7 +117,7 @@ class Claims:
 
     def progress(self, reached: Sequence[tuple[Claim, Reached]]) -> None:
         """Note how far works are, in one transaction."""
-        self._change([(claim, _columns(point)) for claim, point in reached])
+        self._change([(claim, point.columns()) for claim, point in reached])
 
     def succeed(self, claim: Claim) -> None:
         """End with the result stored."""
@@ -199,9 +184,3 @@ def _claimed(row: Row[Any]) -> Claim:
     inputs, (project, key) = json.loads(row.inputs), at_address(row.key)
     facts = (row.id, row.process, key, inputs, row.attempts, row.max_cost_s, row.traceparent)
     return Claim(*facts, project=project, program=row.program)
-
-
-def _columns(reached: Reached) -> dict[str, Any]:
-    stage = reached.stage
-    columns = {"stage": stage, "stage_fraction": reached.stage_fraction, "message": f"Runs: {stage}."}
-    return columns if reached.fraction is None else columns | {"fraction": reached.fraction}

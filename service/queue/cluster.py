@@ -124,21 +124,9 @@ class Task:
 
 
 class Cluster:
-    """The tasks of a server on a Dask scheduler.
+    """The tasks of a server on a Dask scheduler, which others may use too: a `deployment` tells them apart.
 
-    Parameters
-    ----------
-    address : str
-        Of the scheduler.
-    deployment : str
-        Whose tasks these are: others may use the same scheduler.
-
-    Attributes
-    ----------
-    most : int
-        Jobs that run at the same time: one for each thread of its workers; 0 while they are away.
-    keeps : bool
-        Whether what it runs outlives the server.
+    `most` jobs run at the same time: one for each thread of its workers; 0 while they are away.
     """
 
     keeps = True
@@ -154,10 +142,7 @@ class Cluster:
         self._thread: threading.Thread | None = None
 
     def check(self) -> None:
-        """Refuse a scheduler that does not answer or has no workers, or workers that cannot do our jobs.
-
-        Raises `BadInput`: it says what to start.
-        """
+        """Raise `BadInput` of a scheduler that does not answer or lacks workers, or of other programs."""
         bound, tip = asyncio.run(self._fault_at_start())
         if bound:
             raise BadInput.of("scheduler", self._address, bound, tip)
@@ -294,10 +279,7 @@ class Cluster:
         self._heard()
 
     async def _done(self, client: Client, task: Task, files: Mapping[str, bytes]) -> Done | str | None:
-        """Submit a task, or join the one that there is; return what was done, or why nothing was.
-
-        None: it has to be followed anew, as after a connection that was lost.
-        """
+        """Submit a task, or join the one there is; return what was done, why nothing was, None: try anew."""
         from distributed import KilledWorker  # noqa: PLC0415 (an extra)
 
         arguments = (task.order.line(), files, self._name, program())

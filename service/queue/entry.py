@@ -40,16 +40,9 @@ _NAMES = uuid.UUID("4f5b2a0e-6c0f-4b7e-9a53-0d8f3a1c7e62")
 
 @dataclass(frozen=True)
 class BatchCase:
-    """The work of a job before it is entered.
+    """The work of a job before it is entered: its name and inputs.
 
-    Attributes
-    ----------
-    key, inputs
-        What to do; its name.
-    stored : bool
-        Whether the store was seen to have the result.
-    cost : float
-        What it is predicted to cost beside the others of a batch.
+    It says whether the store was seen to have the result, and what it is predicted to cost beside others.
     """
 
     key: str
@@ -61,16 +54,7 @@ class BatchCase:
 class Entry:
     """Enters jobs of one caller, alone or in batches. Equal work that waits, runs or is stored is shared.
 
-    Parameters
-    ----------
-    engine : Engine
-    queue_limit : int
-        Computations that may wait.
-    project : str
-        In which the jobs are.
-    caller : Holder
-    terms : Terms
-        Of a batch the label is that of the whole, the rest holds for its jobs.
+    So many computations may wait. Of a batch the label of the terms is that of the whole.
     """
 
     def __init__(
@@ -80,30 +64,16 @@ class Entry:
         self._project, self._caller, self._terms = project, caller, terms
 
     def job(self, process: str, work: BatchCase, looked: str, name: str | None = None) -> str:
-        """Enter a job; return its identifier, or that of the equal one that answers.
-
-        Parameters and errors as of `batch`.
-        """
+        """Enter a job; return its identifier, or that of the equal one that answers; as `batch`."""
         return self._job(self._identifier(process, name), process, self._addressed(work), looked)
 
     def batch(self, process: str, cases: Sequence[BatchCase], looked: str, name: str | None = None) -> str:
         """Enter a batch with its jobs, all or none; return its identifier.
 
-        Parameters
-        ----------
-        process : str
-        cases : sequence of BatchCase
-        looked : str
-            When the store was asked for results: work that has ended since is shared too.
-        name : str, optional
-            The caller's name for this request (``Idempotency-Key``): sent again, it is the same.
-
-        Raises
-        ------
-        BadInput
-            The name stands for other work, or there are more new cases than may ever wait.
-        QueueFull
-            There is no room for all of them now, or the caller has as many unfinished jobs as it may.
+        `looked` is when the store was asked for results: work that has ended since is shared too. A `name` is
+        the caller's for this request (``Idempotency-Key``): sent again, it is the same. Raises `BadInput`:
+        the name stands for other work, or there are more new cases than may ever wait; `QueueFull`: there is
+        no room for all of them now, or the caller has as many unfinished jobs as it may.
         """
         identifier = self._identifier(f"batch of {process}", name)
         self._batch(identifier, process, [self._addressed(case) for case in cases], looked)
@@ -146,11 +116,10 @@ class Entry:
         return identifier
 
     def _joined(self, connection: Connection, process: str, work: BatchCase, shared: str | None) -> str:
-        """Return the computation of a job: the shared one, to these terms, or a new one.
+        """Return the computation of a job: the shared one, to its most generous terms, or a new one.
 
-        A shared one that waits gets at least this priority, and may cost what the most generous of its jobs
-        allows. Work in flight that another version entered becomes this one's: ended as that it would end the
-        new job too.
+        Work in flight that another version entered becomes this one's: ended as that it would end the new job
+        too.
         """
         if shared is None:
             return _enter_computation(connection, process, work, self._terms)

@@ -21,10 +21,7 @@ Json = dict[str, Any]
 
 @lru_cache(maxsize=1024)
 def subject_of(inputs: str) -> str:
-    """Return words for normalized inputs, given as JSON: the pair with its highest load, or the scene.
-
-    Empty for inputs that have neither case nor scene.
-    """
+    """Return words for normalized inputs, JSON: the pair with its highest load, the scene, or nothing."""
     facts = json.loads(inputs)
     if facts.get("scene") is not None:
         meshes = len(facts["scene"]["meshes"])
@@ -152,18 +149,9 @@ def job_of(row: Any) -> Job:
 class JobFilter:
     """Conditions that a job has to meet.
 
-    Attributes
-    ----------
-    processes, statuses : tuple[str, ...]
-        One of these; empty: any.
-    earliest, latest : str or None
-        Of its creation, RFC 3339 in UTC with microseconds.
-    shortest_s, longest_s : float or None
-        Of the time it has run; a job that has not begun has none.
-    tags, words : tuple[str, ...]
-        All of these tags; all of these words in the title, in any case.
-    parent : str or None
-        The batch whose jobs are wanted; None: batches, and jobs of none.
+    One of the processes and statuses (none: any), all tags, all words in its title in any case; created from
+    earliest to latest (RFC 3339 in UTC with microseconds), run for a time within bounds, which a job that has
+    not begun has not; of the batch `parent`, or None: batches, and jobs of none.
     """
 
     processes: tuple[str, ...] = ()

@@ -36,14 +36,8 @@ _AT_ONCE = 500
 class Retention:
     """Removes what a service needs no more; safe beside one that runs.
 
-    Parameters
-    ----------
-    engine : Engine
-    store : ResultStore
-    data_directory : Path
-        Whose workspaces and logs are looked at.
-    quarantine_days : float
-        How long a file that is removed from the store can be had back.
+    It looks at workspaces and logs of the data directory too; a file that is removed from the store can be
+    had back for so many days.
     """
 
     def __init__(
@@ -60,10 +54,7 @@ class Retention:
     def expire(self, older_than_days: float | None = None, *, dry_run: bool = False) -> Iterator[Leftover]:
         """Remove what is dated and old: results, jobs, workspaces, logs, and what was in quarantine.
 
-        Raises
-        ------
-        BadInput
-            The files of the store are another deployment's by now.
+        Raises `BadInput`: the files of the store are another deployment's by now.
         """
         self._quarantine.confirm()
         if older_than_days is not None:
@@ -137,14 +128,7 @@ FIRST_S, EVERY_S = 60.0, 3600.0
 
 
 class Housekeeper:
-    """Collects beside the scheduler.
-
-    Parameters
-    ----------
-    retention : Retention
-    days : float
-        How long results and ended jobs are kept that nobody asks for.
-    """
+    """Collects beside the scheduler what nobody asks for since so many days."""
 
     def __init__(self, retention: Retention, days: float) -> None:
         self._retention, self._days = retention, days

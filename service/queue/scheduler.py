@@ -12,7 +12,6 @@ import selectors
 import shutil
 import threading
 import time
-import uuid
 from dataclasses import dataclass
 
 import structlog
@@ -72,10 +71,7 @@ class Scheduler:
         self.figures = WorkerFigures()
 
     def start(self) -> None:
-        """Take up what a dead service left behind, then begin; may be started again after a stop.
-
-        Raises `BadInput`: another server owns the job table.
-        """
+        """Take up what a dead service left, then begin, also after a stop; `BadInput`: no table of ours."""
         self._owner.acquire()
         for name in ("work", "log"):
             (self._settings.data_directory / name).mkdir(parents=True, exist_ok=True)
@@ -204,11 +200,8 @@ class Scheduler:
         except ServiceError as error:
             self._claims.fail(claim, str(error))
             return
-        except Exception:
-            reference = uuid.uuid4().hex[:12]
-            logger.exception("no worker could be started", computation=claim.id, reference=reference)
-            text = f"No worker could be started. The log has the details under {reference}."
-            self._claims.fail(claim, text, reference=reference)
+        except Exception:  # noqa: BLE001 (the log has it)
+            self._settlement.fail_by_log(claim, "No worker could be started.", exc_info=True)
             return
         self._running[claim.id] = attempt
         if attempt.worker.channel is not None:
@@ -219,17 +212,14 @@ class Scheduler:
         steps, ended = running.worker.listen()
         running.trace.see(steps)
         if ended:
-            self._end(running, self._forget(running).finish())
-            running.note_end(self._unsettled[-1].outcome.name)
+            outcome = self._forget(running).finish()
+            self._unsettled.append(Ended(running, outcome))
+            running.note_end(outcome.name)
         elif steps:
             last = steps[-1]
             paced = running.fraction.at(last.stage, last.fraction, running.worker.age)
             known = paced if last.whole is None else last.whole
             self._reached[running.claim.id] = running.claim, Reached(last.stage, last.fraction, known)
-
-    def _end(self, running: Attempt, outcome: Outcome) -> None:
-        """Let an attempt be settled."""
-        self._unsettled.append(Ended(running, outcome))
 
     def _forget(self, running: Attempt) -> Run:
         if running.worker.channel is not None:
@@ -238,9 +228,12 @@ class Scheduler:
         self._reached.pop(running.claim.id, None)
         return running.worker
 
-    def _kill(self, running: Attempt, why: str, patience_s: float | None = None) -> None:
+    def _kill(self, running: Attempt, why: str, failure: str = "", patience_s: float | None = None) -> None:
+        """Kill a worker; a failure in words for the user ends its computation."""
         self._forget(running).kill(patience_s)
         running.note_end(why)
+        if failure:
+            self._unsettled.append(Ended(running, Outcome(failure=failure)))
 
     def _settle_all(self) -> None:
         """Settle what has ended, in its turn; what the database or the store do not take waits for them."""
@@ -318,16 +311,13 @@ class Scheduler:
         )
         for running in list(self._running.values()):
             if running.worker.age > deadline_s:
-                self._kill(running, "too late")
-                self._end(running, Outcome(failure=text))
+                self._kill(running, "too late", text)
 
     def _enforce_costs(self) -> None:
         """End workers that have used the CPU time that their computation may take."""
         for running in list(self._running.values()):
-            why = running.too_costly(self._claims)
-            if why is not None:
-                self._kill(running, "too costly")
-                self._end(running, Outcome(failure=why))
+            if (why := running.too_costly(self._claims)) is not None:
+                self._kill(running, "too costly", why)
 
     def _enforce_dismissals(self) -> None:
         """End workers of computations that nobody wants."""
@@ -343,16 +333,7 @@ class Scheduler:
 
 @dataclass(frozen=True)
 class Machinery:
-    """The parts of the service that work on one database and one store.
-
-    Attributes
-    ----------
-    engine : Engine
-    store : ResultStore
-    submissions : Submissions
-    scheduler : Scheduler or None
-        Not started; None: this process does no work.
-    """
+    """The parts that work on one database and one store; without a scheduler this process does no work."""
 
     engine: Engine
     store: ResultStore
@@ -369,15 +350,9 @@ class Machinery:
 def job_machinery(settings: Settings, registry: Registry, *, works: bool = True) -> Machinery:
     """Open the database and put the parts together; a process that `works` has locked its data directory.
 
-    Raises
-    ------
-    BadInput
-        The database or the place of results is none, or they do not belong together, or the schema is another
-        program's; it works, and another server owns the job table.
-    DatabaseUnavailable, StoreUnavailable
-        One does not answer; `DatabaseDamaged`: it has to be mended.
-    Unavailable
-        It works, and the system has no sessions of processes.
+    Raises `BadInput`: database or results are none, do not belong together, have another schema, or another
+    server owns the job table; `DatabaseUnavailable`, `StoreUnavailable`: one does not answer;
+    `DatabaseDamaged`; and `Unavailable`: the system has no sessions of processes.
     """
     if works:
         require_sessions()

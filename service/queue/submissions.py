@@ -46,16 +46,7 @@ _LOOKED_AT = 500  # at a time, where durations are requested
 
 
 class Submissions:
-    """Jobs as the callers of one project see them.
-
-    Parameters
-    ----------
-    engine : Engine
-    queue_limit : int
-        Computations of all projects that may wait.
-    project : str
-        There are no jobs but those of this project.
-    """
+    """Jobs as the callers of one project see them; of all projects so many computations may wait."""
 
     def __init__(self, engine: Engine, queue_limit: int, project: str = COMMON) -> None:
         self._engine = engine
@@ -78,30 +69,7 @@ class Submissions:
         terms: Terms = USUAL,
         name: str | None = None,
     ) -> Job:
-        """Enter a job; equal work that waits, runs or is `stored` already is shared.
-
-        Parameters
-        ----------
-        process, key, inputs
-            What to do; its name.
-        stored : bool
-            Whether the store was seen to have the result.
-        looked : str, optional
-            When that was requested: work that has ended since is shared too, its result being there by now.
-        caller : Holder
-        terms : Terms
-        name : str, optional
-            The caller's name for this request (``Idempotency-Key``): sent again, it is the same job, for as
-            long as the job is kept.
-
-        Raises
-        ------
-        BadInput
-            The name stands for other work of this caller.
-        QueueFull
-            New work, and as many computations wait as the limit allows; or the caller has as many
-            unfinished jobs as it may.
-        """
+        """Enter a job; equal work that waits, runs or is `stored` already is shared. As `Entry.batch`."""
         work = BatchCase(key, inputs, stored)
         return self.find(self.entry(caller, terms).job(process, work, looked or now(), name))
 
@@ -111,10 +79,7 @@ class Submissions:
 
     @retried
     def newest(self, caller: Holder, process: str) -> tuple[str, dict[str, Any]] | None:
-        """Return identifier and normalized inputs of the caller's newest job of a process, None without one.
-
-        Jobs before the caller's last 200 are not looked at.
-        """
+        """Return identifier and normalized inputs of the newest of a caller's last 200 jobs of a process."""
         sought = {"caller": caller.name, "project": self._project, "process": process}
         with reading(self._engine) as connection:
             row = connection.execute(_NEWEST, sought).one_or_none()
@@ -122,13 +87,7 @@ class Submissions:
 
     @retried
     def find(self, identifier: str) -> Job:
-        """Return a job.
-
-        Raises
-        ------
-        NoSuchJob
-            There is none of this identifier.
-        """
+        """Return a job; raises `NoSuchJob`."""
         row = None
         if _is_identifier(identifier):
             with reading(self._engine) as connection:

@@ -37,13 +37,7 @@ computations = Table(
 )
 
 # Single flight: at most one computation of a key waits or runs. A key is an address: see `service.project`.
-Index(
-    "computation_in_flight",
-    computations.c.key,
-    unique=True,
-    sqlite_where=_LIVE,
-    postgresql_where=_LIVE,
-)
+Index("computation_in_flight", computations.c.key, unique=True, sqlite_where=_LIVE, postgresql_where=_LIVE)
 Index("computation_by_state", computations.c.state, computations.c.created)
 
 Index("computation_by_turn", computations.c.state, computations.c.priority, computations.c.created)

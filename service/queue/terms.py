@@ -48,14 +48,7 @@ def refuse_beyond(limit: float, stages: dict[str, float]) -> None:
 
 @dataclass(frozen=True)
 class Label:
-    """Title and tags of a job; they say nothing about the work.
-
-    Attributes
-    ----------
-    title : str
-    tags : tuple[str, ...]
-        In lower case, each once.
-    """
+    """Title and tags (in lower case, each once) of a job; they say nothing about the work."""
 
     title: str = ""
     tags: tuple[str, ...] = ()
@@ -85,15 +78,7 @@ Transmission = Literal["value", "reference"]
 
 @dataclass(frozen=True)
 class Delivery:
-    """The form of a result.
-
-    Attributes
-    ----------
-    response : str
-        ``"raw"``: the result itself, or links in headers; ``"document"``: a JSON object by name of output.
-    transmission : str
-        ``"value"`` or ``"reference"``.
-    """
+    """The form of a result: itself or links in headers (raw), or a JSON object by name of output."""
 
     response: Response = "raw"
     transmission: Transmission = "value"
@@ -112,19 +97,10 @@ AS_IT_IS = Delivery()
 
 
 def delivery(response: Response, transmission: Transmission | None, field: str) -> Delivery:
-    """Return the form that was requested.
+    """Return the form that was requested; without a transmission by value, but in a document by reference.
 
-    Parameters
-    ----------
-    response, transmission
-        As requested; a transmission that is left out is by value, but in a document by reference.
-    field : str
-        What the caller calls the transmission.
-
-    Raises
-    ------
-    BadInput
-        A result in a document by value: JSON does not hold netCDF.
+    Raises `BadInput`, by the caller's name of the `field`: by value in a document, as JSON does not hold
+    netCDF.
     """
     if response == "document":
         if transmission == "value":
@@ -199,21 +175,9 @@ def _short(value: Any) -> Value:
 class Terms:
     """The terms of a job.
 
-    Attributes
-    ----------
-    delivery : Delivery
-        The form in which it shows its result.
-    label : Label
-    differences : Differences
-        What sets it apart from the caller's job before it.
-    priority : int
-        Of its computation: the highest of the jobs that share it.
-    max_cost_s : float or None
-        CPU seconds that it may take; None: no limit.
-    stated : str
-        Its inputs as the caller stated them, JSON; empty: they are not kept.
-    reuse : bool
-        Whether an equal job of the caller's that is under way or done answers in its place.
+    Its computation has the highest priority of the jobs that share it, and may cost `max_cost_s` CPU seconds
+    (None: no limit). `stated` are its inputs as the caller stated them, JSON; empty: they are not kept. With
+    `reuse` an equal job of the caller's that is under way or done answers in its place.
     """
 
     delivery: Delivery = AS_IT_IS

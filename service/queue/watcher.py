@@ -39,11 +39,7 @@ class _Followed(Generic[T]):
 class Watcher(Generic[T]):
     """Follows jobs in a thread that runs while there are followers; a lost database is waited for.
 
-    Parameters
-    ----------
-    engine : Engine
-    show : callable
-        Makes of a job what followers are told, once for all of them.
+    `show` makes of a job what followers are told, once for all of them.
     """
 
     def __init__(self, engine: Engine, show: Callable[[Job], T]) -> None:

@@ -133,17 +133,9 @@ def bound_of(seconds: float) -> str:
 
 @dataclass(frozen=True)
 class Durations:
-    """Computations of one process that ended in one way.
+    """Computations of one process that ended in one way: seconds from first start to end, and attempts.
 
-    Attributes
-    ----------
-    process, outcome : str
-    buckets : tuple of (str, int)
-        How many took at most so many seconds (the last bound is ``+Inf``): numbers never fall.
-    seconds : float
-        Sum of their durations, from their first start to their end.
-    attempts : int
-        Sum of their attempts.
+    The buckets say how many took at most so many seconds (the last bound is ``+Inf``).
     """
 
     process: str
@@ -157,17 +149,8 @@ class Durations:
 class Workload:
     """The load at an instant.
 
-    Attributes
-    ----------
-    states : dict
-        Computations by state.
-    queue : dict
-        Computations that wait or run by state and process.
-    oldest_waiting_s : float
-        Age of the oldest waiting computation; 0 if none does.
-    durations : tuple of Durations
-    results : tuple of (str, int, int)
-        Kind, number and bytes.
+    Computations by state, those that wait or run by state and process, the age of the oldest waiting one (0:
+    none does), and results as kind, number and bytes.
     """
 
     states: dict[str, int]

@@ -56,10 +56,7 @@ def work(descriptor: int) -> None:
         logging.getLogger("service").addHandler(_Telling(channel))
         begun = replace(COMPLIANCE_READS)  # a forked child has those of its parent
         outcome = _outcome(order, _Reporter(channel))
-        reads = {
-            "hits": COMPLIANCE_READS.hits - begun.hits,
-            "misses": COMPLIANCE_READS.misses - begun.misses,
-        }
+        reads = {"hits": COMPLIANCE_READS.hits - begun.hits, "misses": COMPLIANCE_READS.misses - begun.misses}
         _send(channel, outcome | {"peak_mb": peak_memory() / BYTES_PER_MB, "compliance_reads": reads})
 
 

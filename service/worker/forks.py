@@ -17,7 +17,7 @@ import threading
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, TypeAlias
 
 import structlog
 
@@ -30,15 +30,7 @@ WORK = "service.worker.child"
 
 @dataclass(frozen=True)
 class Ends:
-    """What a child is given: descriptors of its ends of pipes and of its log, and where it works.
-
-    Attributes
-    ----------
-    orders, channel, log : int
-        It reads its order, writes progress and outcome, writes what it prints.
-    workspace : Path
-        Its working directory.
-    """
+    """What a child is given: descriptors to read its order, to answer and for its log, and where it works."""
 
     orders: int
     channel: int
@@ -46,30 +38,14 @@ class Ends:
     workspace: Path
 
 
-class ChildProcess(Protocol):
-    """The leader of a session of its own."""
-
-    @property
-    def pid(self) -> int:
-        """Process id, also of its group and session."""
-
-    def has_exited(self) -> bool:
-        """Whether it has ended. Until it is reaped no other process gets its id."""
-
-    def reap(self) -> Ended:
-        """Wait for its end."""
-
-
-Launch = Callable[[Ends], ChildProcess]
-
-
 @dataclass(frozen=True)
 class _StartedChild:
-    """A child started anew."""
+    """A child started anew, the leader of a session of its own: `pid` is also the id of group and session."""
 
     pid: int
 
     def has_exited(self) -> bool:
+        """Whether it has ended. Until it is reaped no other process gets its id."""
         return has_exited(self.pid)
 
     def reap(self) -> Ended:
@@ -110,16 +86,9 @@ _LOST = Ended(-9, 0.0, 0)
 
 
 class Forks:
-    """Launches children, warm ones where it can. For one thread, but for `close`.
+    """Launches children that do ``work(descriptor)`` of a module; warm ones have imported `modules`.
 
-    Parameters
-    ----------
-    modules : iterable of str
-        What the warm process imports.
-    log : Path
-        What it prints.
-    work : str
-        Module whose ``work(descriptor)`` the children do.
+    For one thread, but for `hurry` and `close`.
     """
 
     def __init__(self, modules: Iterable[str], log: Path, work: str = WORK) -> None:
@@ -256,3 +225,8 @@ class _ForkedChild:
         except ConnectionError:
             logger.warning("warm process gone", pid=self.pid, signal=ending_signal(_LOST.code))
             return _LOST
+
+
+ChildProcess: TypeAlias = _StartedChild | _ForkedChild
+"""The leader of a session of its own: an id of its own until it is reaped."""
+Launch: TypeAlias = Callable[[Ends], ChildProcess]

@@ -21,27 +21,11 @@ PARTS = "parts"
 
 @dataclass(frozen=True)
 class WorkOrder:
-    """One computation for one child process.
+    """One computation for one child process: ``"module:function"`` to call with normalized inputs.
 
-    Attributes
-    ----------
-    entry : str
-        ``"module:function"`` to call.
-    inputs : dict
-        Normalized inputs.
-    key : str
-        Name of the result.
-    workspace : Path
-        Directory of this computation alone; removed afterwards. Another attempt after a worker died finds
-        what that one left.
-    data_directory : Path
-        Where the compliance cache is.
-    memory_limit_mb : int, optional
-        Memory the work may have, MB.
-    stored : dict of str to Path
-        Files of the stored results that the work reads, by their hashes.
-    scheduler : str, optional
-        Address of the scheduler whose workers do the tasks, if the service has one.
+    The workspace is of this computation alone: another attempt after a worker died finds what that one left.
+    The compliance cache is in the data directory. `stored` are the files of the stored results that the work
+    reads, by their hashes, `scheduler` the address of the Dask scheduler whose workers may do its tasks.
     """
 
     entry: str
@@ -81,20 +65,9 @@ class Product:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The end of a worker.
+    """The end of a worker: what it made, or the failure in words for the user and the faults of the input.
 
-    Attributes
-    ----------
-    products : tuple[Product, ...]
-        What it made; empty if it failed.
-    failure : str
-        Why there is none, in words for the user; empty if there are products.
-    faults : tuple[dict, ...]
-        What was wrong with the input, if that was the cause.
-    unexpected : bool
-        A defect: the text of the exception is in the log only.
-    died : bool
-        The process ended without an outcome; worth another attempt.
+    `unexpected`: a defect, the text of the exception is in the log only. `died`: worth another attempt.
     """
 
     products: tuple[Product, ...] = ()

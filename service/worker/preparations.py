@@ -34,13 +34,7 @@ Json = dict[str, Any]
 
 
 def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
-    """Check a scene and the sources of its tables.
-
-    Raises
-    ------
-    BadInput
-        It cannot be or cannot move, names a file of the caller, or a database that is not stored.
-    """
+    """Check a scene and the sources of its tables; `BadInput`: it cannot move, or names what is not there."""
     for index, housing in enumerate(scene.housings):
         if housing.modes_file is not None:
             _refuse_file(f"housings[{index}].modes_file", housing.modes_file, "Give its matrices")

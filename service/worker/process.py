@@ -43,32 +43,15 @@ Prepare = Callable[[BoundaryModel, "ResultStore"], Json]
 
 @dataclass(frozen=True)
 class Process:
-    """A kind of job.
+    """A kind of job; `id` to `inputs` are as in OGC API - Processes.
 
-    Attributes
-    ----------
-    id, title, description, version : str
-        As in OGC API - Processes.
-    inputs : type[BoundaryModel]
-        Model of the execute request's ``inputs``.
-    output : str
-        Name of the one output.
-    kind : str
-        Kind of the result in the store; the client takes the output's name for it, so both are the same.
-    prepare : callable
-        ``prepare(inputs, store)`` checks what a schema cannot (raises `BadInput`) and returns the normalized
-        inputs: what is hashed, stored and handed to the worker. Cheap: it runs in the request.
-    entry : str
-        ``"module:function"`` of the work, called as ``function(order, progress)`` in a process of its own.
-    stages : tuple[Stage, ...]
-        What the work reports, in order, where it does not predict the cost of its stages.
-    action : str
-        What a button for it says; empty: it is no study.
-    plan : str
-        ``"module:function"`` of the live worker that predicts the cost of inputs; empty: none does.
-    name_result : callable, optional
-        Normalized inputs to the result's content hash, where the work itself defines one; default: the hash
-        of the inputs with the process and the version of the program.
+    Its one output has the name of the kind of its result in the store. ``prepare(inputs, store)`` checks what
+    a schema cannot (raises `BadInput`) and returns the normalized inputs, which are hashed, stored and worked
+    on; cheap: it runs in the request. `entry` is the ``"module:function"`` of the work, called as
+    ``function(order, progress)`` in a process of its own, `plan` that of the live worker that predicts the
+    cost (empty: none does). `stages` are what the work reports, in order, where it does not predict their
+    cost; `action` is what a button says (empty: it is no study); `name_result` makes of normalized inputs the
+    content hash of the result where the work itself defines one.
     """
 
     id: str

@@ -100,12 +100,7 @@ def _connected(scheduler: str, cost: RunCost) -> ByDask:
 class DraftedProgress:
     """Reports stages, with the last draft behind their names, and the fraction of the whole table.
 
-    Parameters
-    ----------
-    report : callable
-        Called as report(stage, fraction, whole).
-    refines : bool
-        Whether passes may follow the first.
+    It reports (stage, fraction, whole); a table that `refines` may have passes after the first.
     """
 
     def __init__(self, report: Progress, *, refines: bool) -> None:

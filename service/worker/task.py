@@ -54,18 +54,9 @@ def program() -> str:
 
 
 def do_job(line: bytes, files: Mapping[str, bytes], topic: str, wanted: str) -> Done | None:
-    """Do an order in a child process; None: nobody wants it any more.
+    """Do an order in a child process, with the contents of the stored results it reads; None: it is unwanted.
 
-    Parameters
-    ----------
-    line : bytes
-        The order, whose folders are those of the server.
-    files : mapping
-        Content of the stored results that it reads.
-    topic : str
-        Of the events that report how far it is.
-    wanted : str
-        `program` of the server; a worker of another does nothing.
+    Events of the topic report how far it is. A worker of another `program` than the wanted one does nothing.
     """
     if program() != wanted:
         text = f"The Dask worker has {program()}, the service {wanted}: start workers of that version."

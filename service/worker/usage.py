@@ -21,17 +21,10 @@ def begin_work() -> None:
 
 @dataclass(frozen=True)
 class Usage:
-    """Resources that a worker used from its start to its end.
+    """Resources that a worker used: elapsed s, CPU s with what it has waited for, most resident memory in MB.
 
-    Attributes
-    ----------
-    seconds : float
-        Elapsed.
-    cpu_s : float
-        CPU time of the process and of what it has waited for, s.
-    peak_mb : float
-        Most resident memory, MB: as the process itself reported with its outcome; of one that did not, at
-        least that of the process that started it, whose memory the system counts until the program is loaded.
+    The memory is what the process reported with its outcome; of one that did not, at least that of the
+    process that started it, whose memory the system counts until the program is loaded.
     """
 
     seconds: float

@@ -20,19 +20,9 @@ _OF_LITTLE_MEMORY = ("SIGKILL", "SIGABRT")  # by the system, and by libraries th
 
 
 class Step(NamedTuple):
-    """Progress of a worker.
+    """Progress of a worker: a stage, the fraction of it that is done, and that of the whole if it is known.
 
-    Attributes
-    ----------
-    stage : str
-    fraction : float
-        Of the stage that is done.
-    whole : float or None
-        Fraction of the whole work, if it is known.
-    at : float
-        When it was reported, s since 1970.
-    cpu_s : float
-        CPU time of the worker and of what it has waited for until then, s.
+    It was reported `at` s since 1970, after so much CPU time with what it has waited for.
     """
 
     stage: str
@@ -133,10 +123,7 @@ class Worker:
         return Outcome(failure=text, died=True)
 
     def _has_exited(self, patience_s: float) -> bool:
-        """Whether the child leaves within a moment; do not reap it yet.
-
-        Until it is reaped its process id, which is also its group's, cannot be given to another.
-        """
+        """Whether the child leaves within a moment; unreaped, its id is given to no other group."""
         deadline = time.monotonic() + patience_s
         while not self._process.has_exited():
             if time.monotonic() > deadline:
