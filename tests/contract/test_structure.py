@@ -15,11 +15,11 @@ BUDGETS = {
     ("dynamics",): (39_795, 745),
     ("lineofaction.gearbox",): (21_636, 427),
     ("lineofaction.report",): (10_472, 198),
-    ("service",): (15_213, 340),
+    ("service",): (14_826, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_608, 67),
     ("lineofaction.hardcases",): (3_834, 35),
-    ("bounds", "host", "model_studies"): (4_203, 145),
+    ("bounds", "host", "model_studies"): (4_172, 145),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 747
