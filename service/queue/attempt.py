@@ -53,7 +53,7 @@ class Children:
         self._forks = Forks(modules, settings.data_directory / "log" / "warm.log")
 
     def start(self, _heard: Callable[[], None]) -> None:
-        """Do nothing: the first child is started anew."""
+        """Do nothing: the first child starts the warm process."""
 
     def begin(self, order: WorkOrder, _name: str, log: Path) -> Worker:
         """Start a child, or fork one; raises OSError: the system does neither."""

@@ -64,8 +64,7 @@ class Retention:
                 yield from (Leftover("not asked for", f"job {name}", 0) for name in names)
                 if dry_run:
                     break
-        yield from self._workspaces(dry_run=dry_run)
-        yield from self._logs(dry_run=dry_run)
+        yield from self._of_computations(dry_run=dry_run)
         yield from purge_quarantine(self._quarantine, dry_run=dry_run)
 
     @retried
@@ -89,8 +88,8 @@ class Retention:
                 connection.execute(delete(webhooks).where(~exists().where(jobs.c.id == webhooks.c.job)))
         return names
 
-    def _workspaces(self, *, dry_run: bool) -> Iterator[Leftover]:
-        """Remove workspaces of computations that neither wait nor run."""
+    def _of_computations(self, *, dry_run: bool) -> Iterator[Leftover]:
+        """Remove workspaces and logs of what does not live; logs of what failed are referred to."""
         live = self._states("accepted", "running")
         for path in self._old("work"):
             if path.name not in live:
@@ -98,10 +97,7 @@ class Retention:
                 if not dry_run:
                     shutil.rmtree(path, ignore_errors=True)
                 yield Leftover("workspace", f"work/{path.name}", size)
-
-    def _logs(self, *, dry_run: bool) -> Iterator[Leftover]:
-        """Remove logs of computations, except of those that live or failed: these are referred to."""
-        kept = self._states("accepted", "running", "failed")
+        kept = live | self._states("failed")
         for path in self._old("log"):
             if path.suffix == ".log" and len(path.stem) == _IDENTIFIER and path.stem not in kept:
                 size = path.stat().st_size

@@ -94,13 +94,16 @@ class Forks:
     def __init__(self, modules: Iterable[str], log: Path, work: str = WORK) -> None:
         self._modules, self._log, self._work = sorted(set(modules)), log, work
         self._server: _Server | None = None
+        self._waits = True
 
     def warm_up(self) -> None:
         """Start the warm process, if the system forks and there is none; return at once."""
         server = self._server
         if sys.platform != "linux" or (server is not None and (server.usable or server.living)):
             return
-        self.close()
+        if server is not None:
+            server.close()
+        self._server = None
         try:
             self._server = _Server(self._work, self._modules, self._log)
         except OSError as error:
@@ -115,14 +118,15 @@ class Forks:
         """Fork a child, or start one; OSError: the system does neither."""
         self.warm_up()
         if self._server is not None and not self._server.ready:
-            self._server.await_word(warm_within)
+            self._server.await_word(warm_within if self._waits else 0.0)
         if self._server is not None and self.warm:
             with contextlib.suppress(ConnectionError):
                 return self._server.fork(ends)
         return start_child(ends, self._work)
 
     def hurry(self) -> None:
-        """Let no child wait for a warm process; for any thread."""
+        """Let no child wait for a warm process until all is closed; for any thread."""
+        self._waits = False
         if (server := self._server) is not None:
             server.end_unless_ready()
 
@@ -130,7 +134,7 @@ class Forks:
         """End the warm process; its children live on."""
         if self._server is not None:
             self._server.close()
-            self._server = None
+        self._server, self._waits = None, True
 
 
 class _Server:

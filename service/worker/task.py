@@ -8,7 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
 from platform import python_version_tuple
@@ -45,6 +45,7 @@ class Done:
     log: bytes
 
 
+@cache
 def program() -> str:
     """Return the versions that server and workers have to share, and what is missing of the packages."""
     needed = (*MODULES["analysis"], *MODULES["service"])
