@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from faulty_units import LEFT_OUT, TWO_STAGE
 from housing_solid import housed_scene, write_block
 from page_visit import PATIENCE, Visit, shown
 from playwright.sync_api import Browser, Route, expect
@@ -17,7 +18,6 @@ from running_service import until
 
 from lineofaction.gearbox.registry import studies_of
 from lineofaction.gearbox.schemas.toml import toml_text
-from tests.fakes.faulty_units import LEFT_OUT, TWO_STAGE
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
 STIFFNESS = {

@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from rexs_unit import place, two_stages
 
 from lineofaction.gearbox.rexs.files import serialized
-from tests.fakes.rexs_unit import place, two_stages
 
 ROOT = Path(__file__).parents[2]
 COMPUTING = ("numba", "gmsh", "skfem", "scipy.optimize", "scipy.interpolate", "xarray")

@@ -6,8 +6,9 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+from rexs_unit import planetary
+
 from lineofaction.gearbox.rexs.files import serialized
-from tests.fakes.rexs_unit import planetary
 
 TWO_STAGE = (Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs").read_text("utf-8")
 PLANETARY = serialized(planetary(), "unit.rexs").decode()

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from geared_scenes import gear_pair_scene, spring_table, with_bushings
 
 from dynamics.joints import Housing
 from dynamics.loads import TimeLaw
-from tests.fakes.geared_scenes import gear_pair_scene, spring_table, with_bushings
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on", "housing_modes": "on"}
 NAMES = ("input.left", "input.right", "output.left", "output.right")

@@ -8,10 +8,10 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+from rexs_stage import DATE, component, relation
 
 from bounds.types import FloatArray
 from lineofaction.gearbox.rexs.model import Document, LoadCase, LoadSpectrum, Model, Relation
-from tests.fakes.rexs_stage import DATE, component, relation
 
 Values = Mapping[int, Mapping[str, Any]]
 ROOT, CASING, INPUT, MIDDLE, OUTPUT = 1, 2, 3, 4, 5

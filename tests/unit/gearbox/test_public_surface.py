@@ -10,11 +10,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from faulty_units import LEFT_OUT, TWO_STAGE
 
 import lineofaction as loa
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, validated
-from tests.fakes.faulty_units import LEFT_OUT, TWO_STAGE
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = ROOT / "examples"

@@ -9,19 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from opened_unit import deflection_of_unit, said, scene_of
 from rexs_reference import needs_reference, reference
-
-from bounds.types import FloatArray
-from dynamics.bearings.loaded_bearing import LoadedBearing
-from lineofaction.gearbox.convert.scene import _rolling_bearing_of
-from lineofaction.gearbox.from_rexs.opened import OpenedUnit
-from lineofaction.gearbox.rexs.files import read_rexs
-from lineofaction.gearbox.rexs.model import Document
-from lineofaction.gearbox.schemas.bearings import RollingBearingInput
-from lineofaction.gearbox.schemas.scene import SceneInput
-from tests.fakes.opened_unit import deflection_of_unit, said, scene_of
-from tests.fakes.rexs_stage import relation
-from tests.fakes.rexs_unit import (
+from rexs_stage import relation
+from rexs_unit import (
     BALL,
     CASING,
     INPUT,
@@ -38,6 +29,15 @@ from tests.fakes.rexs_unit import (
     place,
     two_stages,
 )
+
+from bounds.types import FloatArray
+from dynamics.bearings.loaded_bearing import LoadedBearing
+from lineofaction.gearbox.convert.scene import _rolling_bearing_of
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
+from lineofaction.gearbox.rexs.files import read_rexs
+from lineofaction.gearbox.rexs.model import Document
+from lineofaction.gearbox.schemas.bearings import RollingBearingInput
+from lineofaction.gearbox.schemas.scene import SceneInput
 
 Parts = Mapping[int, tuple[str, dict[str, Any]]]
 

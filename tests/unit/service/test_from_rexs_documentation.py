@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rexs_stage import PINION, PINION_RIGHT, STAGE, WHEEL, WHEEL_LEFT, WHEEL_RIGHT, relation, stage_unit
+from rexs_unit import BALL, ROW, inside, on_lines
 
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase
@@ -15,7 +16,6 @@ from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.schemas.bearings import BallRowInput, RollerRowInput, RollingBearingInput
 from lineofaction.gearbox.schemas.case import WheelInput
 from lineofaction.gearbox.schemas.gear import GearInput
-from tests.fakes.rexs_unit import BALL, ROW, inside, on_lines
 
 
 def page_of(parts: str) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from opened_unit import said
 from rexs_stage import (
     PINION,
     PINION_LEFT,
@@ -28,7 +29,6 @@ from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, Meshing
 from lineofaction.gearbox.schemas import Case
-from tests.fakes.opened_unit import said
 
 
 def loaded(unit: GearUnit, gear: int, torque: float) -> LoadedFlank:

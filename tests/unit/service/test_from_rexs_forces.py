@@ -10,18 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line import loa
-
-from lineofaction.gearbox.from_rexs.opened import LOAD_CASES_FILE, OpenedUnit, _unit_json
-from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs.files import serialized
-from lineofaction.gearbox.rexs.model import Document
-from lineofaction.gearbox.schemas import validated
-from lineofaction.gearbox.studies.deflect import Inputs
-from lineofaction.gearbox.studies.deflect.run import load_cases
-from service.schemas.answers import UnitBody
-from tests.fakes.opened_unit import deflection_of_unit, scene_of
-from tests.fakes.rexs_stage import relation
-from tests.fakes.rexs_unit import (
+from opened_unit import deflection_of_unit, scene_of
+from rexs_stage import relation
+from rexs_unit import (
     BELT,
     BEVEL,
     BEVEL_RELATIONS,
@@ -39,6 +30,15 @@ from tests.fakes.rexs_unit import (
     pulled,
     two_stages,
 )
+
+from lineofaction.gearbox.from_rexs.opened import LOAD_CASES_FILE, OpenedUnit, _unit_json
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs.files import serialized
+from lineofaction.gearbox.rexs.model import Document
+from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.studies.deflect import Inputs
+from lineofaction.gearbox.studies.deflect.run import load_cases
+from service.schemas.answers import UnitBody
 
 LEFT, RIGHT, END = 15.0, 140.0, 150.0
 """u of the bearings and of the end of the input shaft, mm."""

@@ -8,12 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-
-from lineofaction.gearbox.from_rexs.opened import OpenedUnit
-from lineofaction.gearbox.rexs.model import Document
-from tests.fakes.opened_unit import content, said, scene_of
-from tests.fakes.rexs_stage import relation
-from tests.fakes.rexs_unit import (
+from opened_unit import content, said, scene_of
+from rexs_stage import relation
+from rexs_unit import (
     BEVEL,
     BEVEL_RELATIONS,
     CARRIER,
@@ -34,6 +31,9 @@ from tests.fakes.rexs_unit import (
     planetary,
     two_stages,
 )
+
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
+from lineofaction.gearbox.rexs.model import Document
 
 RATIO = 3.0 * 2.0
 

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import pytest
+from opened_unit import said
 from rexs_stage import (
     GEARS,
     PINION,
@@ -23,7 +24,6 @@ from rexs_stage import (
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
 from lineofaction.gearbox.from_rexs.gears import StageCase
-from tests.fakes.opened_unit import said
 
 
 def only(unit: GearUnit, **options: Any) -> StageCase:

@@ -15,6 +15,8 @@ import pytest
 from click.testing import Result
 from command_line import loa
 from fastapi.testclient import TestClient
+from faulty_units import LEFT_OUT, REFUSED, TWO_STAGE
+from rexs_reference import examples, needs_reference
 
 from lineofaction.gearbox.from_rexs.opened import unit_of_rexs
 from lineofaction.gearbox.input_file import InputFile, Override
@@ -25,8 +27,6 @@ from lineofaction.gearbox.schemas.toml import toml_text
 from service.app import create_app
 from service.schemas.answers import UnitBody
 from service.settings import Settings
-from tests.fakes.faulty_units import LEFT_OUT, REFUSED, TWO_STAGE
-from tests.fakes.rexs_reference import examples, needs_reference
 
 GEARBOX = Path(__file__).parents[3] / "examples" / "two_stage_gearbox.rexs"
 STAGES = ("cylindrical_stage_21", "cylindrical_stage_22")

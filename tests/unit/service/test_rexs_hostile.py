@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 import pytest
 from hostile_rexs import JSON, XML, ZIP, damaged_files, hostile_files
+from rexs_unit import STAGES, planetary, two_stages
 
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import parsed, serialized
 from lineofaction.gearbox.rexs.model import Document
-from tests.fakes.rexs_unit import STAGES, planetary, two_stages
 
 HOSTILE = {name: (data, words) for name, data, words in hostile_files()}
 MOST_SECONDS = 10.0  # the largest takes 2.5 s on a loaded machine

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lxml import etree
+from opened_unit import deflection_of_unit
 from rexs_reference import (
     SCHEMAS,
     STEPS,
@@ -30,6 +31,7 @@ from rexs_reference import (
     step_of,
 )
 from rexs_stage import STAGE, stage_unit
+from rexs_unit import MOTOR, two_stages
 from small_rexs import small_document, small_model
 from small_table import small_table
 
@@ -47,8 +49,6 @@ from lineofaction.gearbox.rexs.values import KINDS, kind_of
 from lineofaction.gearbox.rexs.vocabulary import units, words
 from lineofaction.gearbox.schemas.case import PairInput
 from lineofaction.gearbox.to_rexs import _bearing_results, deflected, exported
-from tests.fakes.opened_unit import deflection_of_unit
-from tests.fakes.rexs_unit import MOTOR, two_stages
 
 pytestmark = needs_reference
 PACKAGE = Path(__file__).parents[3] / "lineofaction" / "gearbox" / "rexs"

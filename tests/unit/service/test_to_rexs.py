@@ -10,7 +10,23 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line import loa, printed
+from opened_unit import deflection_of_unit, scene_in_si
 from rexs_stage import STAGE, stage_unit
+from rexs_unit import (
+    CASING,
+    GEARS,
+    INPUT,
+    MIDDLE,
+    MOTOR,
+    NORMAL_LOAD,
+    OUTPUT,
+    ROOT,
+    STAGES,
+    antiparallel,
+    mirrored,
+    planetary,
+    two_stages,
+)
 from small_table import small_table
 
 from dynamics.assembly.assemble import assemble
@@ -28,22 +44,6 @@ from lineofaction.gearbox.rexs.vocabulary import si_value
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection
 from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.to_rexs import deflected, exported, left_out
-from tests.fakes.opened_unit import deflection_of_unit, scene_in_si
-from tests.fakes.rexs_unit import (
-    CASING,
-    GEARS,
-    INPUT,
-    MIDDLE,
-    MOTOR,
-    NORMAL_LOAD,
-    OUTPUT,
-    ROOT,
-    STAGES,
-    antiparallel,
-    mirrored,
-    planetary,
-    two_stages,
-)
 
 
 def one_stage() -> GearUnit:
