@@ -1,4 +1,4 @@
-"""Sound of housings in a scene: outer hull, resistance, sound power by order and speed, shares, bands."""
+"""Sound of the housings of a scene by `acoustics`: power by order and speed, shares, bands, recordings."""
 
 from dynamics.noise.coarse_hull import radiating_hull
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation, kept_radiation
