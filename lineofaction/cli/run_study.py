@@ -41,7 +41,7 @@ from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.document import read_run, write_whole
-from lineofaction.report.drawing.image import png
+from lineofaction.report.document import write as write_result
 from lineofaction.report.presentation import presentation_of
 from model_studies.workers import Remembering, Workers
 from model_studies.workers.remembering import content_digest
@@ -213,9 +213,7 @@ def _writers(study: Study, subject: Any) -> dict[str, Writer]:
         for ending, write in run.writers.items()
     }
     return {
-        ".nc": run.file.write,
-        ".json": run.save_figures,
-        ".png": lambda result, file: file.write_bytes(png(page.figure(result))),
+        **dict.fromkeys((".nc", ".json", ".png"), write_result),
         ".html": lambda result, file: write_whole(page.page(result), file, warnings=messages()),
         ".csv": lambda result, file: file.write_text(_csv(study, result), encoding="utf-8"),
         **further,

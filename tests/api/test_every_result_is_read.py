@@ -80,7 +80,6 @@ def test_a_few_of_every_kind_are_read(
         return b""
 
     monkeypatch.setattr("lineofaction.report.document.png", undrawn)
-    monkeypatch.setattr("lineofaction.cli.run_study.png", undrawn)
     assert read(home, http, process, FEW, tmp_path) >= FEW
 
 

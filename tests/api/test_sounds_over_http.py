@@ -17,7 +17,7 @@ from dynamics.acoustics import Recording
 from service.app import create_app
 from service.settings import Settings
 
-CLOSED_FORMS = Path(__file__).parents[1] / "unit" / "service" / "report" / "conftest.py"
+CLOSED_FORMS = Path(__file__).parents[1] / "unit" / "report" / "conftest.py"
 LOUD, QUIET, TABLE = ("a" * 64, "b" * 64, "c" * 64)
 
 

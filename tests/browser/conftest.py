@@ -14,7 +14,7 @@ from condensed_once import find_condensed
 from page_visit import Visit, computed, served, shown
 from playwright.sync_api import Browser, Playwright, sync_playwright
 
-CLOSED_FORMS = Path(__file__).parents[1] / "unit" / "service" / "report" / "conftest.py"
+CLOSED_FORMS = Path(__file__).parents[1] / "unit" / "report" / "conftest.py"
 
 FLAGS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",

@@ -22,7 +22,7 @@ from lineofaction.gearbox.studies.ablate.run import RUN
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.report.document import page_of, read_inputs, stored_figures
 from lineofaction.report.drawing.page import html
-from lineofaction.report.effects.ablate import _look
+from lineofaction.report.effects.ablate import PAGE
 from service.live.work import live_plan
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
@@ -160,7 +160,7 @@ def ablated(case: Json, home: Path, monkeypatch: pytest.MonkeyPatch) -> Json:
     monkeypatch.setattr(ablation, "_figures", lambda *_: figures)
     means = Means(home, lambda *_: None)
     found = RUN.compute(CheckedCase(Case.model_validate_json(json.dumps(case))), Inputs(), means)
-    rows = {row[0]: row for row in _look(found).table(found).rows}
+    rows = {row[0]: row for row in next(PAGE.text(found)).rows}
     content = RUN.figures(found)
     for entry in content["effects"]:
         if entry["estimate"] is not None and not entry["estimate"]["trifle"]:

@@ -15,8 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from lineofaction.cli import run_study
-from lineofaction.report import document as write
+from lineofaction.report import document
 from lineofaction.report.drawing.figure import Figure
 
 
@@ -26,8 +25,7 @@ def drawn_once(condensed_bodies: Path) -> Iterator[None]:
     folder = condensed_bodies.with_name("drawn_figures")
     folder.mkdir(parents=True, exist_ok=True)
     with pytest.MonkeyPatch.context() as patch:
-        for module in (write, run_study):
-            patch.setattr(module, "png", _kept(module.png, folder))
+        patch.setattr(document, "png", _kept(document.png, folder))
         yield
 
 

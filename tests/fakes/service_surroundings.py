@@ -19,12 +19,10 @@ FAKES = str(Path(__file__).resolve().parent)
 
 
 @pytest.fixture(autouse=True)
-def workers_find_fakes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Let workers import the fakes, and keep caches out of the home directory."""
+def workers_find_fakes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let workers import the fakes."""
     path = os.pathsep.join(part for part in (FAKES, os.environ.get("PYTHONPATH", "")) if part)
     monkeypatch.setenv("PYTHONPATH", path)
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
 
 
 @pytest.fixture(autouse=True)

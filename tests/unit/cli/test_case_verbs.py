@@ -15,7 +15,7 @@ from dynamics.ablation import ablate
 from lineofaction.gearbox.studies.ablate.run import RUN
 from lineofaction.gearbox.studies.root_stress.run import RUN as ROOT_STRESS
 from lineofaction.report.drawing.image import png
-from lineofaction.report.effects.ablate import PAGE, _look
+from lineofaction.report.effects.ablate import PAGE
 from lineofaction.report.flank import root_stress
 
 RELIEF = "tip_relief_um = 15.0\ntip_relief_length_mm = 1.2"
@@ -69,7 +69,7 @@ def test_a_scene_is_drawn_with_and_without_an_effect() -> None:
     assert [panel.title for panel in figure.content] == ["Transmission error", "Bearing force"]
     assert [line.name for line in figure.content[0].lines] == ["as decided", "without lateral"]
     assert png(figure).startswith(b"\x89PNG")
-    ((name, state, *_),) = _look(made).table(made).rows
+    ((name, state, *_),) = next(PAGE.text(made)).rows
     assert (name, state) == ("lateral", "on")
 
 

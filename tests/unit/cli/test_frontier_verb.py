@@ -25,7 +25,7 @@ from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.page import html
-from lineofaction.report.effects.frontier import PAGE, _frontier_table
+from lineofaction.report.effects.frontier import PAGE
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 
@@ -67,7 +67,7 @@ def test_no_point_of_another_pair_stands_on_a_case(found: Frontier) -> None:
     figure = PAGE.figure(found)
     assert [line.name for line in figure.content[0].lines if "contact" in line.name] == []
     assert "20/20" not in figure.caption and "Peer" not in figure.caption
-    assert len(_frontier_table(found).rows) == len(found.results)
+    assert len(next(PAGE.text(found)).rows) == len(found.results)
     assert RUN.figures(found)["full_finite_element_contact"] == []
 
 
@@ -116,7 +116,7 @@ def test_the_page_says_what_was_not_run(found: Frontier) -> None:
     page = PAGE.page(found)
     text = html(page, {"frontier": b""})
     assert "no mesh" in text
-    assert len(_frontier_table(found).rows) == 3
+    assert len(next(PAGE.text(found)).rows) == 3
 
 
 def test_an_error_that_is_not_known_is_left_out(found: Frontier) -> None:
@@ -155,7 +155,7 @@ def test_the_picture_of_a_scene_marks_knee_chosen_and_reference(of_scene: SceneF
 
 def test_the_page_of_a_scene_leaves_unknown_errors_out(of_scene: SceneFrontier) -> None:
     assert "nothing more" in html(PAGE.page(of_scene), {"run_frontier": b""})
-    assert _frontier_table(of_scene).rows[1][4] == ""
+    assert next(PAGE.text(of_scene)).rows[1][4] == ""
 
 
 def test_the_verb_chooses_the_rung_of_a_run_up(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from lineofaction.gearbox.studies.sensitivity.run import (
     _read_studies,
     _write_studies,
 )
-from lineofaction.report.design.sensitivity import PAGE, _sensitivity_table
+from lineofaction.report.design.sensitivity import PAGE
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import Panel
 from model_studies.netcdf import UnreadableFile
@@ -130,7 +130,7 @@ def test_the_figure_has_a_line_per_pair_and_model_in_four_panels() -> None:
 
 
 def test_the_table_has_every_point() -> None:
-    rows = _sensitivity_table([study()]).rows
+    rows = PAGE.series([study()]).rows
     assert rows[1] == ("pair a", "off", "misalignment 30 µm", "5.000", "0.20", "+150.0")
     assert rows[2] == ("pair a", "off", "center distance -0.1 %", "1.000", "0.30", "-50.0")
     assert len(rows) == 8
@@ -185,7 +185,7 @@ def test_studies_come_back_from_their_file(tmp_path: Path) -> None:
     written = (study(), replace(wide, curves=curves, center_distance=0.15))
     _write_studies(written, tmp_path / "s.nc")
     back = _read_studies(tmp_path / "s.nc")
-    assert _sensitivity_table(back) == _sensitivity_table(written)
+    assert PAGE.series(back) == PAGE.series(written)
     for one, other in zip(written, back, strict=True):
         assert (one.name, one.normal_force, one.center_distance) == (
             other.name,

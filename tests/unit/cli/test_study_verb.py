@@ -39,7 +39,7 @@ from lineofaction.gearbox.studies.study.scenes import VariedScene, _part_name, p
 from lineofaction.gearbox.subjects import scene_of, with_own_cases
 from lineofaction.report.document import write_report
 
-EXAMPLES = Path(__file__).parents[4] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 STUDY = """
 samples = 3
 seed = 5

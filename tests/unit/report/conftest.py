@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn_once import drawn_once
+from own_directories import own_directories
 
 from dynamics.results import EnergyAudit, RunResult, StepStatistics
 from dynamics.types import RunStatus
@@ -17,6 +19,8 @@ from fe_contact.effects.influence.estimate import Influence
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
+
+__all__ = ["drawn_once", "own_directories"]
 
 R_B, PITCH, WIDTH = 0.0375877, 0.0118085, 0.025
 CASE = {

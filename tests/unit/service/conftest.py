@@ -2,6 +2,7 @@
 
 from drawn_once import drawn_once
 from migrated_once import migrated_once
+from own_directories import own_directories
 from postgres_server import database_url, postgres
 from s3_server import s3_objects, s3_url
 from service_surroundings import machine, quiet_log, unhurried_readiness, workers_find_fakes
@@ -13,6 +14,7 @@ __all__ = [
     "drawn_once",
     "machine",
     "migrated_once",
+    "own_directories",
     "postgres",
     "quiet_log",
     "s3_objects",
