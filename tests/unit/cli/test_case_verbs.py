@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from command_line import loa, printed
 from geared_scenes import gear_pair_scene
-from spur_case import SPUR, spur_case
+from spur_case import spur_case
 
 from dynamics.ablation import ablate
 from lineofaction.gearbox.studies.ablate.run import RUN
@@ -19,22 +19,14 @@ from lineofaction.report.effects.ablate import PAGE
 from lineofaction.report.flank import root_stress
 
 RELIEF = "tip_relief_um = 15.0\ntip_relief_length_mm = 1.2"
-RELIEVED = (
-    spur_case(RELIEF, RELIEF)
-    + '\n[load]\ntorque_n_m = [20.0, 100.0]\n[accuracy]\nlevel = "draft"\npositions = 64\n'
-)
-PLAIN = SPUR + '\n[load]\ntorque_n_m = [50, 100]\n[accuracy]\nlevel = "draft"\n'
+RELIEVED = spur_case(RELIEF, RELIEF, [20.0, 100.0], positions=64)
+PLAIN = spur_case(torques=[50, 100])
 
 
 def told(folder: Path, case: str, verb: str, *arguments: object) -> Any:
     file = folder / "case.toml"
     file.write_text(case, encoding="utf-8")
     return printed(verb, file, *arguments)
-
-
-@pytest.fixture(autouse=True)
-def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
 
 
 # ``loa ablate``.

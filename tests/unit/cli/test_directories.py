@@ -8,18 +8,11 @@ from pathlib import Path
 
 import pytest
 from command_line import loa
-from spur_case import SPUR
+from spur_case import spur_case
 
 from host.directories import cache_home
 
-CASE = f"""{SPUR}
-[load]
-torque_n_m = [100]
-[accuracy]
-level = "draft"
-model = "plane_strain"
-positions = 16
-"""
+CASE = spur_case(torques=[100], model="plane_strain", positions=16)
 
 
 @pytest.mark.parametrize("verb", [["analyze", "-o", "ste.nc"], ["flank"], ["plan"]], ids=lambda verb: verb[0])

@@ -8,20 +8,11 @@ import meshlane
 import pytest
 from command_line import loa, printed
 from geared_scenes import gear_pair_scene
-from spur_case import SPUR
+from spur_case import spur_case
 
 from dynamics.simulation import simulate
 
-SMALL = (
-    SPUR
-    + """
-[load]
-torque_n_m = [50, 100]
-[accuracy]
-level = "draft"
-model = "plane_strain"
-"""
-)
+SMALL = spur_case(torques=[50, 100], model="plane_strain")
 
 
 def test_a_run_becomes_a_universal_file_or_a_table(tmp_path: Path) -> None:

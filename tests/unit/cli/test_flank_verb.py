@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from command_line import loa, printed
-from spur_case import SPUR
+from spur_case import spur_case
 
 from fe_contact import LoadDistribution
 from lineofaction.client import JobState, LineOfActionClient
@@ -15,17 +15,7 @@ from lineofaction.gearbox.convert.case import case_at
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.gear import FlankPoint
 
-SMALL = (
-    SPUR
-    + """
-[load]
-torque_n_m = [50, 100, 200]
-[accuracy]
-level = "draft"
-positions = 16
-model = "plane_strain"
-"""
-)
+SMALL = spur_case(torques=[50, 100, 200], model="plane_strain", positions=16)
 
 
 @pytest.fixture

@@ -13,16 +13,7 @@ from spur_case import spur_case
 
 from lineofaction.gearbox.schemas import Case, read_model
 
-CASE = (
-    spur_case("{pinion}", "{wheel}")
-    + """
-[load]
-torque_n_m = [100.0, 200.0]
-[accuracy]
-level = "draft"
-model = "plane_strain"
-"""
-)
+CASE = spur_case("{pinion}", "{wheel}", [100.0, 200.0], model="plane_strain")
 STUDY = """
 [variables.pinion]
 tip_relief_um = [0, 40]
@@ -40,8 +31,7 @@ positions = 16
 
 
 @pytest.fixture
-def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Path]:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+def files(tmp_path: Path) -> tuple[Path, Path]:
     case, study = tmp_path / "case.toml", tmp_path / "study.toml"
     case.write_text(CASE.format(pinion="", wheel=""), encoding="utf-8")
     study.write_text(STUDY, encoding="utf-8")

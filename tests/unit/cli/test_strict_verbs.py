@@ -19,18 +19,7 @@ from lineofaction.gearbox.problems import EXIT_BAD_INPUT, EXIT_WARNINGS
 NOT_COMPUTING = {"new", "cache", "hardcases", "serve", "keys", "database", "store", "jobs", "dismiss"}
 LOA = get_command(app)  # loads its verbs when asked: the application itself lists none
 VERBS = LOA.list_commands(Context(LOA))
-CASE = (
-    spur_case("{relief}")
-    + """
-[load]
-torque_n_m = [100.0]
-[accuracy]
-level = "draft"
-model = "plane_strain"
-receipt = "minimal"
-positions = 8
-"""
-)
+CASE = spur_case("{relief}", torques=[100.0], model="plane_strain", receipt="minimal", positions=8)
 MESSAGE = "pair.pinion.tip_relief_um = 0.02 um: "
 
 

@@ -66,8 +66,7 @@ def study_file(folder: Path, text: str = STUDY) -> Path:
 
 
 @pytest.fixture
-def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+def scene(tmp_path: Path) -> Path:
     return scene_file(tmp_path)
 
 
@@ -245,15 +244,8 @@ def test_a_factor_says_whether_it_is_sampled() -> None:
     assert [factor.sampled for factor in inputs.factors] == [False, True]
 
 
-SPUR_CASE = (
-    spur_case("tip_relief_um = 10.0\ntip_relief_length_mm = 2.0")
-    + """
-[load]
-torque_n_m = [50.0, 100.0]
-[accuracy]
-level = "draft"
-model = "plane_stress"
-"""
+SPUR_CASE = spur_case(
+    "tip_relief_um = 10.0\ntip_relief_length_mm = 2.0", torques=[50.0, 100.0], model="plane_stress"
 )
 PATH = "meshes.mesh.case.pair.pinion.tip_relief_um"
 RESPONSES = (Response("dte_peak_to_peak"), Response("peak_mesh_force"))

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import loa, printed
-from spur_case import SPUR
+from spur_case import spur_case
 
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.input_file import InputFile
@@ -16,22 +16,14 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.studies.sweep.run import SWEEPABLE, _axis_of
 
-CASE = (
-    SPUR.replace("[pair.pinion]", "[pair.pinion]\ntip_relief_um = 15.0\ntip_relief_length_mm = 1.5")
-    + """
-[load]
-torque_n_m = [100.0, 200.0]
-[accuracy]
-level = "draft"
-model = "plane_strain"
-"""
+CASE = spur_case(
+    "tip_relief_um = 15.0\ntip_relief_length_mm = 1.5", torques=[100.0, 200.0], model="plane_strain"
 )
 OVER = "torque=100:200:50,pinion.tip_relief=0:20:10"
 
 
 @pytest.fixture
-def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+def file(tmp_path: Path) -> Path:
     file = tmp_path / "case.toml"
     file.write_text(CASE, encoding="utf-8")
     return file

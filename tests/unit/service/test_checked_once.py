@@ -57,7 +57,7 @@ class Calls:
 
 
 @pytest.fixture
-def calls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Calls]:
+def calls(monkeypatch: pytest.MonkeyPatch) -> Iterator[Calls]:
     calls = Calls()
     convert, check, validate = conversion.gear_pair, request_check.check_request, Case.model_validate_json
 
@@ -73,7 +73,6 @@ def calls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Calls]:
         calls.validated += 1
         return validate(text)
 
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(Case, "model_validate_json", read)
     monkeypatch.setattr(preparations.CASES, "_kept", type(preparations.CASES)()._kept)
     _replace(monkeypatch, "gear_pair", convert, converted)
