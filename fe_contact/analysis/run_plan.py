@@ -131,7 +131,9 @@ def plan_run(
 def _decided(decided: Decided, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
     """Predict what was decided; its error is the one by which it was, where it was by an error."""
     request, option = decided.checked.request, decided.mesh.option
-    error = option.error if option.error.mean else expected_error(request.pair, decided.plan, curves)
+    error = option.error
+    if not error.mean:
+        error = expected_error(request.pair, decided.plan, curves, bound=request.model_chosen)
     cost = decided.predicted(cache)
     return PlannedLevel(decided.checked.model_name, option.level, option.slices, cost, error)
 
@@ -139,7 +141,8 @@ def _decided(decided: Decided, curves: ExpectedCurves | None, cache: Path | None
 def _planned(checked: Checked, level: str, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
     options = replace(checked.request.options, level=None)
     plan = replace(checked, request=replace(checked.request, options=options)).plan(level)
-    cost, error = checked.predicted(plan, cache), expected_error(checked.request.pair, plan, curves)
+    cost, request = checked.predicted(plan, cache), checked.request
+    error = expected_error(request.pair, plan, curves, bound=request.model_chosen)
     return PlannedLevel(checked.model_name, level, plan.discretization.slices, cost, error)
 
 

@@ -107,55 +107,75 @@ class ExpectedError:
         Finite elements.
     slices : float
         Slices of the face; 0 in the plane.
-    model : float
-        The plane standing in for three dimensions; 0 over the face.
     positions : float
         Interpolation between positions.
-    method : float
-        What the method leaves out of full contact, however fine the mesh (`model_error`).
+    plane : float
+        The plane standing in for three dimensions, where these may be taken instead.
+    lasting : float
+        What no run of this request lowers: what the method leaves out of full contact (`model_error`), and
+        the plane where the caller chose it.
     mean, peak_to_peak : float or None
         The largest errors over the loads, m; None where no size is known before the run.
     """
 
     mesh: float
     slices: float
-    model: float
-    positions: float = 0.0
-    method: float = 0.0
+    positions: float
+    plane: float
+    lasting: float
     mean: float | None = None
     peak_to_peak: float | None = None
 
     @property
-    def discretization(self) -> float:
-        """The part that finer meshes, more slices and positions reduce."""
+    def numerical(self) -> float:
+        """The part that finer meshes, more slices and positions lower."""
         return float(np.sqrt(self.mesh**2 + self.slices**2 + self.positions**2))
 
     @property
-    def lasting(self) -> float:
-        """The part that none of them reduces."""
-        return float(np.hypot(self.model, self.method))
+    def model(self) -> float:
+        """The part that none of them lowers."""
+        return float(np.hypot(self.plane, self.lasting))
+
+    @property
+    def bought(self) -> float:
+        """The part that work lowers, to which a tolerance applies: the numerical one and the plane."""
+        return float(np.hypot(self.numerical, self.plane))
+
+    @property
+    def words(self) -> str:
+        """What a tolerance applies to."""
+        plane = f", with the plane {_percent(self.bought)} %" if self.plane else ""
+        return f"{_percent(self.numerical)} %{plane}"
 
     @property
     def total(self) -> float:
         """Of all, which are independent of each other."""
-        return float(np.hypot(self.discretization, self.lasting))
+        return float(np.hypot(self.numerical, self.model))
 
     def to_json(self) -> Json:
         """Return plain JSON."""
-        parts = {name: getattr(self, name) for name in ("mesh", "slices", "model", "positions", "method")}
-        return parts | {"total": self.total, "mean_m": self.mean, "peak_to_peak_m": self.peak_to_peak}
+        names = ("mesh", "slices", "positions", "numerical", "model", "total")
+        parts: Json = {name: getattr(self, name) for name in names}
+        return parts | {"mean_m": self.mean, "peak_to_peak_m": self.peak_to_peak}
 
 
-def expected_error(pair: ParallelAxes, plan: Plan, curves: ExpectedCurves | None = None) -> ExpectedError:
+def expected_error(
+    pair: ParallelAxes, plan: Plan, curves: ExpectedCurves | None = None, *, bound: bool = False
+) -> ExpectedError:
     """Say the error of a plan.
 
     Parameters
     ----------
     curves : ExpectedCurves, optional
         What is known of mean and peak-to-peak before the run; default: those of usual pairs.
+    bound : bool
+        The caller chose the model.
     """
     known = curves or _usual_curves(pair, plan)
     parts = _parts(pair, plan, known)
+    if bound:
+        nothing = np.zeros_like(parts["plane"])
+        parts |= {"plane": nothing, "lasting": np.hypot(parts["plane"], parts["lasting"])}
     absolute = np.sqrt(sum(np.square(part) for part in parts.values()))
     relative = absolute / known.scale
     worst = np.unravel_index(int(np.argmax(relative)), relative.shape)
@@ -181,21 +201,21 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
     own = np.stack([mean, ripple])
     by_mesh = np.outer(usual_mesh_error(pair, plan), known.added)
     nothing = np.zeros_like(by_mesh)
-    slices, model = nothing.copy(), nothing.copy()
+    slices, plane = nothing.copy(), nothing.copy()
     if isinstance(made, FaceDiscretization):
         helical = pair.base_helix_angle != 0.0
         part = _HELICAL_SLICES * pair.overlap_ratio if helical else _SPUR_SLICES
         slices[1] = part * (_SLICES / made.slices) ** SLICE_ORDER * known.added
     elif made.corrected:
-        model = _CORRECTION * finite_width_excess(pair) * np.stack([mean, _WIDTH_RIPPLE * mean])
+        plane = _CORRECTION * finite_width_excess(pair) * np.stack([mean, _WIDTH_RIPPLE * mean])
     else:
-        model = LEFT_OUT * left_out(pair, made) * of_bending(pair, own)
+        plane = LEFT_OUT * left_out(pair, made) * of_bending(pair, own)
     left = model_errors if known.absolute else in_small_displacements  # large ones are known in m alone
-    method = left(pair, known.force, own)
+    lasting = left(pair, known.force, own)
     positions = nothing.copy()
     over_allowed = _FACE_POSITIONS if isinstance(made, FaceDiscretization) else _PLANE_POSITIONS
     positions[1] = over_allowed * plan.nodes.tolerance * np.maximum(ripple, plan.nodes.least_ripple)
-    return {"mesh": by_mesh, "slices": slices, "model": model, "positions": positions, "method": method}
+    return {"mesh": by_mesh, "slices": slices, "positions": positions, "plane": plane, "lasting": lasting}
 
 
 def left_out(pair: ParallelAxes, made: Discretization) -> float:
@@ -273,19 +293,19 @@ class MeshChoice:
 def _mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -> MeshChoice:
     """Return the option of least effort whose error is expected to be within the tolerance.
 
-    Expected errors are parts of the size of each quantity that the tolerance counts by.
-    If there is none: where it is the model that is beyond it, the one of least effort whose own error is
-    within it, as no mesh mends the model; else the most exact one. Said in either case.
+    Expected errors are parts of the size of each quantity that the tolerance counts by, and without what
+    lasts, which no mesh mends. If there is none: where it is the plane that is beyond it, the one of least
+    effort whose numerical error is within it; else the most exact one. Said in either case.
     """
-    within = [option for option in options if option.error.total <= tolerance.relative]
+    within = [option for option in options if option.error.bought <= tolerance.relative]
     if within:
         best = min(within, key=_effort)
-        return MeshChoice(best, True, f"expected error {_percent(best.error.total)} %")
-    enough = [option for option in options if option.error.discretization <= tolerance.relative]
-    beyond = min(option.error.lasting for option in options) > tolerance.relative
-    best = min(enough, key=_effort) if enough and beyond else min(options, key=lambda o: o.error.total)
+        return MeshChoice(best, True, f"expected error {best.error.words}")
+    enough = [option for option in options if option.error.numerical <= tolerance.relative]
+    beyond = min(option.error.plane for option in options) > tolerance.relative
+    best = min(enough, key=_effort) if enough and beyond else min(options, key=lambda o: o.error.bought)
     error = best.error
-    parts = f"mesh {_percent(error.discretization)} %, model {_percent(error.lasting)} %"
+    parts = f"mesh {_percent(error.numerical)} %, plane {_percent(error.plane)} %"
     return MeshChoice(best, False, f"no mesh is expected within {tolerance.words} ({parts})")
 
 
@@ -318,6 +338,8 @@ def chosen_mesh(
     alignments: tuple[int, int] = (1, 1),
     cache: Path | None = None,
     curves: ExpectedCurves | None = None,
+    *,
+    bound: bool = False,
 ) -> MeshChoice:
     """Choose mesh and slices by the tolerance, without one by the time budget.
 
@@ -332,11 +354,13 @@ def chosen_mesh(
         not.
     curves : ExpectedCurves, optional
         What is known of the transmission error of the case.
+    bound : bool
+        The caller chose the model.
     """
 
     def option(level: str, slices: int | None = None) -> MeshOption:
         plan = make_plan(pair, load, options, model, level, slices)
-        error = expected_error(pair, plan, curves)
+        error = expected_error(pair, plan, curves, bound=bound)
         return MeshOption(level, plan.discretization.slices, error, effort(pair, plan, model, alignments))
 
     def seconds(choice: MeshOption) -> float:

@@ -109,8 +109,13 @@ def _verdict(kept: Json) -> str:
     )
     if kept["met"] is None:
         return f"{tolerance}: errors not estimated"
-    share = "" if kept["used"] is None else f", largest error {engineering(kept['used'], 2)} of it"
-    return f"{tolerance}: {'met' if kept['met'] else 'NOT met'}{share}"
+    numerical = "" if kept["used"] is None else _percent(kept["used"] * kept["relative"], "numerical error")
+    model = _percent(kept["model"], "model") + ", which no mesh lowers" if "model" in kept else ""
+    return f"{tolerance}: {'met' if kept['met'] else 'NOT met'}{numerical}{model}"
+
+
+def _percent(part: float, name: str) -> str:
+    return f"; {name} {engineering(100.0 * part, 2)} %"
 
 
 def _pass(number: int, entry: Json) -> str:
@@ -249,14 +254,14 @@ def _show_plan(plan: RunPlan) -> None:
     out = console()
     for line in ledger_lines(plan_json(plan)["effect_ledger"]):
         out.print(line)
-    head = ["mesh", "CPU s", *STAGES, "memory MiB", "error %", "of which model %", "mean um", "p-p um", ""]
+    head = ["mesh", "CPU s", *STAGES, "memory MiB", "numerical %", "model %", "mean um", "p-p um", ""]
     rows = [
         [
             _mesh(entry, plan.chosen),
             engineering(entry.cost.cpu_seconds, 2),
             *(engineering(entry.cost.stages[stage], 2) for stage in STAGES),
             f"{entry.cost.memory_bytes / 2**20:.0f}",
-            engineering(100.0 * error.total, 2),
+            engineering(100.0 * error.numerical, 2),
             engineering(100.0 * error.model, 2),
             # per cent of a small ripple mean little; no size is known without a reference
             *("" if size is None else engineering(size / UM, 2) for size in (error.mean, error.peak_to_peak)),

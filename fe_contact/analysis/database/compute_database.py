@@ -107,23 +107,37 @@ def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
     return np.asarray(table.curve_error[:, [MEAN, PEAK_TO_PEAK]] / allowed.of(values))
 
 
-def _tolerance_receipt(table: SteDatabase, allowed: AllowedError) -> Json:
+def bought_shares(shares: FloatArray, request: Request) -> tuple[FloatArray, FloatArray]:
+    """Part the errors at nodes, each (6, ...), into those that work lowers and those that last.
+
+    Those of the model last; so do those of the plane, where the caller chose it.
+    """
+    lasting = ("model", "finite_width") if request.model_chosen else ("model",)
+    lasts = np.isin(AT_NODES, lasting).reshape(-1, *[1] * (shares.ndim - 1))
+    at_nodes = shares[: len(AT_NODES)]
+    return np.where(lasts, 0.0, at_nodes), np.where(lasts, at_nodes, 0.0)
+
+
+def _tolerance_receipt(table: SteDatabase, allowed: AllowedError, request: Request) -> Json:
     """Hold the errors of mean and peak-to-peak at all nodes of a table against the tolerance.
 
     Returns
     -------
     dict
-        `relative`, `floor_m`: the tolerance. `used`: the largest error over what is allowed. `met`: whether
-        that is at most 1. Both are None where errors were not estimated; a failed point keeps nothing.
-        `between_nodes`: the axes between whose nodes interpolation alone takes more than is allowed.
+        `relative`, `floor_m`: the tolerance. `used`: the largest error that work lowers, over what is
+        allowed. `met`: whether that is at most 1. Both are None where errors were not estimated; a failed
+        point keeps nothing. `model`: the largest error that no mesh lowers, in parts of the sizes that the
+        tolerance counts by. `between_nodes`: the axes between whose nodes interpolation alone takes more
+        than is allowed.
     """
     shares = error_shares(table, allowed)
-    total = all_sources(shares[: len(AT_NODES)])
-    used = float(np.max(total))
+    bought, lasting = (all_sources(part) for part in bought_shares(shares, request))
+    used = float(np.max(bought))
     limits = {"relative": allowed.relative, "floor_m": allowed.floor}
-    if np.isnan(total).all():
+    if np.isnan(bought).all():
         return limits | {"used": None, "met": None}
     kept = {"used": used if np.isfinite(used) else None, "met": used <= 1.0}
+    kept["model"] = allowed.relative * float(np.nanmax(lasting))
     return limits | kept | {"between_nodes": _between_nodes(table, shares)}
 
 
@@ -210,7 +224,7 @@ def compute_pass(
     )
     tolerance = made.checked.request.options.tolerance
     if tolerance is not None:
-        kept = _tolerance_receipt(table, tolerance)
+        kept = _tolerance_receipt(table, tolerance, made.checked.request)
         metadata.receipt["tolerance"] = kept
         metadata.receipt["choice"]["met"] = kept["met"]
     return _Computed(table, made.decided)

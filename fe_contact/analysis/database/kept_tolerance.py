@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from bounds import engineering
-from fe_contact.analysis.database.compute_database import compute_pass, error_shares
+from fe_contact.analysis.database.compute_database import bought_shares, compute_pass, error_shares
 from fe_contact.analysis.request.model_choice import Decided, decide, next_model
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import FeContactError
@@ -45,7 +45,7 @@ MESH_STEP = {"plane": {"draft": 0.45, "standard": 0.2}, "face": {"draft": 0.4, "
 """Error of the next level over that of a level, from the pairs of docs/lab/accuracy.md, "Constants"."""
 CLOSER = 0.25
 """Error between positions that a step allows over that before it."""
-_MESH, _SLICES, _SOLVER, _WIDTH, _POSITION, _METHOD = range(len(AT_NODES))
+_MESH, _SLICES, _SOLVER, _WIDTH, _POSITION, _ = range(len(AT_NODES))
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ def _next_pass(decided: Decided, shares: FloatArray) -> _Refinement | str:
 
     A pass goes up one mesh level at most, since the level between costs a third of the finer one.
     `shares` (6 or more, ...) are the errors by source `AT_NODES` in parts of what is allowed, of every
-    quantity at every node; more sources are not looked at.
+    quantity at every node, without those that no run lowers; more sources are not looked at.
     """
     plan = decided.plan
     begun = _Resolution(
@@ -209,7 +209,7 @@ def _of_model(model: Decided, begun: _Resolution) -> _Refinement:
     """Return the pass of a more exact model; what lies between positions stays, the rest is expected."""
     step = f"model {begun.decided.checked.model_name} -> {model.checked.model_name}"
     tolerance = model.checked.request.options.allowed.relative
-    expected = float(np.hypot(model.mesh.option.error.total / tolerance, begun.shares[_POSITION].max()))
+    expected = float(np.hypot(model.mesh.option.error.bought / tolerance, begun.shares[_POSITION].max()))
     return _Refinement(model, AT_NODES[_WIDTH], (step,), expected)
 
 
@@ -221,7 +221,6 @@ def _no_way(finest: _Resolution, source: int) -> str:
         _SLICES: f"{finest.slices} slices are the limit",
         _SOLVER: "no refinement reduces the residuals of the contact",
         _WIDTH: "no other model for this request has a smaller expected error",
-        _METHOD: "no refinement reduces the difference of the method from full contact",
         _POSITION: fixed if plan.positions else "positions have the closest spacing of the search",
     }[source]
     share = finest.sources[source]
@@ -403,7 +402,8 @@ def _following(table: SteDatabase, last: _Pass) -> _Refinement | str:
         return "met"
     if table.n_failed:
         return f"{table.n_failed} points failed"
-    return _next_pass(last.decided, error_shares(table, tolerance))
+    bought, _ = bought_shares(error_shares(table, tolerance), last.decided.checked.request)
+    return _next_pass(last.decided, bought)
 
 
 def _ended(made: _Refinement, passes: Sequence[_Pass], cache: Path | None) -> str:

@@ -109,7 +109,7 @@ class Decided:
         """Return the same model on another mesh, in other slices, with its positions placed by `nodes`."""
         plan = replace(self.checked.plan(level, slices), nodes=nodes)
         request, model = self.checked.request, self.checked.model
-        error = expected_error(request.pair, plan, expected_curves(self.checked))
+        error = expected_error(request.pair, plan, expected_curves(self.checked), bound=request.model_chosen)
         work = effort(request.pair, plan, model, request.alignments)
         option = MeshOption(level, plan.discretization.slices, error, work)
         return replace(self, mesh=MeshChoice(option, True, reason), plan=plan)
@@ -182,7 +182,7 @@ def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, trie
     # its error is that beside the tolerance, as the plan states it: a part of what its floor counts by
     fits = fits.refined(option.level, option.slices, fits.plan.nodes, fits.mesh.reason)
     needs = f"{wished.mesh.option.name} is predicted to take {engineering(seconds, 2)} CPU s of {budget:.3g}"
-    error = f"expected error {engineering(100.0 * fits.mesh.option.error.total, 2)} %"
+    error = f"expected error {fits.mesh.option.error.words}"
     mesh = MeshChoice(fits.mesh.option, False, f"{needs}; {fits.mesh.reason}, {error}")
     return replace(fits, mesh=mesh, wished=wished)
 
@@ -200,8 +200,7 @@ def _meshes(
 
 def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshChoice) -> MeshChoice:
     dearer = f"{checked.model_name}, {chosen.option.name}"
-    error = f"{engineering(100.0 * first.option.error.total, 2)} %"
-    reason = f"expected error {error}, tried first: much less work than {dearer}"
+    reason = f"expected error {first.option.error.words}, tried first: much less work than {dearer}"
     return MeshChoice(first.option, chosen.met, reason)
 
 
@@ -214,9 +213,8 @@ def _alternatives(checked: Checked) -> list[Checked]:
     """Return the request with every model that may stand in for its own; itself where it is bound."""
     request = checked.request
     face, width = request.model_effects
-    chosen = {name for name in request.model_effects if request.asked_choices.get(name, "auto") != "auto"}
     decided = set(request.model_effects) & {*request.neglected, *request.turned_on}
-    if not _wishes(checked) or chosen or decided or checked.model.across_face:
+    if not _wishes(checked) or request.model_chosen or decided or checked.model.across_face:
         return [checked]
     plain = replace(request, neglected={**request.neglected, width: "left out"})
     solid = replace(request, turned_on={**request.turned_on, face: "taken"})
@@ -230,7 +228,7 @@ def next_model(checked: Checked) -> Decided | None:
     None where there is none, or where the caller chose the model or one of the effects that tell it.
     """
     request, tell = checked.request, checked.request.model_effects
-    if checked.model.across_face or any(request.asked_choices.get(name, "auto") != "auto" for name in tell):
+    if checked.model.across_face or request.model_chosen:
         return None
     neglected = {name: reason for name, reason in request.neglected.items() if name not in tell}
     kept = {name: reason for name, reason in request.turned_on.items() if name not in tell}
@@ -269,7 +267,7 @@ def _mesh(
     if options.tolerance is not None:
         options = replace(options, tolerance=options.tolerance.stretched(stretch))
     arguments = request.pair, request.load, options, checked.model
-    return chosen_mesh(*arguments, request.alignments, cache, curves)
+    return chosen_mesh(*arguments, request.alignments, cache, curves, bound=request.model_chosen)
 
 
 def _best(choices: Sequence[tuple[Checked, MeshChoice]]) -> tuple[Checked, MeshChoice]:
@@ -280,7 +278,7 @@ def _best(choices: Sequence[tuple[Checked, MeshChoice]]) -> tuple[Checked, MeshC
     by_time = choices[0][0].request.options.time_budget is not None
     if good and not by_time:
         return _said(min(good, key=lambda choice: choice[1].option.effort))
-    return _said(min(good or choices, key=lambda choice: choice[1].option.error.total))
+    return _said(min(good or choices, key=lambda choice: choice[1].option.error.bought))
 
 
 def _said(choice: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:

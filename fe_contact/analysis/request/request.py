@@ -121,6 +121,11 @@ class Request:
         return dict(self.options.effects)
 
     @property
+    def model_chosen(self) -> bool:
+        """Whether the caller chose the model, or one of the effects that tell the models apart."""
+        return any(self.asked_choices.get(name, "auto") != "auto" for name in self.model_effects)
+
+    @property
     def choices(self) -> dict[str, str]:
         """Choice of each effect, those that are neglected or turned on included."""
         decided = dict.fromkeys(self.neglected, "off") | dict.fromkeys(self.turned_on, "on")
@@ -163,7 +168,7 @@ class Checked:
         """Return the plan with the mesh and slices that the accuracy asks for; see `chosen_mesh`."""
         request = self.request
         wish = request.pair, request.load, request.options, self.model
-        choice = chosen_mesh(*wish, request.alignments, cache)
+        choice = chosen_mesh(*wish, request.alignments, cache, bound=request.model_chosen)
         return self.plan(choice.level, choice.slices)
 
     def predicted(self, plan: Plan, cache: Path | None, *, with_errors: bool = True) -> Prediction:

@@ -59,9 +59,9 @@ class PlannedError(BaseModel):
 
     mesh: float
     slices: float
-    model: float
     positions: float
-    method: float
+    numerical: float = Field(description="Of mesh, slices and positions")
+    model: float = Field(description="What none of them lowers: the method, and a plane for the whole face")
     total: float
     mean_um: float | None = Field(description="Null where no size is known before the run")
     peak_to_peak_um: float | None = Field(description="Null where no size is known before the run")

@@ -26,6 +26,8 @@ from fe_contact.planning.plan import (
     SLICE_ORDER,
     NodeRule,
 )
+from fe_contact.ste.curve import SOURCES
+from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK
 
 FACTOR = 3.0
 
@@ -218,12 +220,14 @@ def test_the_receipt_holds_the_measured_errors_against_it(tmp_path):
         return table, receipt["tolerance"]
 
     table, loose = kept(AllowedError(0.5, 0.0))
-    used = [
-        estimate.error / abs(estimate.value)
-        for torque in asked["torques"]
-        for estimate in (table.mean(torque=torque), table.peak_to_peak(torque=torque))
-    ]
-    assert loose["used"] == pytest.approx(max(used) / 0.5, rel=1e-3)
+    asks = (table.mean, table.peak_to_peak)
+    values = [[ask(torque=torque) for torque in asked["torques"]] for ask in asks]
+    sizes = np.array([[estimate.value for estimate in row] for row in values])
+    parts = dict(zip(SOURCES, table.curve_error[..., 0, 0][:, [MEAN, PEAK_TO_PEAK]] / sizes, strict=True))
+    lasting = np.hypot(parts["model"], parts["finite_width"])  # the caller chose the plane
+    whole = np.array([[estimate.error for estimate in row] for row in values]) / sizes
+    assert loose["used"] == pytest.approx(np.sqrt(whole**2 - lasting**2).max() / 0.5, rel=1e-3)
+    assert loose["model"] == pytest.approx(lasting.max(), rel=1e-3) and loose["model"] > 0.5 * loose["used"]
     assert (loose["relative"], loose["floor_m"], loose["met"]) == (0.5, 0.0, True)
     tight = AllowedError(1e-4, 0.0)
     assert kept(tight)[1]["met"] is False

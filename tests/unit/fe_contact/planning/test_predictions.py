@@ -35,10 +35,10 @@ def pair(helix: float = 0.0, width: float = 8e-3, teeth: int = 20) -> GearPair:
     return GearPair(gear, mate, teeth * 2e-3 / math.cos(helix))
 
 
-def options(model: float = 0.0, **meshes: float) -> list[MeshOption]:
+def options(plane: float = 0.0, lasting: float = 0.0, **meshes: float) -> list[MeshOption]:
     """Meshes by their error, each five times as dear as the one before."""
     return [
-        MeshOption(name, 1, ExpectedError(error, 0.0, model), 5.0**k)
+        MeshOption(name, 1, ExpectedError(error, 0.0, 0.0, plane, lasting), 5.0**k)
         for k, (name, error) in enumerate(meshes.items())
     ]
 
@@ -49,16 +49,19 @@ def test_a_tolerance_takes_the_cheapest_mesh_or_slices_that_meet_it():
         chosen = [_mesh_for_tolerance(AllowedError(t), turned) for t in (0.1, 0.01, 0.002)]
         assert [choice.level for choice in chosen] == list(LEVELS)
         assert all(choice.met for choice in chosen)
-    few = MeshOption("draft", 15, ExpectedError(2e-3, 0.05, 0.0), 1.0)
-    many = MeshOption("draft", 61, ExpectedError(2e-3, 0.005, 0.0), 2.0)
-    fine = MeshOption("fine", 31, ExpectedError(1e-3, 0.007, 0.0), 20.0)
+    few = MeshOption("draft", 15, ExpectedError(2e-3, 0.05, 0.0, 0.0, 0.5), 1.0)
+    many = MeshOption("draft", 61, ExpectedError(2e-3, 0.005, 0.0, 0.0, 0.5), 2.0)
+    fine = MeshOption("fine", 31, ExpectedError(1e-3, 0.007, 0.0, 0.0, 0.5), 20.0)
     assert _mesh_for_tolerance(AllowedError(0.01), [few, many, fine]).option is many
     assert _mesh_for_tolerance(AllowedError(0.1), [few, many, fine]).option is few
     beyond = _mesh_for_tolerance(AllowedError(1e-4), options(draft=3e-3, standard=2e-3, fine=1e-3))
     assert (beyond.level, beyond.met) == ("fine", False)
     flat = _mesh_for_tolerance(AllowedError(1e-2), options(3e-2, draft=2e-2, standard=5e-3, fine=1e-3))
     assert (flat.level, flat.met) == ("standard", False)
-    assert "model 3 %" in flat.reason
+    lasts = options(lasting=3e-2, draft=2e-2, standard=5e-3, fine=1e-3)
+    kept = _mesh_for_tolerance(AllowedError(1e-2), lasts)
+    assert (kept.level, kept.met, kept.reason) == ("standard", True, "expected error 0.5 %")
+    assert "plane 3 %" in flat.reason
     seconds = {"draft": 1.0, "standard": 3.0, "fine": 10.0}
     found = [_mesh_for_time(t, known, lambda o: seconds[o.level]).level for t in (1.5, 5.0, 50.0)]
     assert found == list(LEVELS)
@@ -143,7 +146,7 @@ def test_time_and_error_are_the_same_in_the_reason_and_in_the_levels(tolerance, 
     options = AnalysisOptions(tolerance=tolerance, time_budget=budget)
     plan = plan_run(pair(0.3), TableAxes(torques=[40.0]), options)
     seconds = {engineering(row.cost.cpu_seconds, 2) for row in plan.levels}
-    errors = {engineering(100.0 * row.error.total, 2) for row in plan.levels}
+    errors = {engineering(100.0 * row.error.numerical, 2) for row in plan.levels}
     reason = plan.choice.reason
     assert set(re.findall(r"(?:take|predicted) ([0-9.]+) CPU s", reason)) <= seconds, (reason, seconds)
     assert set(re.findall(r"expected error ([0-9.]+) %", reason)) <= errors, (reason, errors)

@@ -263,11 +263,15 @@ def test_loads_between_which_a_table_misses_the_tolerance_are_named(tmp_path: Pa
     assert receipt(dense)["tolerance"]["between_nodes"] == []
 
 
-def test_what_the_method_leaves_out_ends_a_run_with_the_reason(monkeypatch):
-    """No mesh is begun for a tolerance below what full contact has proved."""
-    monkeypatch.undo()
-    table = analyze(SPUR, tolerance=AllowedError(0.0005, 0.0), torques=[5.0], level=None)
-    kept = receipt(table)["tolerance"]
-    assert kept["met"] is False
-    assert "no refinement reduces" in kept["reason"]
-    assert len(receipt(table)["passes"]) == 1
+def test_what_the_method_leaves_out_stands_beside_a_tolerance_and_buys_no_mesh(monkeypatch):
+    """Below what full contact has proved, meshes are taken for their own errors."""
+    allowed = AllowedError(0.0005, 0.0)
+    kept = {}
+    for name in ("without", "with"):
+        kept[name] = receipt(analyze(SPUR, tolerance=allowed, **PLANE))
+        monkeypatch.undo()
+    first, second = kept["without"]["tolerance"], kept["with"]["tolerance"]
+    assert (first["used"], first["met"]) == (second["used"], second["met"])
+    assert second["model"] > first["model"] and second["model"] > allowed.relative
+    levels = [[one["level"] for one in each["passes"]] for each in kept.values()]
+    assert levels[0] == levels[1]
