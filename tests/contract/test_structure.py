@@ -24,7 +24,7 @@ BUDGETS = {
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 747
 LONGEST = 500
-MOST_PRIVATE = 239
+MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
 
 

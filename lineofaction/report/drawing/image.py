@@ -127,7 +127,7 @@ def svg(figure: Figure) -> bytes:
 
 
 def _image(figure: Figure, form: str, metadata: dict[str, str | None]) -> bytes:
-    sheet = _panel_sheet(rewritten(figure.content, _drawable))
+    sheet = panel_sheet(rewritten(figure.content, _drawable))
     sheet.suptitle(
         _drawable(figure.title), x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK
     )
@@ -154,7 +154,7 @@ def _glyphs() -> frozenset[int]:
     return frozenset(get_font(findfont(FontProperties())).get_charmap())
 
 
-def _panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
+def panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
     """Stack panels; curves of one name share one entry in the legend on top."""
     heights = [panel_height(panel) for panel in panels]
     sheet = Sheet(figsize=(_WIDTH, _PANEL_HEIGHT * sum(heights) + 1.2), layout="constrained")

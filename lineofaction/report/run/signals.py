@@ -142,9 +142,10 @@ def amplitude_spectrum(run: RunResult, signal: Signal, window: slice) -> tuple[F
     return made.frequency[1:], signal.amplitude(made.amplitude)[1:]
 
 
-def _order_amplitudes(
+def order_amplitudes(
     frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray
 ) -> list[tuple[float, float]]:
+    """Return frequency (Hz) and amplitude of the largest line in the band of each mesh order, from the first."""
     peaks = []
     spacing = float(frequency[0])  # the first line stands one spacing above zero
     for order in range(1, ORDERS + 1):
@@ -188,7 +189,7 @@ def _spectrum_table(
     of, valid = orders
     rows = tuple(
         (str(order), number(where, 4), number(size, 3))
-        for order, (where, size) in enumerate(_order_amplitudes(frequency, amplitude, mesh)[:valid], start=1)
+        for order, (where, size) in enumerate(order_amplitudes(frequency, amplitude, mesh)[:valid], start=1)
     )
     head = ("order", "frequency, Hz", f"amplitude, {signal.unit}")
     return Table(f"Largest line in the band of each {of} order", head, rows)

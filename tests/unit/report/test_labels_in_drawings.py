@@ -13,7 +13,7 @@ from matplotlib.text import Annotation, Text
 
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Note, Panel, legend_names
-from lineofaction.report.drawing.image import _panel_sheet
+from lineofaction.report.drawing.image import panel_sheet
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.placing import _spread, line_labels, placed
 from lineofaction.report.response.modes import OTHERS, _largest_parts, mode_bars
@@ -69,7 +69,7 @@ def test_heights_are_those_of_the_axis(scale: str) -> None:
 def test_drawn_labels_lie_apart_in_both_drawings(ends: list[float]) -> None:
     """Texts of two rows, as the first figure of a report has them."""
     drawn = panel(ends, "{:g} N m: mean 12.3 µm,\n0.84 µm peak to peak")
-    sheet = _panel_sheet((drawn,))
+    sheet = panel_sheet((drawn,))
     canvas = FigureCanvasAgg(sheet)
     canvas.draw()
     texts = [text for text in sheet.axes[0].texts if isinstance(text, Annotation)]
@@ -172,7 +172,7 @@ def test_the_drawn_texts_of_a_ladder_stand_beside_their_points_and_above_the_axi
     notes = placed([Note(*point, name) for name, point in at.items()], across, along, limits)
     points = np.array(list(at.values())).T
     panel = Panel(across, along, (Line("rungs", *points, "#000000", width=0, markers=True),), notes=notes)
-    sheet = _panel_sheet((panel, panel))
+    sheet = panel_sheet((panel, panel))
     FigureCanvasAgg(sheet).draw()
     (axes, _) = sheet.axes
     texts = [text.get_window_extent() for text in axes.texts]

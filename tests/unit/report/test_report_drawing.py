@@ -32,7 +32,7 @@ from lineofaction.report.drawing.figure import (
     legend_names,
     number,
 )
-from lineofaction.report.drawing.image import _drawable, _panel_sheet, png
+from lineofaction.report.drawing.image import _drawable, panel_sheet, png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.placing import rewritten
 
@@ -76,7 +76,7 @@ def test_an_error_band_lies_about_its_line_in_both_drawings() -> None:
     np.testing.assert_allclose(np.array(high["y"]) - np.array(drawn["y"]), 0.5)
     np.testing.assert_allclose(np.array(drawn["y"]) - np.array(low["y"]), 0.5)
     assert high["fill"] == "tonexty"
-    (shade,) = _panel_sheet((panel,)).axes[0].collections
+    (shade,) = panel_sheet((panel,)).axes[0].collections
     corners = shade.get_paths()[0].vertices
     assert corners[:, 1].min() == pytest.approx(-0.5)
     assert corners[:, 1].max() == pytest.approx(4.5)
@@ -132,7 +132,7 @@ def test_an_image_grows_with_its_panels(count: int) -> None:
 def _ticks(x: list[float], y: list[float]) -> tuple[list[str], list[str]]:
     """Labels within the limits of an image with these points, logarithmic in y."""
     line = Line("a", np.array(x), np.array(y), palette.BLUE)
-    sheet = _panel_sheet((Panel(Axis("mesh order"), Axis("amplitude", "log"), (line,)),))
+    sheet = panel_sheet((Panel(Axis("mesh order"), Axis("amplitude", "log"), (line,)),))
     FigureCanvasAgg(sheet).draw()
     (ax,) = sheet.axes
     found = []
@@ -159,7 +159,7 @@ def test_a_legend_stays_within_the_sheet(count: int, length: int) -> None:
     """Its right end, as drawn; a name that alone is wider than the sheet stands in a column of its own."""
     x = np.linspace(0.0, 1.0, 3)
     lines = tuple(Line(f"{i}".ljust(length, "n"), x, x, palette.BLUE) for i in range(count))
-    sheet = _panel_sheet((Panel(Axis("x"), Axis("y"), lines),))
+    sheet = panel_sheet((Panel(Axis("x"), Axis("y"), lines),))
     canvas = FigureCanvasAgg(sheet)
     canvas.draw()
     (legend,) = sheet.legends
@@ -215,7 +215,7 @@ def test_names_stand_on_an_axis_in_place_of_numbers() -> None:
     assert legend_names(figure.content) == []  # type: ignore[arg-type]
     axis = plotly_figure(figure)["layout"]["yaxis"]
     assert (axis["tickvals"], axis["ticktext"]) == ([1.0, 2.0], ["torque", "speed"])
-    drawn = _panel_sheet(figure.content).axes[0]  # type: ignore[arg-type]
+    drawn = panel_sheet(figure.content).axes[0]  # type: ignore[arg-type]
     assert [tick.get_text() for tick in drawn.get_yticklabels()] == ["torque", "speed"]
 
 
@@ -225,7 +225,7 @@ def test_colors_span_least_to_largest() -> None:
     )
     drawn = plotly_figure(shaded(shade, 1))["data"][0]
     assert (drawn["zmin"], drawn["zmax"]) == (1.0, 1.05)
-    _, scale = _panel_sheet(shaded(shade, 1).content).axes  # type: ignore[arg-type]
+    _, scale = panel_sheet(shaded(shade, 1).content).axes  # type: ignore[arg-type]
     assert scale.get_ylim() == (1.0, 1.05)
 
 
@@ -251,7 +251,7 @@ def test_a_sheet_of_cells_or_strokes_shows_its_scale() -> None:
         HeatMap(np.arange(3.0), np.arange(2.0), np.ones((2, 3)), "pressure, MPa", 2.0),
         Strokes(x, x, np.array([0.0, 1.0, 2.0]), "line load, N/mm", 2.0),
     ):
-        sheet = _panel_sheet(shaded(shade, 1).content)  # type: ignore[arg-type]
+        sheet = panel_sheet(shaded(shade, 1).content)  # type: ignore[arg-type]
         panel, scale = sheet.axes
         assert scale.get_ylabel() == shade.label
         assert scale.get_ylim() == (0.0, 2.0)
@@ -287,7 +287,7 @@ def texts(plot: Any, key: str = "") -> Iterator[str]:
 @pytest.mark.parametrize("name", NAMES)
 def test_an_image_holds_every_name_and_no_formula(name: str) -> None:
     assert png(named(name)).startswith(b"\x89PNG")
-    sheet = _panel_sheet(rewritten(named(name).content, _drawable))
+    sheet = panel_sheet(rewritten(named(name).content, _drawable))
     FigureCanvasAgg(sheet).draw()
     drawn = [text.get_text() for text in sheet.findobj(Text)]
     assert not any(map(is_math_text, drawn))

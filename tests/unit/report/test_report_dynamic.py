@@ -23,9 +23,9 @@ from lineofaction.report.run.page import (
     dynamic_results,
 )
 from lineofaction.report.run.signals import (
-    _order_amplitudes,
     amplitude_spectrum,
     dynamic_error,
+    order_amplitudes,
     signal_over_time,
     signal_spectrum,
     spectrum_window,
@@ -126,7 +126,7 @@ def test_mesh_orders_are_found_where_they_are(run: RunResult) -> None:
     window = spectrum_window(run.time)
     mesh = run.mesh_frequency[0, window]
     frequency, amplitude = amplitude_spectrum(run, shown_signal(run, RunView()), window)
-    (first, weak), (second, strong), *others = _order_amplitudes(frequency, amplitude, mesh)
+    (first, weak), (second, strong), *others = order_amplitudes(frequency, amplitude, mesh)
     assert mesh.min() - 10 <= first <= mesh.max() + 10
     assert second == pytest.approx(2 * first, abs=10)
     assert strong > weak > 20 * max(amplitude for _, amplitude in others)

@@ -25,7 +25,7 @@ from lineofaction.report.document import page_json, page_of, read_inputs, stored
 from lineofaction.report.drawing.figure import Panel
 from lineofaction.report.effects.frontier import PAGE
 from lineofaction.report.run.signals import (
-    _order_amplitudes,
+    order_amplitudes,
     signal_over_time,
     signal_spectrum,
     spectrum_window,
@@ -206,7 +206,7 @@ def test_the_spectrum_of_a_run_has_order_1(rotor_run: Path, tmp_path: Path) -> N
     history = signal_over_time(result, shown_signal(result, RunView()))
     assert history.content[1].title == "three turns at 3844 rpm"
     window = order_frequency(result)[spectrum_window(result.time)]
-    first, second = _order_amplitudes(line.x, line.y, window)[:2]
+    first, second = order_amplitudes(line.x, line.y, window)[:2]
     assert first[1] > 1e3 * second[1]
     written = write_report(rotor_run, tmp_path / "run.html", tmp_path / "images")
     assert {file.stem for file in written} == {"run", "signal", "spectrum"}

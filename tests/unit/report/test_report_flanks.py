@@ -13,7 +13,7 @@ from fe_contact.analysis.flanks.load_distribution import LoadDistribution, press
 from fe_contact.ste import SteDatabase
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes
-from lineofaction.report.drawing.image import _panel_sheet, png
+from lineofaction.report.drawing.image import panel_sheet, png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.flank.flank import (
     PAGE,
@@ -53,7 +53,7 @@ def test_the_pattern_passes_through_the_pressures_that_were_computed(flanks: Loa
 
 def test_an_image_has_the_lines_of_equal_pressure_at_their_values(flanks: LoadDistribution) -> None:
     content = panels(contact_pattern_figure(flanks))
-    drawn = [part for ax in _panel_sheet(content).axes for part in ax.collections]
+    drawn = [part for ax in panel_sheet(content).axes for part in ax.collections]
     for panel, lines in zip(content, [d for d in drawn if isinstance(d, ContourSet)], strict=True):
         assert isinstance(panel.shade, HeatMap)
         assert list(lines.levels) == pytest.approx(panel.shade.isolines)
