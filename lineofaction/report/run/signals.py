@@ -145,7 +145,7 @@ def amplitude_spectrum(run: RunResult, signal: Signal, window: slice) -> tuple[F
 def order_amplitudes(
     frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray
 ) -> list[tuple[float, float]]:
-    """Return frequency (Hz) and amplitude of the largest line in the band of each mesh order, from the first."""
+    """Return frequency (Hz) and amplitude of the largest line of each mesh order, from the first."""
     peaks = []
     spacing = float(frequency[0])  # the first line stands one spacing above zero
     for order in range(1, ORDERS + 1):
