@@ -214,10 +214,12 @@ def test_a_server_that_is_started_again_finds_its_tasks(
     """Also where the table answers later than Dask: none is cancelled that may be wanted."""
     machine = server()
     hangs, slow = machine.submit(mode="hang"), machine.submit(mode="slow", text="found")
+    ends = child(dask, slow)
+    os.kill(ends, signal.SIGSTOP)
     pid = child(dask, hangs)
-    child(dask, slow)
     machine.close()
-    time.sleep(2.0)  # one ends meanwhile, and its result stays
+    os.kill(ends, signal.SIGCONT)
+    until(lambda: not lives(ends))  # its result stays
     assert machine.submissions.find(slow.id).status == "running"
     running = Claims.running
     monkeypatch.setattr(Claims, "running", lambda claims: time.sleep(2.0) or running(claims))
