@@ -19,7 +19,7 @@ from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.access.keyring import Holder
 from service.project import COMMON, PROJECT, address_of, at_address
-from service.queue.attempt import _files_read
+from service.queue.attempt import WorkerFigures, begun
 from service.queue.claims import Claim
 from service.queue.job import Job
 from service.schemas.examples import SCENE
@@ -29,6 +29,7 @@ from service.store.files import ResultName, new_name
 from service.store.maintenance import reindex, verify_store
 from service.store.results import Mark, ResultStore
 from service.worker.order import WorkOrder
+from service.worker.process import SIMULATE
 from service.worker.simulation_work import _table
 
 KEY = "ab" * 32
@@ -187,9 +188,11 @@ def test_a_job_reads_tables_of_its_project_alone(tmp_path: Path) -> None:
     claim = Claim("c", "simulate", "k", {"scene": scene.model_dump(mode="json")}, 1)
 
     def table(project: str) -> Any:
-        stored = _files_read(replace(claim, project=project), machine.store)
-        order = WorkOrder("", {}, "", tmp_path, tmp_path, stored=stored)
-        return _table(WorkOrder.from_line(order.line()), 0, mesh, [], lambda _fraction: None)
+        orders: list[WorkOrder] = []
+        crew: Any = SimpleNamespace(begin=lambda order, *_: orders.append(order) or SimpleNamespace(facts={}))
+        mine = replace(claim, project=project)
+        begun(machine.settings, SIMULATE, mine, crew, machine.store, WorkerFigures())
+        return _table(WorkOrder.from_line(orders[0].line()), 0, mesh, [], lambda _fraction: None)
 
     assert table("axle").facts == small_table().facts
     for project in (COMMON, "drum"):
