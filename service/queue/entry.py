@@ -15,16 +15,7 @@ from lineofaction.gearbox.problems import BadInput, QueueFull
 from service.access.keyring import Holder
 from service.project import COMMON, address_of
 from service.queue.tables import BATCH, computations, jobs
-from service.queue.terms import (
-    ANYBODY,
-    AS_IT_IS,
-    NO_LABEL,
-    NOT_COMPARED,
-    USUAL,
-    Terms,
-    differences_between,
-    differences_column,
-)
+from service.queue.terms import ANYBODY, NOT_COMPARED, USUAL, Terms, differences_between, differences_column
 from service.queue.workload import batch_steps
 from service.schemas.answers import Differences
 from service.store.database import now, writing
@@ -121,9 +112,15 @@ class Entry:
         Work in flight that another version entered becomes this one's: ended as that it would end the new job
         too.
         """
-        if shared is None:
-            return _enter_computation(connection, process, work, self._terms)
         mine, table, terms = computations.c.id == shared, computations.c, self._terms
+        if shared is None:
+            state: dict[str, Any] = {"state": "accepted", "message": "Waits for a worker."}
+            if work.stored:
+                state = {"state": "successful", "message": "Taken from the store."}
+                state |= {"fraction": 1.0, "started": now(), "finished": now()}
+            state |= {"priority": terms.priority, "max_cost_s": terms.max_cost_s}
+            given = {"traceparent": TRACEPARENT.get(), **state}
+            return _entered(connection, process, work.key, work.inputs, **given)
         lower = mine & (table.state == "accepted") & (table.priority < terms.priority)
         connection.execute(update(computations).where(lower).values(priority=terms.priority))
         limit = terms.max_cost_s
@@ -171,15 +168,11 @@ class Entry:
         shared: dict[str, str | None],
     ) -> None:
         """Enter the batch and its jobs; the first of equal ones bears their cost."""
-        common = {"created": now(), "caller": self._caller.name, "delivery": str(AS_IT_IS)}
-        common |= {
-            "project": self._project,
-            "differences": differences_column(NOT_COMPARED),
-            **NO_LABEL.columns(),
-        }
-        rows = [
-            _entered_batch(connection, identifier, process, len(cases)) | common | self._terms.label.columns()
-        ]
+        common = {"created": now(), "caller": self._caller.name, "project": self._project, **USUAL.columns()}
+        begun = {"state": "running", "stage": "jobs", "started": now()}
+        whole = _entered(connection, process, f"{BATCH}{identifier}", {}, **begun)
+        batch = {"id": identifier, "computation_id": whole, "parent": None, "place": 0, "weight": 0.0}
+        rows = [common | batch | {"children": len(cases)} | self._terms.label.columns()]
         names, counted = [str(uuid.uuid4()) for _ in cases], set[str]()
         for place, (case, apart) in enumerate(zip(cases, _differences(cases, names), strict=True)):
             if case.key not in counted:
@@ -202,17 +195,6 @@ def _is_entered(connection: Connection, which: ColumnElement[bool], works: Seque
         advice = "Give a request with other inputs another."
         raise BadInput.of("Idempotency-Key", None, "the name of one request", advice)
     return entered != []
-
-
-def _entered_batch(connection: Connection, identifier: str, process: str, children: int) -> dict[str, Any]:
-    """Enter what stands for the computation of a batch; return the row of its job."""
-    instant, computation = now(), str(uuid.uuid4())
-    row = {"id": computation, "process": process, "key": f"{BATCH}{identifier}", "inputs": json.dumps({})}
-    row |= {"state": "running", "message": "", "stage": "jobs"}
-    row |= {"created": instant, "started": instant, "updated": instant}
-    connection.execute(insert(computations).values(**row))
-    job = {"id": identifier, "computation_id": computation, "parent": None, "place": 0}
-    return job | {"children": children, "weight": 0.0}
 
 
 def _differences(cases: Sequence[BatchCase], names: Sequence[str]) -> Iterator[Differences]:
@@ -265,24 +247,9 @@ def _live(key: str) -> ColumnElement[bool]:
     return (computations.c.key == key) & computations.c.state.in_(LIVE)
 
 
-def _enter_computation(connection: Connection, process: str, work: BatchCase, terms: Terms) -> str:
-    """Enter a computation, ended at once if its result is stored."""
+def _entered(connection: Connection, process: str, key: str, inputs: Any, **values: Any) -> str:
+    """Enter a computation; return its identifier."""
     identifier, instant = str(uuid.uuid4()), now()
-    row: dict[str, Any] = {
-        "id": identifier,
-        "process": process,
-        "key": work.key,
-        "inputs": json.dumps(work.inputs),
-        "priority": terms.priority,
-        "max_cost_s": terms.max_cost_s,
-        "state": "successful" if work.stored else "accepted",
-        "message": "Taken from the store." if work.stored else "Waits for a worker.",
-        "fraction": 1.0 if work.stored else 0.0,
-        "created": instant,
-        "updated": instant,
-        "traceparent": TRACEPARENT.get(),
-    }
-    if work.stored:
-        row |= {"started": instant, "finished": instant}
-    connection.execute(insert(computations).values(**row))
+    row = {"id": identifier, "process": process, "key": key, "inputs": json.dumps(inputs)}
+    connection.execute(insert(computations).values(**row, created=instant, updated=instant, **values))
     return identifier

@@ -99,13 +99,7 @@ def end_computations(connection: Connection, which: ColumnElement[bool], values:
     """
     instant = now()
     ended = update(computations).where(which).values(finished=instant, updated=instant, **values)
-    facts = (
-        computations.c.process,
-        computations.c.state,
-        computations.c.started,
-        computations.c.finished,
-        computations.c.attempts,
-    )
+    facts = [computations.c[name] for name in ("process", "state", "started", "finished", "attempts")]
     for row in connection.execute(ended.returning(*facts)).all():
         if row.started is not None:
             _count(connection, row)
@@ -115,13 +109,9 @@ def _count(connection: Connection, row: Row[Any]) -> None:
     span = datetime.fromisoformat(row.finished) - datetime.fromisoformat(row.started)
     seconds = max(span.total_seconds(), 0.0)  # a clock was set
     key = {"process": row.process, "outcome": row.state, "le": bound_of(seconds)}
-    insert = dialect_of(connection).insert(durations)
-    statement = insert.values(**key, number=1, seconds=seconds, attempts=row.attempts)
-    more = {
-        "number": durations.c.number + 1,
-        "seconds": durations.c.seconds + seconds,
-        "attempts": durations.c.attempts + row.attempts,
-    }
+    added = {"number": 1, "seconds": seconds, "attempts": row.attempts}
+    statement = dialect_of(connection).insert(durations).values(**key, **added)
+    more = {name: durations.c[name] + value for name, value in added.items()}
     connection.execute(statement.on_conflict_do_update(index_elements=list(key), set_=more))
 
 
