@@ -15,7 +15,7 @@ BUDGETS = {
     ("dynamics",): (39_795, 745),
     ("lineofaction.gearbox",): (21_636, 427),
     ("lineofaction.report",): (10_473, 200),
-    ("service",): (14_834, 339),
+    ("service",): (14_791, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_611, 67),
     ("lineofaction.hardcases",): (3_834, 35),
