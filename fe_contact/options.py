@@ -174,8 +174,8 @@ class AnalysisOptions:
     ----------
     tolerance : AllowedError, optional
         Of mean and peak-to-peak STE, without what no mesh lowers. A table is refined by its measured errors
-        until it meets the tolerance, in at most four passes: `receipt["passes"]`; `receipt["tolerance"]` says whether it is met, or why
-        not.
+        until it meets the tolerance, in at most four passes: `receipt["passes"]`; `receipt["tolerance"]` says
+        whether it is met, or why not.
     time_budget : float, optional
         CPU seconds that the run may take. With a tolerance, refinement ends before it would exceed them.
     level : str, optional
