@@ -68,7 +68,7 @@ def service(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[KilledSe
         ("sqlite", 3),
         pytest.param("sqlite", 50, marks=pytest.mark.nightly),
         pytest.param("postgresql", 50, marks=pytest.mark.nightly),
-        pytest.param("dask", 36, marks=pytest.mark.nightly),
+        pytest.param("dask", 50, marks=pytest.mark.nightly),
     ],
 )
 def test_nothing_is_lost_when_parts_are_killed_at_random_moments(
