@@ -9,7 +9,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from bounds import Direction, Kind, SiNote, above, declarations
+from bounds import Direction, Kind, SiNote, at_least, declarations
 from fe_contact.errors import InputError, declared_fields
 from fe_contact.types import FloatArray
 
@@ -89,6 +89,10 @@ class ReliefStart:
     ends_flank: bool = False
 
 
+SHORTEST = 1e-9
+"""m; what is shorter is a step, and its slope no number."""
+
+
 @dataclass(frozen=True)
 class FlankPart:
     """One departure of a gear's flanks from the involute helicoid.
@@ -106,8 +110,8 @@ class FlankPart:
         declared_fields(self)
         for field, fact in declarations(type(self)).items():
             amount = field.removesuffix("_length")
-            if fact.kind is Kind.LENGTH and getattr(self, amount) and not getattr(self, field):
-                bound = above(0.0, note=f" where {amount.replace('_', ' ')} acts over it")
+            if fact.kind is Kind.LENGTH and getattr(self, amount) and getattr(self, field) < SHORTEST:
+                bound = at_least(SHORTEST, "m", note=f" where {amount.replace('_', ' ')} acts over it")
                 raise InputError(field, getattr(self, field), bound, SiNote("In m: 1.5 mm is 0.0015."))
 
     @cached_property

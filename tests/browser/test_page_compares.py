@@ -120,9 +120,8 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
     page.get_by_role("button", name="Compute flank pressure").press("Enter")
     pattern = page.locator("[data-figure=contact_pattern] .plot")
     expect(pattern).to_have_attribute("data-drawn", "yes")
-    assert pattern.locator(".heatmaplayer image").count() == 2, (
-        "a map over roll length and face for each gear"
-    )
+    maps = pattern.locator(".heatmaplayer image")
+    expect(maps, "a map over roll length and face for each gear").to_have_count(2)
     assert visit.complaints == []
 
 

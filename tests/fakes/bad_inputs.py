@@ -178,6 +178,9 @@ BAD_INPUTS: tuple[BadInput, ...] = (
     of_distance("center distance negative", -80.0),
     of_flank("relief without length", "tip_relief_length_mm", tip_relief_um=20.0),
     of_flank(
+        "relief that is a step", "tip_relief_length_mm", tip_relief_um=20.0, tip_relief_length_mm=1e-300
+    ),
+    of_flank(
         "relief longer than the tooth", "tip_relief_length_mm", tip_relief_um=20.0, tip_relief_length_mm=50.0
     ),
     of_flank("negative relief", "tip_relief_um", tip_relief_um=-20.0, tip_relief_length_mm=1.0),
