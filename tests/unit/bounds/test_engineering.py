@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from bounds import engineering, leftover
 
 ROOT = Path(__file__).parents[3]
-NUMBERS = st.floats(allow_nan=False, allow_infinity=False, width=64).filter(lambda value: abs(value) > 1e-290)
+NUMBERS = st.floats(-1e308, 1e308).filter(lambda value: abs(value) > 1e-290)
+"""What is rounded up beyond the largest float is none to read back."""
 
 
 @given(NUMBERS, st.integers(1, 4))
