@@ -120,7 +120,7 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
     page.get_by_role("button", name="Compute flank pressure").press("Enter")
     pattern = page.locator("[data-figure=contact_pattern] .plot")
     expect(pattern).to_have_attribute("data-drawn", "yes")
-    maps = pattern.locator(".heatmaplayer image")
+    maps = pattern.locator(".contourlayer .contour")
     expect(maps, "a map over roll length and face for each gear").to_have_count(2)
     assert visit.complaints == []
 
