@@ -117,7 +117,7 @@ class Forks:
     def launch(self, ends: Ends, warm_within: float = WARM_WITHIN_S) -> ChildProcess:
         """Fork a child, or start one; OSError: the system does neither."""
         self.warm_up()
-        if self._server is not None and not self._server.ready:
+        if self._server is not None and self._server.usable and not self._server.ready:
             self._server.await_word(warm_within if self._waits else 0.0)
         if self._server is not None and self.warm:
             with contextlib.suppress(ConnectionError):

@@ -108,6 +108,22 @@ def test_after_so_many_children_another_takes_its_place(
     until(lambda: not lives(warm))
 
 
+def test_nobody_waits_for_a_warm_process_that_forks_no_more(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As long as one of its children lives it has no successor."""
+    monkeypatch.setattr("service.worker.forks.MOST_FORKS", 1)
+    monkeypatch.setattr(Forks.launch, "__defaults__", (600.0,))
+    machine = bench(tmp_path, REGISTRY, workers=2)
+    machine.scheduler.start()
+    try:
+        hangs = machine.submit(mode="hang")
+        assert parent_of_last(machine, hangs.key) != os.getpid()
+        assert machine.ended(machine.submit(text="beside it")).status == "successful"
+    finally:
+        machine.close()
+
+
 def test_modules_that_cannot_be_imported_leave_a_warm_process(tmp_path: Path) -> None:
     forks = Forks(["no_such_module", "service_fake_work"], tmp_path / "log")
     forks.warm_up()
