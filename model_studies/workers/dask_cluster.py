@@ -7,6 +7,7 @@ import json
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import takewhile
@@ -81,9 +82,9 @@ class ByDask:
 
     def _in_order(self, futures: Sequence[Any], *, keep: bool) -> Iterator[Any]:
         """Yield the results; let go of the rest when the caller stops or a task fails."""
-        kept_before = {key for _, key in self._published()} if keep else set()
         count = 0
         try:
+            kept_before = {key for _, key in self._published()} if keep else set()
             while count < len(futures):
                 for done in self._results(futures, count):
                     yield done.result if futures[count].key in kept_before else self.cost.add(done)
@@ -96,7 +97,9 @@ class ByDask:
 
     def _published(self) -> list[tuple[str, str]]:
         """Return names of kept results, the oldest first, and the keys of their tasks."""
-        names: tuple[str, ...] = self.client.list_datasets()  # type: ignore[no-untyped-call]
+        names: tuple[str, ...] = ()
+        with suppress(Exception):  # a scheduler that is gone ends the tasks, which say so
+            names = self.client.list_datasets()  # type: ignore[no-untyped-call]
         return [(name, name.partition(" ")[2]) for name in sorted(names) if name.startswith(_KEPT)]
 
     def _publish(self, futures: Mapping[str, Any]) -> None:
@@ -105,9 +108,10 @@ class ByDask:
         new: dict[Any, Any] = {
             f"{now} {key}": futures[key] for key in futures.keys() - {key for _, key in published}
         }
-        self.client.publish_dataset(new)
         older: list[Any] = [name for name, _ in published]
-        self.client.unpublish_dataset(older[: max(0, len(older) + len(new) - KEPT_RESULTS)])
+        with suppress(Exception):  # all results are here: who asks for them later makes them again
+            self.client.publish_dataset(new)
+            self.client.unpublish_dataset(older[: max(0, len(older) + len(new) - KEPT_RESULTS)])
 
     def _results(self, futures: Sequence[Any], first: int) -> list[Any]:
         """Wait for a result as long as there is somebody to make it; return it with those ready after it."""

@@ -258,11 +258,22 @@ def test_a_cluster_without_workers_ends_the_run_and_says_so(cluster: Cluster) ->
 
 
 @pytest.mark.nightly
-def test_a_scheduler_that_goes_ends_the_run_and_says_so() -> None:
+def test_a_scheduler_that_goes_after_the_last_result_loses_nothing() -> None:
+    scheduler = distributed.LocalCluster(n_workers=1, processes=False, dashboard_address=None)
+    with distributed.Client(scheduler, set_as_default=False, timeout=5.0) as client:
+        results = ByDask(client).run(kept_quotient, 1.0, [2.0, 4.0])
+        assert [next(results), next(results)] == [0.5, 0.25]
+        scheduler.close()
+        assert list(results) == []  # and none is kept
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("kept", [False, True])
+def test_a_scheduler_that_goes_ends_the_run_and_says_so(kept: bool) -> None:
     scheduler = distributed.LocalCluster(n_workers=0, dashboard_address=None, host="127.0.0.1")
     with distributed.Client(scheduler, set_as_default=False, timeout=5.0) as client:
         workers = ByDask(client)
-        results = workers.run(divided, 1.0, [2.0])
+        results = workers.run(kept_quotient if kept else divided, 1.0, [2.0])
         scheduler.close()
         with pytest.raises(WorkersLost, match="is gone: 0 of 1 tasks were done"):
             next(results)
@@ -271,4 +282,9 @@ def test_a_scheduler_that_goes_ends_the_run_and_says_so() -> None:
 
 
 def divided(shared: float, item: float) -> float:
+    return shared / item
+
+
+@executor.kept
+def kept_quotient(shared: float, item: float) -> float:
     return shared / item
