@@ -19,7 +19,7 @@ BUDGETS = {
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_611, 67),
     ("lineofaction.hardcases",): (3_834, 35),
-    ("bounds", "host", "model_studies"): (4_172, 145),
+    ("bounds", "host", "model_studies"): (4_176, 145),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 747
