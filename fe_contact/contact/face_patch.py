@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_contact.contact.patch import GAUSS_POINTS, GAUSS_WEIGHTS
+from fe_contact.contact.patch import GAUSS_POINTS, GAUSS_WEIGHTS, patch_angles
 from fe_contact.types import FloatArray, IntArray
 from host.loops import njit
 
@@ -76,9 +76,7 @@ def face_loads(
             for e in range((grid.s.size - 1) // 2):
                 if not _overlaps(grid.s[2 * e], grid.s[2 * e + 2], middle - half, middle + half):
                     continue
-                _profile_moments(
-                    grid.s[2 * e], grid.s[2 * e + 2], middle, half, edge_share[p, q], along_moments
-                )
+                _profile_moments(grid.s, e, middle, half, edge_share[p, q], along_moments)
                 along_moments /= count
                 for k in range(grid.z.size - 1):
                     if _overlaps(grid.z[k], grid.z[k + 1], left, right):
@@ -140,11 +138,11 @@ def _touched(ends: FloatArray, low: float, high: float) -> int:
 
 @njit(cache=True)
 def _profile_moments(
-    left: float, right: float, center: float, half_width: float, edge_share: float, out: FloatArray
+    s: FloatArray, e: int, center: float, half_width: float, edge_share: float, out: FloatArray
 ) -> None:
     """Moments 0 to 2 of the load on one element, in its coordinate from -1 to 1."""
-    start = math.asin(min(max((left - center) / half_width, -1.0), 1.0))
-    stop = math.asin(min(max((right - center) / half_width, -1.0), 1.0))
+    left, right = s[2 * e], s[2 * e + 2]
+    start, stop = patch_angles(s, e, center, half_width)
     out[:] = 0.0
     for g in range(GAUSS_POINTS.size):
         sine = math.sin(0.5 * (start + stop) + 0.5 * (stop - start) * GAUSS_POINTS[g])

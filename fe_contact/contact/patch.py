@@ -146,12 +146,24 @@ def load_vector(
 
 
 @njit(cache=True)
+def patch_angles(nodes: FloatArray, e: int, center: float, half_width: float) -> tuple[float, float]:
+    """Return the angles of a patch, -pi/2 to pi/2, between which it lies on element e.
+
+    The last element has the rest of it: at a tip edge rounding leaves the end of a patch beside the last
+    node, the angle moves by the root of that, and with it a singular load.
+    """
+    start = math.asin(min(max((nodes[2 * e] - center) / half_width, -1.0), 1.0))
+    if 2 * e + 3 == nodes.size:
+        return start, 0.5 * math.pi
+    return start, math.asin(min(max((nodes[2 * e + 2] - center) / half_width, -1.0), 1.0))
+
+
+@njit(cache=True)
 def _add_element(
     nodes: FloatArray, e: int, center: float, half_width: float, edge_share: float, out: FloatArray
 ) -> None:
     left, right = nodes[2 * e], nodes[2 * e + 2]
-    start = math.asin(min(max((left - center) / half_width, -1.0), 1.0))
-    stop = math.asin(min(max((right - center) / half_width, -1.0), 1.0))
+    start, stop = patch_angles(nodes, e, center, half_width)
     middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
     for g in range(GAUSS_POINTS.size):
         theta = middle + half * GAUSS_POINTS[g]

@@ -64,6 +64,13 @@ def test_moments_of_a_patch_at_an_edge(nodes, share):
     assert forces @ (tip - nodes) ** 2 == pytest.approx(c**2 * second, rel=1e-9, abs=0.0)
 
 
+def test_a_patch_at_the_tip_edge_carries_all_of_its_load():
+    # its end is beside the last node by rounding: a singular load went with the root of that, 1e-8 of it
+    tip = UNIFORM[-1]
+    for half in np.random.default_rng(3).uniform(1e-5, 1e-3, 200):
+        assert patch(UNIFORM, tip - half, half, 1.0).sum() == pytest.approx(1.0, rel=1e-13, abs=0.0)
+
+
 def test_a_field_is_weighed_alike_on_every_mesh_and_wherever_the_patch_is():
     def work(nodes, center):
         return patch(nodes, center, 3e-4) @ np.cos(500.0 * nodes)
