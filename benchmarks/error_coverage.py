@@ -14,12 +14,13 @@ from benchmarks.figures import Figure
 from benchmarks.marked_section import replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.stored_runs import finest_run, table_run
+from fe_contact.ste.curve import METHOD
 
 PAGE = Path(__file__).parents[1] / "docs" / "lab" / "accuracy.md"
 SECTION = "finest"
 SUBJECT = "stated errors against the finest solution"
 LEVELS = ("draft", "standard")
-SHARED = ("model",)
+SHARED = (METHOD,)
 """Sources that the finest solution has as well: no part of what is assessed."""
 _COVERAGE = 95.0
 
@@ -57,7 +58,7 @@ def _kind(case: PairCase, level: str) -> str:
 
 def markdown(found: Sequence[Assessed], whole: Sequence[Assessed]) -> str:
     """Return the section of docs/lab/accuracy.md; `whole` are the tables with all that they state."""
-    groups = {"all, with `model`": list(whole), "all": list(found)}
+    groups = {"all, with `method`": list(whole), "all": list(found)}
     groups |= {kind: [one for one in found if one.level == kind] for kind in sorted({o.level for o in found})}
     return coverage_table(groups) + "\n" + _worst(found)
 

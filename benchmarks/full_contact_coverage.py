@@ -17,7 +17,7 @@ from benchmarks.marked_section import replace_section
 from fe_contact import SteDatabase, analyze
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.model_error import in_small_displacements
-from fe_contact.ste.curve import AT_NODES, all_sources
+from fe_contact.ste.curve import AT_NODES, METHOD, PLANE, all_sources
 from fe_contact.types import FloatArray
 
 ROOT = Path(__file__).parents[1]
@@ -70,8 +70,8 @@ def stated(table: SteDatabase, pair: ParallelAxes) -> FloatArray:
     found = [[curve.mean, curve.peak_to_peak, *curve.harmonics] for curve in curves]
     own = np.array([[quantity.value for quantity in row] for row in found]).T
     sources = table.curve_error[: len(AT_NODES), :, :, 0, 0].copy()
-    sources[AT_NODES.index("model")] = in_small_displacements(pair, table.force, own)
-    sources[AT_NODES.index("finite_width")] = 0.0
+    sources[AT_NODES.index(METHOD)] = in_small_displacements(pair, table.force, own)
+    sources[AT_NODES.index(PLANE)] = 0.0
     return all_sources(sources)[: len(QUANTITIES)]
 
 

@@ -14,31 +14,31 @@ from fe_contact.material import Material
 
 # Deflection of a gear of finite width relative to its section in plane strain and plane stress.
 
-PLANE_STRESS_SHARE = 0.76
-"""Excess of plane stress over plane strain, in parts of that of their moduli, nu^2/(1 - nu^2)."""
-DECAY_WIDTH = 5.0
-"""Face width in modules at which half of it is left."""
+BENDING_SHARE = 0.72
+"""Excess of the mean in plane stress over plane strain, in parts of that of the moduli, nu^2/(1 - nu^2):
+contact has none."""
+TOOTH_DECAY, BODY_DECAY = 3.2, 0.42
+"""Face width in modules at which half is left: of teeth; of teeth with bodies over z^0.75, z the geometric
+mean of the teeth."""
 
 
-def finite_width_excess(pair: ParallelAxes) -> float:
-    """Estimate the relative excess of the mean STE of a spur pair of finite width over plane strain.
+def finite_width_excess(pair: ParallelAxes) -> tuple[float, float]:
+    """Estimate the relative excess of mean and peak-to-peak STE of a spur pair over those in plane strain.
 
-    The ends of the face are free, so a narrow gear is in plane stress and a very wide one in plane strain;
-    between them the excess falls as 1/(1 + (b/m)/5). It is right within about a half: good enough to say
-    what plane strain leaves out before anything is computed. What a result is corrected by is computed
-    (docs/effects.md#finite_width).
+    The ends of the face are free, so a narrow gear is in plane stress and a very wide one in plane strain.
+    The mean has the bodies, too, which are larger than the teeth; peak-to-peak, that of usual flanks, has the
+    teeth alone. Within 15 and 20 % of finite elements on 30 pairs, faces of 1.25 to 30 modules, internal
+    ones included; what a result is corrected by is computed (docs/effects.md#finite_width).
     """
-    modules = pair.face_width / pair.pinion.normal_module
-    return PLANE_STRESS_SHARE * _moduli(pair) / (1.0 + modules / DECAY_WIDTH)
+    modules, moduli = pair.face_width / pair.pinion.normal_module, _moduli(pair)
+    body = BODY_DECAY * (pair.pinion.teeth * abs(pair.wheel.teeth)) ** 0.375
+    return BENDING_SHARE * moduli / (1.0 + modules / body), moduli / (1.0 + modules / TOOTH_DECAY)
 
 
-def plane_stress_excess(pair: ParallelAxes) -> float:
-    """Estimate the relative excess of STE in plane stress over that at the finite width.
-
-    It is that of peak-to-peak, which the bodies make; of the mean, of which contact takes a part, it is three
-    quarters.
-    """
-    return (1.0 + _moduli(pair)) / (1.0 + finite_width_excess(pair)) - 1.0
+def plane_stress_excess(pair: ParallelAxes) -> tuple[float, float]:
+    """Estimate the relative excess of mean and peak-to-peak STE in plane stress over the finite width."""
+    (mean, ripple), moduli = finite_width_excess(pair), _moduli(pair)
+    return (1.0 + BENDING_SHARE * moduli) / (1.0 + mean) - 1.0, (1.0 + moduli) / (1.0 + ripple) - 1.0
 
 
 def _moduli(pair: ParallelAxes) -> float:

@@ -10,21 +10,20 @@ import numpy as np
 
 from bounds import engineering
 from fe_contact.allowed_error import RELATIVE, AllowedError
-from fe_contact.compliance import PlaneHypothesis
 from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
-from fe_contact.geometry.web_compliance import finite_width_excess, plane_stress_excess
+from fe_contact.geometry.web_compliance import finite_width_excess
 from fe_contact.options import LEVELS, AnalysisOptions
 from fe_contact.planning.cost_model import effort, predict_run
-from fe_contact.planning.model_error import in_small_displacements, model_errors, of_bending
+from fe_contact.planning.model_error import in_small_displacements, model_errors
 from fe_contact.planning.plan import (
     FINER_SLICES,
     SLICE_ORDER,
-    Discretization,
     FaceDiscretization,
     Plan,
     make_plan,
 )
+from fe_contact.planning.plane_bias import PlaneBias
 from fe_contact.types import FloatArray, Json
 
 # Mean and peak-to-peak transmission error as expected before anything is computed.
@@ -86,10 +85,10 @@ of spur pairs; of helical pairs with plain and with modified profiles, whose con
 load."""
 _HELICAL_SLICES, _SPUR_SLICES, _SLICES = 7e-4, 5e-5, 15
 """Peak-to-peak at so many slices in parts of the same: of helical pairs times the overlap ratio."""
-_CORRECTION, LEFT_OUT = 0.03, 1.25
-"""Error of the correction for a finite width over what it is expected to correct, and of leaving it out."""
+_CORRECTION = 0.03
+"""Error of the correction for a finite width over what it is expected to correct."""
 _WIDTH_RIPPLE = 0.45
-"""Peak-to-peak over mean of a correction that is the same in all contacts: that of usual spur pairs."""
+"""Peak-to-peak over mean of usual spur pairs."""
 _PLANE_POSITIONS, _FACE_POSITIONS = 0.2, 0.8
 """Error of peak-to-peak between positions over what their search allows."""
 
@@ -110,21 +109,26 @@ class ExpectedError:
     positions : float
         Interpolation between positions.
     plane : float
-        The plane standing in for three dimensions, where these may be taken instead.
-    lasting : float
-        What no run of this request lowers: what the method leaves out of full contact (`model_error`), and
-        the plane where the caller chose it.
+        The plane standing in for three dimensions.
+    method : float
+        What the method leaves out of full contact, whatever the mesh (`model_error`).
     mean, peak_to_peak : float or None
-        The largest errors over the loads, m; None where no size is known before the run.
+        The largest errors over the loads without `bias`, m; None where no size is known before the run.
+    chosen : bool
+        Whether the caller chose the model, so that no run of this request lowers `plane`.
+    bias : PlaneBias, optional
+        What a plane leaves out where it is not corrected; `plane` is its size then.
     """
 
     mesh: float
     slices: float
     positions: float
     plane: float
-    lasting: float
+    method: float
     mean: float | None = None
     peak_to_peak: float | None = None
+    chosen: bool = False
+    bias: PlaneBias | None = None
 
     @property
     def numerical(self) -> float:
@@ -132,30 +136,26 @@ class ExpectedError:
         return float(np.sqrt(self.mesh**2 + self.slices**2 + self.positions**2))
 
     @property
-    def model(self) -> float:
-        """The part that none of them lowers."""
-        return float(np.hypot(self.plane, self.lasting))
-
-    @property
     def bought(self) -> float:
-        """The part that work lowers, to which a tolerance applies: the numerical one and the plane."""
-        return float(np.hypot(self.numerical, self.plane))
+        """The part that work lowers, to which a tolerance applies: with the plane, unless it was chosen."""
+        return self.numerical if self.chosen else float(np.hypot(self.numerical, self.plane))
 
     @property
     def words(self) -> str:
         """What a tolerance applies to."""
-        plane = f", with the plane {_percent(self.bought)} %" if self.plane else ""
+        plane = f", with the plane {_percent(self.bought)} %" if self.bought > self.numerical else ""
         return f"{_percent(self.numerical)} %{plane}"
 
     @property
     def total(self) -> float:
         """Of all, which are independent of each other."""
-        return float(np.hypot(self.numerical, self.model))
+        return float(np.sqrt(self.numerical**2 + self.plane**2 + self.method**2))
 
     def to_json(self) -> Json:
         """Return plain JSON."""
-        names = ("mesh", "slices", "positions", "numerical", "model", "total")
+        names = ("mesh", "slices", "positions", "numerical", "plane", "method", "total")
         parts: Json = {name: getattr(self, name) for name in names}
+        parts["bias"] = self.bias and self.bias.to_json()
         return parts | {"mean_m": self.mean, "peak_to_peak_m": self.peak_to_peak}
 
 
@@ -172,16 +172,16 @@ def expected_error(
         The caller chose the model.
     """
     known = curves or _usual_curves(pair, plan)
-    parts = _parts(pair, plan, known)
-    if bound:
-        nothing = np.zeros_like(parts["plane"])
-        parts |= {"plane": nothing, "lasting": np.hypot(parts["plane"], parts["lasting"])}
-    absolute = np.sqrt(sum(np.square(part) for part in parts.values()))
-    relative = absolute / known.scale
+    parts, own = _parts(pair, plan, known), np.stack([known.mean, known.peak_to_peak])
+    relative = np.sqrt(sum(np.square(part) for part in parts.values())) / known.scale
+    if bias := PlaneBias.of(pair, plan.discretization):
+        bias = bias.of_curves(pair, own) if known.absolute and _modified(pair) else bias
+    counted = [part for name, part in parts.items() if not (bias and name == "plane")]
+    absolute = np.sqrt(sum(np.square(part) for part in counted))
     worst = np.unravel_index(int(np.argmax(relative)), relative.shape)
     at_worst = {name: float((part / known.scale)[worst]) for name, part in parts.items()}
     mean, ripple = (float(value) for value in absolute.max(axis=1)) if known.absolute else (None, None)
-    return ExpectedError(**at_worst, mean=mean, peak_to_peak=ripple)
+    return ExpectedError(**at_worst, mean=mean, peak_to_peak=ripple, chosen=bound, bias=bias)
 
 
 def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:
@@ -190,8 +190,11 @@ def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:
         return _PLANE[plan.level]
     if pair.base_helix_angle == 0.0:
         return _SPUR[plan.level]
-    modified = any(gear.modification.varies_along_profile for gear in (pair.pinion, pair.wheel))
-    return (_RELIEVED if modified else _HELICAL)[plan.level]
+    return (_RELIEVED if _modified(pair) else _HELICAL)[plan.level]
+
+
+def _modified(pair: ParallelAxes) -> bool:
+    return any(gear.modification.varies_along_profile for gear in (pair.pinion, pair.wheel))
 
 
 def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, FloatArray]:
@@ -207,27 +210,15 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
         part = _HELICAL_SLICES * pair.overlap_ratio if helical else _SPUR_SLICES
         slices[1] = part * (_SLICES / made.slices) ** SLICE_ORDER * known.added
     elif made.corrected:
-        plane = _CORRECTION * finite_width_excess(pair) * np.stack([mean, _WIDTH_RIPPLE * mean])
-    else:
-        plane = LEFT_OUT * left_out(pair, made) * of_bending(pair, own)
+        plane = np.outer(_CORRECTION * np.array(finite_width_excess(pair)) * (1.0, _WIDTH_RIPPLE), mean)
+    elif bias := PlaneBias.of(pair, made):
+        plane = bias.errors(pair, own)
     left = model_errors if known.absolute else in_small_displacements  # large ones are known in m alone
-    lasting = left(pair, known.force, own)
+    method = left(pair, known.force, own)
     positions = nothing.copy()
     over_allowed = _FACE_POSITIONS if isinstance(made, FaceDiscretization) else _PLANE_POSITIONS
     positions[1] = over_allowed * plan.nodes.tolerance * np.maximum(ripple, plan.nodes.least_ripple)
-    return {"mesh": by_mesh, "slices": slices, "positions": positions, "plane": plane, "lasting": lasting}
-
-
-def left_out(pair: ParallelAxes, made: Discretization) -> float:
-    """Return the relative part of the mean STE that a plane leaves out of a finite width; 0 if none.
-
-    Plane strain deflects less than the gear, plane stress more. The plane that is corrected leaves nothing
-    out, nor do three dimensions.
-    """
-    if isinstance(made, FaceDiscretization) or made.corrected:
-        return 0.0
-    thin = made.hypothesis is PlaneHypothesis.PLANE_STRESS
-    return plane_stress_excess(pair) if thin else finite_width_excess(pair)
+    return {"mesh": by_mesh, "slices": slices, "positions": positions, "plane": plane, "method": method}
 
 
 # Choice of mesh and slices for a tolerance or a time, by the models of error and of cost.

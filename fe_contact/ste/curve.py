@@ -88,7 +88,9 @@ def _inside(name: str, value: float | None, axis: FloatArray) -> float:
 
 # Errors of mean, peak-to-peak and harmonics by source, as a table stores them.
 
-AT_NODES = ("discretisation", "slices", "contact_solver", "finite_width", "position", "model")
+PLANE, METHOD = "finite_width", "method"
+"""A plane in place of three dimensions; what the method leaves out of full contact, whatever the mesh."""
+AT_NODES = ("discretisation", "slices", "contact_solver", PLANE, "position", METHOD)
 """Sources that act at stored loads and alignments as well."""
 BETWEEN_NODES = ("force", "misalignment", "center_distance_change")
 """Interpolation along each axis: nothing on its nodes; stored at the lower node of every interval."""

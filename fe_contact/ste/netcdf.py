@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from fe_contact.errors import DatabaseError
-from fe_contact.ste.curve import AT_NODES, SOURCES
+from fe_contact.ste.curve import AT_NODES, METHOD, SOURCES
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import DIMENSIONS, OPTIONAL, RESIDUALS, SteFields
 from fe_contact.types import Json, Status
@@ -172,7 +172,7 @@ def read(path: Path) -> dict[str, Any]:
     """
     content, attributes = FILES.read(path, lambda attributes: _before(_period(path, attributes)))
     if content.get("curve_error", np.empty(0)).shape[0] == len(SOURCES) - 1:  # of schema version 1
-        content["curve_error"] = np.insert(content["curve_error"], AT_NODES.index("model"), 0.0, axis=0)
+        content["curve_error"] = np.insert(content["curve_error"], AT_NODES.index(METHOD), 0.0, axis=0)
     documents = {name: json_attribute(path, attributes, name) for name in _JSON_ATTRIBUTES}
     return content | {
         "facts": _facts(path, attributes),

@@ -11,7 +11,7 @@ from bounds import engineering
 from bounds.types import Json
 from fe_contact.analysis.run_plan import PlannedLevel, RunPlan
 from fe_contact.planning.cost_model import STAGES
-from fe_contact.ste import SteDatabase
+from fe_contact.ste import SteDatabase, in_own_model
 from host.directories import cache_home
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import (
@@ -23,7 +23,7 @@ from lineofaction.cli.output import (
     progress_bar,
     table,
 )
-from lineofaction.gearbox.convert.answers import draft_line, summary_json
+from lineofaction.gearbox.convert.answers import draft_line, source_rows, summary_json
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.convert.effects import assumption_lines, ledger_lines
 from lineofaction.gearbox.convert.live import plan_json, plan_of
@@ -110,8 +110,10 @@ def _verdict(kept: Json) -> str:
     if kept["met"] is None:
         return f"{tolerance}: errors not estimated"
     numerical = "" if kept["used"] is None else _percent(kept["used"] * kept["relative"], "numerical error")
-    model = _percent(kept["model"], "model") + ", which no mesh lowers" if "model" in kept else ""
-    return f"{tolerance}: {'met' if kept['met'] else 'NOT met'}{numerical}{model}"
+    lasting = (
+        f"{_percent(kept['lasting'], 'of the method')}, which no mesh lowers" if "lasting" in kept else ""
+    )
+    return f"{tolerance}: {'met' if kept['met'] else 'NOT met'}{numerical}{lasting}"
 
 
 def _percent(part: float, name: str) -> str:
@@ -146,8 +148,9 @@ def run_analyze(file: InputFile, output: Path, executor: tuple[int, str | None],
     if as_json:
         print_json(summary)
     else:
-        _show(summary)
-        print_result(static_headlines(database), [output])
+        shown = in_own_model(database)
+        _show(summary_json(shown))
+        print_result(static_headlines(shown), [output])
     if database.n_failed:
         raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there.")
 
@@ -175,6 +178,13 @@ def _show(summary: dict[str, Any]) -> None:
     out.print(
         table(["torque N m", "force N", "mean um", "peak-to-peak um", *names], rows, "Transmission error")
     )
+    receipt, load = summary["receipt"], summary["loads"][-1]
+    if bias := receipt.get("bias"):
+        out.print(bias["words"], soft_wrap=True)
+    if sources := source_rows(receipt, -1):
+        rows = [[name, *(engineering(error / UM, 2) for error in errors)] for name, *errors in sources]
+        head = ["source", "mean um", "peak-to-peak um", "harmonic 1 um"]
+        out.print(table(head, rows, f"Errors by source at {load['torque_n_m']:.6g} N m"))
     out.print()
     for line in (*ledger_lines(summary["effect_ledger"]), *assumption_lines(summary["receipt"])):
         out.print(line)
@@ -184,7 +194,7 @@ def _show(summary: dict[str, Any]) -> None:
 
 
 def _cost(receipt: dict[str, Any]) -> str:
-    """Return time by stage and memory in one line, and what plane strain leaves out in another."""
+    """Return time by stage and memory in one line, and what there is to say of the table in others."""
     seconds = {name: spent["cpu_seconds"] for name, spent in receipt["stages"].items()}
     stages = ", ".join(f"{name} {engineering(spent, 2)}" for name, spent in seconds.items())
     memory = receipt["peak_memory_bytes"] / 2**20
@@ -209,12 +219,6 @@ def _cost(receipt: dict[str, Any]) -> str:
     missing = receipt.get("not_estimated", [])
     if missing:
         text += f"\nerrors NOT estimated: {', '.join(missing).replace('_', ' ')}"
-    left_out = receipt["error_by_source"]["plane_for_finite_width_relative"]
-    if left_out:
-        text += (
-            "\nfinite width neglected by the plane model: "
-            f"{engineering(100 * left_out, 2)} % of the mean, in the errors"
-        )
     return text
 
 
@@ -250,11 +254,14 @@ def run_plan(file: InputFile, time_budget_s: float | None, *, as_json: bool) -> 
         _show_plan(plan)
 
 
+_PARTS = ("numerical %", "plane %", "method %")
+
+
 def _show_plan(plan: RunPlan) -> None:
     out = console()
     for line in ledger_lines(plan_json(plan)["effect_ledger"]):
         out.print(line)
-    head = ["mesh", "CPU s", *STAGES, "memory MiB", "numerical %", "model %", "mean um", "p-p um", ""]
+    head = ["mesh", "CPU s", *STAGES, "memory MiB", *_PARTS, "mean um", "p-p um", ""]
     rows = [
         [
             _mesh(entry, plan.chosen),
@@ -262,7 +269,8 @@ def _show_plan(plan: RunPlan) -> None:
             *(engineering(entry.cost.stages[stage], 2) for stage in STAGES),
             f"{entry.cost.memory_bytes / 2**20:.0f}",
             engineering(100.0 * error.numerical, 2),
-            engineering(100.0 * error.model, 2),
+            "bias" if error.bias else engineering(100.0 * error.plane, 2),
+            engineering(100.0 * error.method, 2),
             # per cent of a small ripple mean little; no size is known without a reference
             *("" if size is None else engineering(size / UM, 2) for size in (error.mean, error.peak_to_peak)),
             "chosen" if entry is plan.chosen else "",
@@ -274,6 +282,8 @@ def _show_plan(plan: RunPlan) -> None:
     model = plan.plan.discretization.to_json()["model"].replace("_", " ")
     positions = plan.plan.positions or f"about {plan.chosen.cost.positions}, placed where the curve bends"
     out.print(f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}")
+    if bias := plan.chosen.error.bias:
+        out.print(bias.words, soft_wrap=True)
     if plan.conflict or not plan.choice.met:
         out.print(plan.conflict or f"cannot be had: {plan.choice.reason}")
 

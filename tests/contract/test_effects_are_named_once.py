@@ -34,8 +34,6 @@ REMAINS = {
     ("dynamics/simulation/documents.py", "flexible_shafts"): "heading of the case that a result echoes",
     ("fe_contact/planning/plan.py", "finite_width"): "key of the hash by which tables are stored",
     ("fe_contact/ste/curve.py", "finite_width"): "source of an error in stored tables",
-    ("fe_contact/analysis/estimates/assessed_table.py", "finite_width"): "the same source",
-    ("fe_contact/analysis/database/compute_database.py", "finite_width"): "the same source",
     ("lineofaction/gearbox/convert/scene.py", "shaft_deflection"): "the ledger of a stored table",
 }
 CHOSEN_BY = ("choices", "decided", "effect", "effects", "ledger", "neglected", "turned_on")

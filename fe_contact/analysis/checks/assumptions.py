@@ -23,7 +23,7 @@ from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.printed_data import backlash_rounding
-from fe_contact.planning.planned import left_out
+from fe_contact.planning.plane_bias import PlaneBias
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json
 
@@ -198,8 +198,8 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
     reason = "; ".join(reasons) if reasons else "nothing in the scene acts across it"
     face, width = request.model_effects
     yield Assumption(face, "uniform load over the face", not reasons, float("nan"), reason)
-    missing = left_out(run.places.places[0].contact.pair, run.plan.discretization)
-    if missing:
+    if bias := PlaneBias.of(run.places.places[0].contact.pair, run.plan.discretization):
+        missing = abs(bias.mean)
         reason = f"the finite width changes about {engineering(100 * missing, 2)} % of the mean"
         holds = missing <= _allowed(run).relative
         yield Assumption(width, "plane strain over the whole face", holds, missing, reason)

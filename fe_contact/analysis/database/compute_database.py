@@ -32,7 +32,7 @@ from fe_contact.plausibility import merged, table_findings
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
-from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, all_sources
+from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, PLANE, all_sources
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray, Json, Status
@@ -110,9 +110,9 @@ def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
 def bought_shares(shares: FloatArray, request: Request) -> tuple[FloatArray, FloatArray]:
     """Part the errors at nodes, each (6, ...), into those that work lowers and those that last.
 
-    Those of the model last; so do those of the plane, where the caller chose it.
+    Those of the method last; so do those of the plane, where the caller chose it.
     """
-    lasting = ("model", "finite_width") if request.model_chosen else ("model",)
+    lasting = (METHOD, PLANE) if request.model_chosen else (METHOD,)
     lasts = np.isin(AT_NODES, lasting).reshape(-1, *[1] * (shares.ndim - 1))
     at_nodes = shares[: len(AT_NODES)]
     return np.where(lasts, 0.0, at_nodes), np.where(lasts, at_nodes, 0.0)
@@ -126,18 +126,21 @@ def _tolerance_receipt(table: SteDatabase, allowed: AllowedError, request: Reque
     dict
         `relative`, `floor_m`: the tolerance. `used`: the largest error that work lowers, over what is
         allowed. `met`: whether that is at most 1. Both are None where errors were not estimated; a failed
-        point keeps nothing. `model`: the largest error that no mesh lowers, in parts of the sizes that the
-        tolerance counts by. `between_nodes`: the axes between whose nodes interpolation alone takes more
-        than is allowed.
+        point keeps nothing. `lasting`: the largest error that no mesh lowers, in parts of the sizes that
+        the tolerance counts by; a bias is none. `between_nodes`: the axes between whose nodes interpolation
+        alone takes more than is allowed.
     """
     shares = error_shares(table, allowed)
-    bought, lasting = (all_sources(part) for part in bought_shares(shares, request))
+    bought, lasting = bought_shares(shares, request)
+    if table.metadata.receipt.get("bias"):
+        lasting[AT_NODES.index(PLANE)] = 0.0
+    bought = all_sources(bought)
     used = float(np.max(bought))
     limits = {"relative": allowed.relative, "floor_m": allowed.floor}
     if np.isnan(bought).all():
         return limits | {"used": None, "met": None}
     kept = {"used": used if np.isfinite(used) else None, "met": used <= 1.0}
-    kept["model"] = allowed.relative * float(np.nanmax(lasting))
+    kept["lasting"] = allowed.relative * float(np.nanmax(all_sources(lasting)))
     return limits | kept | {"between_nodes": _between_nodes(table, shares)}
 
 

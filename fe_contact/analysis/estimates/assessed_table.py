@@ -14,18 +14,19 @@ from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoin
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.tables import PositionNodes
 from fe_contact.contact import Candidates, ContactSolution
-from fe_contact.planning.model_error import model_errors, of_bending, point_error
+from fe_contact.planning.model_error import model_errors, point_error
 from fe_contact.planning.plan import FaceDiscretization, Plan
-from fe_contact.planning.planned import LEFT_OUT, left_out
+from fe_contact.planning.plane_bias import LEFT_OUT, PlaneBias
 from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of, some_positions, spread, spread_around
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, SOURCES
+from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, PLANE, SOURCES
 from fe_contact.ste.curve_quantities import (
     FIRST_HARMONIC,
     MEAN,
     PEAK_TO_PEAK,
     QUANTITIES,
     error_bound,
+    mean_of_curves,
     quantity_changes,
 )
 from fe_contact.types import FloatArray, IntArray, Json, Status
@@ -156,26 +157,26 @@ class _ErrorSources:
 
     Attributes
     ----------
-    discretization, slices, interpolation, contact, finite_width, model : ndarray
+    discretization, slices, interpolation, contact, plane, method : ndarray
         Finite elements, slices of the face, table beside the node, contact, the plane for a finite width, and
         what the method leaves out.
     left_out : float
-        Relative part of the mean STE that an uncorrected plane leaves out; it is part of `finite_width`.
+        Relative part of the mean STE that an uncorrected plane leaves out; it is part of `plane`.
     """
 
     discretization: FloatArray
     slices: FloatArray
     interpolation: FloatArray
     contact: FloatArray
-    finite_width: FloatArray
-    model: FloatArray
+    plane: FloatArray
+    method: FloatArray
     left_out: float
 
     @property
     def total(self) -> FloatArray:
         """Sum of the sources at each point, m."""
-        parts = self.discretization, self.slices, self.interpolation, self.contact, self.finite_width
-        return np.asarray(sum(parts) + self.model)
+        parts = self.discretization, self.slices, self.interpolation, self.contact, self.plane
+        return np.asarray(sum(parts) + self.method)
 
     def to_json(self) -> Json:
         """Return the largest of each source by load, m, and the part that the plane leaves out.
@@ -187,8 +188,8 @@ class _ErrorSources:
             "slices_m": self.slices,
             "table_interpolation_m": self.interpolation,
             "contact_solver_m": self.contact,
-            "finite_width_m": self.finite_width,
-            "model_m": self.model,
+            f"{PLANE}_m": self.plane,
+            f"{METHOD}_m": self.method,
         }
         worst = {name: _largest_known(values) for name, values in sources.items()}
         return worst | {"plane_for_finite_width_relative": self.left_out}
@@ -242,7 +243,8 @@ def estimate_errors(
         The largest of the assessed operating points stand for every place.
     """
     made, pair = plan.discretization, points.places[0].contact.pair
-    missing, nominal = left_out(pair, made), points.nominal.pair
+    bias, nominal = PlaneBias.of(pair, made), points.nominal.pair
+    missing = abs(bias.mean) if bias else 0.0
 
     def left(these: FloatArray, those: FloatArray, part: float) -> FloatArray:
         """Return a part of the differences of STE, at all points."""
@@ -325,17 +327,17 @@ def curve_errors(
         np.stack(np.broadcast_arrays(1.0, _left_by_mesh(plan, helical), 1.0, CORRECTION_ERROR)),
         helical,
     )
-    if missing := left_out(pair, made):
-        free_ends = LEFT_OUT * missing * of_bending(pair, own)
+    if bias := PlaneBias.of(pair, made):
+        free_ends = bias.errors(pair, own)
     by_source = {
         "discretisation": by_mesh,
         "slices": by_slices,
         "contact_solver": _by_solver(points, solutions, sample),
-        "finite_width": free_ends,
+        PLANE: free_ends,
         "position": np.broadcast_to(
             positions.curves[:, :, None, None], (*positions.curves.shape, *points.shape)
         ),
-        "model": model_errors(pair, plan.load, own),
+        METHOD: model_errors(pair, plan.load, own),
     }
     return np.stack([by_source[name] for name in AT_NODES])
 
@@ -422,17 +424,21 @@ class AssessedTable:
         Of mean, peak-to-peak and harmonics by source, m; NaN where not estimated.
     by_source, held_out : dict
         The largest by source; what was measured between the nodes of each axis.
+    bias : PlaneBias, optional
+        What the plane leaves out of a finite width where it is not corrected.
     """
 
     band: FloatArray
     curve_error: FloatArray
     by_source: Json
     held_out: Json
+    bias: PlaneBias | None
 
     def to_json(self) -> Json:
         """Return what the receipt says of the errors."""
         sources = {"error_by_source": self.by_source, "held_out": self.held_out}
-        return sources | _summary(self.curve_error)
+        bias = {"bias": self.bias.to_json()} if self.bias else {}
+        return sources | bias | _summary(self.curve_error)
 
 
 def assessed_table(
@@ -467,12 +473,22 @@ def assessed_table(
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     between = held_out_axes(table, fine, checked.request.scene, checked.decided, solved)
     held_out = {name: error.to_json() for name, error in between.items()}
-    return AssessedTable(sources.total, with_axes(errors, between), sources.to_json(), held_out)
+    bias = plane_bias(table, fine, plan)
+    return AssessedTable(sources.total, with_axes(errors, between), sources.to_json(), held_out, bias)
 
 
 def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) -> AssessedTable:
     """Return the errors of a table of which none was estimated, but for what is known in closed form."""
-    left = {"plane_for_finite_width_relative": left_out(points.places[0].contact.pair, plan.discretization)}
+    bias = plane_bias(table, points, plan)
+    left = {"plane_for_finite_width_relative": abs(bias.mean) if bias else 0.0}
     unknown = np.full(table.error_estimate.shape, np.nan)
     errors = np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
-    return AssessedTable(unknown, errors, left, {})
+    return AssessedTable(unknown, errors, left, {}, bias)
+
+
+def plane_bias(table: SteDatabase, points: OperatingPoints, plan: Plan) -> PlaneBias | None:
+    """Return what the plane leaves out of the curves of a table."""
+    pair, ste = points.nominal.pair, table.static_transmission_error
+    bias = PlaneBias.of(pair, plan.discretization)
+    own = np.stack([mean_of_curves(table.position, ste, table.period), np.ptp(ste, axis=0)])
+    return bias and bias.of_curves(pair, own)

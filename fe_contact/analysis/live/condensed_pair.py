@@ -23,6 +23,7 @@ from fe_contact.analysis.estimates.assessed_table import (
     TableSample,
     curve_errors,
     estimate_errors,
+    plane_bias,
     with_axes,
     worst_residual,
 )
@@ -88,7 +89,8 @@ def _condensed_errors(
         errors[BY_MESH] = np.hypot(errors[BY_MESH], sample.spread(change.reshape(QUANTITIES, *own.shape[1:])))
         band = sample.spread_points(part * np.nan_to_num(np.abs(own - wider)))
         sources = replace(sources, discretization=sources.discretization + band)
-    return AssessedTable(sources.total, with_axes(errors, {}), sources.to_json(), {})
+    bias = plane_bias(table, points, plan)
+    return AssessedTable(sources.total, with_axes(errors, {}), sources.to_json(), {}, bias)
 
 
 def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:

@@ -285,9 +285,8 @@ def _said(choice: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
     """Write into the ledger why an effect is off that the scene calls for, or the other way round."""
     checked, mesh = choice
     request, error = checked.request, mesh.option.error
-    parts = (
-        f"{engineering(100.0 * error.total, 2)} %, of which the model {engineering(100.0 * error.model, 2)} %"
-    )
+    sizes = [engineering(100.0 * part, 2) for part in (error.total, error.plane, error.method)]
+    parts = "{} %, of which the plane {} % and the method {} %".format(*sizes)
     neglected, turned_on = (
         {name: _reason(name in request.model_effects, text, parts) for name, text in overrides.items()}
         for overrides in (request.neglected, request.turned_on)

@@ -235,7 +235,7 @@ def slice_compliances(
         What of it a compliance can show: coupling, finite width, rim, seats.
     """
     touch = slices.touch
-    wider = finite_width_excess(pair) if model.finite_width or model.across_face else 0.0
+    wider = finite_width_excess(pair)[1] if model.finite_width or model.across_face else 0.0
     patches = (slices.mean(patch.law_width) for patch in (slices.patch_1, slices.patch_2))
     sides = zip(
         (pair.pinion, pair.wheel),

@@ -8,7 +8,9 @@ import numpy as np
 
 from bounds import engineering
 from bounds.types import Json
-from fe_contact.ste import Curve, SteDatabase
+from fe_contact.analysis.estimates.assessed_table import SHOWN
+from fe_contact.ste import Curve, SteDatabase, in_own_model
+from fe_contact.ste.curve import PLANE
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.problems import JobFailed
@@ -117,12 +119,26 @@ def metadata_json(database: SteDatabase) -> Json:
     }
 
 
+_NOTHING = 1e-12
+"""m: what rounding leaves."""
+
+
+def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float]]:
+    """Return what each source states of mean, peak-to-peak and first harmonic at a load, m; no bias."""
+    rows = [
+        (name.replace("_", " "), *(float(parts[quantity][load]) for quantity in SHOWN))
+        for name, parts in receipt.get("curve_error", {}).items()
+        if not (name == PLANE and "bias" in receipt)
+    ]
+    return [row for row in rows if max(row[1:]) > _NOTHING]
+
+
 # First figures of a table that is being refined, in one line.
 
 
 def draft_line(table: SteDatabase, refining: str) -> str:
     """Return mean and peak-to-peak with their errors at the highest load, and what is refined."""
-    curve = table.curve(force=float(table.force[-1]), allow_failed=True)
+    curve = in_own_model(table).curve(force=float(table.force[-1]), allow_failed=True)
     mean, ripple = _figure(curve.mean), _figure(curve.peak_to_peak)
     return f"draft: mean {mean} um, p-p {ripple} um at {curve.torque:.6g} N m (refining {refining})"
 

@@ -180,13 +180,14 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Jso
 
 def _curve(table: SteDatabase, k: int) -> Json:
     return curve_json(table, force_n=float(table.force[k])) | {
+        "bias": in_um(table.metadata.receipt.get("bias")),
         "error_by_source_um": {
             source: {
                 name.removesuffix("_m"): error if np.isfinite(error := values[k] / UM) else None
                 for name, values in errors.items()
             }
             for source, errors in table.metadata.receipt["curve_error"].items()
-        }
+        },
     }
 
 

@@ -11,6 +11,7 @@ from lineofaction.gearbox.schemas.case import Case, Load
 from lineofaction.gearbox.schemas.declared import figures
 from lineofaction.gearbox.schemas.gear import ToothingInput
 from lineofaction.gearbox.schemas.model import BoundaryModel, Listed
+from lineofaction.gearbox.schemas.plan import ModelBias
 
 
 def _left_out(name: str) -> Any:
@@ -243,6 +244,9 @@ class LiveCurve(BoundaryModel):
     error_by_source_um: dict[str, SourceError] = Field(
         description="Errors by source; the total is the root of the sum of squares",
         examples=[{"discretisation": {"mean": 0.01, "peak_to_peak": 0.02, "first_harmonic": 0.01}}],
+    )
+    bias: ModelBias | None = Field(
+        default=None, description="What a plane model leaves out: as `finite_width` in the errors, too"
     )
     order: list[float] | None = Field(
         default=None, description="Orders, if the period has several base pitches"

@@ -54,6 +54,17 @@ class PlannedCost(BaseModel):
     positions: int = Field(description="Of the table; expected where they are adaptive")
 
 
+class ModelBias(BaseModel):
+    """By how much the gears exceed a plane model; parts of its own figures, with sign."""
+
+    mean: float
+    peak_to_peak: float | None = Field(description="Null where reliefs hide it: it may have either sign")
+    hidden_um: float = Field(description="Then the largest change of peak-to-peak in um, else 0")
+    error: float = Field(description="Error of the bias in parts of it")
+    stated: float = Field(description="Part of STE by which error bands are wider for it")
+    words: str
+
+
 class PlannedError(BaseModel):
     """Expected error of mean or peak-to-peak, whichever is worse; parts are relative."""
 
@@ -61,8 +72,12 @@ class PlannedError(BaseModel):
     slices: float
     positions: float
     numerical: float = Field(description="Of mesh, slices and positions")
-    model: float = Field(description="What none of them lowers: the method, and a plane for the whole face")
+    plane: float = Field(description="Of a plane in place of three dimensions")
+    method: float = Field(description="What the method leaves out, whatever the mesh")
     total: float
+    bias: ModelBias | None = Field(
+        description="What a plane model leaves out; part of `plane` and `total`, not of the errors in um"
+    )
     mean_um: float | None = Field(description="Null where no size is known before the run")
     peak_to_peak_um: float | None = Field(description="Null where no size is known before the run")
 

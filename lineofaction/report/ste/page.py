@@ -11,6 +11,7 @@ import numpy as np
 from bounds import leftover
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
+from lineofaction.gearbox.convert.answers import source_rows
 from lineofaction.gearbox.convert.effects import by_size, influence_place, influence_words, trifles_title
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table, number, um
@@ -65,13 +66,27 @@ def static_headlines(database: SteDatabase, force: float | None = None) -> tuple
     edge = float(np.nanmax(database.edge_pressure[at])) if database.edge_pressure.size else 0.0
     remark = f"{_UNBOUNDED}{edge_words(edge)}"
     curve, label = load_curve(database, load), load_labels(database)[load]
+    figures = {"mean": curve.mean, "peak-to-peak": curve.peak_to_peak}
+    biases = _biases(database.metadata.receipt)
     return (
-        Headline(f"mean STE at {label}", f"{um(curve.mean.value)} µm", _band(curve.mean)),
-        Headline(
-            f"peak-to-peak STE at {label}", f"{um(curve.peak_to_peak.value)} µm", _band(curve.peak_to_peak)
+        *(
+            Headline(f"{name} STE at {label}", f"{um(one.value)} µm", f"{_band(one)}{bias}")
+            for (name, one), bias in zip(figures.items(), biases, strict=True)
         ),
         Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", remark),
     )
+
+
+def _biases(receipt: Mapping[str, Any]) -> tuple[str, str]:
+    """Say what a finite width adds to mean and peak-to-peak of an uncorrected plane; nothing where corrected."""
+    bias = receipt.get("bias")
+    if bias is None:
+        return "", ""
+    hidden = f"±{um(bias['hidden_m'], 2)} µm"
+    mean, ripple = (
+        hidden if part is None else f"{100.0 * part:+.2g} %" for part in (bias["mean"], bias["peak_to_peak"])
+    )
+    return f"; gears of this width {mean}", f"; gears of this width {ripple}"
 
 
 def edge_words(pressure: float) -> str:
@@ -126,7 +141,10 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
     """Show how exact the database is, what it cost, and what it was made from."""
     metadata = database.metadata
     text = "Errors are half-widths of the band around each number."
-    accuracy = Section("Accuracy of the table", text, tables=(_accuracy(database),), part=Part.ACCURACY)
+    if bias := metadata.receipt.get("bias"):
+        text += f" {bias['words'][0].upper()}{bias['words'][1:]}."
+    tables = _accuracy(database), _by_source(database)
+    accuracy = Section("Accuracy of the table", text, tables=tables, part=Part.ACCURACY)
     text = "With all defaults filled in. Numbers without a unit are in SI."
     case = Section("Case", text, folded=case_tables(metadata.case), part=Part.INPUT)
     made = {**metadata.software_versions, "content_hash": metadata.content_hash}
@@ -195,6 +213,14 @@ def _accuracy(database: SteDatabase) -> Table:
         for name, value in zip(_RESIDUALS, worst, strict=True)
     ]
     return Table("Accuracy", ("quantity", "value"), tuple(rows))
+
+
+def _by_source(database: SteDatabase) -> Table:
+    """Errors of the figures at the highest load by source."""
+    rows = source_rows(database.metadata.receipt, -1)
+    head = ("source", "mean, µm", "peak to peak, µm", "harmonic 1, µm")
+    title = f"Errors by source at {load_labels(database)[-1]}"
+    return Table(title, head, tuple((name, *(um(error, 2) for error in errors)) for name, *errors in rows))
 
 
 def _band(estimate: Estimate) -> str:

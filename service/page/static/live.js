@@ -4,7 +4,7 @@ import { Problem, pause, post } from "./api.js";
 import { byId, dataTable, figures, folded, make, number } from "./elements.js";
 import { SHOWN_HARMONICS, harmonicsFigure, sharingFigure, steFigure } from "./live_figures.js";
 import { LiveFlanks } from "./live_flanks.js";
-import { mainFigures, numbersOf } from "./live_numbers.js";
+import { mainFigures, numbersOf, sourcesOf } from "./live_numbers.js";
 import { figureBlock, plot } from "./plots.js";
 import { Reference } from "./reference.js";
 import { Sliders } from "./sliders.js";
@@ -208,7 +208,7 @@ export class Live {
       plot(this.blocks.sharing.node, sharingFigure(now)),
       this.flanks.draw(shown),
     ]);
-    this.numbers.replaceChildren(make("summary", {}, "Numbers"), dataTable(numbersOf(shown)));
+    this.numbers.replaceChildren(make("summary", {}, "Numbers"), dataTable(numbersOf(shown)), dataTable(sourcesOf(now)));
     this.describe(shown);
   }
 

@@ -15,18 +15,35 @@ export function edgeWords({ edge_pressure_mpa: edge }) {
   return edge ? `up to ${number(edge, 4)} MPa at edges, indicative` : "";
 }
 
+/** The error without the bias of a plane model, which has its own statement. */
+function ownError({ bias, error_by_source_um: errors }, total, source) {
+  return bias ? Math.sqrt(Math.max(0, total ** 2 - errors.finite_width[source] ** 2)) : total;
+}
+
+/** What each source states of the errors of a curve. */
+export function sourcesOf({ bias, error_by_source_um: errors }) {
+  const shown = Object.entries(errors).filter(([name]) => !(bias && name === "finite_width"));
+  const row = ([name, { mean, peak_to_peak: ripple, first_harmonic: tone }]) => [
+    name.replaceAll("_", " "), ...[ripple, mean, tone].map((error) => number(error, 2)),
+  ];
+  return { caption: "Errors by source, µm", head: ["source", "peak to peak", "mean", "harmonic 1"], rows: shown.map(row) };
+}
+
 /** Main figures of a curve, each with its error and its change from another. */
 export function mainFigures(now, from) {
   const remarks = (...words) => words.filter(Boolean).join("; ");
-  const entry = (name, value, error, other) => [name, `${number(value, 3)} µm`, remarks(plusMinus(error), change(value, other))];
+  const entry = (name, value, error, other, source) => [
+    name, `${number(value, 3)} µm`, remarks(plusMinus(ownError(now, error, source)), change(value, other)),
+  ];
   const { k_h_beta: factor, largest_pressure_mpa: pressure } = now.flanks;
   const entries = [
-    entry("peak to peak", now.peak_to_peak_um, now.peak_to_peak_error_um, from.peak_to_peak_um),
-    entry("mean", now.mean_um, now.mean_error_um, from.mean_um),
-    entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], from.harmonics_um[0]),
+    entry("peak to peak", now.peak_to_peak_um, now.peak_to_peak_error_um, from.peak_to_peak_um, "peak_to_peak"),
+    entry("mean", now.mean_um, now.mean_error_um, from.mean_um, "mean"),
+    entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], from.harmonics_um[0], "first_harmonic"),
     ["largest pressure", `${number(pressure, 4)} MPa`, remarks(edgeWords(now.flanks), change(pressure, from.flanks.largest_pressure_mpa))],
   ];
-  return factor === null ? entries : [...entries, ["K_Hbeta", number(factor, 4), change(factor, from.flanks.k_h_beta)]];
+  if (factor !== null) entries.push(["K_Hbeta", number(factor, 4), change(factor, from.flanks.k_h_beta)]);
+  return now.bias ? [...entries, ["bias of the mean", `${now.bias.mean < 0 ? "−" : "+"}${number(Math.abs(100 * now.bias.mean), 2)} %`, now.bias.words]] : entries;
 }
 
 /** Figures of every curve beside each other. @param {import("./live_figures.js").Shown[]} shown */

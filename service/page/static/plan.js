@@ -12,20 +12,20 @@ export function showPlan(found) {
     ["model", choice.model, choice.level],
     ["time", duration(prediction.cpu_seconds), "of one processor"],
     ["memory", `${Math.round(prediction.memory_bytes / 2 ** 20)} MiB`],
-    ["expected error", `${percent(error.total)} %`, `of which the model ${percent(error.model)} %`],
+    ["expected error", `${percent(error.numerical)} %`, `numerical; ${error.bias ? "" : `plane ${percent(error.plane)} %, `}method ${percent(error.method)} %`],
   ]);
   const stages = Object.keys(found.levels[0].cost.stages);
   const levels = {
     caption: "What each mesh is predicted to take",
-    head: ["mesh", "CPU s", ...stages.map((name) => `${name}, s`), "memory, MiB", "error, %"],
+    head: ["mesh", "CPU s", ...stages.map((name) => `${name}, s`), "memory, MiB", "numerical, %", "plane, %", "method, %"],
     rows: found.levels.map(({ model, level, slices, cost, error: expected }) => [
       [model === choice.model ? "" : model, level, slices > 1 ? `${slices} slices` : ""].filter(Boolean).join(", "),
       number(cost.cpu_seconds, 2),
       ...stages.map((name) => number(cost.stages[name], 2)), String(Math.round(cost.memory_bytes / 2 ** 20)),
-      percent(expected.total),
+      percent(expected.numerical), expected.bias ? "bias" : percent(expected.plane), percent(expected.method),
     ]),
   };
-  const said = [choice.reason, found.conflict].filter(Boolean).join("; ");
+  const said = [choice.reason, error.bias?.words, found.conflict].filter(Boolean).join("; ");
   const same = (entry) => ["model", "level", "slices"].every((key) => entry[key] === choice[key]);
   const chosen = found.levels.findIndex(same);
   byId("plan").replaceChildren(

@@ -1,22 +1,21 @@
-"""The summary of `loa analyze` says what it cost and what the plane model leaves out."""
+"""The summary of `loa analyze` says what it cost."""
 
 from __future__ import annotations
 
 from lineofaction.cli.analyze import _cost
 
 
-def receipt(left_out: float) -> dict[str, object]:
+def receipt() -> dict[str, object]:
     stages = {"compliance": {"cpu_seconds": 0.25}, "contact": {"cpu_seconds": 1.5}}
     return {
         "stages": stages,
         "cpu_seconds": 1.75,
         "peak_memory_bytes": 300 * 2**20,
-        "error_by_source": {"plane_for_finite_width_relative": left_out},
     }
 
 
 def test_time_by_stage_and_memory() -> None:
-    assert _cost(receipt(0.0)) == "\ncost 1.75 CPU s (compliance 0.25, contact 1.5), 300 MiB"
+    assert _cost(receipt()) == "\ncost 1.75 CPU s (compliance 0.25, contact 1.5), 300 MiB"
 
 
 def test_held_out_errors_are_named_by_axis() -> None:
@@ -24,14 +23,10 @@ def test_held_out_errors_are_named_by_axis() -> None:
         "force": {"at": [1.0], "error_m": [[2e-8]]},
         "center_distance_change": {"at": [1e-4, 3e-4], "error_m": [[1e-7, 3.4e-7], [None, 1e-9]]},
     }
-    text = _cost(receipt(0.0) | {"held_out": measured})
+    text = _cost(receipt() | {"held_out": measured})
     assert "between the nodes: force 0.02 um, center distance change unknown" in text
 
 
 def test_contacts_that_outgrew_their_patch_are_counted() -> None:
-    assert "outgrew its load patch at 185 points" in _cost(receipt(0.0) | {"patch_outgrown_points": 185})
-    assert "outgrew" not in _cost(receipt(0.0) | {"patch_outgrown_points": 0})
-
-
-def test_the_plane_model_says_what_it_leaves_out() -> None:
-    assert "3.3 % of the mean, in the errors" in _cost(receipt(0.0333))
+    assert "outgrew its load patch at 185 points" in _cost(receipt() | {"patch_outgrown_points": 185})
+    assert "outgrew" not in _cost(receipt() | {"patch_outgrown_points": 0})

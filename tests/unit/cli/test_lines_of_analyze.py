@@ -129,7 +129,7 @@ KEPT = {
     "floor_m": 2e-8,
     "used": 1.5,
     "met": False,
-    "model": 0.003,
+    "lasting": 0.003,
     "reason": "the limit is 4",
 }
 RAN = {"model": "plane strain", "level": "draft", "slices": 1}
@@ -153,6 +153,22 @@ def test_a_tolerance_that_is_met_is_no_warning(tmp_path: Path) -> None:
     assert done.exit_code == 0, done.output
     assert "tolerance 20 % or 0 nm: met; numerical error " in done.stdout
     assert "warning" not in done.output
+
+
+def test_a_bias_is_stated_beside_the_errors_and_not_in_them(tmp_path: Path) -> None:
+    printed = run(tmp_path, 0.2).stdout
+    served = json.loads(run(tmp_path, 0.2, "--json").stdout)
+    bias, (load,) = served["receipt"]["bias"], served["loads"]
+    assert bias["words"] in printed
+    found = re.search(r" 5 +\S+ +(\S+) ±(\S+) +(\S+) ±(\S+)", printed)
+    assert found is not None, printed
+    mean, error, ripple, ripple_error = map(float, found.groups())
+    assert (mean, ripple) == pytest.approx((load["mean_um"], load["peak_to_peak_um"]), rel=1e-3)
+    assert load["mean_error_um"] > bias["mean"] * mean > 2.0 * error  # what is served is complete
+    assert load["peak_to_peak_error_um"] > 2.0 * ripple_error
+    rows = printed[printed.index("Errors by source at 5 N m") :].splitlines()
+    assert {"discretisation", "method"} <= {row.split()[0] for row in rows[1:6] if row.strip()}
+    assert not any(row.strip().startswith("finite width") for row in rows)
 
 
 def test_one_that_is_not_met_is_said_first_with_its_reason_and_decides_the_exit_code(tmp_path: Path) -> None:
@@ -202,7 +218,7 @@ def test_a_job_carries_the_draft_in_its_stages_and_its_fraction_stays(draft: Ste
 def test_passes_are_listed_where_there_are_several() -> None:
     second = PASS | {"level": "standard", "used": 1.5, "refined": ["mesh draft -> standard"]}
     lines = list(_tolerance_lines({"tolerance": KEPT, "passes": [PASS, second]}))
-    errors = "numerical error 1.5 %; model 0.3 %, which no mesh lowers"
+    errors = "numerical error 1.5 %; of the method 0.3 %, which no mesh lowers"
     assert lines[0] == f"tolerance 1 % or 20 nm: NOT met; {errors}"
     assert lines[1] == "pass 1: plane strain, draft, 0.5 CPU s, used 3"
     assert lines[2].endswith("used 1.5, refined mesh draft -> standard")

@@ -18,7 +18,7 @@ from fe_contact.material import Material
 from fe_contact.mesh import PlaneStrain
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.plan import make_plan
-from fe_contact.planning.planned import LEFT_OUT
+from fe_contact.planning.plane_bias import LEFT_OUT
 
 POSITION = np.arange(16) / 16
 SOURCE = "contact in three dimensions and in plane strain on one mesh of the sector"

@@ -43,12 +43,12 @@ def test_narrow_gears_approach_plane_stress_and_wide_ones_plane_strain(record_fi
         for model in ("3d", "auto", "plane_strain", "plane_stress")
     )
     mean = {id(t): t.static_transmission_error.mean() for t in (space, corrected, strain, stress)}
-    excess, estimate = mean[id(space)] / mean[id(strain)] - 1.0, finite_width_excess(pair)
+    excess, estimate = mean[id(space)] / mean[id(strain)] - 1.0, finite_width_excess(pair)[0]
     name = f"excess of 3-D over plane strain, {1e3 * width:g} mm face"
     record_figure(name, 100 * excess, 100 * estimate, "%", STUDY)
     for table in (space, corrected):
         assert mean[id(strain)] < mean[id(table)] < mean[id(stress)]
-    assert estimate / 1.5 < excess < 1.5 * estimate
+    assert estimate / 1.2 < excess < 1.2 * estimate
     for figure in ("mean", "peak_to_peak"):
         one, other = (getattr(table, figure)(torque=torque) for table in (space, corrected))
         assert abs(one.value - other.value) <= one.error + other.error

@@ -142,7 +142,7 @@ def test_an_explicit_model_decides(options: dict[str, object], across: bool, cor
 def test_the_estimate_falls_with_width_and_vanishes_with_poissons_ratio() -> None:
     def excess(width: float, ratio: float) -> float:
         gear = dataclasses.replace(GEAR, face_width=width, material=Material(210e9, ratio))
-        return finite_width_excess(GearPair(gear, gear, 80e-3))
+        return finite_width_excess(GearPair(gear, gear, 80e-3))[0]
 
     assert excess(25e-3, 0.0) == 0.0
     assert excess(5e-3, 0.3) > excess(25e-3, 0.3) > excess(80e-3, 0.3) > 0.0
@@ -153,4 +153,4 @@ def test_the_estimate_falls_with_width_and_vanishes_with_poissons_ratio() -> Non
         (80e-3, 0.3, 0.0112),
         (25e-3, 0.45, 0.068),
     ):
-        assert 1.0 / 1.5 < excess(width, ratio) / computed < 1.5
+        assert 1.0 / 1.2 < excess(width, ratio) / computed < 1.2

@@ -26,7 +26,7 @@ from fe_contact.planning.plan import (
     SLICE_ORDER,
     NodeRule,
 )
-from fe_contact.ste.curve import SOURCES
+from fe_contact.ste.curve import METHOD, PLANE, SOURCES
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK
 
 FACTOR = 3.0
@@ -92,8 +92,11 @@ def test_plane_strain_leaves_out_as_much_whoever_chose_it():
     taken = decide(
         check_request(pair(), TableAxes(torques=[40.0]), AnalysisOptions(tolerance=AllowedError(0.06)))
     ).mesh.option.error
-    assert named.model == pytest.approx(taken.model, rel=1e-9)
-    assert taken.model > 0.02
+    assert named.bias == taken.bias is not None
+    assert named.plane == pytest.approx(taken.plane, rel=1e-9)
+    assert taken.bought > taken.plane > 0.02
+    assert named.bought == named.numerical < 0.01  # no run of the request lowers it
+    assert max(named.mean, named.peak_to_peak) < 0.01 * 10e-6  # and it is no error in um
 
 
 def test_what_slices_cannot_tell_has_no_size():
@@ -224,10 +227,11 @@ def test_the_receipt_holds_the_measured_errors_against_it(tmp_path):
     values = [[ask(torque=torque) for torque in asked["torques"]] for ask in asks]
     sizes = np.array([[estimate.value for estimate in row] for row in values])
     parts = dict(zip(SOURCES, table.curve_error[..., 0, 0][:, [MEAN, PEAK_TO_PEAK]] / sizes, strict=True))
-    lasting = np.hypot(parts["model"], parts["finite_width"])  # the caller chose the plane
+    lasting = np.hypot(parts[METHOD], parts[PLANE])  # the caller chose the plane, whose part is a bias
     whole = np.array([[estimate.error for estimate in row] for row in values]) / sizes
     assert loose["used"] == pytest.approx(np.sqrt(whole**2 - lasting**2).max() / 0.5, rel=1e-3)
-    assert loose["model"] == pytest.approx(lasting.max(), rel=1e-3) and loose["model"] > 0.5 * loose["used"]
+    assert loose["lasting"] == pytest.approx(parts[METHOD].max(), rel=1e-3)
+    assert loose["lasting"] < 0.2 * parts[PLANE].max()
     assert (loose["relative"], loose["floor_m"], loose["met"]) == (0.5, 0.0, True)
     tight = AllowedError(1e-4, 0.0)
     assert kept(tight)[1]["met"] is False

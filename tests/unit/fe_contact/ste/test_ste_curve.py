@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import DatabaseError, InputError, SolveError
-from fe_contact.ste.curve import AT_NODES, SOURCES
+from fe_contact.ste.curve import AT_NODES, METHOD, SOURCES
 from fe_contact.ste.curve_quantities import (
     FIRST_HARMONIC,
     MEAN,
@@ -272,7 +272,7 @@ def test_files_keep_the_errors_of_every_schema(assessed: SteDatabase, spur, tmp_
     assert old.curve_error.size == 0
     assert old.mean(force=float(old.force[0])) == spur.mean(force=float(old.force[0]))
     assert not assessed.identical(spur)
-    source = AT_NODES.index("model")
+    source = AT_NODES.index(METHOD)
     before = replace(assessed, curve_error=np.delete(assessed.curve_error, source, axis=0))
     before.to_netcdf(tmp_path / "one.nc")
     found = SteDatabase.from_netcdf(tmp_path / "one.nc")

@@ -15,7 +15,7 @@ from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.geometry import FlankModification
 from fe_contact.geometry.web_compliance import finite_width_excess
-from fe_contact.planning.planned import LEFT_OUT
+from fe_contact.planning.plane_bias import LEFT_OUT
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve import AT_NODES, SOURCES
 from fe_contact.types import FloatArray
@@ -150,7 +150,7 @@ def test_plane_strain_that_stands_in_for_a_finite_width_is_an_error(cache: Path)
     quick = found.table(wide, 15.0 * TORQUES)
     source = AT_NODES.index("finite_width")
     mean = figures(quick)[0][:, 0]
-    known = LEFT_OUT * finite_width_excess(wide) * mean
+    known = LEFT_OUT * finite_width_excess(wide)[0] * mean
     assert quick.curve_error[source, 0, :, 0, 0] == pytest.approx(known, rel=0.01, abs=0.0)
     unchecked = [one for one in quick.metadata.receipt["assumptions"] if one["holds"] is None]
     assert "finite_width" in {one["effect"] for one in unchecked}
