@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Protocol
 
 import numpy as np
 
 from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
-from fe_contact.microgeometry.linearized_design import linearized
+from fe_contact.microgeometry.linearized_design import LinearizedNode, joined, linearized_nodes
 from fe_contact.microgeometry.objective import Limits, LinearMerit, Objective
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.types import FloatArray
-from host import cpu_seconds
-from model_studies.workers import InProcess, Workers, divided
+from model_studies.workers import InProcess, Workers, divided, pays, spent
 
 PENALTY = 10.0
 """Merit of a limit exceeded by its own size, in parts of the scale: 1 % costs a tenth of it."""
@@ -100,13 +100,15 @@ class DesignProblem:
         if self.memory is not None and self.memory.find(key, position) is None:
             self.memory.add(key, position, (assessed.objective, assessed.violation))
 
-    def linearize(self, point: FloatArray) -> tuple[Assessed, LinearMerit]:
-        """Evaluate the design at a point (d,) with its derivatives.
+    def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, LinearMerit]:
+        """Evaluate the design at a point (d,) with its derivatives, nodes of its scatter by workers.
 
         Its merit to first order has NaN where the contact cannot be solved.
         """
         values = self.values(point)
-        design = linearized(self.evaluator, values, self.names, self.limits)
+        tasks = [(values, nodes) for nodes in self.evaluator.runs]
+        by = workers if len(tasks) > 1 else InProcess()
+        design = joined(self.evaluator, [*chain(*by.run(_linearized_nodes, self, tasks))])
         objective, violation = self._assessed(design.evaluation)
         ranges = np.array([variable.high - variable.low for variable in self.variables])
         merit = LinearMerit(
@@ -136,6 +138,14 @@ class DesignProblem:
         """Return objective in m and violation of an evaluated design."""
         objective = self.objective.of(self.evaluator.expected(evaluated))
         return objective, evaluated.violation(self.limits) if math.isfinite(objective) else math.inf
+
+
+def _linearized_nodes(
+    problem: DesignProblem, task: tuple[dict[str, float], tuple[int, ...]]
+) -> list[LinearizedNode]:
+    """Linearize a design at some nodes: one task."""
+    values, nodes = task
+    return linearized_nodes(problem.evaluator, values, problem.names, problem.limits, nodes)
 
 
 # The merit of designs as a search sees it: counted, ended when enough are evaluated, all remembered.
@@ -174,6 +184,8 @@ class Budget:
 
 
 Design = tuple[Assessed, FloatArray]
+USUAL_DESIGNS = 100
+"""Of all walks of a search: workers that are woken by its first designs serve the others, too."""
 
 
 class CountedMerit:
@@ -190,8 +202,6 @@ class CountedMerit:
     ----------
     designs : list of (Assessed, ndarray)
         In their order.
-    seconds : float
-        CPU seconds of the last linearization.
     """
 
     def __init__(
@@ -201,7 +211,7 @@ class CountedMerit:
         most: int,
         workers: Workers = InProcess(),  # noqa: B008 (frozen)
     ) -> None:
-        self.problem, self.workers, self.seconds = problem, workers, 0.0
+        self.problem, self.workers, self._seconds = problem, workers, 0.0
         self.designs: list[Design] = []
         self._budget, self._most = budget, most
 
@@ -213,10 +223,15 @@ class CountedMerit:
     def linearize(self, point: FloatArray) -> tuple[float, LinearMerit]:
         """Assess a design, and return its merit with what is known about it to first order."""
         self._budget.take(self._most)
-        began = cpu_seconds()
-        assessed, merit = self.problem.linearize(point)
-        self.seconds = cpu_seconds() - began
+        began = spent(self.workers)
+        assessed, merit = self.problem.linearize(point, self.workers if self.divides else InProcess())
+        self._seconds = spent(self.workers) - began
         return self._counted(assessed, point), merit
+
+    @property
+    def divides(self) -> bool:
+        """Whether it pays to give workers parts of walks, by the last design that was linearized."""
+        return pays(self.workers, self._seconds * USUAL_DESIGNS)
 
     def each(self, points: Sequence[FloatArray]) -> Iterator[float]:
         """Assess designs, as far as the budget reaches; those in the memory cost nothing, and stay here."""

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import groupby
 
 import numpy as np
 
@@ -107,16 +108,24 @@ class Evaluator:
 
     def evaluate(self, values: Mapping[str, float]) -> Evaluation:
         """Solve the contact of one design, ``gear.quantity`` to m, at every node and load."""
-        return self.evaluation(
-            LoadFigures.of(problem, solution) for _, problem, solution in self.solved(values)
-        )
+        solved = self.solved(values, range(self.nodes.weight.size))
+        return self.evaluation(LoadFigures.of(problem, solution) for _, problem, solution in solved)
+
+    @cached_property
+    def runs(self) -> tuple[tuple[int, ...], ...]:
+        """All nodes in their order, those of the same flanks behind each other together."""
+
+        def flanks(node: int) -> tuple[float, ...]:
+            return tuple(self.nodes.modification(node).values())
+
+        return tuple(tuple(run) for _, run in groupby(range(self.nodes.weight.size), flanks))
 
     def solved(
-        self, values: Mapping[str, float]
+        self, values: Mapping[str, float], nodes: Iterable[int]
     ) -> Iterator[tuple[ParallelAxes, ContactProblem, ContactSolution]]:
-        """Yield the pair as it comes out at every node, with its contact solved at each group of loads."""
+        """Yield the pair as it comes out at some nodes, with its contact solved at each group of loads."""
         touches: dict[tuple[float, ...], Touch] = {}
-        for node in range(self.nodes.weight.size):
+        for node in nodes:
             for group in self.groups:
                 yield self._at_node(values, node, group, touches)
 
@@ -145,9 +154,9 @@ class Evaluator:
     def scattered(self, values: Mapping[str, float], node: int) -> ParallelAxes:
         """Return the pair with a design as it comes out at a node."""
         out = dict(values)
-        designed = modified(self.contact.pair, values)
         for name, amount in self.nodes.modification(node).items():
-            out[name] = figure(designed, name) + max(amount, least_deviation(designed, name))
+            designed = values[name] if name in values else figure(self.contact.pair, name)
+            out[name] = designed + max(amount, least_deviation(designed, name))
         return modified(self.contact.pair, out)
 
     def _at_node(
@@ -169,12 +178,12 @@ class Evaluator:
         return pair, problem, solve_contact(problem, load)
 
 
-def least_deviation(pair: ParallelAxes, name: str) -> float:
-    """Return the least deviation of a figure in m that leaves material where it is, and lengths."""
+def least_deviation(designed: float, name: str) -> float:
+    """Return the least deviation of a figure, `designed` in m, that leaves material and lengths."""
     quantity = name.rpartition(".")[2]
     if quantity in (*SLOPES, MISALIGNMENT):
         return -math.inf
-    return -(0.9 if quantity in LENGTHS else 1.0) * figure(pair, name)
+    return -(0.9 if quantity in LENGTHS else 1.0) * designed
 
 
 def _in_all_pitches(problem: ContactProblem, model: ContactModel) -> ContactProblem:

@@ -12,6 +12,7 @@ import numpy as np
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.request.request import Checked
 from fe_contact.contact import CarryingStrips, ContactProblem, ContactSolution, adjoint, force_changes
+from fe_contact.contact.model import GapTerm
 from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.errors import InputError, SolveError
@@ -175,7 +176,7 @@ def curve_derivatives(
             further = bodies.solve(pair, loads, misalignment, center_distance_change + DISTANCE_STEP).solution
             _require_solved(further)
             return (further.deflection - solution.deflection) / DISTANCE_STEP
-        return strips.change(_opened_by(strips, pair, name))
+        return strips.change(_Difference.of(pair, name).opened(strips))
 
     derivatives = np.stack([derivative(name) for name in names])
     curves, period = solution.deflection.T, checked.model.period
@@ -221,16 +222,29 @@ def _require_solved(solution: ContactSolution) -> None:
         raise SolveError("the contact of a position cannot be solved", solution.status)
 
 
-def _opened_by(strips: CarryingStrips, pair: ParallelAxes, name: str) -> FloatArray:
-    """Return the normal approach that a figure of the flanks or the misalignment takes away, (k,)."""
-    if name == MISALIGNMENT:
-        return strips.opened(MisalignmentGap(1.0))
-    gear, quantity = gear_and_quantity("by", name)
-    value = figure(pair, name)
-    step = LENGTH_STEP * value if quantity in LENGTHS else AMOUNT_STEP
-    low = value - step if quantity in SLOPES else max(value - step, 0.0)
-    above, below = (strips.opened(_gap(pair, gear, {quantity: end})) for end in (value + step, low))
-    return (above - below) / (value + step - low)
+@dataclass(frozen=True)
+class _Difference:
+    """The gaps at both ends of a step of a figure of the flanks or of the misalignment, `over` m apart."""
+
+    above: GapTerm
+    below: GapTerm
+    over: float
+
+    @classmethod
+    def of(cls, pair: ParallelAxes, name: str) -> _Difference:
+        """Return that about the figure the pair has."""
+        if name == MISALIGNMENT:
+            return cls(MisalignmentGap(1.0), MisalignmentGap(0.0), 1.0)
+        gear, quantity = gear_and_quantity("by", name)
+        value = figure(pair, name)
+        step = LENGTH_STEP * value if quantity in LENGTHS else AMOUNT_STEP
+        low = value - step if quantity in SLOPES else max(value - step, 0.0)
+        above, below = (_gap(pair, gear, {quantity: end}) for end in (value + step, low))
+        return cls(above, below, value + step - low)
+
+    def opened(self, strips: CarryingStrips) -> FloatArray:
+        """Return the normal approach that it takes away from each of them, (k,), m/m."""
+        return (strips.opened(self.above) - strips.opened(self.below)) / self.over
 
 
 def _gap(pair: ParallelAxes, gear: str, figures: Mapping[str, Any]) -> ModificationGap:
@@ -269,7 +283,7 @@ class _Solved:
     Attributes
     ----------
     pair, problem, solution, figures
-    names : tuple of str
+    steps : tuple of _Difference
         Of the variables.
     opened : ndarray, shape (d, k)
         Normal approach that each variable takes away from them, m/m.
@@ -279,7 +293,7 @@ class _Solved:
     problem: ContactProblem
     solution: ContactSolution
     figures: LoadFigures
-    names: tuple[str, ...]
+    steps: tuple[_Difference, ...]
     strips: CarryingStrips
     opened: FloatArray
 
@@ -291,34 +305,60 @@ class _Solved:
     @cached_property
     def force(self) -> FloatArray:
         """Derivatives of the forces (d, P, L, m), N/m; solved only where a limit asks."""
-        apart = np.zeros((len(self.names), *self.strips.shape))
-        apart.reshape(len(self.names), -1)[:, self.strips.index] = self.opened
+        apart = np.zeros((len(self.steps), *self.strips.shape))
+        apart.reshape(len(self.steps), -1)[:, self.strips.index] = self.opened
         return force_changes(self.problem, self.solution, apart)
+
+
+@dataclass(frozen=True)
+class LinearizedNode:
+    """The loads of one misalignment at one node: their figures, dSTE/dvariable (d, P, L), rows of limits."""
+
+    figures: LoadFigures
+    ste: FloatArray
+    limits: tuple[Rows, ...]
+
+
+def linearized_nodes(
+    evaluator: Evaluator,
+    values: Mapping[str, float],
+    names: Sequence[str],
+    limits: Limits,
+    nodes: Sequence[int],
+) -> list[LinearizedNode]:
+    """Solve a design, ``gear.quantity`` to m, at some nodes, and differentiate it by the variables named."""
+    parts = (_differentiated(*solved, names) for solved in evaluator.solved(values, nodes))
+    return [LinearizedNode(part.figures, part.ste, _limit_rows(part, limits)) for part in parts]
+
+
+def joined(evaluator: Evaluator, parts: Sequence[LinearizedNode]) -> _LinearizedDesign:
+    """Return the design that was linearized at every node, in their order."""
+    limits = tuple(
+        (np.concatenate([part[0] for part in each]), np.concatenate([part[1] for part in each]))
+        for each in zip(*(part.limits for part in parts), strict=True)
+    )
+    curves = np.ascontiguousarray(np.moveaxis(evaluator.gathered([part.ste for part in parts]), 1, -1))
+    return _LinearizedDesign(evaluator.evaluation(part.figures for part in parts), curves, limits)
 
 
 def linearized(
     evaluator: Evaluator, values: Mapping[str, float], names: Sequence[str], limits: Limits
 ) -> _LinearizedDesign:
     """Solve a design, ``gear.quantity`` to m, and differentiate it by the variables named."""
-    parts = [_differentiated(*solved, tuple(names)) for solved in evaluator.solved(values)]
-    rows = [_limit_rows(part, limits) for part in parts]
-    joined = tuple(
-        (np.concatenate([part[0] for part in each]), np.concatenate([part[1] for part in each]))
-        for each in zip(*rows, strict=True)
-    )
-    curves = np.ascontiguousarray(np.moveaxis(evaluator.gathered([part.ste for part in parts]), 1, -1))
-    return _LinearizedDesign(evaluator.evaluation(part.figures for part in parts), curves, joined)
+    nodes = range(evaluator.nodes.weight.size)
+    return joined(evaluator, linearized_nodes(evaluator, values, names, limits, nodes))
 
 
 def _differentiated(
-    pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution, names: tuple[str, ...]
+    pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution, names: Sequence[str]
 ) -> _Solved:
     strips = CarryingStrips.of(pair, problem.candidates, adjoint(problem, solution))
-    opened = np.stack([_opened_by(strips, pair, name) for name in names])
-    return _Solved(pair, problem, solution, LoadFigures.of(problem, solution), names, strips, opened)
+    steps = tuple(_Difference.of(pair, name) for name in names)
+    opened = np.stack([step.opened(strips) for step in steps])
+    return _Solved(pair, problem, solution, LoadFigures.of(problem, solution), steps, strips, opened)
 
 
-def _limit_rows(solved: _Solved, limits: Limits) -> list[Rows]:
+def _limit_rows(solved: _Solved, limits: Limits) -> tuple[Rows, ...]:
     rows: list[Rows] = []
     if limits.max_pressure is not None:
         rows.append(_pressure(solved, limits.max_pressure))
@@ -326,7 +366,7 @@ def _limit_rows(solved: _Solved, limits: Limits) -> list[Rows]:
         rows.append(_face_load(solved, limits.face_load_factor))
     if limits.edge_load_share is not None:
         rows.append(_edge_load(solved, limits.edge_load_share))
-    return rows
+    return tuple(rows)
 
 
 def _pressure(solved: _Solved, limit: float) -> Rows:
@@ -363,7 +403,7 @@ def _edge_load(solved: _Solved, limit: float) -> Rows:
     share[p, k] = -clear[p, k, m] * per_gap
     zero = np.zeros(p.size)
     points = CarryingStrips.at(solved.pair, c, load.shape[1], (p, k, m), zero, zero + _POINT, zero)
-    for a, name in enumerate(solved.names):
+    for a, step in enumerate(solved.steps):
         moved = problem.moved(solved.force[a])[p, k, m] - c.motion_arm[p, m] * solved.ste[a, p, k]
-        by[a][p, k] = -(_opened_by(points, solved.pair, name) + moved) * per_gap
+        by[a][p, k] = -(step.opened(points) + moved) * per_gap
     return share.ravel() - limit, np.stack([each.ravel() for each in by], axis=-1)

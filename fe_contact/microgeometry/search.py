@@ -25,7 +25,7 @@ from fe_contact.microgeometry.design_problem import (
 from fe_contact.microgeometry.objective import LinearMerit
 from fe_contact.types import FloatArray, Json
 from model_studies.progress import unreported
-from model_studies.workers import InProcess, Workers, WorkersLost, pays, spent
+from model_studies.workers import InProcess, Workers, WorkersLost, spent
 
 SIMPLEX_SIZE, SIMPLEX_MERIT = 1e-3, 1e-4
 """A simplex this small has converged: parts of the range of a variable, and of the merit of the start."""
@@ -214,13 +214,9 @@ def _stepped(merit: CountedMerit, walk: _Walk) -> _Walk | None:
     return _Walk(point, region, value, linear) if value < walk.value else replace(walk, region=region)
 
 
-USUAL_DESIGNS = 100
-"""Of all walks of a search: workers that are woken by its first walks serve the others, too."""
-
-
 def _each_followed(merit: CountedMerit, walks: Sequence[_Walk], most: int | None = None) -> Iterator[_Walk]:
     """Follow walks that do not wait for each other, to their ends or so far at most, and yield each."""
-    if len(walks) < 2 or not pays(merit.workers, merit.seconds * USUAL_DESIGNS):
+    if len(walks) < 2 or not merit.divides:
         yield from (_followed(merit, walk, most) for walk in walks)
         return
     tasks = [(walk, most, merit.left + 1) for walk in walks]

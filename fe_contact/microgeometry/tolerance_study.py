@@ -20,7 +20,7 @@ from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
 from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ONE_NODE, Scatter, ScatterNodes, SobolSample
-from fe_contact.microgeometry.variables import GEARS, gear_and_quantity
+from fe_contact.microgeometry.variables import GEARS, figure, gear_and_quantity
 from fe_contact.options import AnalysisOptions, Levels, Run
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json
@@ -157,14 +157,14 @@ def _step(tolerance_class: int) -> float:
 
 def _check_scope(name: str, gear: Toothing) -> None:
     """Refuse a gear for which the formulas are not made (clause 1)."""
-    for figure, value, low, high in (
+    for field_name, value, low, high in (
         ("teeth", gear.teeth, 5, 1000),
         ("normal_module", gear.normal_module, 0.5e-3, 70e-3),
         ("reference_diameter", 2.0 * gear.reference_radius, 5e-3, 15.0),
         ("face_width", gear.face_width, 4e-3, 1.2),
         ("helix_angle", abs(gear.helix_angle), 0.0, math.radians(45.0)),
     ):
-        within(f"{name}.{figure}", value, low, high, _ADVICE)
+        within(f"{name}.{field_name}", value, low, high, _ADVICE)
 
 
 # Quantiles of a sample with confidence bounds that assume no shape of the distribution.
@@ -405,7 +405,7 @@ def _first_order(nominal: Evaluator, names: tuple[str, ...], deviation: FloatArr
     Nothing is removed below zero by a deviation.
     """
     design = linearized(nominal, {}, names, NO_LIMITS)
-    least = np.array([least_deviation(nominal.contact.pair, name) for name in names])
+    least = np.array([least_deviation(figure(nominal.contact.pair, name), name) for name in names])
     held = np.maximum(deviation, least)
     curves = (
         design.evaluation.ste[0, :, k] + held @ design.curves[0, :, k].T for k in range(nominal.load.size)

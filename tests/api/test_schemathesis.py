@@ -112,7 +112,7 @@ def as_long_as(examples: int) -> settings:
 @pytest.fixture(scope="module", autouse=True)
 def _ended() -> Iterator[None]:
     yield
-    service.app.state.context.live.stop()
+    service.app.state.context.stop_waiting()  # warm processes of readers and workers, too
 
 
 @pytest.fixture(autouse=True)

@@ -24,6 +24,7 @@ from fe_contact import Gear, GearPair, PitchDeviation, analyze
 from fe_contact.analysis.pairs import contact_lines
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.microgeometry.optimize import optimize
+from fe_contact.microgeometry.scatter import GaussHermite, Scatter
 from fe_contact.microgeometry.search import Ended, NelderMead, Search, SequentialLinearProgramming
 from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, ToleranceStudy, scatter
 from fe_contact.microgeometry.variables import DesignVariable
@@ -44,6 +45,7 @@ from model_studies.workers.executor import Packed, _Done
 from model_studies.workers.remembering import content_digest
 
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
+SCATTER = Scatter(modification={"wheel.profile_slope": 3e-6}, rule=GaussHermite(2))
 SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 5e-6})
 
 
@@ -114,13 +116,15 @@ def test_a_single_start_is_divided_and_finds_the_same(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Its sample, its walks and those beside its end; also where the designs end in the middle of them."""
+    """Its sample, its walks, their nodes and those beside its end; also where designs end in mid-walk."""
     monkeypatch.setattr(executor, "START_SECONDS", 0.0)
     variables = [DesignVariable(f"{gear}.profile_crowning", 0.0, 2e-5) for gear in ("pinion", "wheel")]
     search = Search(evaluations=evaluations, positions=16, exploration=8)
     here, there = (
         optimize(
-            design_request(pair, [100.0, 200.0], variables, search=search, map_torques=[200.0], **DRAFT),
+            design_request(
+                pair, [100.0, 200.0], variables, SCATTER, search=search, map_torques=[200.0], **DRAFT
+            ),
             Run(workers=workers, cache=compliances),
             memory=tmp_path / str(isinstance(workers, InProcess)),
         )
@@ -159,15 +163,15 @@ def interrupted(_shared: None, _item: Any) -> None:
     raise KeyboardInterrupt
 
 
-@pytest.mark.parametrize("task", ["_assess", "_walked", "_confirmed"])
+@pytest.mark.parametrize("task", ["_assess", "_linearized_nodes", "_walked", "_confirmed"])
 def test_an_interrupted_optimization_of_a_single_start_gives_the_best_so_far(
     pair: GearPair, compliances: Path, pool: ByExecutor, task: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """In its sample, in its walks, and in the analyses behind them."""
+    """In its sample, in its walks, at nodes of one design, and in the analyses behind them."""
     monkeypatch.setattr(executor, "START_SECONDS", 0.0)
     variables = [DesignVariable(f"{gear}.profile_crowning", 0.0, 2e-5) for gear in ("pinion", "wheel")]
     search = Search(SequentialLinearProgramming(sample=4), evaluations=20, positions=16, exploration=8)
-    request = design_request(pair, [100.0], variables, search=search, map_torques=[200.0], **DRAFT)
+    request = design_request(pair, [100.0], variables, SCATTER, search=search, map_torques=[200.0], **DRAFT)
     workers = InterruptedPool(ByExecutor(pool.executor), task)
     best = optimize(request, Run(workers=workers, cache=compliances), cancel=workers.stop.is_set)
     assert workers.stop.is_set()

@@ -67,7 +67,7 @@ class Bowl:
         value = 1.0 + float(((place - self.bottom) ** 2).sum())
         return Assessed(value, 0.0, value)
 
-    def linearize(self, place: FloatArray) -> tuple[Assessed, Tangent]:
+    def linearize(self, place: FloatArray, _workers: object) -> tuple[Assessed, Tangent]:
         return self.assess(place), Tangent(place - self.bottom)
 
     def rough(self, positions: int) -> Bowl:
