@@ -82,12 +82,13 @@ def _weigh(
 def _linearized(problem: PointProblem, force: FloatArray) -> tuple[State, NewtonSystem, int]:
     """Return the state of a solution, and Newton's equations there with their number."""
     n = problem.bodies.shape[0]
-    state, system = State(np.zeros(n), np.zeros(n), force, np.zeros(force.size), np.zeros(n)), empty_system(n)
+    state = State(np.zeros(n), np.zeros(n), force, np.zeros(force.size), np.zeros(n))
     for q in range(force.size):
         if force[q] > 0.0:
             state.slope[q] = 1.0 / approach(problem.law, problem.place[q], force[q])[1]
     press(problem, force, state.pressed)
     state.held[:] = state.pressed
+    system = empty_system(problem)
     return state, system, newton_system(problem, state, system)
 
 

@@ -85,6 +85,7 @@ def contact_candidates(
     middle = touch  # of the one point of each slice
     if slices.points > 1:
         middle, _ = _touching(pair, model, position, index, slices.center, 0.0)
+    curves, heights = slices.curves
     return Candidates(
         position=position,
         pair=np.repeat(index, slices.point_center.size),
@@ -93,7 +94,8 @@ def contact_candidates(
         width=part * (slices.point_width / math.cos(pair.base_helix_angle)),
         point_width=slices.point_width,
         slices=_loaded_slices(pair, touch, middle, index, rule, slices),
-        blend=slices.blend,
+        curves=curves,
+        heights=heights,
     )
 
 

@@ -1,14 +1,14 @@
 """Newton's method for one contact point problem: who carries what.
 
-m contacts press on n slices of the bodies by the parts N (m, n) of their forces. Find the forces on the
-slices h (n,) and the deflection d with
+The bodies move by n curves over the face, each over a few contacts; m contacts press on them by the parts
+N (m, n) of their forces. Find the forces on the curves h (n,) and the deflection d with
 
     h = N'F,    F_q = phi_q(m_q d - g_q - (N K h)_q) >= 0,    sum_q n_q F_q = T,
 
 K the compliance of the bodies and phi_q, the inverse of the local approach, convex and zero where flanks
 part. Which contacts carry needs no search: each follows from its own approach. With D the slopes of phi,
-Newton's matrix is 1 + N'DN K, and only the slices of pairs that touch have rows in it. With m = n this is
-the search for the least energy
+Newton's matrix is 1 + N'DN K, and only the curves over contacts that touch have rows in it. With m = n this
+is the search for the least energy
 
     h'K h/2 + sum_q Phi_q(m_q d - g_q - (N K h)_q) - T d;
 
@@ -34,6 +34,7 @@ from fe_contact.contact.point_problem import (
     move,
     press,
     stiffness,
+    subtract,
 )
 from fe_contact.types import FloatArray, IntArray
 from host.loops import njit
@@ -52,37 +53,40 @@ _LEVEL = 0.3
 
 
 class NewtonSystem(NamedTuple):
-    """Newton's equations of the slices of touching pairs; filled up to their number.
+    """Newton's equations of the curves over touching contacts; filled up to their number.
 
     Attributes
     ----------
     member : ndarray of int, shape (n,)
-        Those slices.
-    touching : ndarray, shape (n, n)
-        N'DN of all slices, N/m.
-    matrix : ndarray, shape (n, n)
-        1 + N'DN K.
+        Those curves.
+    touching : ndarray, shape (n, w)
+        N'DN of all curves with those up to w - 1 before them, N/m.
+    matrix, moved : ndarray, shape (n, n)
+        1 + N'DN K, and K of the members, m/N.
     right : ndarray, shape (2, n)
-        N'D m in N/m, and what the forces on the slices miss in N.
+        N'D m in N/m, and what the forces on the curves miss in N.
     shares : ndarray, shape (n,)
-        N'D n of all slices, N/m.
+        N'D n of all curves, N/m.
     left : ndarray, shape (n,)
-        Forces on slices of pairs that do not touch any more, N.
+        Forces on curves whose contacts do not touch any more, N.
     """
 
     member: IntArray
     touching: FloatArray
     matrix: FloatArray
+    moved: FloatArray
     right: FloatArray
     shares: FloatArray
     left: FloatArray
 
 
 @njit(cache=True, error_model="numpy")
-def empty_system(n: int) -> NewtonSystem:
-    """Return room for the equations of so many slices."""
-    member, square = np.empty(n, dtype=np.int64), np.empty((2, n, n))
-    return NewtonSystem(member, square[0], square[1], np.empty((2, n)), np.empty(n), np.empty(n))
+def empty_system(problem: PointProblem) -> NewtonSystem:
+    """Return room for the equations of a problem."""
+    n = problem.bodies.shape[0]
+    member, touching = np.empty(n, dtype=np.int64), np.empty((n, problem.curve.shape[1]))
+    square, right, line = np.empty((2, n, n)), np.empty((2, n)), np.empty((2, n))
+    return NewtonSystem(member, touching, square[0], square[1], right, line[0], line[1])
 
 
 @njit(cache=True, error_model="numpy")
@@ -117,7 +121,7 @@ def solve_point(
     touch = np.min(problem.gap / problem.motion_arm)
     gap = problem.gap - problem.motion_arm * touch  # from where the first contact touches
     m, n = force.size, problem.bodies.shape[0]
-    if math.isnan(touch) or not 0.0 < np.trace(problem.bodies) < math.inf:
+    if math.isnan(touch) or not 0.0 < _softness(problem) < math.inf:
         force[:] = 0.0
         return math.nan, math.nan, SINGULAR, 0, False
     state = State(np.zeros(n), np.zeros(n), force, np.zeros(m), np.zeros(n))
@@ -150,8 +154,8 @@ def _start(problem: PointProblem, total: float, gap: FloatArray, state: State) -
 
 @njit(cache=True, error_model="numpy")
 def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArray) -> None:
-    """Fill in forces as the gaps would take them if all slices gave way alike."""
-    depth = total * np.trace(problem.bodies) / problem.bodies.shape[0]
+    """Fill in forces as the gaps would take them if all contacts gave way alike."""
+    depth = total * _softness(problem)
     carried = 0.0
     for q in range(gap.size):
         force[q] = max(depth - gap[q], 0.0) * problem.law.width[problem.place[q]]
@@ -160,13 +164,24 @@ def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArr
 
 
 @njit(cache=True, error_model="numpy")
+def _softness(problem: PointProblem) -> float:
+    """Return how far the bodies move at a contact under a unit force on it, on the mean, m/N."""
+    total, (m, width) = 0.0, problem.curve.shape
+    for q in range(m):
+        first, curve = problem.first[q], problem.curve[q]
+        for a in range(width):
+            for b in range(width):
+                total += abs(curve[a] * curve[b] * problem.bodies[first + a, first + b])
+    return float(total / m)
+
+
+@njit(cache=True, error_model="numpy")
 def _iterate(
     problem: PointProblem, total: float, gap: FloatArray, elastic: float, state: State
 ) -> tuple[float, float, int, int]:
     """Iterate to the solution; return elastic deflection, tangent, status and iterations."""
-    n = state.held.size
-    system = empty_system(n)
-    change, motion = np.empty((2, n))
+    system = empty_system(problem)
+    change, motion = np.empty((2, state.held.size))
     tangent, last = math.nan, math.inf
     for iteration in range(1, MAX_ITERATIONS + 1):
         if not state.slope.any():  # a step too far has parted all flanks
@@ -180,7 +195,7 @@ def _iterate(
             return math.nan, math.nan, SINGULAR, iteration
         tangent = 1.0 / stiff
         step = -(excess + missed) * tangent
-        change[:] = state.pressed - state.held  # of pairs that do not touch: their forces go
+        change[:] = state.pressed - state.held  # where nothing touches the forces go
         for r in range(size):
             change[system.member[r]] = step * system.right[0, r] + system.right[1, r]
         move(problem, change, motion)
@@ -194,7 +209,7 @@ def _iterate(
 
 @njit(cache=True, error_model="numpy")
 def _condensed(problem: PointProblem, state: State, system: NewtonSystem, size: int) -> tuple[float, float]:
-    """Return the stiffness of the position in N/m, and what the slices miss of the load in N."""
+    """Return the stiffness of the position in N/m, and what the curves miss of the load in N."""
     stiff, missed = stiffness(problem, state), 0.0
     for r in range(state.held.size):
         if system.shares[r] != 0.0:
@@ -242,56 +257,51 @@ def _advance(
 
 @njit(cache=True, error_model="numpy")
 def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> int:
-    """Fill in Newton's equations; return the number of slices of pairs that touch."""
-    count = problem.blend.shape[1]
-    motion = np.zeros(state.held.size)
-    _touching(problem, state, system, motion)
-    size, left = 0, system.left
+    """Fill in Newton's equations; return the number of curves over contacts that touch."""
+    pulled, pushed = np.zeros((2, state.held.size))
+    _touching(problem, state, system, pulled)
+    size, left, member = 0, system.left, system.member
     left[:] = 0.0
-    for j in range(0, state.held.size, count):
-        carries = 0.0
-        for k in range(j, j + count):
-            carries += system.touching[k, k]
-        if carries > 0.0:
-            for k in range(j, j + count):
-                system.member[size] = k
-                size += 1
+    for k in range(left.size):
+        if system.touching[k, 0] > 0.0:
+            member[size] = k
+            size += 1
         else:
-            left[j : j + count] = state.held[j : j + count] - state.pressed[j : j + count]
-    any_left = left.any()
+            left[k] = state.held[k] - state.pressed[k]
+    any_left, width = left.any(), system.touching.shape[1]
     for r in range(size):
-        i = system.member[r]
-        first = i // count * count
-        system.right[0, r], system.right[1, r] = motion[i], state.pressed[i] - state.held[i]
-        system.matrix[r, :size] = 0.0
-        for j in range(first, first + count):
-            part = system.touching[max(i, j), min(i, j)]
-            for s in range(0, size, count):
-                block = system.member[s]
-                for b in range(count):
-                    system.matrix[r, s + b] += part * problem.bodies[j, block + b]
-            if any_left:
-                system.right[1, r] += part * dot(problem.bodies[j], left, left.size)
-        system.matrix[r, r] += 1.0
+        i = member[r]
+        for s in range(size):
+            system.moved[r, s] = problem.bodies[i, member[s]]
+        system.right[0, r], system.right[1, r] = pulled[i], state.pressed[i] - state.held[i]
+        pushed[r] = dot(problem.bodies[i], left, left.size) if any_left else 0.0
+    for r in range(size):
+        row = system.matrix[r, :size]
+        row[:] = 0.0
+        row[r] = 1.0
+        for s in range(max(r - width + 1, 0), min(r + width, size)):
+            apart = abs(member[r] - member[s])
+            if apart < width:
+                part = system.touching[max(member[r], member[s]), apart]
+                subtract(row, system.moved[s, :size], -part)
+                system.right[1, r] += part * pushed[s]
     return size
 
 
 @njit(cache=True, error_model="numpy")
-def _touching(problem: PointProblem, state: State, system: NewtonSystem, motion: FloatArray) -> None:
-    """Fill in the lower triangle of N'DN, N'D m and N'D n of all slices."""
-    points, count = problem.blend.shape
+def _touching(problem: PointProblem, state: State, system: NewtonSystem, pulled: FloatArray) -> None:
+    """Fill in N'DN by its diagonals, N'D m and N'D n of all curves."""
     touching, shares = system.touching, system.shares
     touching[:], shares[:] = 0.0, 0.0
     for q in range(state.force.size):
-        slope = state.slope[q]
+        slope, first = state.slope[q], problem.first[q]
         if slope != 0.0:
-            first, row = problem.place[q] // points * count, problem.place[q] % points
-            for a in range(count):
-                part = slope * problem.blend[row, a]
-                motion[first + a] += part * problem.motion_arm[q]
+            for a in range(problem.curve.shape[1]):
+                part = slope * problem.curve[q, a]
+                pulled[first + a] += part * problem.motion_arm[q]
                 shares[first + a] += part * problem.torque_arm[q]
                 for b in range(a + 1):
-                    touching[first + a, first + b] += part * problem.blend[row, b]
+                    touching[first + a, a - b] += part * problem.curve[q, b]
 
 
 @njit(cache=True, error_model="numpy")

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.contact.problem import ContactProblem
-from fe_contact.contact.strip import Gap, free_strip, gap_at, half_strip, strip_load, strip_middle
+from fe_contact.contact.strip import Gap, free_strip, gap_at, half_strip, strip_at, strip_load, strip_middle
 from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
@@ -93,9 +93,13 @@ def _force_at(law: _LocalLaw, i: int, value: float) -> tuple[float, float]:
     if half <= law.free[i]:
         load, slope = _plain_load(law.gap.curvature[i], law.length, law.modulus[i], half, value)
     else:
-        _, least, _ = _limits(law, i)
-        half = _strip_at(law, i, value, max(half, least))
-        carried, rigid = strip_load(law.gap, i, half, law.modulus[i])
+        _, least, most = _limits(law, i)
+        guess = max(half, least)
+        half, first, rigid = strip_at(law.gap, i, value, law.length, guess)
+        carried = 0.5 * math.pi * law.modulus[i] * half * first
+        if not least < half < most:
+            half = _strip_at(law, i, value, guess)
+            carried, rigid = strip_load(law.gap, i, half, law.modulus[i])
         load, slope = _load_on(half, carried, rigid, law.length, law.modulus[i], value)
     return law.width[i] * load, law.width[i] * slope
 
@@ -224,7 +228,7 @@ def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
         for i in range(j + 1, n):
             if a[i, j] != 0.0:
                 part = a[i, j] / a[j, j]
-                _subtract(a[i, j + 1 : n], a[j, j + 1 : n], part)
+                subtract(a[i, j + 1 : n], a[j, j + 1 : n], part)
                 for each in right:
                     each[i] -= part * each[j]
     for each in right:
@@ -234,7 +238,8 @@ def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
 
 
 @njit(cache=True, error_model="numpy")
-def _subtract(x: FloatArray, y: FloatArray, part: float) -> None:
+def subtract(x: FloatArray, y: FloatArray, part: float) -> None:
+    """Take a part of `y` off `x`."""
     for k in range(x.size):
         x[k] -= part * y[k]
 
@@ -252,7 +257,7 @@ class PointProblems(NamedTuple):
     ----------
     bodies : ndarray, shape (Q, n, n)
     present : ndarray of bool, shape (Q, n)
-    blend : ndarray, shape (points of a pair, K)
+    curves, heights : ndarray, shapes (points of a pair, K), (K, K)
     gap, motion_arm, torque_arm, width : ndarray, shape (P, m)
     about : Gap
         Arrays (P, m) and (P, m, B).
@@ -261,7 +266,8 @@ class PointProblems(NamedTuple):
 
     bodies: FloatArray
     present: BoolArray
-    blend: FloatArray
+    curves: FloatArray
+    heights: FloatArray
     gap: FloatArray
     motion_arm: FloatArray
     torque_arm: FloatArray
@@ -282,7 +288,8 @@ def point_problems(problem: ContactProblem) -> PointProblems:
     return PointProblems(
         rows(problem.bodies),
         rows(c.slices.present),
-        rows(c.blend),
+        rows(c.curves),
+        rows(c.heights),
         rows(c.gap * c.motion_arm),
         rows(c.motion_arm),
         rows(c.torque_share),
@@ -294,14 +301,16 @@ def point_problems(problem: ContactProblem) -> PointProblems:
 
 
 class PointProblem(NamedTuple):
-    """One position: m contacts that can carry force, on n = J K slices of J pairs.
+    """One position: m contacts that can carry force, on n = J K curves of J pairs.
 
     Attributes
     ----------
     bodies : ndarray, shape (n, n)
-        Normal approach of slice i per unit normal force on j, without what is in the local law, m/N.
-    blend : ndarray, shape (points of a pair, K)
-        Parts of the force of each point on the slices of its pair.
+        Height of curve i per unit force on j, without what is in the local law, m/N.
+    curve : ndarray, shape (m, w)
+        Parts of the force of each contact on w curves beside each other, and of their heights there.
+    first : ndarray of int, shape (m,)
+        The first of those curves.
     place : ndarray of int, shape (m,)
         Each contact among the points of all pairs.
     gap : ndarray, shape (m,)
@@ -313,7 +322,8 @@ class PointProblem(NamedTuple):
     """
 
     bodies: FloatArray
-    blend: FloatArray
+    curve: FloatArray
+    first: IntArray
     place: IntArray
     gap: FloatArray
     motion_arm: FloatArray
@@ -324,18 +334,47 @@ class PointProblem(NamedTuple):
 @njit(cache=True, error_model="numpy")
 def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
     """Return the problem of a position, and its contacts among all candidates."""
-    row, (points, count) = p % every.bodies.shape[0], every.blend.shape
+    row, (points, count) = p % every.bodies.shape[0], every.curves.shape
     there = every.present[row]
     slices = np.flatnonzero(there)
     pairs = np.cumsum(there[::count]) - 1  # of all pairs among those that are there
     here = np.flatnonzero(~(every.gap[p] == np.inf))  # also those that are not a number
     at = np.flatnonzero(np.repeat(there[::count], points))
-    inner = np.ascontiguousarray(every.bodies[row][slices][:, slices])
+    inner = every.bodies[row][slices][:, slices]
+    inner = _turned(every.heights, _turned(every.heights, inner))
     gaps = gap_at(gap_at(every.about, p), at)
     law = _LocalLaw(every.width[p][at], gaps, _free_strips(gaps), every.length, every.modulus[row][at])
     slot = pairs[here // points] * points + here % points
+    curve, first = _beside(every.curves)
+    point = here % points
+    first = pairs[here // points] * count + first[point]
     arms = every.motion_arm[p][here], every.torque_arm[p][here]
-    return PointProblem(inner, every.blend, slot, every.gap[p][here], *arms, law), here
+    return PointProblem(inner, curve[point], first, slot, every.gap[p][here], *arms, law), here
+
+
+@njit(cache=True, error_model="numpy")
+def _turned(heights: FloatArray, moved: FloatArray) -> FloatArray:
+    """Return the heights (r, n) of the curves of all pairs for motions (n, r) of their slices."""
+    count, turned = heights.shape[0], np.zeros(moved.shape)
+    for i in range(moved.shape[0]):
+        for k in range(count):
+            subtract(turned[i], moved[i // count * count + k], -heights[i % count, k])
+    return np.ascontiguousarray(turned.T)
+
+
+@njit(cache=True, error_model="numpy")
+def _beside(curves: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return the curves (points, w) that are not zero at each point, and which is the first of them."""
+    points, count = curves.shape
+    first, width = np.zeros(points, dtype=np.int64), 1
+    for i in range(points):
+        there = np.flatnonzero(curves[i])
+        first[i], width = there[0], max(width, there[-1] - there[0] + 1)
+    first = np.minimum(first, count - width)
+    beside = np.empty((points, width))
+    for i in range(points):
+        beside[i] = curves[i, first[i] : first[i] + width]
+    return beside, first
 
 
 class State(NamedTuple):
@@ -344,13 +383,13 @@ class State(NamedTuple):
     Attributes
     ----------
     held : ndarray, shape (n,)
-        Forces on the slices h, N.
+        Forces on the curves h, N.
     moved : ndarray, shape (n,)
         What they move, K h, m.
     force, slope : ndarray, shape (m,)
         Of the contacts under these motions: N, N/m.
     pressed : ndarray, shape (n,)
-        Those forces on the slices N'F, N.
+        Those forces on the curves N'F, N.
     """
 
     held: FloatArray
@@ -362,20 +401,15 @@ class State(NamedTuple):
 
 @njit(cache=True, error_model="numpy")
 def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: State) -> None:
-    """Fill in forces and slopes of the contacts, and the forces on the slices, under the motions."""
-    points, count = problem.blend.shape
-    slot, blend, moved, arm = problem.place, problem.blend, state.moved, problem.motion_arm
+    """Fill in forces and slopes of the contacts, and the forces on the curves, under the motions."""
     width, curvature, free = problem.law.width, problem.law.gap.curvature, problem.law.free
     length, modulus = problem.law.length, problem.law.modulus
     for q in range(gap.size):
-        closer = arm[q] * elastic - gap[q]
+        closer = problem.motion_arm[q] * elastic - gap[q] - motion_at(problem, q, state.moved)
         state.force[q], state.slope[q] = 0.0, 0.0
-        i = slot[q]
-        first, row = i // points * count, i % points
-        for a in range(count):
-            closer -= blend[row, a] * moved[first + a]
         if closer <= 0.0:
             continue
+        i = problem.place[q]
         half = _plain_strip(curvature[i], length, closer)
         if half <= free[i]:
             line_load, stiffness = _plain_load(curvature[i], length, modulus[i], half, closer)
@@ -387,20 +421,17 @@ def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: Stat
 
 @njit(cache=True, error_model="numpy")
 def press(problem: PointProblem, force: FloatArray, out: FloatArray) -> None:
-    """Fill in the forces of the contacts on the slices."""
-    points, count = problem.blend.shape
-    slot, blend = problem.place, problem.blend
+    """Fill in the forces of the contacts on the curves."""
     out[:] = 0.0
     for q in range(force.size):
         if force[q] != 0.0:
-            first, row = slot[q] // points * count, slot[q] % points
-            for a in range(count):
-                out[first + a] += blend[row, a] * force[q]
+            for a in range(problem.curve.shape[1]):
+                out[problem.first[q] + a] += problem.curve[q, a] * force[q]
 
 
 @njit(cache=True, error_model="numpy")
 def move(problem: PointProblem, held: FloatArray, out: FloatArray) -> None:
-    """Fill in the motions of the slices under forces on them."""
+    """Fill in the heights of the curves under forces on them."""
     for j in range(held.size):
         out[j] = dot(problem.bodies[j], held, held.size)
 
@@ -408,11 +439,9 @@ def move(problem: PointProblem, held: FloatArray, out: FloatArray) -> None:
 @njit(cache=True, error_model="numpy")
 def motion_at(problem: PointProblem, q: int, moved: FloatArray) -> float:
     """Return the motion of the bodies at a contact, m."""
-    points, count = problem.blend.shape
-    first, row = problem.place[q] // points * count, problem.place[q] % points
     value = 0.0
-    for a in range(count):
-        value += problem.blend[row, a] * moved[first + a]
+    for a in range(problem.curve.shape[1]):
+        value += problem.curve[q, a] * moved[problem.first[q] + a]
     return value
 
 

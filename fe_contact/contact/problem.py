@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import BSpline
 
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.strip import Gap
@@ -58,17 +58,19 @@ class Slices:
         return np.asarray((self.center[:, None] + within).ravel())
 
     @property
-    def blend(self) -> FloatArray:
-        """Contribution of the mean motions of the slices at each point, (K Q, K).
+    def curves(self) -> tuple[FloatArray, FloatArray]:
+        """Curves over the face at each point (K Q, K), and their heights (K, K) for mean motions of slices.
 
-        The derivative of the cubic spline through the sums of the slices before each: smooth over the face,
-        with the means of the slices as they are.
+        Their sum is the derivative of the cubic spline through the sums of the slices before each: smooth
+        over the face, with the means of the slices as they are. At a point at most three are not zero.
         """
         count = self.center.size
-        ends = np.arange(count + 1.0)
-        sums = np.tril(np.ones((count + 1, count)), -1)
+        degree, knots = min(count - 1, 2), np.arange(count + 1.0)
+        knots = np.concatenate([np.zeros(degree + 1), knots[2:-2], np.full(degree + 1, float(count))])
         at = (self.point_center - self.center[0]) / self.width + 0.5
-        return np.asarray(CubicSpline(ends, sums)(at, 1))
+        within = np.arange(count)[:, None] + 0.5 + np.array([-1.0, 1.0]) / math.sqrt(12.0)  # Gauss points
+        curves, means = (BSpline.design_matrix(x, knots, degree).toarray() for x in (at, within.ravel()))
+        return curves, np.linalg.inv(means.reshape(count, 2, count).mean(axis=1))
 
 
 # Condition of the compliance between the candidates.
@@ -180,8 +182,8 @@ class Candidates:
         Part of the face that each stands for, m.
     slices : LoadedSlices
         On which they press, at Q positions: position p at row p modulo Q.
-    blend : ndarray, shape (points of a pair, slices of a pair)
-        Parts of the force of each point on the slices of its pair; see `fe_contact.contact.problem`.
+    curves, heights : ndarray, shapes (points of a pair, K), (K, slices of a pair)
+        Of the motion over the face; see `Slices.curves`.
     """
 
     position: FloatArray
@@ -191,7 +193,13 @@ class Candidates:
     width: FloatArray
     point_width: float
     slices: LoadedSlices
-    blend: FloatArray
+    curves: FloatArray
+    heights: FloatArray
+
+    @property
+    def blend(self) -> FloatArray:
+        """Parts of the force of each point on the slices of its pair, and of their motions at the point."""
+        return np.asarray(self.curves @ self.heights)
 
     @property
     def gap(self) -> FloatArray:
@@ -236,12 +244,13 @@ class Candidates:
     def on_slices(self, force: FloatArray) -> FloatArray:
         """Return forces (..., m) of the candidates as forces (..., n) on the slices."""
         shape = force.shape[:-1]
-        return np.asarray((force.reshape(*shape, -1, len(self.blend)) @ self.blend).reshape(*shape, -1))
+        by_pair = force.reshape(*shape, -1, len(self.curves))
+        return np.asarray((by_pair @ self.blend).reshape(*shape, -1))
 
     def at_points(self, motion: FloatArray) -> FloatArray:
         """Return motions (..., n) of the slices at the candidates (..., m)."""
         shape = motion.shape[:-1]
-        by_pair = motion.reshape(*shape, -1, self.blend.shape[1])
+        by_pair = motion.reshape(*shape, -1, self.heights.shape[1])
         return np.asarray((by_pair @ self.blend.T).reshape(*shape, -1))
 
     def rows(self, keep: IntArray) -> Candidates:

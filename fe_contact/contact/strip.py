@@ -34,6 +34,8 @@ from host.loops import njit
 _TOLERANCE = 1e-9
 """Of strip and middle over the strip; the approach is stationary in both."""
 _STEPS = 100
+_NEWTON_STEPS, _NEWTON_TOLERANCE = 8, 1e-8
+"""Of strip and middle at once, and their last step over the strip, which leaves its square."""
 _BLUNTEST = 0.05
 """Least cosine at a break in derivatives: they are infinite where a break is at the end of the strip."""
 
@@ -101,10 +103,13 @@ def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[floa
     hertz = math.sqrt(4.0 * line_load / (math.pi * modulus * gap.curvature[i]))
     if hertz <= free_strip(gap, i):
         return hertz, 0.25 * gap.curvature[i] * hertz * hertz
+    half, _, rigid = strip_at(gap, i, 2.0 * line_load / (math.pi * modulus), 0.0, hertz)
+    if half > 0.0:
+        return half, rigid
     widest = 0.5 * (gap.high[i] - gap.low[i])
     below, above = 0.0, math.inf
     half, power = min(hertz, widest), 2.0
-    last_half, last_error, rigid = 0.0, math.inf, 0.0
+    last_half, last_error = 0.0, math.inf
     for _ in range(_STEPS):
         load, rigid = strip_load(gap, i, half, modulus)
         error = math.log(load / line_load)
@@ -133,7 +138,7 @@ def strip_load(gap: Gap, i: int, half: float, modulus: float) -> tuple[float, fl
         rise = 0.25 * gap.curvature[i] * half * half
         return math.pi * modulus * rise, rise
     center = strip_middle(gap, i, half)
-    slope, first, mean, _ = _means(gap, i, center, half)
+    slope, first, mean, _, _, _ = _means(gap, i, center, half)
     if gap.low[i] + half < center < gap.high[i] - half:  # what is left of the slope is the middle's rounding
         first -= slope * _tilting(gap, i, center, half)
     else:
@@ -170,7 +175,7 @@ def strip_middle(gap: Gap, i: int, half: float) -> float:
         return 0.5 * (low + high)
     center, before = min(max(0.0, low), high), math.inf
     for _ in range(_STEPS):
-        slope, _, _, bend = _means(gap, i, center, half)
+        slope, _, _, bend, _, _ = _means(gap, i, center, half)
         if slope > 0.0:
             high = center
         else:
@@ -188,6 +193,43 @@ def strip_middle(gap: Gap, i: int, half: float) -> float:
             return following
         center, before = following, abs(slope)
     return center
+
+
+@njit(cache=True, error_model="numpy")
+def strip_at(gap: Gap, i: int, value: float, length: float, half: float) -> tuple[float, float, float]:
+    """Return the strip of an approach or a load where no edge is near, by Newton's method from a guess on.
+
+    Parameters
+    ----------
+    value : float
+        The approach, m; or, where `length` is zero, 2 p/(pi E*), m.
+    length : float
+        Reference length, m.
+    half : float
+        Guess of half the strip, m.
+
+    Returns
+    -------
+    half, first, mean : float
+        Half strip in m, means of g' sin t and of g in m over it; zeros where the method does not get there.
+    """
+    center = 0.0
+    for _ in range(_NEWTON_STEPS):
+        if not gap.low[i] + half < center < gap.high[i] - half:
+            break
+        slope, first, mean, bend, tilt, bulge = _means(gap, i, center, half)
+        law, off, across = 1.0, half * first - value, half * tilt
+        if length > 0.0:
+            law = math.log(length / half) - 0.25
+            off, across = mean + half * first * law - value, slope + half * tilt * law
+        along = law * (first + half * bulge)
+        whole = bend * along - tilt * across
+        aside, wider = (tilt * off - along * slope) / whole, (across * slope - bend * off) / whole
+        center += aside
+        half += wider
+        if abs(aside) + abs(wider) <= _NEWTON_TOLERANCE * half:
+            return half, first + tilt * aside + bulge * wider, mean + slope * aside + first * wider
+    return 0.0, 0.0, 0.0
 
 
 @njit(cache=True, error_model="numpy")
@@ -217,13 +259,13 @@ def past_break(beyond: float, half: float) -> tuple[float, float, float, float, 
 
 
 @njit(cache=True, error_model="numpy")
-def _means(gap: Gap, i: int, center: float, half: float) -> tuple[float, float, float, float]:
-    """Return the means of g', g' sin t, g and g'' over the angle t of the strip."""
+def _means(gap: Gap, i: int, center: float, half: float) -> tuple[float, float, float, float, float, float]:
+    """Return the means of g', g' sin t, g, g'', g'' sin t and g'' sin^2 t over the angle t of the strip."""
     s, q = float(gap.slope[i]), float(gap.curvature[i])
     slope = s + q * center
     first = 0.5 * q * half
     mean = s * center + 0.5 * q * (center * center + 0.5 * half * half)
-    bend = q
+    bend, tilt, bulge = q, 0.0, 0.5 * q
     for k in range(gap.place.shape[1]):
         side = 1.0 if gap.place[i, k] >= 0.0 else -1.0
         beyond = side * (gap.place[i, k] - center)  # from the middle to the break
@@ -234,6 +276,8 @@ def _means(gap: Gap, i: int, center: float, half: float) -> tuple[float, float, 
         slope += side * (a * angle + b * ramp) / math.pi
         first += (a * cosine + b * tilted) / math.pi
         mean += (a * ramp + 0.5 * b * square) / math.pi
-        bend += b * angle / math.pi
-        bend += a / (math.pi * half * max(cosine, _BLUNTEST))
-    return slope, first, mean, bend
+        sine, blunt = max(beyond / half, -1.0), a / (half * max(cosine, _BLUNTEST))
+        bend += (b * angle + blunt) / math.pi
+        tilt += side * (b * cosine + blunt * sine) / math.pi
+        bulge += (0.5 * b * (angle + sine * cosine) + blunt * sine * sine) / math.pi
+    return slope, first, mean, bend, tilt, bulge

@@ -104,7 +104,7 @@ def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | Non
     loads : ndarray, shape (L,)
         T_1/(r_b1 cos beta_b) in N, increasing and > 0.
     start : Start, optional
-        Forces near the solution at every position and load; default: each load starts from the one below it.
+        Forces near the solution at every position and load; default: each load starts from the two below it.
 
     Returns
     -------
@@ -141,19 +141,21 @@ def _sweep(
     residuals: FloatArray,
     beyond: BoolArray,
 ) -> None:
-    """Fill the result arrays, started from the `first` forces, or each load from the one below it.
+    """Fill the result arrays, started from the `first` forces, or each load from the two below it.
 
     Forces of a much smaller load press on too few points: where no solution is found from them, the search
     begins again from a guess of its own.
     """
     for p in range(every.gap.shape[0]):
         point, here = problem_at(every, p)
-        start = np.zeros(here.size)
+        start, last = np.zeros((2, here.size))
         for k in range(loads.size):
             if first.shape[0] > 0:
                 start = first[p, k][here]
             elif k > 0:
-                start *= loads[k] / loads[k - 1]
+                below = loads[k - 2] if k > 1 else 0.0
+                part = (loads[k] - loads[k - 1]) / (loads[k - 1] - below)
+                start, last = start + part * (start - last), start
             guessed = not start.any()
             d, t, code, count, over = solve_point(point, loads[k], start, residuals[p, k])
             if code != CONVERGED and not guessed:

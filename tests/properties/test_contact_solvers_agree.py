@@ -93,7 +93,14 @@ class Solved:
         law = _LocalLaw(p.width, gap, _free_strips(gap), p.length, p.modulus)
         there = np.flatnonzero(np.isfinite(p.gap))
         point = PointProblem(
-            p.compliance, np.eye(n), there, p.gap[there], p.motion_arm[there], p.torque_arm[there], law
+            p.compliance,
+            np.ones((there.size, 1)),
+            there,
+            there,
+            p.gap[there],
+            p.motion_arm[there],
+            p.torque_arm[there],
+            law,
         )
         found = np.zeros(there.size) if force is None else force[there]
         self.residual = np.full(4, np.nan)
@@ -164,7 +171,14 @@ def test_contacts_that_press_on_few_slices(seed, kind, arms, load, slices):
     gap = Gap(*vars(problem.gap_about).values())
     law = _LocalLaw(problem.width, gap, _free_strips(gap), problem.length, problem.modulus)
     point = PointProblem(
-        bodies, blend, np.arange(12), problem.gap, problem.motion_arm, problem.torque_arm, law
+        bodies,
+        blend,
+        np.zeros(12, dtype=int),
+        np.arange(12),
+        problem.gap,
+        problem.motion_arm,
+        problem.torque_arm,
+        law,
     )
     force, residual = np.zeros(12), np.zeros(4)
     deflection, _, status, *_ = solve_point(point, load, force, residual)

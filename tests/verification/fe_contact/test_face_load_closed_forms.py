@@ -58,7 +58,8 @@ def solved_slices(
     slices = Slices.of_pair(pair, COUNT, 1)
     plain = contact_candidates(pair, model, np.zeros(1), PatchRule(1e-3, 1e-4), slices)
     # one point a slice that moves with its own slice alone: no curve through the means of its neighbors
-    candidates = with_gaps(pair, dataclasses.replace(plain, blend=np.eye(COUNT)), model)
+    alone = dataclasses.replace(plain, curves=np.eye(COUNT), heights=np.eye(COUNT))
+    candidates = with_gaps(pair, alone, model)
     only = candidates.pair == 0
     gap = np.where(only, candidates.gap, np.inf)
     candidates = candidates.touching(dataclasses.replace(candidates.touch, gap=gap))

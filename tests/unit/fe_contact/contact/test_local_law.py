@@ -16,9 +16,10 @@ from fe_contact.contact.point_problem import (
     _LocalLaw,
     _plain_load,
     _plain_strip,
+    _strip_at,
     approach,
 )
-from fe_contact.contact.strip import Gap, strip_load
+from fe_contact.contact.strip import Gap, strip_at, strip_load
 from fe_contact.hertz import contact_modulus, half_width
 from fe_contact.material import STEEL, Material
 
@@ -185,3 +186,28 @@ def test_blunt_wedge_keeps_its_digits():
     assert approach(law, 0, p * WIDTH)[1] * WIDTH == pytest.approx(
         2.0 * k * (math.log(patch / half_width_at_edge) - 0.75), rel=1e-10, abs=0.0
     )
+
+
+@pytest.mark.parametrize("jump", [0.0, 2e-3, 2e-2])
+def test_newtons_strip_is_the_one_that_is_held_between_bounds(jump):
+    """Beside a relief that begins with a slope or a curvature, and between two of them."""
+    rng, found = np.random.default_rng(5), 0
+    modulus = contact_modulus(STEEL, STEEL)
+    for value in np.geomspace(1e-8, 3e-6, 40):
+        place = rng.uniform(-1.2, 1.2, (1, 2)) * 1e-4
+        bends = rng.uniform(0.0, 2.0, (1, 2)) / RADIUS
+        one, away = np.array([1.0 / RADIUS]), np.array([1e-2])
+        gap = Gap(np.zeros(1), one, -away, away, place, np.full((1, 2), jump), bends)
+        law = _LocalLaw(np.array([WIDTH]), gap, _free_strips(gap), LENGTH, np.array([modulus]))
+        guess = _plain_strip(one[0], LENGTH, value)
+        held = _strip_at(law, 0, value, guess)
+        half, first, mean = strip_at(gap, 0, value, LENGTH, guess)
+        if SMALLEST_STRIP * LENGTH < half < LARGEST_STRIP * LENGTH:
+            found += 1
+            load, rigid = strip_load(gap, 0, held, modulus)
+            assert half == pytest.approx(held, rel=1e-7, abs=0.0)
+            assert 0.5 * math.pi * modulus * half * first == pytest.approx(load, rel=1e-7, abs=0.0)
+            assert mean == pytest.approx(rigid, rel=1e-7, abs=0.0)
+            under, _, own = strip_at(gap, 0, half * first, 0.0, guess)
+            assert under == 0.0 or (under, own) == pytest.approx((half, mean), rel=1e-7, abs=0.0)
+    assert found > 20

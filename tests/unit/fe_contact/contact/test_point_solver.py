@@ -32,6 +32,7 @@ from fe_contact.contact.point_problem import (
     approach,
     eliminate,
     point_problems,
+    problem_at,
 )
 from fe_contact.contact.strip import Gap
 from fe_contact.effects.influence.deflection_budget import Springs
@@ -52,7 +53,9 @@ def point(compliance, gap, motion_arm=None, torque_arm=None, edge_slope=math.nan
     torque = motion if torque_arm is None else np.asarray(torque_arm)
     there = np.flatnonzero(np.asarray(gap) != math.inf)
     bodies, gaps = np.asarray(compliance, float), np.asarray(gap, float)[there]
-    return PointProblem(bodies, np.eye(n), there, gaps, motion[there], torque[there], law)
+    return PointProblem(
+        bodies, np.ones((there.size, 1)), there, there, gaps, motion[there], torque[there], law
+    )
 
 
 def beside_an_edge(slope, *shape) -> Gap:
@@ -194,7 +197,8 @@ def two_position_problem() -> ContactProblem:
         position=np.array([0.0, 0.5]),
         pair=np.array([0, 1]),
         slices=slices,
-        blend=np.ones((1, 1)),
+        curves=np.ones((1, 1)),
+        heights=np.ones((1, 1)),
         gap=np.array([[1e-6, math.inf], [0.0, 0.0]]),
         motion_arm=ARM * full,
         torque_share=full,
@@ -285,6 +289,22 @@ def test_the_solution_is_the_same_wherever_it_starts_and_nearer_is_sooner(spring
     assert np.all(force == 100.0)
 
 
+def test_curves_move_the_contacts_as_the_means_of_their_slices_do() -> None:
+    here, rng = candidates(7), np.random.default_rng(2)
+    root = rng.normal(size=(here.position.size, here.slices.pair.size, 60))
+    problem = ContactProblem(here, root @ root.transpose(0, 2, 1), MODULUS, HALF_PLANE, HALF_PLANE)
+    for p in range(here.position.size):
+        point, present = problem_at(point_problems(problem), p)
+        parts = np.zeros((present.size, len(point.bodies)))
+        for q, (first, curve) in enumerate(zip(point.first, point.curve, strict=True)):
+            parts[q, first : first + curve.size] = curve
+        assert point.curve.shape[1] == 3
+        unit = np.eye(here.pair.size)[present]
+        blend = here.on_slices(unit)
+        expected = blend @ problem.bodies[p] @ blend.T
+        assert parts @ point.bodies @ parts.T == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
+
+
 def test_a_misleading_start_is_given_up(springs: ContactProblem) -> None:
     """Where bodies are barely definite, forces on a few points may lead nowhere: a guess of its own does."""
     present = springs.candidates.slices.present
@@ -315,7 +335,7 @@ def test_forces_carried_to_other_slices_keep_the_line_load_of_their_pair() -> No
         whole = carried[coarse.pair == pair].sum()
         assert back[0, 0, fine.pair == pair].sum() == pytest.approx(whole, rel=1e-12, abs=0.0)
     here = candidates(5)
-    points = len(here.blend)
+    points = len(here.curves)
     fewer = replace(here, pair=here.pair[points:], face_position=here.face_position[points:])
     carried = Start(fewer, np.ones((1, 1, fewer.pair.size))).on(here)[0, 0]
     assert np.all(carried[:points] == 0.0)

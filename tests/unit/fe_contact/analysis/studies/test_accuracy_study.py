@@ -97,7 +97,8 @@ def test_thin_slices_are_the_contact_solver_with_uncoupled_slices(helix, misalig
     stiffness = _slice_stiffness(pair, problem.candidates, THIN_SLICES.law)
     diagonal = np.eye(stiffness.shape[1]) / stiffness[:, None, :]
     # bodies a million times stiffer than steel: no local approach; each slice has its own point
-    candidates = replace(problem.candidates, blend=np.eye(len(problem.candidates.blend)))
+    own = np.eye(len(problem.candidates.curves))
+    candidates = replace(problem.candidates, curves=own, heights=own)
     rigid = solve_contact(ContactProblem(candidates, diagonal, 1e19, 3e-20, 3e-20), plan.load)
     assert rigid.converged
     np.testing.assert_allclose(found.deflection, rigid.deflection, rtol=1e-7)
