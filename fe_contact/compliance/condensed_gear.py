@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple
 
@@ -63,9 +63,10 @@ class CondensedGear:
         """Return the displacement of the left and right cut of a tooth under the probe loads, (2 nc, p)."""
         return np.concatenate([self.ring.left[tooth], self.ring.left[tooth - 1]])
 
-    def cut_forces(self, tooth: int) -> FloatArray:
-        """Return the forces that move an unloaded sector's cuts as they move, (2 nc, p)."""
-        return self.held.cuts @ self.cuts(tooth)
+    def cut_forces(self, tooth: int, loads: FloatArray | None = None) -> FloatArray:
+        """Return the forces (2 nc, p) that move a sector's cuts as they move, under flank `loads` (nf, p)."""
+        passed = 0.0 if loads is None else self.held.transmitted @ loads
+        return np.asarray(self.held.cuts @ self.cuts(tooth) - passed)
 
 
 def _pressure_forces(s: FloatArray, z: FloatArray, index: IntArray, loaded: FloatArray) -> FloatArray:
@@ -104,33 +105,34 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     bore_radius : float
         m.
     """
-    load = loads[:, :1]
-    values = np.concatenate([gear.flank(0, loads)[:, :1], gear.cuts(0)[:, :1]])
-    field = gear.condensation.expand(values)[:, 0]
-    forces = element_forces(gear.sector, gear.stiffness, field)
-    moved = [
-        float(np.sum(gear.cuts(j)[:, 0] * gear.cut_forces(j)[:, 0])) for j in range(1, len(gear.ring.left))
-    ]
-    restraining = gear.ring.restraining
-    moved.append(float(np.sum(gear.ring.left[:, :, 0] @ restraining[:, 0])))
-    inside = float(np.sum(field[gear.sector.element_freedoms] * forces * (gear.sector.element_freedoms >= 0)))
-    works = [inside + sum(moved), float(load[:, 0] @ values[: len(load), 0])]
-    works.append(float(load[:, 0] @ gear.ring.blocks[0] @ load[:, 0]))
-    moment = _bore_moment(gear, loads, bore_radius)
-    sector = gear.sector
+    load, ring, sector = loads[:, :1], gear.ring, gear.sector
+    solved = replace(gear, ring=replace(ring, left=ring.solved))
+    everywhere = np.tile(ring.solved.sum(axis=0), (2, 1))[:, :1]
+    turning = gear.held.flank @ load * ring.shares.sum() + gear.held.transmitted.T @ everywhere
+    values = [np.concatenate([each.flank(0, loads)[:, :1], each.cuts(0)[:, :1]]) for each in (gear, solved)]
+    values.append(np.concatenate([turning, everywhere]))
+    fields = gear.condensation.expand(np.concatenate(values, axis=1)).T
+    forces = [element_forces(sector, gear.stiffness, field) for field in fields]
+    moved = [float(np.sum(gear.cuts(j)[:, 0] * gear.cut_forces(j)[:, 0])) for j in range(1, len(ring.left))]
+    moved.append(float(np.sum(ring.left[:, :, 0] @ ring.restraining[:, 0])))
     free = sector.element_freedoms >= 0
+    inside = float(np.sum(fields[0][sector.element_freedoms] * forces[0] * free))
+    works = [inside + sum(moved), float(load[:, 0] @ values[0][: len(load), 0])]
+    works.append(float(load[:, 0] @ ring.blocks[0] @ load[:, 0]))
+    moment = _bore_moment(solved, forces[2], bore_radius)
     diagonals = np.einsum("mii->mi", gear.stiffness.matrices)[gear.stiffness.of_element]
     added = np.bincount(sector.element_freedoms[free], diagonals[free], minlength=sector.size)
     alone = added.astype(float)  # stiffness of each freedom with all others held: the diagonal
-    left = left_by_rounding(alone, field, load, works[0])
+    _, energy = left_by_rounding(alone, fields[0], load, works[0])
+    unbalanced, _ = left_by_rounding(alone, fields[1], load, works[0])
     return ComplianceChecks(
-        residual=residual(gear, forces, load[:, 0]),
+        residual=residual(solved, forces[1], load, ring.shares),
         reciprocity=_reciprocity(gear, loads),
-        bore_moment=abs(moment / (lever * float(load.sum())) - 1.0),
+        bore_moment=abs(moment / (lever * float(load.sum() * ring.shares.sum())) - 1.0),
         energy=float(np.ptp(works) / works[0]),
-        least_eigenvalue=_least_eigenvalue(gear.ring.blocks[0]),
-        residual_rounding=left[0],
-        energy_rounding=left[1],
+        least_eigenvalue=_least_eigenvalue(ring.blocks[0]),
+        residual_rounding=unbalanced,
+        energy_rounding=energy,
     )
 
 
@@ -145,41 +147,38 @@ def element_forces(sector: SweptSector, stiffness: ElementStiffness, field: Floa
     return forces
 
 
-def residual(gear: CondensedGear, forces: FloatArray, load: FloatArray) -> float:
-    """Return the norm of f - K u over that of f, on all free freedoms of the loaded sector with both cuts.
+def residual(gear: CondensedGear, forces: FloatArray, load: FloatArray, shares: FloatArray) -> float:
+    """Return the norm of f - K u over that of f, on all free freedoms of sector 0 with both cuts.
 
-    `forces` (e, 60) are those of its elements. The neighbors act on the cuts by their condensed stiffness.
+    `forces` (e, 60) are those of its elements; of the `load` (nf, 1) each tooth has its share. The neighbors
+    act on the cuts by their condensed stiffness.
     """
     sector = gear.sector
     free = sector.element_freedoms >= 0
     inside = np.bincount(sector.element_freedoms[free], forces[free], minlength=sector.size)
     out: FloatArray = -inside.astype(float)
-    out[sector.loaded] += load
+    out[sector.loaded] += shares[0] * load[:, 0]
     size = gear.held.cut_size
-    out[sector.left] -= gear.cut_forces(1)[size:, 0]
-    out[sector.right] -= gear.cut_forces(-1)[:size, 0]
+    out[sector.left] -= gear.cut_forces(1, shares[1] * load)[size:, 0]
+    out[sector.right] -= gear.cut_forces(-1, shares[-1] * load)[:size, 0]
     for cut in (sector.left, sector.right):
         out[cut] -= gear.ring.restraining[:, 0]
     return float(np.linalg.norm(out) / np.linalg.norm(load))
 
 
-def _bore_moment(gear: CondensedGear, loads: FloatArray, bore_radius: float) -> float:
+def _bore_moment(gear: CondensedGear, forces: FloatArray, bore_radius: float) -> float:
     """Return the moment about the axis that the bore takes up under the first probe load, N m.
 
     The load is along the outward normal of the right flank, which turns the gear clockwise; so the reactions
-    turn it counter-clockwise, positive. The sum over all sectors is the field of harmonic 0. What a key will
-    take up is here taken by the restraint of the ring.
+    turn it counter-clockwise, positive. `forces` (e, 60) of the elements are those of harmonic 0, the sum
+    over all sectors. What a key will take up is here taken by the restraint of the ring.
     """
     if gear.ring.restraint:
         return -len(gear.ring.left) * float(gear.ring.turn @ gear.ring.restraining[:, 0])
-    cuts = np.tile(gear.ring.left.sum(axis=0), (2, 1))[:, :1]
-    flank = gear.held.flank @ loads[:, :1] + gear.held.transmitted.T @ cuts
-    field = gear.condensation.expand(np.concatenate([flank, cuts]))[:, 0]
-    forces = element_forces(gear.sector, gear.stiffness, field).reshape(-1, 20, 3)
     nodes = gear.sector.nodes[:, gear.sector.grid.bore]
     on_bore = np.isin(gear.sector.elements, nodes[nodes >= 0])
     on_bore[gear.sector.bodies :] = False  # an elastic seat takes up what the bodies pass to it
-    return bore_radius * float(forces[on_bore][:, 1].sum())
+    return bore_radius * float(forces.reshape(-1, 20, 3)[on_bore][:, 1].sum())
 
 
 def _reciprocity(gear: CondensedGear, loads: FloatArray) -> float:
@@ -219,7 +218,6 @@ def condensed_gear(
     reach: int,
     support: BoreSupport,
     clock: StageClock,
-    probes: FloatArray | None = None,
 ) -> tuple[CondensedGear, FloatArray]:
     """Sweep, condense one sector and close the ring.
 
@@ -231,20 +229,17 @@ def condensed_gear(
         Largest distance in teeth that is kept.
     clock : StageClock
         Gets the stages ``assembly``, ``condensation``, ``ring`` and their progress.
-    probes : (nf, p) array, optional
-        Loads on tooth 0 for which all cuts are wanted, N; default `_probe_loads`.
 
     Returns
     -------
     CondensedGear, (nf, p) array
-        The solution and the probe loads it was solved for, N.
+        The solution and the loads `_probe_loads` it was solved for, N.
     """
     tooth, loads = condensed_tooth(gear, section, recipe, support, clock)
-    loads = loads if probes is None else probes
-    free = _free_turn(section, tooth.sector)
+    free = free_turn(section, tooth.sector)
     ring = close_ring(tooth.held, gear.teeth, reach, loads, free, partial(clock.progress, "ring"))
     clock.finish("ring")
-    return CondensedGear(tooth.sector, tooth.stiffness, tooth.condensation, tooth.held, ring), loads
+    return CondensedGear(*tooth, ring), loads
 
 
 class CondensedTooth(NamedTuple):
@@ -279,7 +274,7 @@ def condensed_tooth(
     return CondensedTooth(sector, stiffness, condensation, held), loads
 
 
-def _free_turn(section: QuadSector, sector: SweptSector) -> FreeTurn | None:
+def free_turn(section: QuadSector, sector: SweptSector) -> FreeTurn | None:
     """Return how a gear moves that nothing but a key keeps from turning; None for one that cannot turn."""
     if sector.seat.key is None:
         return None

@@ -49,12 +49,14 @@ def usual_reach(gear: Toothing) -> int:
 # Prediction of the cost of a three-dimensional flank compliance.
 
 
-RANK_SHARE = 0.3  # of the flank freedoms that the cuts can tell apart; measured 0.28 to 0.38
+RANK_SHARE = 0.13  # flank loads that are solved for over flank freedoms; measured 0.12 to 0.14
+SPACE = 2.2  # dimension of the space of solutions over loads; measured 2.0 to 2.4
+SOLVED = 6  # harmonics solved on all freedoms of a cut; more on thin rims
 MESH_SECONDS = 0.15  # gmsh's child process
 # Measured against the dense rate, on gears of 20 to 80 teeth from draft to fine:
 GATHERING = 100.0  # gathering one number of a front costs as much as so many multiplications with addition
 ELEMENT = 1e6  # one element matrix, likewise
-RING_LOSS = 1.3  # time of the ring's steps over that of their operations at the dense rate
+RING_LOSS = 1.6  # time of the ring's steps over that of their operations at the dense rate
 NUMBER = 8  # bytes
 _RATES = (1e6, 1e15)
 """Multiplications with addition per second that a host may have."""
@@ -75,15 +77,26 @@ class PredictedCost(NamedTuple):
 class _SectorSizes(NamedTuple):
     """Numbers that the cost follows from.
 
-    Freedoms of the flank and of one cut, harmonics to solve, the largest distance of teeth that is kept,
-    different element matrices.
+    Freedoms of the flank, of one cut and of a keyed bore, harmonics, the largest distance of teeth that is
+    kept, different element matrices.
     """
 
     flank: int
     cut: int
+    key: int
     harmonics: int
     reach: int
     matrices: int
+
+    @property
+    def loads(self) -> float:
+        """Loads that the ring is solved for."""
+        return RANK_SHARE * self.flank + self.key
+
+    @property
+    def space(self) -> float:
+        """Dimension of the space of the cuts."""
+        return min(SPACE * self.loads, 0.75 * self.cut)
 
 
 @lru_cache(maxsize=64)
@@ -107,12 +120,12 @@ def predict_cost(
     tree = sector_tree(sector)
     matrices = sum(len(batch.quads) for batch in sector.batches)
     harmonics, reach = gear.teeth // 2 + 1, usual_reach(gear)
-    sizes = _SectorSizes(len(sector.loaded), len(sector.left), harmonics, reach, matrices)
     key = len(sector.key_bore) + len(sector.key_cut)
+    sizes = _SectorSizes(len(sector.loaded), len(sector.left), key, harmonics, reach, matrices)
     answers = float(gear.teeth * sizes.cut * key)  # of all cuts to forces on the bore
     operations = {
         "condensation": tree.operations + GATHERING * tree.front_entries + ELEMENT * sizes.matrices,
-        "ring": RING_LOSS * _ring_operations(sizes) + sizes.harmonics * 4.0 * sizes.cut**2 * key,
+        "ring": RING_LOSS * _ring_operations(sizes),
         "checks": tree.factor_entries * GATHERING / 10.0,  # they pass twice over the factors
         "key": 2.0 * answers * sizes.flank,
     }
@@ -124,26 +137,26 @@ def predict_cost(
 
 def _ring_operations(sizes: _SectorSizes) -> float:
     """Return the multiplications with addition of holding the sector and closing the ring."""
-    nf, nc = float(sizes.flank), float(sizes.cut)
-    rank = RANK_SHARE * nf
+    nf, nc, loads, space = float(sizes.flank), float(sizes.cut), sizes.loads, sizes.space
     holding = 0.5 * nf**3 + 2.0 * nf**2 * nc + 2.0 * nf * nc**2
-    row_space = 2.0 * nf**2 * nc + 1.5 * nf**3
-    harmonic = 4.0 * (nc**3 / 6.0 + nc**2 * rank)  # complex: four real ones
-    summing = GATHERING / 10.0 * 2 * (sizes.reach + 1) * nc * rank
-    back = (2 * sizes.reach + 1) * 2.0 * nf * nc * rank + (sizes.reach + 1) * 2.0 * nf**2 * rank
-    return holding + row_space + sizes.harmonics * (harmonic + summing) + back
+    scaling = 1.2 * nc**3 + nf * nc**2 + nf**2 * nc
+    solved = 4.0 * (nc**3 / 6.0 + nc**2 * loads) + 2.0 * nc * loads * (space + 2.0 * loads)
+    within = 2.0 * nc * space * (nc + nf)
+    harmonic = 4.0 * (space**3 / 6.0 + space**2 * loads)
+    summing = GATHERING / 10.0 * 2 * (sizes.reach + 1) * space * loads
+    back = (2 * sizes.reach + 1) * 2.0 * nf * space * loads + (sizes.reach + 1) * 2.0 * nf**2 * loads
+    whole = min(SOLVED, sizes.harmonics) * solved + sizes.harmonics * (harmonic + summing)
+    return holding + scaling + within + whole + back
 
 
 def _working_bytes(tree: EliminationTree, sizes: _SectorSizes) -> int:
     """Return the bytes of the largest working set: factorising fronts, or closing the ring."""
-    nf, nc = sizes.flank, sizes.cut
-    rank = RANK_SHARE * nf
+    nf, nc, loads, space = sizes.flank, sizes.cut, sizes.loads, sizes.space
     kept = 3600 * sizes.matrices + tree.factor_entries
-    held = (nf + 2 * nc) ** 2 + nf**2 + 4 * nc**2 + 2 * nf * nc
-    cuts = (2 * sizes.reach + 2) * nc * rank + 2 * nc * rank
-    ring = (
-        held + cuts + max(4 * nc**2 + 4 * nc * rank, (sizes.reach + 2) * nf**2 + 2 * sizes.reach * nf * rank)
-    )
+    held = (nf + 2 * nc) ** 2 + nf**2 + 4 * nc**2 + 4 * nf * nc + 2 * nc**2
+    summed = 2 * (sizes.reach + 1 + sizes.harmonics) * space * loads
+    blocks = (sizes.reach + 2) * nf**2 + 2 * sizes.reach * nf * loads
+    ring = held + max(6 * nc**2 + 4 * nc * loads, summed + blocks)
     return int(NUMBER * (kept + max(tree.working_entries(), ring)))
 
 
@@ -160,7 +173,7 @@ def _dense_rate() -> float:
     return 0.5 * count * (count + 1) * depth / max(min(times), 1e-6)
 
 
-MODEL_VERSION = 3  # raise it whenever the same input gives another result: old cache files are then not found
+MODEL_VERSION = 4  # raise it whenever the same input gives another result: old cache files are then not found
 SOLVER = "dense substructures and cyclic harmonics (LAPACK)"
 
 

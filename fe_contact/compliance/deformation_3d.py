@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.compliance.condensed_gear import CondensedGear, condensed_gear, element_forces
+from fe_contact.compliance.condensed_gear import CondensedGear, condensed_tooth, element_forces
+from fe_contact.compliance.cyclic_ring import RingSolution, loaded_cuts
 from fe_contact.compliance.deformed_gear import DeformedGear, nodal_mean, stress_of, turn_about_axis
 from fe_contact.compliance.sector_stiffness import (
     REFERENCE,
@@ -207,7 +208,9 @@ def deformed_solids(
         mirror = planes[planes >= 0]
     sources = [(case, tooth) for case, load in enumerate(loads) for tooth in load]
     columns = np.stack([_mirrored_back(loads[case][tooth], mirror) for case, tooth in sources], axis=1)
-    solved, _ = condensed_gear(right, section, recipe, 0, support, StageClock(), columns)
+    tooth, _ = condensed_tooth(right, section, recipe, support, StageClock())
+    cuts = loaded_cuts(tooth.held, columns, right.teeth)
+    solved = CondensedGear(*tooth, RingSolution(np.empty((0, 0, 0)), cuts.everywhere))
     elements = _sector_elements(right, section, solved.sector)
     deformed = []
     for case in range(len(loads)):

@@ -25,7 +25,14 @@ from fe_contact.compliance.condensed_gear import (
     residual,
 )
 from fe_contact.compliance.cyclic_compliance import SOLVER
-from fe_contact.compliance.cyclic_ring import LeftCuts, RingSolution, left_cuts, row_space
+from fe_contact.compliance.cyclic_ring import (
+    LEAST_TOLD,
+    LeftCuts,
+    RingSolution,
+    even_sector,
+    loaded_cuts,
+    row_space,
+)
 from fe_contact.compliance.root_stress import (
     COMPONENTS,
     STATIONS,
@@ -73,9 +80,8 @@ def compute_root_stress_3d(
     root = _quad_root(section, profile)
     clock.finish("mesh")
     tooth, loads = condensed_tooth(gear, section, recipe, support, clock)
-    modes = row_space(tooth.held.transmitted)
-    right = tooth.held.transmitted @ np.concatenate([modes, loads], axis=1)
-    cuts = left_cuts(tooth.held, right, gear.teeth, reach, modes.shape[1])
+    modes = row_space(even_sector(tooth.held).transmitted, LEAST_TOLD * np.abs(tooth.held.flank).max())
+    cuts = loaded_cuts(tooth.held, np.concatenate([modes, loads], axis=1), gear.teeth, reach, modes.shape[1])
     clock.finish("ring")
     functionals = _root_functionals(gear, section, tooth.sector, root)
     stress = _unit_load_stress(tooth, functionals, modes, cuts, reach)
@@ -176,13 +182,13 @@ def _checks(
     tooth: CondensedTooth, functionals: sp.csr_array, loads: FloatArray, cuts: LeftCuts, stress: FloatArray
 ) -> RootStressChecks:
     """Compare with the displacement of all nodes under the first of `loads`."""
-    ring = RingSolution(np.empty((0, len(loads), len(loads))), cuts.everywhere, len(stress))
+    ring = RingSolution(np.empty((0, len(loads), len(loads))), cuts.everywhere)
     gear = CondensedGear(*tooth, ring)
     values = np.concatenate([gear.flank(0, loads)[:, :1], gear.cuts(0)[:, :1]])
     field = gear.condensation.expand(values)[:, 0]
     forces = element_forces(gear.sector, gear.stiffness, field)
     return RootStressChecks(
-        residual=residual(gear, forces, loads[:, 0]),
+        residual=residual(gear, forces, loads[:, :1], np.eye(len(ring.left))[0]),
         recovery=relative_difference(stress @ loads[:, 0], functionals @ field),
     )
 

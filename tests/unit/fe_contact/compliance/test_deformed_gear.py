@@ -39,6 +39,7 @@ def random_load(size: int, seed: int) -> np.ndarray:
 
 
 @SOLIDS
+@pytest.mark.usefixtures("exact_ring")
 def test_flanks_move_as_compliance_times_force(gear: Toothing) -> None:
     """Several loaded teeth at once, two sets of loads in one go; every tooth shown, loaded or not."""
     recipe = coarse(gear)

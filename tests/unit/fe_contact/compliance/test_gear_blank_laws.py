@@ -128,6 +128,7 @@ def test_torsion_inside_the_web_is_that_of_a_tube_over_the_face() -> None:
     assert turned[1] - turned[0] == pytest.approx(expected, rel=5e-3)
 
 
+@pytest.mark.usefixtures("exact_ring")
 def test_a_web_off_the_middle_tilts_the_rim_and_its_mirror_image_the_other_way() -> None:
     right, left = (solid_3d(with_blank(web_offset=z)) for z in (6e-3, -6e-3))
     assert not np.allclose(right.z, -right.z[::-1])

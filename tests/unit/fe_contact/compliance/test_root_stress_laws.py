@@ -120,7 +120,7 @@ def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
 
 @GEARS
 def test_equals_the_uncondensed_solution_over_the_face(gear: Gear) -> None:
-    """To 1e-6 of the stress: what the cuts cannot tell apart by more is dropped (`RANK_TOLERANCE`)."""
+    """To 1e-6 of the stress: what the cuts cannot tell apart by more is dropped (`LEAST_TOLD`)."""
     recipe = two_on_land(gear)
     found = over_face(gear, recipe, reach=4)
     direct = whole_gear_stress(gear, recipe)
@@ -298,12 +298,12 @@ def test_a_broken_law_is_refused_by_name(name: str) -> None:
 
 
 def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
-    genuine = face_module.left_cuts
+    genuine = face_module.loaded_cuts
 
     def spoiled(*arguments: object) -> object:
         cuts = genuine(*arguments)  # type: ignore[arg-type]
         return replace(cuts, near={m: cuts.near[m] * (1.0 + 1e-3) for m in cuts.near})
 
-    monkeypatch.setattr(face_module, "left_cuts", spoiled)
+    monkeypatch.setattr(face_module, "loaded_cuts", spoiled)
     with pytest.raises(SolveError, match="recovery"):
         unit_root_stress_3d(HELICAL, two_on_land(HELICAL), reach=1)
