@@ -30,9 +30,10 @@ from hypothesis import strategies as st
 from schemathesis import GenerationMode
 from schemathesis.core import NotSet
 from schemathesis.hooks import HookDispatcher, HookScope
-from whole_service import WholeService, whole_service
+from whole_service import WholeService, stored, whole_service
 
 from service.app import create_app
+from service.schemas.examples import request_example
 from service.settings import Settings
 from service.worker.process import default_registry
 
@@ -41,7 +42,9 @@ Operation = schemathesis.schemas.APIOperation
 BODIES = int(os.environ.get("LOA_GENERATED_BODIES", "0"))
 FEW = 20
 LIVE = ("/v1/plans", "/v1/databases/{key}/ste")
-EXAMPLES = {LIVE[1]: {"torque_n_m": [0.5], "pinion": {"tip_relief_um": 3.0, "tip_relief_length_mm": 0.4}}}
+EXAMPLES: dict[str, Any] = {
+    LIVE[1]: {"torque_n_m": [0.5], "pinion": {"tip_relief_um": 3.0, "tip_relief_length_mm": 0.4}}
+}
 
 
 @schemathesis.serializer("application/cbor")
@@ -59,6 +62,15 @@ def _service() -> WholeService:
     return WholeService(app, {}, "", "")
 
 
+def _of_a_run() -> dict[str, Any]:
+    """Return what names a stored run, with one that is there."""
+    simulate, listen = (f"/v1/processes/{process}/execution" for process in ("simulate", "listen"))
+    run, _ = stored(Path(_directory.name), "simulate", request_example(simulate), "run")
+    example = request_example(listen)
+    return {listen: {"inputs": example["inputs"] | {"run": run}}}
+
+
+EXAMPLES |= _of_a_run() if BODIES else {}
 service = _service()
 schema = schemathesis.openapi.from_dict(DESCRIPTION)
 schema.app = service.app

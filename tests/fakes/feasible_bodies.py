@@ -272,7 +272,6 @@ def about(example: Json, case: Json) -> Json:
         inputs["case"] = case
         inputs.pop("variables", None)  # their lengths are those of another module
     if "scene" in inputs:
-        inputs.pop("run", None)  # of a scene: none is stored
         _put_in(inputs["scene"], case)
     if "toml" in body and "shafts" not in body["toml"]:
         body["toml"] = toml_text(case)

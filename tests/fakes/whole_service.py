@@ -47,13 +47,18 @@ class WholeService:
         return found
 
 
-def whole_service(directory: Path) -> WholeService:
+def stored(directory: Path, process: str, body: Any, kind: str) -> tuple[str, str]:
+    """Return the hash of what a process of a service there made, and its job."""
     with TestClient(create_app(Settings(data_directory=directory))) as client:
-        answer = client.post("/v1/processes/analyze/execution", json={"inputs": {"case": CASE}})
-        location = answer.headers["location"]
+        location = client.post(f"/v1/processes/{process}/execution", json=body).headers["location"]
         until(lambda: client.get(location).json()["status"] == "successful")
-        reference = client.get(f"{location}/results", params=REFERENCES).json()["database"]
+        reference = client.get(f"{location}/results", params=REFERENCES).json()[kind]
+    return reference["hash"], location.rpartition("/")[2]
+
+
+def whole_service(directory: Path) -> WholeService:
+    key, job = stored(directory, "analyze", {"inputs": {"case": CASE}}, "database")
     secret = KeyFile(directory / "keys.json").add("generator")
     app = create_app(Settings(data_directory=directory, queue_limit=100_000), works=False)
     headers = {"Authorization": f"Bearer {secret}"}
-    return WholeService(app, headers, reference["hash"], location.rpartition("/")[2])
+    return WholeService(app, headers, key, job)
