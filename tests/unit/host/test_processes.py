@@ -100,10 +100,12 @@ def test_a_process_ends_after_its_time_and_one_of_windows_too() -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux alone limits other processes and has /proc")
 def test_limits_and_processes_of_linux(tmp_path: Path) -> None:
-    code = "input(); open('file', 'w').write('x')"
+    code = "print(flush=True); input(); open('file', 'w').write('x')"
+    quiet = subprocess.DEVNULL
     with subprocess.Popen(
-        [*PYTHON, code], stdin=subprocess.PIPE, stderr=subprocess.DEVNULL, cwd=tmp_path
+        [*PYTHON, code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=quiet, cwd=tmp_path
     ) as child:
+        assert child.stdout is not None and child.stdout.readline()  # Python has begun
         assert host.processes_in(tmp_path, "input()") == [child.pid]
         assert host.processes_in(tmp_path, "another command") == []
         assert (host.memory_figure("VmHWM", child.pid) or 0) > 2**20
