@@ -76,8 +76,8 @@ def _usual_curves(pair: ParallelAxes, plan: Plan) -> ExpectedCurves:
 # Prediction of the error that a run will state of a model, a mesh and slices.
 
 
-_PLANE = {"draft": (1.3e-3, 6e-4), "standard": (4e-4, 3e-4), "fine": (6e-5, 5e-5)}
-_SPUR = {"draft": (5e-3, 6.5e-3), "standard": (1.8e-3, 1.3e-3), "fine": (8e-4, 8e-4)}
+_PLANE = {"draft": (9e-4, 6e-4), "standard": (3.6e-4, 3e-4), "fine": (5.4e-5, 5e-5)}
+_SPUR = {"draft": (2.9e-3, 1.5e-3), "standard": (1.1e-3, 7.5e-4), "fine": (4.6e-4, 4.6e-4)}
 _HELICAL = {"draft": (5e-3, 3e-3), "standard": (1.8e-3, 1.2e-3), "fine": (8e-4, 5e-4)}
 _RELIEVED = {"draft": (4e-3, 1.8e-3), "standard": (1.6e-3, 6e-4), "fine": (6e-4, 3e-4)}
 """Mesh: of mean and of peak-to-peak in parts of what the load adds to the mean. In the plane; over the face
@@ -89,7 +89,7 @@ _CORRECTION = 0.03
 """Error of the correction for a finite width over what it is expected to correct."""
 _WIDTH_RIPPLE = 0.45
 """Peak-to-peak over mean of usual spur pairs."""
-_PLANE_POSITIONS, _FACE_POSITIONS = 0.2, 0.8
+_PLANE_POSITIONS, _FACE_POSITIONS = 0.14, 0.55
 """Error of peak-to-peak between positions over what their search allows."""
 
 

@@ -14,6 +14,7 @@ from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoin
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.tables import PositionNodes
 from fe_contact.contact import Candidates, ContactSolution
+from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.model_error import model_errors, point_error
 from fe_contact.planning.plan import FaceDiscretization, Plan
 from fe_contact.planning.plane_bias import LEFT_OUT, PlaneBias
@@ -288,16 +289,17 @@ def worst_residual(solution: ContactSolution) -> float:
 # count.
 
 LEFT_BY_MESH = {
-    "plane": {"draft": (0.28, 0.20, 0.22), "standard": (0.28, 0.32, 0.32)},
-    "spur": {"draft": (1.4, 3.6, 2.9), "standard": (1.4, 1.4, 2.2)},
+    "plane": {"draft": (0.20, 0.20, 0.22), "standard": (0.25, 0.32, 0.32)},
+    "spur": {"draft": (0.8, 0.8, 2.9), "standard": (0.8, 0.8, 2.2)},
+    "thin": {"draft": (1.4, 3.6, 2.9), "standard": (1.4, 1.4, 2.2)},
     "helical": {"draft": (1.1, 2.0, 2.0), "standard": (0.7, 1.8, 1.8)},
 }
 """Error left of mean, peak-to-peak and harmonics over the change to the coarse mesh: in the plane, of
-elements half as large; over the face of a spur pair, of elements of two thirds; of a helical pair, over what
-second order leaves of that change (`FaceDiscretization.remaining`). Coarse meshes are not in the range yet in
-which errors fall with a power of the size: a draft in the plane leaves less of its change than a finer mesh,
-one over the face more. Set on pairs that docs/lab/accuracy.md names under "Constants"; the level fine has the
-parts of standard."""
+elements half as large; over the face of a spur pair of solid gears, what second order leaves of elements of
+two thirds; of one with a thin rim, more; of a helical pair, over what second order leaves of that change
+(`FaceDiscretization.remaining`). Coarse meshes are not in the range yet in which errors fall with a power of
+the size: a draft in the plane leaves less of its change than a finer mesh, one over the face more. Set on the
+pairs of docs/lab/accuracy.md ("Constants"); the level fine has the parts of standard."""
 HARMONIC_SHARE = 0.3
 """Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k: half the
 slices and coarse meshes err in other harmonics than the table, whose own may hardly change."""
@@ -324,7 +326,7 @@ def curve_errors(
         sample,
         (nested.table, nested.plane, nested.table, nested.table),
         (np.zeros_like(nested.table), nested.coarse, many_slices, nested.plane),
-        np.stack(np.broadcast_arrays(1.0, _left_by_mesh(plan, helical), 1.0, CORRECTION_ERROR)),
+        np.stack(np.broadcast_arrays(1.0, _left_by_mesh(pair, plan, helical), 1.0, CORRECTION_ERROR)),
         helical,
     )
     if bias := PlaneBias.of(pair, made):
@@ -368,10 +370,11 @@ def _by_solver(points: OperatingPoints, solutions: list[ContactSolution], sample
     )
 
 
-def _left_by_mesh(plan: Plan, helical: bool) -> FloatArray:
+def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: bool) -> FloatArray:
     """Error left over the change to the coarse mesh, (22,)."""
     made = plan.discretization
-    kind = ("helical" if helical else "spur") if isinstance(made, FaceDiscretization) else "plane"
+    straight = "spur" if all(gear.web is None for gear in plan.bodies(pair)) else "thin"
+    kind = ("helical" if helical else straight) if isinstance(made, FaceDiscretization) else "plane"
     mean, ripple, harmonics = LEFT_BY_MESH[kind]["draft" if plan.level == "draft" else "standard"]
     part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - FIRST_HARMONIC)])
     return part * made.remaining if helical else part

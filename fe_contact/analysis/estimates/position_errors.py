@@ -31,7 +31,7 @@ from fe_contact.types import FloatArray, IntArray
 LEFT_BY_MIDDLES = 1.5
 """Error of the positions over what their middles change: 4/3 for second order, and more for kinks, which may
 stand anywhere in an interval. Peaks at handovers, which would fall with the first power of the spacing, are
-looked for by themselves (`missed_peaks`); what is found of them holds with the same part."""
+looked for by themselves: the chords beside their interval bound them as they are (`missed_peaks`)."""
 SOLVED_PART = 4
 """Of the intervals between fixed positions one in so many is solved, if so many bend."""
 NEXT_SPACING = 0.25
@@ -153,8 +153,9 @@ def _by_middles(nodes: PositionNodes, period: int) -> FloatArray:
     both = np.stack([nodes.value, nodes.middle], axis=1).reshape(everywhere.size, -1)
     change = quantity_changes(knots, nodes.value, both, period, everywhere)
     missed = np.ptp(both, axis=0) - np.ptp(nodes.value, axis=0) + missed_peaks(everywhere, both, period)
-    change[PEAK_TO_PEAK] = np.maximum(change[PEAK_TO_PEAK], missed)
-    return LEFT_BY_MIDDLES * change
+    change *= LEFT_BY_MIDDLES
+    change[PEAK_TO_PEAK] = missed
+    return change
 
 
 def _told(nodes: PositionNodes, curves: FloatArray, loads: int) -> PositionErrors:

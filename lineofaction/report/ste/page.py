@@ -78,7 +78,7 @@ def static_headlines(database: SteDatabase, force: float | None = None) -> tuple
 
 
 def _biases(receipt: Mapping[str, Any]) -> tuple[str, str]:
-    """Say what a finite width adds to mean and peak-to-peak of an uncorrected plane; nothing where corrected."""
+    """Say what a finite width adds to mean and peak-to-peak of a plane; nothing where it is corrected."""
     bias = receipt.get("bias")
     if bias is None:
         return "", ""

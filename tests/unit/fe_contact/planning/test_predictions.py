@@ -123,7 +123,7 @@ def test_slices_change_no_positions_but_their_cost():
 
 
 def test_tolerance_and_time_that_cannot_both_be_had_are_said():
-    wish = {"normal_forces": [500.0], "tolerance": 0.005, "model": "3d"}
+    wish = {"normal_forces": [500.0], "tolerance": AllowedError(0.002, 0.0), "model": "3d"}
     level = {"normal_forces": [500.0], "level": "fine", "model": "3d"}
     assert plan_run(pair(), *table_request(**wish), time_budget=1e4).conflict == ""
     tight = plan_run(pair(), *table_request(**wish), time_budget=1e-3)
