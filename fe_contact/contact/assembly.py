@@ -123,6 +123,10 @@ def face_contact_problem(
     )
 
 
+TOGETHER = 8
+"""Positions that are assembled together, always the same ones: sums round by what is beside them."""
+
+
 class _KeyedFlanks(NamedTuple):
     """Contribution of a keyed bore: rows (2 s + 1, q, f) by tooth from -s to s, core (q, q)."""
 
@@ -155,19 +159,27 @@ def _face_assembly_add_gear(
 ) -> None:
     """Add the compliance of one gear at every position."""
     low, high = bounds
-    for p in range(len(present)):
-        here = np.flatnonzero(present[p])
-        loads = face_loads(
-            grid,
-            *patches.by_slice(p, here),
-            low[here],
-            high[here],
-        )
-        local = np.zeros((here.size, here.size))
-        add_compliance(blocks, teeth[here], loads, lever[p, here], local)
-        if len(key.rows):
-            local += key.compliance(teeth[here], loads) * np.outer(lever[p, here], lever[p, here])
-        out[p][np.ix_(here, here)] += local
+    planes = grid.freedom.ravel()
+    order = planes[planes >= 0]
+    for rows in together(len(present)):
+        at = np.array(np.nonzero(present[rows]))
+        on = at[1]
+        loads = face_loads(grid, *patches.by_slice(rows[at[0]], on), low[on], high[on])
+        local, arms = np.zeros((rows.size, teeth.size, teeth.size)), np.ascontiguousarray(lever[rows])
+        add_compliance(blocks, order, teeth, loads, at, arms, local)
+        for p in range(rows.size if len(key.rows) else 0):
+            here = at[0] == p
+            added = key.compliance(teeth[on[here]], FaceLoads(*(each[here] for each in loads)))
+            local[p][np.ix_(on[here], on[here])] += added * np.outer(arms[p, on[here]], arms[p, on[here]])
+        out[rows] += local
+
+
+def together(count: int) -> list[IntArray]:
+    """Return the rows of so many positions that are assembled together.
+
+    A single row is not left by itself: it cannot be laid out in memory as many are.
+    """
+    return np.split(np.arange(count), np.arange(TOGETHER, count - 1, TOGETHER))
 
 
 def contact_problem(

@@ -8,12 +8,12 @@ three moments of either factor.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from fe_contact.contact.patch import GAUSS_POINTS, GAUSS_WEIGHTS, patch_angles
+from fe_contact.contact.patch import profile_moments
+from fe_contact.contact.point_problem import dot
 from fe_contact.types import FloatArray, IntArray
 from host.loops import njit
 
@@ -76,8 +76,9 @@ def face_loads(
             for e in range((grid.s.size - 1) // 2):
                 if not _overlaps(grid.s[2 * e], grid.s[2 * e + 2], middle - half, middle + half):
                     continue
-                _profile_moments(grid.s, e, middle, half, edge_share[p, q], along_moments)
-                along_moments /= count
+                moments = profile_moments(grid.s, e, middle, half, edge_share[p, q])
+                for k in range(3):
+                    along_moments[k] = moments[k] / count
                 for k in range(grid.z.size - 1):
                     if _overlaps(grid.z[k], grid.z[k + 1], left, right):
                         _box_moments(grid.z[k], grid.z[k + 1], left, right, across_moments)
@@ -137,24 +138,6 @@ def _touched(ends: FloatArray, low: float, high: float) -> int:
 
 
 @njit(cache=True)
-def _profile_moments(
-    s: FloatArray, e: int, center: float, half_width: float, edge_share: float, out: FloatArray
-) -> None:
-    """Moments 0 to 2 of the load on one element, in its coordinate from -1 to 1."""
-    left, right = s[2 * e], s[2 * e + 2]
-    start, stop = patch_angles(s, e, center, half_width)
-    out[:] = 0.0
-    for g in range(GAUSS_POINTS.size):
-        sine = math.sin(0.5 * (start + stop) + 0.5 * (stop - start) * GAUSS_POINTS[g])
-        density = (1.0 - edge_share) * 2.0 * (1.0 - sine * sine) + edge_share * (1.0 + sine)
-        weight = density / math.pi * 0.5 * (stop - start) * GAUSS_WEIGHTS[g]
-        x = 2.0 * (center + half_width * sine - left) / (right - left) - 1.0
-        out[0] += weight
-        out[1] += weight * x
-        out[2] += weight * x * x
-
-
-@njit(cache=True)
 def _box_moments(left: float, right: float, low: float, high: float, out: FloatArray) -> None:
     """Moments 0 to 2 of a unit box load on one layer, in its coordinate from -1 to 1."""
     start = 2.0 * (max(left, low) - left) / (right - left) - 1.0
@@ -208,69 +191,108 @@ def _add_face(
 @njit(cache=True)
 def add_compliance(
     blocks: FloatArray,
+    order: IntArray,
     tooth: IntArray,
     loads: FaceLoads,
+    at: IntArray,
     lever: FloatArray,
     out: FloatArray,
 ) -> None:
-    """Add lever_i lever_j f_i' S f_j to `out` (n, n).
+    """Add lever_i lever_j f_i' S f_j to `out` (P, n, n), at P positions near each other.
 
     Parameters
     ----------
     blocks : ndarray, shape (r + 1, f, f)
         blocks[m]: displacement on tooth j + m per force on tooth j; its transpose for -m.
+    order : ndarray of int, shape (f,)
+        The freedoms plane by plane along the face.
     tooth : ndarray of int, shape (n,)
-        Tooth of each patch, counted counter-clockwise; patches of one tooth stand together.
-    lever : ndarray, shape (n,)
+        Tooth of each slice, counted counter-clockwise; slices of one tooth stand together.
+    loads : FaceLoads
+    at : ndarray of int, shape (2, loads)
+        Position and slice of each load.
+    lever : ndarray, shape (P, n)
 
     Notes
     -----
-    Patch i is the one on the tooth ahead: then its forces weigh whole rows of a block, which lie together in
-    memory, and nothing is transposed.
+    A number of a block is needed once or twice at a position, and fetching it takes longer than using it. So
+    what the positions need of a block, all of it at most, is gathered once, and weighed by the forces of a
+    slice at all of them.
     """
-    moved = np.zeros(blocks.shape[1])
-    needed = np.zeros(blocks.shape[1], dtype=np.int64)
-    for i in range(tooth.size):
-        for j in range(tooth.size):
-            apart = tooth[i] - tooth[j]
-            if apart < 0 or apart >= blocks.shape[0] or (apart == 0 and j < i):
+    count, ends = lever.shape[0], _ends(tooth)
+    needed, place = _needed(order, loads, at[1], ends)
+    low, width, start = _ranges(loads, at[1], place, ends)
+    forces = np.zeros(start[-1] * count)
+    for r in range(at.shape[1]):
+        p, i = at[0, r], at[1, r]
+        begin = start[i] * count + p * width[i] - low[i]
+        for k in range(loads.used[r]):
+            forces[begin + place[i, loads.nodes[r, k]]] = loads.forces[r, k]
+    most = needed[:, 0].max()
+    gathered, moved = np.empty(most * most), np.empty(count * most)
+    for a in range(ends.size - 1):
+        for b in range(ends.size - 1):
+            apart = tooth[ends[a]] - tooth[ends[b]]
+            if apart < 0 or apart >= blocks.shape[0] or (apart == 0 and a != b):
                 continue
-            begins = j == 0 or tooth[j] != tooth[j - 1]
-            if begins or i == j:
-                count = _needed(tooth, loads, j, needed)
-                _weigh_rows(blocks[apart], loads, i, needed[:count], moved)
-            value = 0.0
-            for p in range(loads.used[j]):
-                value += moved[loads.nodes[j, p]] * loads.forces[j, p]
-            value *= lever[i] * lever[j]
-            out[i, j] += value
-            if i != j:
-                out[j, i] += value
+            rows, columns = needed[a, 1 : needed[a, 0] + 1], needed[b, 1 : needed[b, 0] + 1]
+            block = gathered[: rows.size * columns.size].reshape(rows.size, columns.size)
+            for k in range(rows.size):
+                row = blocks[apart, rows[k]]
+                for m in range(columns.size):
+                    block[k, m] = row[columns[m]]
+            motion = moved[: count * columns.size].reshape(count, columns.size)
+            for i in range(ends[a], ends[a + 1]):
+                force = forces[start[i] * count : start[i + 1] * count].reshape(count, width[i])
+                np.dot(force, block[low[i] : low[i] + width[i]], motion)
+                for j in range(i if a == b else ends[b], ends[b + 1]):
+                    for p in range(count):
+                        begin = start[j] * count + p * width[j]
+                        value = dot(motion[p, low[j] :], forces[begin:], width[j]) * lever[p, i] * lever[p, j]
+                        out[p, i, j] += value
+                        if i != j:
+                            out[p, j, i] += value
 
 
 @njit(cache=True)
-def _needed(tooth: IntArray, loads: FaceLoads, first: int, out: IntArray) -> int:
-    """List the freedoms that the patches of one tooth, from `first` on, load; return how many."""
-    seen = np.zeros(out.size, dtype=np.bool_)
-    count = 0
-    for i in range(first, tooth.size):
-        if tooth[i] != tooth[first]:
-            break
-        for p in range(loads.used[i]):
-            node = loads.nodes[i, p]
-            if not seen[node]:
-                seen[node] = True
-                out[count] = node
-                count += 1
-    return count
+def _ends(tooth: IntArray) -> IntArray:
+    """Return where the slices of each tooth begin, and where the last ones end."""
+    inner = np.flatnonzero(np.diff(tooth)) + 1
+    ends = np.zeros(inner.size + 2, dtype=np.int64)
+    ends[1:-1], ends[-1] = inner, tooth.size
+    return ends
 
 
 @njit(cache=True)
-def _weigh_rows(block: FloatArray, loads: FaceLoads, i: int, needed: IntArray, moved: FloatArray) -> None:
-    for a in needed:
-        moved[a] = 0.0
-    for q in range(loads.used[i]):
-        row = block[loads.nodes[i, q]]
-        force = loads.forces[i, q]
-        for a in needed:
-            moved[a] += row[a] * force
+def _needed(order: IntArray, loads: FaceLoads, on: IntArray, ends: IntArray) -> tuple[IntArray, IntArray]:
+    """Return how many freedoms of each tooth are loaded and which, and the place of each by slice."""
+    needed = np.zeros((ends.size - 1, order.size + 1), dtype=np.int64)
+    place = np.full((ends[-1], order.size), -1, dtype=np.int64)
+    for a in range(ends.size - 1):
+        seen = np.zeros(order.size, dtype=np.bool_)
+        for r in range(on.size):
+            if ends[a] <= on[r] < ends[a + 1]:
+                for k in range(loads.used[r]):
+                    seen[loads.nodes[r, k]] = True
+        for node in order:
+            if seen[node]:
+                place[ends[a] : ends[a + 1], node] = needed[a, 0]
+                needed[a, 0] += 1
+                needed[a, needed[a, 0]] = node
+    return needed, place
+
+
+@njit(cache=True)
+def _ranges(
+    loads: FaceLoads, on: IntArray, place: IntArray, ends: IntArray
+) -> tuple[IntArray, IntArray, IntArray]:
+    """Return the first place that each slice loads, how many from there on, and the sums of those before."""
+    low, high = np.full(ends[-1], place.shape[1]), np.zeros(ends[-1], dtype=np.int64)
+    for r in range(on.size):
+        for k in range(loads.used[r]):
+            here = place[on[r], loads.nodes[r, k]]
+            low[on[r]], high[on[r]] = min(low[on[r]], here), max(high[on[r]], here + 1)
+    low = np.minimum(low, high)
+    start = np.zeros(ends[-1] + 1, dtype=np.int64)
+    start[1:] = np.cumsum(high - low)
+    return low, high - low, start

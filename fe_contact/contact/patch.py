@@ -8,9 +8,8 @@ distance of the contact from the edge (negative, -phi R, off the line of action)
 nothing jumps as a contact runs out.
 
 Nodal forces are f_k = integral of p phi_k ds with the quadratic shape functions of the flank. Substituting
-s = s0 + a sin(theta) removes the roots, so that thirteen Gauss points are exact to rounding, even for a
-patch within one element. Patches are built at the exact position: an interpolated self compliance would
-ripple with the element length.
+s = s0 + a sin(theta) removes the roots: the moments of the load on an element are elementary. Patches are
+built at the exact position: an interpolated self compliance would ripple with the element length.
 """
 
 from __future__ import annotations
@@ -22,8 +21,6 @@ import numpy as np
 
 from fe_contact.types import FloatArray, IntArray
 from host.loops import njit
-
-GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(13)
 
 
 @dataclass(frozen=True)
@@ -49,10 +46,12 @@ class Patches:
         """Keep some positions."""
         return Patches(self.center[keep], self.half_width[keep], self.edge_share[keep], self.count)
 
-    def by_slice(self, position: int, slices: IntArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return centers, half-widths and edge shares (k, Q) on some slices at one position."""
+    def by_slice(
+        self, position: int | IntArray, slices: IntArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return centers, half-widths and edge shares (k, Q) on some slices, at one position or one each."""
         arrays = (self.center, self.half_width, self.edge_share)
-        first, second, third = (each[position].reshape(-1, self.count)[slices] for each in arrays)
+        first, second, third = (each.reshape(len(each), -1, self.count)[position, slices] for each in arrays)
         return first, second, third
 
     @property
@@ -141,7 +140,10 @@ def load_vector(
         last = e + 1
         out[2 * e + 1] = 0.0
         out[2 * e + 2] = 0.0
-        _add_element(nodes, e, center, half_width, edge_share, out)
+        zeroth, first_moment, second = profile_moments(nodes, e, center, half_width, edge_share)
+        out[2 * e] += 0.5 * (second - first_moment)
+        out[2 * e + 1] += zeroth - second
+        out[2 * e + 2] += 0.5 * (second + first_moment)
     return 2 * first, 2 * last + 1
 
 
@@ -159,18 +161,28 @@ def patch_angles(nodes: FloatArray, e: int, center: float, half_width: float) ->
 
 
 @njit(cache=True)
-def _add_element(
-    nodes: FloatArray, e: int, center: float, half_width: float, edge_share: float, out: FloatArray
-) -> None:
-    left, right = nodes[2 * e], nodes[2 * e + 2]
+def profile_moments(
+    nodes: FloatArray, e: int, center: float, half_width: float, edge_share: float
+) -> tuple[float, float, float]:
+    """Return moments 0 to 2 of a unit patch on element e, in its coordinate from -1 to 1."""
     start, stop = patch_angles(nodes, e, center, half_width)
-    middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
-    for g in range(GAUSS_POINTS.size):
-        theta = middle + half * GAUSS_POINTS[g]
-        sine = math.sin(theta)
-        density = (1.0 - edge_share) * 2.0 * (1.0 - sine * sine) + edge_share * (1.0 + sine)
-        weight = density / math.pi * half * GAUSS_WEIGHTS[g]
-        xi = 2.0 * (center + half_width * sine - left) / (right - left) - 1.0
-        out[2 * e] += weight * 0.5 * xi * (xi - 1.0)
-        out[2 * e + 1] += weight * (1.0 - xi * xi)
-        out[2 * e + 2] += weight * 0.5 * xi * (xi + 1.0)
+    first, last = _sine_moments(start, edge_share), _sine_moments(stop, edge_share)
+    zeroth, tilt, square = last[0] - first[0], last[1] - first[1], last[2] - first[2]
+    left, length = nodes[2 * e], nodes[2 * e + 2] - nodes[2 * e]
+    middle, half = 2.0 * (center - left) / length - 1.0, 2.0 * half_width / length
+    by_one = middle * zeroth + half * tilt
+    return zeroth, by_one, middle * by_one + half * (middle * tilt + half * square)
+
+
+@njit(cache=True)
+def _sine_moments(angle: float, edge_share: float) -> tuple[float, float, float]:
+    """Return integrals of a unit patch times powers 0 to 2 of the sine up to an angle, but for constants."""
+    sine, cosine = math.sin(angle), math.cos(angle)
+    product, cube = sine * cosine, cosine * cosine * cosine / 3.0
+    smooth, edge = (1.0 - edge_share) / math.pi, edge_share / math.pi
+    return (
+        smooth * (angle + product) + edge * (angle - cosine),
+        -2.0 * smooth * cube + edge * (0.5 * (angle - product) - cosine),
+        smooth * 0.25 * (angle - product * (1.0 - 2.0 * sine * sine))
+        + edge * (0.5 * (angle - product) - cosine + cube),
+    )

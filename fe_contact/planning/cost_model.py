@@ -31,9 +31,9 @@ from model_studies.run_log import corrections
 # the search ends with the positions expected; a level without a floor may ask for twice as many.
 
 _PLANE_POSITION, _PLANE_POINT, _PLANE_CANDIDATE = 4e-5, 3e-6, 0.55e-6
-_FACE_POSITION = 1.4e-6
+_FACE_POSITION = 0.9e-6
 """Per slice of a tooth pair and square of the elements of a module along the profile."""
-_FACE_CANDIDATE, _FACE_SQUARE = 2.9e-6, 1.0e-7
+_FACE_CANDIDATE = 4.6e-6
 _PLANE_EXPECTED, _FACE_EXPECTED = 118, 76
 """Positions that the search ends with; of 10 helical pairs 64 to 145, with a tolerance 64 to 66."""
 _TRIED_PER_NODE, _TRIED_PER_START = 9, 4
@@ -127,7 +127,7 @@ def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> _Work:
     if not isinstance(made, FaceDiscretization):
         return _Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
-    return _Work(_FACE_POSITION * elements**2 * count, _FACE_CANDIDATE * count + _FACE_SQUARE * count**2)
+    return _Work(_FACE_POSITION * elements**2 * count, _FACE_CANDIDATE * count)
 
 
 def expected_tries(plan: Plan) -> int:

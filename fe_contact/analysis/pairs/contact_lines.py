@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from fe_contact.analysis.pairs.pair_contact import Bodies, OperatingPoint, OperatingPoints, PairContact
 from fe_contact.contact import Candidates, ContactModel, ContactProblem, ContactSolution, Start, solve_contact
+from fe_contact.contact.assembly import together
 from fe_contact.contact.problem import condition_numbers
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import unit_work
@@ -111,9 +112,6 @@ def _deflect_block(bodies: Bodies, block: _ContactBlock) -> tuple[tuple[FloatArr
 TASK_SECONDS = 0.1
 """CPU seconds that a block is predicted to take: five times what it costs Dask to hand it out."""
 
-FEWEST_ROWS = 2
-"""Of a block: a single row is contiguous either way, and cannot be laid out as many are."""
-
 R = TypeVar("R")
 Arrays = TypeVar("Arrays", bound=Any)
 
@@ -140,8 +138,10 @@ class _Line:
     def blocks(self, *, conditioned: bool) -> Iterator[_ContactBlock]:
         """Cut it."""
         whole, count = replace(self.whole, conditioned=conditioned), self.whole.candidates.position.size
-        parts = min(math.ceil(count * self.seconds_a_position / TASK_SECONDS), count // FEWEST_ROWS)
-        for rows in np.array_split(np.arange(count), max(parts, 1)):
+        chunks = together(count)
+        parts = min(math.ceil(count * self.seconds_a_position / TASK_SECONDS), len(chunks))
+        for numbers in np.array_split(np.arange(len(chunks)), max(parts, 1)):
+            rows = np.concatenate([chunks[k] for k in numbers])
             candidates = _laid_out_alike(whole.candidates.rows(rows), whole.candidates)
             starts, assembled = whole.starts, whole.assembled
             yield replace(

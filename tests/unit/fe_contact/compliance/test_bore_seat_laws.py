@@ -240,10 +240,11 @@ def test_contact_sees_the_key_as_the_blocks_do() -> None:
     forces = np.zeros((4, found.index.max() + 1))
     for i in range(4):
         np.add.at(forces[i], loads.nodes[i, : loads.used[i]], loads.forces[i, : loads.used[i]])
-    out = np.zeros((4, 4))
+    out, order = np.zeros((1, 4, 4)), grid.freedom[grid.freedom >= 0]
     wide = np.concatenate([found.blocks, np.zeros((1, *found.blocks[0].shape))])
-    add_compliance(wide, tooth, loads, np.ones(4), out)
-    out += _KeyedFlanks(found.key_rows, found.key_core, True).compliance(tooth, loads)
+    at = np.array([[0, 0, 0, 0], [0, 1, 2, 3]])
+    add_compliance(wide, order, tooth, loads, at, np.ones((1, 4)), out)
+    out = out[0] + _KeyedFlanks(found.key_rows, found.key_core, True).compliance(tooth, loads)
     for i, j in ((0, 0), (1, 2), (0, 1), (3, 1)):
         assert out[i, j] == pytest.approx(forces[i] @ found.block(tooth[i], tooth[j]) @ forces[j], rel=1e-10)
     alone = _KeyedFlanks(found.key_rows, found.key_core, False).compliance(tooth, loads)

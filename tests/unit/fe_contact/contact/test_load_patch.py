@@ -264,18 +264,27 @@ def test_compliance_is_the_double_product(teeth):
     freedoms = mesh.freedom.max() + 1
     blocks = rng.normal(size=(3, freedoms, freedoms))
     blocks[0] += blocks[0].T
-    loads = loads_of(mesh, *PATCHES)
-    lever = np.array([1.0, 0.9, 1.0, 0.8])
-    found = np.zeros((4, 4))
-    add_compliance(blocks, np.array(teeth), loads, lever, found)
-    force = dense(mesh, *PATCHES) * lever[:, None]
-    for i in range(4):
-        for j in range(4):
-            apart = teeth[i] - teeth[j]
-            block = np.zeros_like(blocks[0])
-            if abs(apart) < 3:
-                block = blocks[apart] if apart >= 0 else blocks[-apart].T
-            assert found[i, j] == pytest.approx(force[i] @ block @ force[j], rel=1e-10, abs=1e-12)
+    moved = [
+        (c + 2e-4, *rest) for c, *rest in PATCHES[:3]
+    ]  # at the second position; the last slice is not there
+    loads = loads_of(mesh, *PATCHES, *moved)
+    lever = np.array([[1.0, 0.9, 1.0, 0.8], [1.1, 0.7, 1.0, 0.6]])
+    found = np.zeros((2, 4, 4))
+    order = mesh.freedom.ravel()
+    at = np.array([[0, 0, 0, 0, 1, 1, 1], [0, 1, 2, 3, 0, 1, 2]])
+    add_compliance(blocks, order[order >= 0], np.array(teeth), loads, at, lever, found)
+    forces = np.zeros((2, 4, freedoms))
+    forces[0], forces[1, :3] = dense(mesh, *PATCHES), dense(mesh, *moved)
+    forces *= lever[:, :, None]
+    assert np.array_equal(found, found.transpose(0, 2, 1))
+    for force, compliance in zip(forces, found, strict=True):
+        for i in range(4):
+            for j in range(4):
+                apart = teeth[i] - teeth[j]
+                block = np.zeros_like(blocks[0])
+                if abs(apart) < 3:
+                    block = blocks[apart] if apart >= 0 else blocks[-apart].T
+                assert compliance[i, j] == pytest.approx(force[i] @ block @ force[j], rel=1e-10, abs=1e-12)
 
 
 MODULUS, RADIUS, WIDTH = 115e9, 6e-3, 25e-3

@@ -87,9 +87,9 @@ def on_shafts() -> GearPair:
 CASES: dict[str, tuple[Callable[[], GearPair], dict[str, Any]]] = {
     "modified flanks, both axes": (helical, SKEWED | {"positions": 12}),
     "positions searched": (spur, {"model": "plane_strain", "center_distance_changes": [0.0, 80e-6]}),
-    "edges checked afterwards": (helical, SKEWED | {"positions": 8, "effects": {"corner_contact": "off"}}),
-    "shafts": (on_shafts, {"positions": 8}),
-    "pitch deviations in the plane": (erring, {"model": "plane_strain", "positions": 12}),
+    "edges checked afterwards": (helical, SKEWED | {"positions": 12, "effects": {"corner_contact": "off"}}),
+    "shafts": (on_shafts, {"positions": 20}),
+    "pitch deviations in the plane": (erring, {"model": "plane_strain", "positions": 20}),
 }
 
 
@@ -170,7 +170,7 @@ def test_sensitivity_over_workers_keeps_its_bits(cache: Path) -> None:
     workers = Elsewhere()
     asked: dict[str, Any] = {
         "normal_forces": [2000.0], "misalignments": [20e-6], "center_distance_changes": [50e-6],
-        "level": "draft", "positions": 8,
+        "level": "draft", "positions": 16,
     }  # fmt: skip
     here, there = (
         study_sensitivity(helical(), *table_request(**asked), Run(workers=who, cache=cache))
