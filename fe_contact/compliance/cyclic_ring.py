@@ -115,7 +115,7 @@ class RingSolution:
     blocks : (reach + 1, nf, nf) array
         S_m: displacement of the flank of tooth m per force on the flank of tooth 0, m/N.
     left : (z, nc, p) array
-        Displacement of the left cut of every sector under the probe loads on tooth 0, m, as exact as `blocks`.
+        Displacement of every left cut under the probe loads on tooth 0, m; its energy is exact as `blocks`.
     shares : (z,) array
         Shares of the probe loads on each tooth that add up to a load of solved harmonics alone; 1 on tooth 0.
     solved : (z, nc, p) array
