@@ -62,7 +62,7 @@ def test_blocks_are_as_exact_as_stated(name: str, monkeypatch: pytest.MonkeyPatc
         return close_ring(tooth.held, gear.teeth, usual_reach(gear), loads, free)
 
     found = ring()
-    assert len(solved) < 0.9 * (gear.teeth // 2 + 1)
+    assert len(solved) <= 8  # of any number of teeth
     for limit in ("LEAST_PASSED", "LEAST_ENERGY", "LARGEST_MISSED"):
         monkeypatch.setattr(cyclic_ring, limit, 1e-13)
     exact = ring()
