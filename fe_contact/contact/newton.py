@@ -45,6 +45,8 @@ CONVERGED, ITERATION_LIMIT, SINGULAR, OUT_OF_MODEL = 0, 1, 2, 3
 MAX_ITERATIONS = 100
 STEP_TOLERANCE = 1e-11
 """Largest last change of the motions over the deflection; Newton squares it, so they are good to rounding."""
+STRAIGHT = 1e-8
+"""The same of a step over which the laws may be straight enough for the forces to follow without them."""
 ROUNDING = 1e-7
 """The same, below which steps that do not fall any more are rounding: of bodies that turn by much."""
 _CUTS = 30
@@ -199,12 +201,32 @@ def _iterate(
         for r in range(size):
             change[system.member[r]] = step * system.right[0, r] + system.right[1, r]
         move(problem, change, motion)
-        elastic = _advance(problem, total, gap, elastic, step, change, motion, state)
         before, last = last, max(abs(step), np.abs(motion).max())
+        if last <= STRAIGHT * elastic and _settle(problem, gap, elastic, step, motion, state):
+            return elastic + step, tangent, CONVERGED, iteration
+        elastic = _advance(problem, total, gap, elastic, step, change, motion, state)
         rounding = before <= ROUNDING * elastic and last > 0.1 * before
         if last <= STEP_TOLERANCE * elastic or rounding:
             return elastic, tangent, CONVERGED, iteration
     return elastic, tangent, ITERATION_LIMIT, MAX_ITERATIONS
+
+
+@njit(cache=True, error_model="numpy")
+def _settle(
+    problem: PointProblem, gap: FloatArray, elastic: float, step: float, motion: FloatArray, state: State
+) -> bool:
+    """Add what a last step changes of the forces; not if a law is bent by more than the tolerance over it."""
+    m = gap.size
+    nearer = np.empty(m)
+    for q in range(m):
+        nearer[q] = problem.motion_arm[q] * step - motion_at(problem, q, motion)
+        closer = problem.motion_arm[q] * elastic - gap[q] - motion_at(problem, q, state.moved)
+        if not nearer[q] * nearer[q] <= STEP_TOLERANCE * elastic * abs(closer):
+            return False
+    for q in range(m):
+        state.force[q] += state.slope[q] * nearer[q]
+    press(problem, state.force, state.pressed)
+    return True
 
 
 @njit(cache=True, error_model="numpy")
