@@ -87,7 +87,7 @@ class PlaneBias:
         return {
             "mean": self.mean,
             "peak_to_peak": None if self.hidden else self.peak_to_peak,
-            "hidden_m": self.hidden,
+            "either_way_m": self.hidden,
             "error": BIAS_ERROR,
             "stated": LEFT_OUT * abs(self.mean),
             "words": self.words,

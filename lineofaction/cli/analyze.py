@@ -279,11 +279,11 @@ def _show_plan(plan: RunPlan) -> None:
         for error in (entry.error,)
     ]
     out.print(table(head, rows, "Predicted, nothing computed"))
+    if bias := plan.chosen.error.bias:
+        out.print(bias.words, soft_wrap=True)
     model = plan.plan.discretization.to_json()["model"].replace("_", " ")
     positions = plan.plan.positions or f"about {plan.chosen.cost.positions}, placed where the curve bends"
     out.print(f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}")
-    if bias := plan.chosen.error.bias:
-        out.print(bias.words, soft_wrap=True)
     if plan.conflict or not plan.choice.met:
         out.print(plan.conflict or f"cannot be had: {plan.choice.reason}")
 

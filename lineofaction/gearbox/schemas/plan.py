@@ -59,7 +59,7 @@ class ModelBias(BaseModel):
 
     mean: float
     peak_to_peak: float | None = Field(description="Null where reliefs hide it: it may have either sign")
-    hidden_um: float = Field(description="Then the largest change of peak-to-peak in um, else 0")
+    either_way_um: float = Field(description="Then the largest change of peak-to-peak in um, else 0")
     error: float = Field(description="Error of the bias in parts of it")
     stated: float = Field(description="Part of STE by which error bands are wider for it")
     words: str

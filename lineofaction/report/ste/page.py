@@ -82,7 +82,7 @@ def _biases(receipt: Mapping[str, Any]) -> tuple[str, str]:
     bias = receipt.get("bias")
     if bias is None:
         return "", ""
-    hidden = f"±{um(bias['hidden_m'], 2)} µm"
+    hidden = f"±{um(bias['either_way_m'], 2)} µm"
     mean, ripple = (
         hidden if part is None else f"{100.0 * part:+.2g} %" for part in (bias["mean"], bias["peak_to_peak"])
     )

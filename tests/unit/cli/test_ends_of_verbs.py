@@ -24,8 +24,9 @@ def last_lines(*arguments: object, count: int = 3) -> list[str]:
 def test_a_table_ends_with_mean_and_ripple_and_its_file(tmp_path: Path) -> None:
     file = tmp_path / "ste.nc"
     mean, ripple, written = last_lines("analyze", SPUR, "-o", file, "--torque", 100, *COARSE)
-    assert re.fullmatch(r"mean STE at 100 N m: [\d.]+ µm ± [\d.]+ µm", mean)
-    assert re.fullmatch(r"peak-to-peak STE at 100 N m: [\d.]+ µm ± [\d.]+ µm", ripple)
+    end = r" STE at 100 N m: [\d.]+ µm ± [\d.]+ µm; gears of this width "
+    assert re.fullmatch(rf"mean{end}\+2\.8 %", mean)
+    assert re.fullmatch(rf"peak-to-peak{end}\+3\.3 %", ripple)
     assert written == f"written to {file}"
 
 
