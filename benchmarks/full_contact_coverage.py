@@ -70,7 +70,7 @@ def stated(table: SteDatabase, pair: ParallelAxes) -> FloatArray:
     found = [[curve.mean, curve.peak_to_peak, *curve.harmonics] for curve in curves]
     own = np.array([[quantity.value for quantity in row] for row in found]).T
     sources = table.curve_error[: len(AT_NODES), :, :, 0, 0].copy()
-    sources[AT_NODES.index(METHOD)] = in_small_displacements(pair, table.force, own)
+    sources[AT_NODES.index(METHOD)] = in_small_displacements(pair, table.force, own, over_face=False)
     sources[AT_NODES.index(PLANE)] = 0.0
     return all_sources(sources)[: len(QUANTITIES)]
 

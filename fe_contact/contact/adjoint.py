@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from fe_contact.contact.point_problem import (
     dot,
     eliminate,
     motion_at,
-    move,
     point_problems,
     press,
     problem_at,
@@ -26,6 +25,7 @@ from fe_contact.contact.point_problem import (
 from fe_contact.contact.problem import Candidates, ContactProblem
 from fe_contact.contact.strip import past_break
 from fe_contact.contact.sweep import ContactSolution
+from fe_contact.contact.tilted_bodies import yield_to
 from fe_contact.contact.touch import rolls_at
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, IntArray, Status
@@ -45,30 +45,39 @@ class _Adjoint:
         contact is not solved. Their sum over the candidates, times `Candidates.motion_arm`, is 1.
     middle, half : ndarray, shape (P, L, m)
         Middle of each contact strip from the touching point on, towards tip 1, and half its length, m.
+    tilt : ndarray, shape (P, L, m)
+        Of the flanks, and as much again of what else moves: how the weighed motions grow along the flank, 1.
     """
 
     weight: FloatArray
     middle: FloatArray
     half: FloatArray
+    tilt: FloatArray
 
 
 def adjoint(problem: ContactProblem, solution: ContactSolution) -> _Adjoint:
     """Find the weights of all candidates, and the strips, of a solved problem."""
-    weight, middle, half = np.zeros((3, *solution.force.shape))
-    _weigh(point_problems(problem), solution.force, weight, middle, half)
+    weight, middle, half, tilt = np.zeros((4, *solution.force.shape))
+    _weigh(point_problems(problem), solution.force, weight, middle, half, tilt)
     weight[solution.status != Status.CONVERGED] = np.nan
-    return _Adjoint(weight, middle, half)
+    return _Adjoint(weight, middle, half, tilt)
 
 
 @njit(cache=True, error_model="numpy")
 def _weigh(
-    every: PointProblems, force: FloatArray, weight: FloatArray, middle: FloatArray, half: FloatArray
+    every: PointProblems,
+    force: FloatArray,
+    weight: FloatArray,
+    middle: FloatArray,
+    half: FloatArray,
+    tilt: FloatArray,
 ) -> None:
     """Fill in the weights and strips of all positions and loads."""
     for p in range(force.shape[0]):
         problem, here = problem_at(every, p)
         for k in range(force.shape[1]):
             weights = _weights(problem, force[p, k][here])
+            tilts = _tilts(problem, force[p, k][here], weights)
             for q in range(here.size):
                 if force[p, k, here[q]] > 0.0:
                     at = here[q]
@@ -76,13 +85,31 @@ def _weigh(
                     middle[p, k, at], half[p, k, at] = carrying_strip(
                         problem.law, problem.place[q], force[p, k, at]
                     )
+                    tilt[p, k, at] = motion_at(problem, q, tilts)
+
+
+@njit(cache=True, error_model="numpy")
+def _tilts(problem: PointProblem, force: FloatArray, weights: FloatArray) -> FloatArray:
+    """Return how fast the weighed motions grow as the place where slices (n,) press moves, per weight there.
+
+    What moves the place itself grows by the tilt of the bodies; what it moves elsewhere by theirs under the
+    weights.
+    """
+    n = problem.bodies.shape[0]
+    held, weighed, tilts = np.zeros(n), np.zeros(n), np.zeros(n)
+    press(problem, force, held)
+    press(problem, weights, weighed)
+    for j in range(n):
+        if held[j] > 0.0 and weighed[j] > 0.0:
+            tilts[j] = dot(problem.tilt[j], held + held[j] / weighed[j] * weighed, n)
+    return tilts
 
 
 @njit(cache=True, error_model="numpy")
 def _linearized(problem: PointProblem, force: FloatArray) -> tuple[State, NewtonSystem, int]:
     """Return the state of a solution, and Newton's equations there with their number."""
     n = problem.bodies.shape[0]
-    state = State(np.zeros(n), np.zeros(n), force, np.zeros(force.size), np.zeros(n))
+    state = State(np.zeros(n), np.zeros(n), np.zeros((n, n)), force, np.zeros(force.size), np.zeros(n))
     for q in range(force.size):
         if force[q] > 0.0:
             state.slope[q] = 1.0 / approach(problem.law, problem.place[q], force[q])[1]
@@ -103,7 +130,7 @@ def _weights(problem: PointProblem, force: FloatArray) -> FloatArray:
     answer, motion = np.zeros((2, state.held.size))
     for r in range(size):
         answer[system.member[r]] = system.right[0, r]
-    move(problem, answer, motion)
+    yield_to(state.yielding, answer, motion)
     weights, stiff = np.zeros(force.size), 0.0
     for q in range(force.size):
         if state.slope[q] > 0.0:
@@ -162,7 +189,7 @@ def _answers(problem: PointProblem, force: FloatArray, opened: FloatArray) -> Fl
         rows[a, :] = 0.0
         for r in range(size):
             rows[a, system.member[r]] = right[a, r]
-        move(problem, rows[a], motion)
+        yield_to(state.yielding, rows[a], motion)
         for q in range(m):
             arm = problem.motion_arm[q] if a == 0 else opened[a - 1, q]
             followed[a, q] = state.slope[q] * (arm - motion_at(problem, q, motion))
@@ -175,6 +202,8 @@ def _answers(problem: PointProblem, force: FloatArray, opened: FloatArray) -> Fl
 
 _NODE = math.sqrt(0.75)
 """Outer ones of three samples in parts of half a strip, the third in its middle."""
+_NEAR = 1e-6
+"""Step of differences along the flank over half a strip."""
 _POINTS = 8
 """Of a strip at which a change is spread over the flank."""
 
@@ -195,6 +224,11 @@ class CarryingStrips:
         Distance from the pinion's mid-face, m.
     middle, half : ndarray, shape (k,)
         Of the strip from the touching point on, m.
+    rolled : ndarray, shape (k,)
+        Normal approach taken away per slope of the gap over the strip under a small load, m: the slope
+        moves the place where the bodies are pressed.
+    rest_middle, rest_half : ndarray, shape (k,)
+        Of that strip (`Candidates.strips`), m.
     arm, normal : ndarray, shape (k,), and float
         Normal approach taken away per gap opened on the line of action: at the touching point, and by what
         is removed over the strip beyond that.
@@ -210,6 +244,9 @@ class CarryingStrips:
     face: FloatArray
     middle: FloatArray
     half: FloatArray
+    rolled: FloatArray
+    rest_middle: FloatArray
+    rest_half: FloatArray
     arm: FloatArray
     normal: float
     weight: FloatArray
@@ -218,7 +255,7 @@ class CarryingStrips:
     def of(cls, pair: ParallelAxes, candidates: Candidates, adjoint: _Adjoint) -> CarryingStrips:
         """Gather them from a solution of these candidates."""
         at = np.nonzero(adjoint.weight)
-        strips = adjoint.middle[at], adjoint.half[at], adjoint.weight[at]
+        strips = adjoint.middle[at], adjoint.half[at], adjoint.tilt[at], adjoint.weight[at]
         return cls.at(pair, candidates, adjoint.weight.shape[1], at, *strips)
 
     @classmethod
@@ -230,11 +267,16 @@ class CarryingStrips:
         at: tuple[IntArray, ...],
         middle: FloatArray,
         half: FloatArray,
+        tilt: FloatArray,
         weight: FloatArray,
     ) -> CarryingStrips:
         """Take k strips at the positions, loads and candidates `at`, of so many loads."""
         p, _, m = at
-        touch, shape = candidates.touch, (candidates.position.size, loads, candidates.pair.size)
+        touch, strips, shape = (
+            candidates.touch,
+            candidates.strips,
+            (candidates.position.size, loads, candidates.pair.size),
+        )
         return cls(
             pair,
             shape,
@@ -244,6 +286,9 @@ class CarryingStrips:
             candidates.face_position[m],
             middle,
             half,
+            np.where(strips.slope == 0.0, -1.0 / strips.curvature, 0.0)[p, m] * tilt,
+            strips.middle[p, m],
+            strips.half[p, m],
             candidates.motion_arm[p, m],
             math.cos(candidates.base_helix_angle),
             weight,
@@ -260,6 +305,13 @@ class CarryingStrips:
         Linear in the gap. Between its breaks the gap counts as a parabola over each strip.
         """
         there, mean = self._removed(gap)
+        if gap.along_profile and self.rolled.any():
+            step = _NEAR * self.rest_half
+            ends = (
+                replace(self, middle=self.rest_middle + way, half=self.rest_half)._removed(gap)[1]
+                for way in (step, -step)
+            )
+            mean = mean + self.rolled * (next(ends) - next(ends)) / (2.0 * step)
         return np.asarray(self.arm * there + self.normal * (mean - there))
 
     def change(self, opened: FloatArray) -> FloatArray:
@@ -312,7 +364,7 @@ class CarryingStrips:
             Change of each quantity per m removed at a node.
         """
         angle = np.pi * ((np.arange(_POINTS) + 0.5) / _POINTS - 0.5)
-        x = self.middle + self.half * np.sin(angle)[:, None]
+        x = self.middle + self.rolled + self.half * np.sin(angle)[:, None]
         value = np.broadcast_to(self.weight * self.arm / _POINTS, x.shape)
         by_node = np.zeros((len(rows), roll_length.size, face_position.size))
         roll = rolls_at(self.pair, self.s_1 + x, self.s_2 - x)[gear]

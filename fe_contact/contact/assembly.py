@@ -116,11 +116,8 @@ def face_contact_problem(
         bounds = (np.maximum(low, flank.z[0]), np.minimum(high, flank.z[-1]))
         key = _KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
         _face_assembly_add_gear(grid, reach, key, patches, lever, teeth, bounds, slices.present, compliance)
-    first, second = (flank.contact_modulus for flank in compliances)
-    contact_modulus = 1.0 / (1.0 / first + 1.0 / second)
-    return ContactProblem(
-        candidates, compliance, contact_modulus, 2.0 / (math.pi * first), 2.0 / (math.pi * second)
-    )
+    planes, modulus = _half_planes(compliances)
+    return ContactProblem(candidates, compliance, np.zeros_like(compliance), modulus, *planes)
 
 
 TOGETHER = 8
@@ -210,23 +207,24 @@ def contact_problem(
     on tooth +j of gear 2.
     """
     slices = candidates.slices
-    compliance = np.zeros((*slices.present.shape, slices.pair.size))
+    compliance, tilt = np.zeros((2, *slices.present.shape, slices.pair.size))
     touch = slices.touch
-    sides = ((slices.patch_1, touch.lever_1), (slices.patch_2, touch.lever_2))
-    for flank, (patch, lever), direction in zip(compliances, sides, (-1, 1), strict=True):
+    sides = ((slices.patch_1, touch.lever_1, 1.0), (slices.patch_2, touch.lever_2, -1.0))
+    for flank, (patch, lever, tip), direction in zip(compliances, sides, (-1, 1), strict=True):
         blocks = _tooth_blocks(flank, direction * slices.pair)
         rows = np.ascontiguousarray  # one order in memory: compiled once
-        center, half_width, edge_share = rows(patch.center), rows(patch.half_width), rows(patch.edge_share)
-        _add_gear(
-            flank.s, blocks, center, half_width, edge_share, rows(lever), slices.present, couple_teeth,
-            compliance,
-        )  # fmt: skip
-    compliance /= slices.width
-    first, second = (flank.contact_modulus for flank in compliances)
-    contact_modulus = 1.0 / (1.0 / first + 1.0 / second)
-    return ContactProblem(
-        candidates, compliance, contact_modulus, 2.0 / (math.pi * first), 2.0 / (math.pi * second)
-    )
+        laid = np.array([patch.center, patch.half_width, patch.edge_share])
+        _add_gear(flank.s, blocks, laid, rows(lever), tip, slices.present, couple_teeth, compliance, tilt)
+    planes, modulus = _half_planes(compliances)
+    return ContactProblem(candidates, compliance / slices.width, tilt / slices.width, modulus, *planes)
+
+
+def _half_planes(
+    flanks: tuple[FlankCompliance, FlankCompliance] | tuple[FlankCompliance3D, FlankCompliance3D],
+) -> tuple[tuple[float, float], float]:
+    """Return 2 (1 - nu^2)/(pi E) of both gears in 1/Pa, and the contact modulus in Pa."""
+    first, second = (flank.contact_modulus for flank in flanks)
+    return (2.0 / (math.pi * first), 2.0 / (math.pi * second)), 1.0 / (1.0 / first + 1.0 / second)
 
 
 def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> FloatArray:
@@ -239,42 +237,59 @@ def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> FloatArray:
     return np.ascontiguousarray(blocks[rows][:, :, rows].transpose(0, 2, 1, 3))
 
 
+_NEAR = 1e-3
+"""Way over half a patch by which patches are displaced to see how their forces change."""
+
+
 @njit(cache=True)
 def _add_gear(
     nodes: FloatArray,
     blocks: FloatArray,
-    center: FloatArray,
-    half_width: FloatArray,
-    edge_share: FloatArray,
+    laid: FloatArray,
     lever: FloatArray,
+    tip: float,
     present: BoolArray,
     couple_teeth: bool,
     out: FloatArray,
+    tilt: FloatArray,
 ) -> None:
-    """Add b_i' S b_j of one gear for all positions."""
+    """Add b_i' S b_j of one gear for all positions, and to `tilt` how it changes as patch i moves to tip 1.
+
+    `laid` (3, P, n) has centers, half-widths and edge shares; `tip` is +1 on gear 1 and -1 on gear 2. Beside
+    an edge patches give way more than a strip there does: to `tilt` they count as if they were plain ones.
+    """
+    widest = laid[1].max()
     positions, n = present.shape
-    load = np.zeros((n, nodes.size))
-    moved = np.zeros(nodes.size)
-    first = np.zeros(n, dtype=np.int64)
-    last = np.zeros(n, dtype=np.int64)
+    load = np.zeros((3, n, nodes.size))
+    first, last, way = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64), np.zeros(n)
     for p in range(positions):
         for i in range(n):
             last[i] = first[i] = 0
             if present[p, i]:
-                first[i], last[i] = load_vector(
-                    nodes, center[p, i], half_width[p, i], edge_share[p, i], load[i]
-                )
+                center, half, share = laid[0, p, i], laid[1, p, i], laid[2, p, i]
+                above = min(center + _NEAR * widest, nodes[-1] - widest)
+                below = above - 2.0 * _NEAR * widest
+                load[:, i] = 0.0
+                first[i], last[i] = load_vector(nodes, center, half, share, load[0, i])
+                low, _ = load_vector(nodes, below, widest, 0.0, load[1, i])
+                _, high = load_vector(nodes, above, widest, 0.0, load[2, i])
+                first[i], last[i] = min(first[i], low), max(last[i], high)
+                way[i] = 2.0 * tip * (above - below)
         for i in range(n):
-            for j in range(i + 1):
+            for j in range(n):
                 if (i != j and not couple_teeth) or last[i] == 0 or last[j] == 0:
                     continue
-                value = 0.0
+                value, change = 0.0, 0.0
                 for a in range(first[i], last[i]):
-                    moved[a] = 0.0
+                    moved, plain = 0.0, 0.0
                     for b in range(first[j], last[j]):
-                        moved[a] += blocks[i, j, a, b] * load[j, b]
-                    value += load[i, a] * moved[a]
-                value *= lever[p, i] * lever[p, j]
-                out[p, i, j] += value
-                if i != j:
-                    out[p, j, i] += value
+                        moved += blocks[i, j, a, b] * load[0, j, b]
+                        plain += blocks[i, j, a, b] * (load[1, j, b] + load[2, j, b])
+                    value += load[0, i, a] * moved
+                    change += (load[2, i, a] - load[1, i, a]) * plain
+                arms = lever[p, i] * lever[p, j]
+                tilt[p, i, j] += arms * change / way[i]
+                if j <= i:
+                    out[p, i, j] += arms * value
+                if j < i:
+                    out[p, j, i] += arms * value

@@ -131,12 +131,15 @@ def with_gaps(pair: ParallelAxes, candidates: Candidates, model: ContactModel) -
     """Add the gaps of the model: how far apart the rigid flanks are, and their course about that place.
 
     The load patches stay where plain involutes touch, so that the compliance between the candidates depends
-    on the macro geometry alone and serves every modification, misalignment and load.
+    on the macro geometry alone and serves every modification, misalignment and load; the touch says how far
+    the middles of the strips are from there.
     """
     if not model.gaps:
         return candidates
     touch = modified_touch(pair, candidates.touch, candidates.face_position, model.gaps)
-    return candidates.touching(touch)
+    modified = candidates.touching(touch)
+    moved = touch.moved + modified.strips.middle - candidates.strips.middle
+    return candidates.touching(replace(touch, moved=moved))
 
 
 def teeth_in_reach(pair: ParallelAxes) -> int:
@@ -188,6 +191,7 @@ def _loaded_slices(
         corner_1=_corner_softness(pair.pinion),
         corner_2=_corner_softness(pair.wheel),
         law_length=max(rule.half_width, min(LAW_LENGTH * width, LONGEST_LAW * module)),
+        edge_load=rule.edge_load,
     )
 
 

@@ -3,14 +3,14 @@
 The bodies move by n curves over the face, each over a few contacts; m contacts press on them by the parts
 N (m, n) of their forces. Find the forces on the curves h (n,) and the deflection d with
 
-    h = N'F,    F_q = phi_q(m_q d - g_q - (N K h)_q) >= 0,    sum_q n_q F_q = T,
+    h = N'F,    F_q = phi_q(m_q d - g_q - (N u(h))_q) >= 0,    sum_q n_q F_q = T,
 
-K the compliance of the bodies and phi_q, the inverse of the local approach, convex and zero where flanks
-part. Which contacts carry needs no search: each follows from its own approach. With D the slopes of phi,
-Newton's matrix is 1 + N'DN K, and only the curves over contacts that touch have rows in it. With m = n this
-is the search for the least energy
+u the motions of the bodies, the gradient of their energy W(h), and phi_q, the inverse of the local approach,
+convex and zero where flanks part. Which contacts carry needs no search: each follows from its own approach.
+With D the slopes of phi and K = du/dh, Newton's matrix is 1 + N'DN K, and only the curves over contacts that
+touch have rows in it. With m = n this is the search for the least energy
 
-    h'K h/2 + sum_q Phi_q(m_q d - g_q - (N K h)_q) - T d;
+    h'u - W(h) + sum_q Phi_q(m_q d - g_q - (N u)_q) - T d;
 
 off the line of action m and n differ by a per cent. A whole step may go too far where contacts enter; it is
 then cut to where the energy along it is least (docs/theory/contact.md).
@@ -31,11 +31,11 @@ from fe_contact.contact.point_problem import (
     eliminate,
     evaluate,
     motion_at,
-    move,
     press,
     stiffness,
     subtract,
 )
+from fe_contact.contact.tilted_bodies import fill_yielding, move, yield_to
 from fe_contact.types import FloatArray, IntArray
 from host.loops import njit
 
@@ -126,7 +126,7 @@ def solve_point(
     if math.isnan(touch) or not 0.0 < _softness(problem) < math.inf:
         force[:] = 0.0
         return math.nan, math.nan, SINGULAR, 0, False
-    state = State(np.zeros(n), np.zeros(n), force, np.zeros(m), np.zeros(n))
+    state = State(np.zeros(n), np.zeros(n), np.zeros((n, n)), force, np.zeros(m), np.zeros(n))
     elastic = _start(problem, total, gap, state)
     elastic, tangent, status, iterations = _iterate(problem, total, gap, elastic, state)
     if status == SINGULAR:
@@ -142,7 +142,7 @@ def _start(problem: PointProblem, total: float, gap: FloatArray, state: State) -
     if not state.force.any():
         _guess(problem, total, gap, state.force)
     press(problem, state.force, state.held)
-    move(problem, state.held, state.moved)
+    move(problem, state)
     needed, arm = 0.0, 0.0
     for q in range(gap.size):
         if state.force[q] > 0.0:
@@ -200,7 +200,7 @@ def _iterate(
         change[:] = state.pressed - state.held  # where nothing touches the forces go
         for r in range(size):
             change[system.member[r]] = step * system.right[0, r] + system.right[1, r]
-        move(problem, change, motion)
+        yield_to(state.yielding, change, motion)
         before, last = last, max(abs(step), np.abs(motion).max())
         if last <= STRAIGHT * elastic and _settle(problem, gap, elastic, step, motion, state):
             return elastic + step, tangent, CONVERGED, iteration
@@ -236,10 +236,10 @@ def _condensed(problem: PointProblem, state: State, system: NewtonSystem, size: 
     for r in range(state.held.size):
         if system.shares[r] != 0.0:
             for s in range(size):
-                yielding = system.shares[r] * problem.bodies[r, system.member[s]]
+                yielding = system.shares[r] * state.yielding[r, system.member[s]]
                 stiff -= yielding * system.right[0, s]
                 missed -= yielding * system.right[1, s]
-            missed += system.shares[r] * dot(problem.bodies[r], system.left, system.left.size)
+            missed += system.shares[r] * dot(state.yielding[r], system.left, system.left.size)
     return stiff, missed
 
 
@@ -255,14 +255,14 @@ def _advance(
     state: State,
 ) -> float:
     """Take a step, or the part of it to where the energy is level; return the elastic deflection."""
-    held, moved, before = state.held.copy(), state.moved.copy(), elastic
+    held, before = state.held.copy(), elastic
     fall = (dot(problem.torque_arm, state.force, gap.size) - total) * step
     fall += dot(motion, state.held - state.pressed, motion.size)
     low, high, at_low, at_high, length = 0.0, math.inf, fall, math.inf, 1.0
     for _ in range(_CUTS):
         elastic = before + length * step
         state.held[:] = held + length * change
-        state.moved[:] = moved + length * motion
+        move(problem, state)
         evaluate(problem, gap, elastic, state)
         rise = (dot(problem.torque_arm, state.force, gap.size) - total) * step
         rise += dot(motion, state.held - state.pressed, motion.size)
@@ -273,7 +273,6 @@ def _advance(
         else:
             low, at_low = length, rise
         length = low + min(max(at_low / (at_low - at_high), 0.1), 0.9) * (high - low)
-    move(problem, state.held, state.moved)  # as they are, after many steps too
     return elastic
 
 
@@ -281,6 +280,7 @@ def _advance(
 def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> int:
     """Fill in Newton's equations; return the number of curves over contacts that touch."""
     pulled, pushed = np.zeros((2, state.held.size))
+    fill_yielding(problem, state)
     _touching(problem, state, system, pulled)
     size, left, member = 0, system.left, system.member
     left[:] = 0.0
@@ -294,9 +294,9 @@ def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> 
     for r in range(size):
         i = member[r]
         for s in range(size):
-            system.moved[r, s] = problem.bodies[i, member[s]]
+            system.moved[r, s] = state.yielding[i, member[s]]
         system.right[0, r], system.right[1, r] = pulled[i], state.pressed[i] - state.held[i]
-        pushed[r] = dot(problem.bodies[i], left, left.size) if any_left else 0.0
+        pushed[r] = dot(state.yielding[i], left, left.size) if any_left else 0.0
     for r in range(size):
         row = system.matrix[r, :size]
         row[:] = 0.0
@@ -338,7 +338,8 @@ def _residuals(
     """Measure the four residuals of the forces found, and whether any strip outgrew the reference length."""
     residual[:] = 0.0
     any_beyond = False
-    move(problem, state.pressed, state.moved)
+    state.held[:] = state.pressed
+    move(problem, state)
     for q in range(gap.size):
         value, beyond = 0.0, False
         if state.force[q] > 0.0:

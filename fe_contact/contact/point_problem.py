@@ -255,7 +255,8 @@ class PointProblems(NamedTuple):
 
     Attributes
     ----------
-    bodies : ndarray, shape (Q, n, n)
+    bodies, tilt : ndarray, shape (Q, n, n)
+    radius : ndarray, shape (Q, n)
     present : ndarray of bool, shape (Q, n)
     curves, heights : ndarray, shapes (points of a pair, K), (K, K)
     gap, motion_arm, torque_arm, width : ndarray, shape (P, m)
@@ -265,6 +266,8 @@ class PointProblems(NamedTuple):
     """
 
     bodies: FloatArray
+    tilt: FloatArray
+    radius: FloatArray
     present: BoolArray
     curves: FloatArray
     heights: FloatArray
@@ -287,6 +290,8 @@ def point_problems(problem: ContactProblem) -> PointProblems:
     first, second = problem.half_planes
     return PointProblems(
         rows(problem.bodies),
+        rows(problem.tilt),
+        rows(problem.radius),
         rows(c.slices.present),
         rows(c.curves),
         rows(c.heights),
@@ -307,6 +312,10 @@ class PointProblem(NamedTuple):
     ----------
     bodies : ndarray, shape (n, n)
         Height of curve i per unit force on j, without what is in the local law, m/N.
+    tilt : ndarray, shape (n, n)
+        Tilt of the flanks at curve i per unit force on j, 1/N; see `ContactProblem`.
+    radius : ndarray, shape (n,)
+        How far tilted flanks move their strip, m.
     curve : ndarray, shape (m, w)
         Parts of the force of each contact on w curves beside each other, and of their heights there.
     first : ndarray of int, shape (m,)
@@ -322,6 +331,8 @@ class PointProblem(NamedTuple):
     """
 
     bodies: FloatArray
+    tilt: FloatArray
+    radius: FloatArray
     curve: FloatArray
     first: IntArray
     place: IntArray
@@ -340,8 +351,10 @@ def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
     pairs = np.cumsum(there[::count]) - 1  # of all pairs among those that are there
     here = np.flatnonzero(~(every.gap[p] == np.inf))  # also those that are not a number
     at = np.flatnonzero(np.repeat(there[::count], points))
-    inner = every.bodies[row][slices][:, slices]
+    inner, tilt = every.bodies[row][slices][:, slices], every.tilt[row][slices][:, slices]
     inner = _turned(every.heights, _turned(every.heights, inner))
+    tilt = _turned(every.heights, _turned(every.heights, tilt))
+    radius = every.radius[row][slices]
     gaps = gap_at(gap_at(every.about, p), at)
     law = _LocalLaw(every.width[p][at], gaps, _free_strips(gaps), every.length, every.modulus[row][at])
     slot = pairs[here // points] * points + here % points
@@ -349,7 +362,7 @@ def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
     point = here % points
     first = pairs[here // points] * count + first[point]
     arms = every.motion_arm[p][here], every.torque_arm[p][here]
-    return PointProblem(inner, curve[point], first, slot, every.gap[p][here], *arms, law), here
+    return PointProblem(inner, tilt, radius, curve[point], first, slot, every.gap[p][here], *arms, law), here
 
 
 @njit(cache=True, error_model="numpy")
@@ -385,7 +398,9 @@ class State(NamedTuple):
     held : ndarray, shape (n,)
         Forces on the curves h, N.
     moved : ndarray, shape (n,)
-        What they move, K h, m.
+        What they move, u(h), m.
+    yielding : ndarray, shape (n, n)
+        Its derivative, m/N.
     force, slope : ndarray, shape (m,)
         Of the contacts under these motions: N, N/m.
     pressed : ndarray, shape (n,)
@@ -394,6 +409,7 @@ class State(NamedTuple):
 
     held: FloatArray
     moved: FloatArray
+    yielding: FloatArray
     force: FloatArray
     slope: FloatArray
     pressed: FloatArray
@@ -427,13 +443,6 @@ def press(problem: PointProblem, force: FloatArray, out: FloatArray) -> None:
         if force[q] != 0.0:
             for a in range(problem.curve.shape[1]):
                 out[problem.first[q] + a] += problem.curve[q, a] * force[q]
-
-
-@njit(cache=True, error_model="numpy")
-def move(problem: PointProblem, held: FloatArray, out: FloatArray) -> None:
-    """Fill in the heights of the curves under forces on them."""
-    for j in range(held.size):
-        out[j] = dot(problem.bodies[j], held, held.size)
 
 
 @njit(cache=True, error_model="numpy")

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from fe_contact.contact.patch import Patches
-from fe_contact.contact.strip import Gap
+from fe_contact.contact.strip import Gap, StripMiddles, strip_middles
 from fe_contact.contact.touch import Touch
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -17,6 +17,8 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 # Slices of the common face width, and the points of the contact line within them.
 
 
+_SMALL_LOAD = 0.01
+"""Over the load of `PatchRule.edge_load`: of strips so short that they tell where those of any load are."""
 POINTS = 6
 """Points of a slice: ten change the ripple of helical pairs by 1 to 2 nm at most."""
 
@@ -118,6 +120,8 @@ class LoadedSlices:
     law_length : float
         Reference length in m that parts the contact from the bodies: what is nearer to the strip is in the
         local law, what is further in the finite elements.
+    edge_load : float
+        See `PatchRule`.
     """
 
     pair: IntArray
@@ -131,6 +135,7 @@ class LoadedSlices:
     corner_1: float
     corner_2: float
     law_length: float
+    edge_load: float
 
     @property
     def width(self) -> float:
@@ -232,6 +237,14 @@ class Candidates:
         )
 
     @property
+    def strips(self) -> StripMiddles:
+        """Where the middles of strips under a two-hundredth of the largest load are, arrays (P, m)."""
+        about, shape = self.gap_about, self.gap.shape
+        flat = Gap(*(np.ascontiguousarray(each).reshape(self.gap.size, *each.shape[2:]) for each in about))
+        found = strip_middles(flat, np.sqrt(_SMALL_LOAD * self.slices.edge_load * self.radius).ravel())
+        return StripMiddles(*(each.reshape(shape) for each in found))
+
+    @property
     def motion_arm(self) -> FloatArray:
         """Normal approach per unit deflection of the driven gear (P, m)."""
         return self.touch.lever_2 * math.cos(self.base_helix_angle)
@@ -240,6 +253,12 @@ class Candidates:
     def torque_share(self) -> FloatArray:
         """Share of T_1/(r_b1 cos beta_b) per unit normal force (P, m)."""
         return self.touch.lever_1
+
+    def on_mean(self, values: FloatArray) -> FloatArray:
+        """Return values (P, m) of the candidates on the mean of each slice (P, n), of those that exist."""
+        there = np.isfinite(self.gap).reshape(len(values), self.slices.pair.size, -1)
+        total = np.where(there, values.reshape(there.shape), 0.0).sum(axis=2)
+        return np.asarray(total / np.maximum(there.sum(axis=2), 1))
 
     def on_slices(self, force: FloatArray) -> FloatArray:
         """Return forces (..., m) of the candidates as forces (..., n) on the slices."""
@@ -280,6 +299,9 @@ class ContactProblem:
     compliance : ndarray, shape (Q, n, n)
         Of position p at row p modulo Q, P a multiple of Q.
         Normal approach of slice i per unit normal force on j, both gears, m/N.
+    tilt : ndarray, shape (Q, n, n)
+        How fast that grows as the patches of slice i move towards tip 1, 1/N: how much force on j tilts the
+        flanks at i.
     modulus : float
         Contact modulus E*, Pa.
     half_plane_1, half_plane_2 : float
@@ -288,6 +310,7 @@ class ContactProblem:
 
     candidates: Candidates
     compliance: FloatArray
+    tilt: FloatArray
     modulus: float
     half_plane_1: float
     half_plane_2: float
@@ -301,30 +324,52 @@ class ContactProblem:
     def bodies(self) -> FloatArray:
         """The compliance (Q, n, n) without what load patches move within the reference length, m/N.
 
-        That is k ln(l/a)/w of each gear on slices of the width w: in the local law instead.
+        That is k ln(l/a)/w of each gear on slices of the width w: in the local law instead. Patches are
+        displaced to where modified flanks press, by no more than that length.
         """
         slices = self.candidates.slices
         k_1, k_2 = self.half_planes
         near = k_1 * np.log(slices.law_length / slices.patch_1.law_width)
         near = near + k_2 * np.log(slices.law_length / slices.patch_2.law_width)
         near = slices.mean(near) / slices.width
-        compliance, diagonal = self.compliance.copy(), np.arange(slices.pair.size)
+        way = np.clip(self.candidates.touch.moved, -slices.law_length, slices.law_length)
+        displaced = self.candidates.on_mean(way)[: len(self.tilt), :, None] * self.tilt
+        compliance, diagonal = self.compliance + displaced, np.arange(slices.pair.size)
+        compliance += np.swapaxes(displaced, 1, 2)
         compliance[:, diagonal, diagonal] -= np.where(slices.present, near, 0.0)
         return compliance
+
+    @property
+    def radius(self) -> FloatArray:
+        """How far flanks that tilt by 1 move the middles of their strips back from tip 1 (Q, n), m."""
+        return self.candidates.on_mean(self.candidates.strips.radius)[: len(self.tilt)]
 
     def moved(self, force: FloatArray) -> FloatArray:
         """Return how far forces (P, L, m) in N move the flanks apart at every candidate (P, L, m), m.
 
         Without the local approach of a candidate that carries.
         """
-        held, bodies = self.candidates.on_slices(force), self.bodies
-        by_pitch = held.reshape(-1, len(bodies), *held.shape[1:])
-        moved = np.einsum("qij,tqlj->tqli", bodies, by_pitch, optimize=True)
+        held = self.candidates.on_slices(force)
+        radius, longest = self.radius[:, None], self.candidates.slices.law_length
+        by_pitch = held.reshape(-1, len(self.tilt), *held.shape[1:])
+
+        def times(matrices: FloatArray, forces: FloatArray) -> FloatArray:
+            return np.asarray(np.einsum("qij,tqlj->tqli", matrices, forces, optimize=True))
+
+        tilt = times(self.tilt, by_pitch)
+        way = np.clip(-radius * tilt, -longest, longest)
+        rolled = way * (tilt + np.divide(0.5 * way, radius, out=np.zeros(way.shape), where=radius > 0.0))
+        moved = times(self.bodies, by_pitch) + rolled + times(np.swapaxes(self.tilt, 1, 2), way * by_pitch)
         return self.candidates.at_points(moved.reshape(held.shape))
 
     def rows(self, keep: IntArray) -> ContactProblem:
         """Return the problem of some positions, one row of compliance each."""
-        return replace(self, candidates=self.candidates.rows(keep), compliance=self.compliance[keep])
+        return replace(
+            self,
+            candidates=self.candidates.rows(keep),
+            compliance=self.compliance[keep],
+            tilt=self.tilt[keep],
+        )
 
     def touching(self, candidates: Candidates) -> ContactProblem:
         """Return the same compliance with candidates of other gaps."""

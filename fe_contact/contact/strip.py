@@ -28,6 +28,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from fe_contact.types import FloatArray, IntArray
 from host.loops import njit
 
@@ -36,6 +38,10 @@ _TOLERANCE = 1e-9
 _STEPS = 100
 _NEWTON_STEPS, _NEWTON_TOLERANCE = 8, 1e-8
 """Of strip and middle at once, and their last step over the strip, which leaves its square."""
+_TILTED = 0.1
+"""Way of the middle by which its response to tilt is found, over half the strip."""
+_NEAR = 1e-6
+"""Step of differences along the flank over half a strip."""
 _BLUNTEST = 0.05
 """Least cosine at a break in derivatives: they are infinite where a break is at the end of the strip."""
 
@@ -193,6 +199,51 @@ def strip_middle(gap: Gap, i: int, half: float) -> float:
             return following
         center, before = following, abs(slope)
     return center
+
+
+class StripMiddles(NamedTuple):
+    """Middles of strips of given lengths, and the gap about them; arrays over contacts.
+
+    Attributes
+    ----------
+    middle, half : ndarray
+        From the touching point, and half the length, m.
+    slope, curvature : ndarray
+        Means of g' and g'' over the strip; 1 and 1/m. The slope is zero but where an edge holds the strip.
+    radius : ndarray
+        How far the middle moves back as the gap tilts by 1, m: on the mean of tilts that move it by
+        `_TILTED` of the half length on plain flanks. None where an edge holds it.
+    """
+
+    middle: FloatArray
+    half: FloatArray
+    slope: FloatArray
+    curvature: FloatArray
+    radius: FloatArray
+
+
+@njit(cache=True, error_model="numpy")
+def strip_middles(gap: Gap, half: FloatArray) -> StripMiddles:
+    """Return the middles of strips of half lengths (n,) in m, at most from edge to edge."""
+    zero, half = np.zeros(half.size), np.minimum(half, 0.5 * (gap.high - gap.low))
+    found = StripMiddles(zero, half, zero.copy(), gap.curvature.copy(), 1.0 / gap.curvature)
+    tilt = _TILTED * half * gap.curvature
+    back = Gap(gap.slope + tilt, gap.curvature, gap.low, gap.high, gap.place, gap.jump, gap.bend)
+    forth = Gap(gap.slope - tilt, gap.curvature, gap.low, gap.high, gap.place, gap.jump, gap.bend)
+    for i in range(half.size):
+        if (1.0 + _TILTED) * half[i] > free_strip(gap, i):
+            h = half[i]
+            center = strip_middle(gap, i, h)
+            slope = _means(gap, i, center, h)[0]
+            inside = gap.low[i] + h < center < gap.high[i] - h
+            found.middle[i], found.slope[i] = center, 0.0 if inside else slope
+            if h > 0.0:
+                way = strip_middle(forth, i, h) - strip_middle(back, i, h)
+                found.radius[i] = 0.5 * way / tilt[i]
+                near = _NEAR * h
+                rise = _means(gap, i, center + near, h)[0] - _means(gap, i, center - near, h)[0]
+                found.curvature[i] = 0.5 * rise / near
+    return found
 
 
 @njit(cache=True, error_model="numpy")

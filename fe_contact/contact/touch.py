@@ -155,6 +155,8 @@ class Touch:
         Gap about the touching points in the transverse section, towards tip 1; see `strip.Gap`.
     place, jump, bend : ndarray, shape (P, n, B)
         Its breaks.
+    moved : ndarray
+        How far modifications move the middle of the strip towards tip 1, m.
     roll_1 : ndarray
         Nominal roll lengths of gear 1, m.
     """
@@ -172,6 +174,7 @@ class Touch:
     place: FloatArray
     jump: FloatArray
     bend: FloatArray
+    moved: FloatArray
     roll_1: FloatArray
 
     @property
@@ -231,7 +234,7 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
     return Touch(
         s_1, s_2, gap, radius, lever_1, lever_2,
         opening_2 - opening_1, 1.0 / radius, np.minimum(low, 0.0), np.maximum(high, 0.0), none, none, none,
-        roll_1,
+        np.zeros(gap.shape), roll_1,
     )  # fmt: skip
 
 
@@ -289,7 +292,8 @@ def _moved(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTe
         step = np.where(down, step, 0.0)
         least, there = _moved_gap(about, step)
         gap, shift = flanks.gap(shift) + least, shift + step
-    moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift, "gap": here.gap + gap, **there._asdict()}
+    moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift, "gap": here.gap + gap, "moved": shift}
+    moved |= there._asdict()
     result = {}
     for name, values in moved.items():
         result[name] = np.zeros((*possible.shape, *values.shape[1:]))

@@ -402,7 +402,7 @@ def _edge_load(solved: _Solved, limit: float) -> Rows:
     per_gap = 1.0 / (c.motion_arm[p, m] * solution.tangent[p, k] * load[p, k])
     share[p, k] = -clear[p, k, m] * per_gap
     zero = np.zeros(p.size)
-    points = CarryingStrips.at(solved.pair, c, load.shape[1], (p, k, m), zero, zero + _POINT, zero)
+    points = CarryingStrips.at(solved.pair, c, load.shape[1], (p, k, m), zero, zero + _POINT, zero, zero)
     for a, step in enumerate(solved.steps):
         moved = problem.moved(solved.force[a])[p, k, m] - c.motion_arm[p, m] * solved.ste[a, p, k]
         by[a][p, k] = -(step.opened(points) + moved) * per_gap

@@ -214,7 +214,7 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
     elif bias := PlaneBias.of(pair, made):
         plane = bias.errors(pair, own)
     left = model_errors if known.absolute else in_small_displacements  # large ones are known in m alone
-    method = left(pair, known.force, own)
+    method = left(pair, known.force, own, over_face=isinstance(made, FaceDiscretization))
     positions = nothing.copy()
     over_allowed = _FACE_POSITIONS if isinstance(made, FaceDiscretization) else _PLANE_POSITIONS
     positions[1] = over_allowed * plan.nodes.tolerance * np.maximum(ripple, plan.nodes.least_ripple)

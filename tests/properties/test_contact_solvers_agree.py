@@ -84,6 +84,10 @@ def picked(problem: Problem, index: np.ndarray) -> Problem:
     return replace(problem, compliance=problem.compliance[np.ix_(index, index)], **arrays)
 
 
+def untilted(n: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.zeros((n, n)), np.zeros(n)
+
+
 class Solved:
     """What the compiled solver says, from a cold start unless `force` is given."""
 
@@ -94,6 +98,7 @@ class Solved:
         there = np.flatnonzero(np.isfinite(p.gap))
         point = PointProblem(
             p.compliance,
+            *untilted(n),
             np.ones((there.size, 1)),
             there,
             there,
@@ -172,6 +177,7 @@ def test_contacts_that_press_on_few_slices(seed, kind, arms, load, slices):
     law = _LocalLaw(problem.width, gap, _free_strips(gap), problem.length, problem.modulus)
     point = PointProblem(
         bodies,
+        *untilted(slices),
         blend,
         np.zeros(12, dtype=int),
         np.arange(12),

@@ -255,15 +255,14 @@ def estimate_errors(
     if missing:
         curves = [LEFT_OUT * missing * np.nan_to_num(np.abs(solution.deflection)) for solution in solutions]
         free_ends = points.gathered(curves)
+    face, lags = isinstance(made, FaceDiscretization), [np.nan_to_num(each.deflection) for each in solutions]
     return _ErrorSources(
         left(nested.plane, nested.coarse, made.remaining),
         left(nested.table, nested.sliced, made.remaining_slices),
         np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *points.shape)),
         points.gathered([_contact_error(solution) for solution in solutions]),
         free_ends,
-        points.gathered(
-            [point_error(nominal, plan.load, np.nan_to_num(each.deflection)) for each in solutions]
-        ),
+        points.gathered([point_error(nominal, plan.load, lag, over_face=face) for lag in lags]),
         missing,
     )
 
@@ -339,7 +338,7 @@ def curve_errors(
         "position": np.broadcast_to(
             positions.curves[:, :, None, None], (*positions.curves.shape, *points.shape)
         ),
-        METHOD: model_errors(pair, plan.load, own),
+        METHOD: model_errors(pair, plan.load, own, over_face=isinstance(made, FaceDiscretization)),
     }
     return np.stack([by_source[name] for name in AT_NODES])
 

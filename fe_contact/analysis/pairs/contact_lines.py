@@ -218,11 +218,12 @@ def _alike(part: Any, whole: Any) -> Any:
 def _joined(line: _Line, blocks: list[_SolvedBlock]) -> _SolvedBlock:
     """Put the blocks of a line together; all models share one compliance."""
     compliance = np.concatenate([block.problems[0].compliance for block in blocks])
+    tilt = np.concatenate([block.problems[0].tilt for block in blocks])
     problems, solutions = [], []
     for k in range(len(line.whole.models)):
         parts = [block.problems[k] for block in blocks]
         candidates = _joined_candidates([part.candidates for part in parts], line.pitches)
-        problems.append(replace(parts[0], candidates=candidates, compliance=compliance))
+        problems.append(replace(parts[0], candidates=candidates, compliance=compliance, tilt=tilt))
         sets = zip(*(block.solutions[k] for block in blocks), strict=True)
         solutions.append(tuple(_joined_arrays(list(each), line.pitches, ("load",)) for each in sets))
     known = [block.condition for block in blocks if block.condition is not None]

@@ -10,6 +10,14 @@ import numpy as np
 from fe_contact.analysis.pairs.pair_contact import PairContact, operating_points, pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
+from fe_contact.contact.point_problem import (
+    State,
+    motion_at,
+    point_problems,
+    press,
+    problem_at,
+)
+from fe_contact.contact.tilted_bodies import fill_yielding, move
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.plan import Plan
@@ -150,21 +158,30 @@ def soundness(
 
 def _disagreement(problem: ContactProblem, solution: ContactSolution, position: int, load: int) -> float:
     """Return the difference of both solvers' deflection over the elastic deflection."""
-    answer = solve(_plain(problem, position), float(solution.load[load]))
+    answer = solve(_plain(problem, position, solution.force[position, load]), float(solution.load[load]))
     here = float(solution.deflection[position, load])
     return abs(answer.deflection - here) / (here - float(solution.no_load[position]))
 
 
-def _plain(problem: ContactProblem, position: int) -> Problem:
-    """Write one position as the second solver takes it; candidates that are none are left out."""
+def _plain(problem: ContactProblem, position: int, force: FloatArray) -> Problem:
+    """Write one position as the second solver takes it; candidates that are none are left out.
+
+    Bodies that tilt yield as they do under the `force` that is to be confirmed.
+    """
     c = problem.candidates
-    real = np.isfinite(c.gap[position])
+    point, here = problem_at(point_problems(problem), position)
+    n, m = len(point.bodies), here.size
+    state = State(np.zeros(n), np.zeros(n), np.zeros((n, n)), force[here], np.zeros(m), np.zeros(n))
+    press(point, state.force, state.held)
+    move(point, state)
+    fill_yielding(point, state)
+    blend = np.array([[motion_at(point, q, one) for one in np.eye(n)] for q in range(m)])
+    real = np.isin(np.arange(c.pair.size), here)
     motion = c.motion_arm[position, real]
     row = position % len(problem.compliance)
-    everywhere = c.at_points(c.at_points(problem.bodies[row]).T)
     return Problem(
-        compliance=everywhere[np.ix_(real, real)],
-        gap=c.gap[position, real] * motion,
+        compliance=blend @ state.yielding @ blend.T,
+        gap=c.gap[position, real] * motion + blend @ (state.moved - state.yielding @ state.held),
         motion_arm=motion,
         torque_arm=c.torque_share[position, real],
         gap_about=GapAbout(*(part[position, real] for part in c.gap_about)),

@@ -34,7 +34,7 @@ from fe_contact.contact.point_problem import (
     point_problems,
     problem_at,
 )
-from fe_contact.contact.strip import Gap
+from fe_contact.contact.strip import Gap, StripMiddles
 from fe_contact.effects.influence.deflection_budget import Springs
 from fe_contact.types import Status
 
@@ -54,7 +54,16 @@ def point(compliance, gap, motion_arm=None, torque_arm=None, edge_slope=math.nan
     there = np.flatnonzero(np.asarray(gap) != math.inf)
     bodies, gaps = np.asarray(compliance, float), np.asarray(gap, float)[there]
     return PointProblem(
-        bodies, np.ones((there.size, 1)), there, there, gaps, motion[there], torque[there], law
+        bodies,
+        np.zeros((n, n)),
+        np.zeros(n),
+        np.ones((there.size, 1)),
+        there,
+        there,
+        gaps,
+        motion[there],
+        torque[there],
+        law,
     )
 
 
@@ -146,9 +155,14 @@ def test_residuals_measure_what_they_say():
     # a state that violates each condition by a known amount
     problem = point([[STIFF, 0.0], [0.0, STIFF]], [0.0, 5e-6])
     force, elastic, total = np.array([2000.0, -20.0]), 4e-6, 2200.0
-    residual, zeros = np.full(4, np.nan), np.zeros(2)
+    residual, zeros, square = np.full(4, np.nan), np.zeros(2), np.zeros((2, 2))
     _residuals(
-        problem, total, elastic, problem.gap, State(zeros, zeros.copy(), force, zeros, force), residual
+        problem,
+        total,
+        elastic,
+        problem.gap,
+        State(zeros, zeros.copy(), square, force, zeros, force),
+        residual,
     )
     moved = [STIFF * f + (approach(problem.law, i, f)[0] if f > 0.0 else 0.0) for i, f in enumerate(force)]
     slack = [(problem.gap[i] - elastic + moved[i]) / elastic for i in range(2)]
@@ -192,6 +206,7 @@ def two_position_problem() -> ContactProblem:
         corner_1=1.0,
         corner_2=1.0,
         law_length=LENGTH,
+        edge_load=0.0,
     )
     candidates = SimpleNamespace(  # what the sweep reads of its candidates
         position=np.array([0.0, 0.5]),
@@ -202,11 +217,14 @@ def two_position_problem() -> ContactProblem:
         gap=np.array([[1e-6, math.inf], [0.0, 0.0]]),
         motion_arm=ARM * full,
         torque_share=full,
+        touch=SimpleNamespace(moved=0.0 * full),
+        on_mean=np.asarray,
+        strips=StripMiddles(*np.zeros((5, 2, 2))),
         gap_about=beside_an_edge(math.nan, 2, 2),
         width=WIDTH * full,
     )
     compliance = np.broadcast_to(STIFF * np.array([[1.0, 0.2], [0.2, 1.0]]), (2, 2, 2)).copy()
-    return ContactProblem(candidates, compliance, MODULUS, HALF_PLANE, HALF_PLANE)
+    return ContactProblem(candidates, compliance, 0.0 * compliance, MODULUS, HALF_PLANE, HALF_PLANE)
 
 
 LOADS = np.array([10.0, 1000.0, 5000.0])
@@ -292,7 +310,8 @@ def test_the_solution_is_the_same_wherever_it_starts_and_nearer_is_sooner(spring
 def test_curves_move_the_contacts_as_the_means_of_their_slices_do() -> None:
     here, rng = candidates(7), np.random.default_rng(2)
     root = rng.normal(size=(here.position.size, here.slices.pair.size, 60))
-    problem = ContactProblem(here, root @ root.transpose(0, 2, 1), MODULUS, HALF_PLANE, HALF_PLANE)
+    bodies = root @ root.transpose(0, 2, 1)
+    problem = ContactProblem(here, bodies, 0.0 * bodies, MODULUS, HALF_PLANE, HALF_PLANE)
     for p in range(here.position.size):
         point, present = problem_at(point_problems(problem), p)
         parts = np.zeros((present.size, len(point.bodies)))

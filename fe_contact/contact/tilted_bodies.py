@@ -1,0 +1,57 @@
+"""Motions of the bodies under forces on them, where flanks that tilt press in another place; compiled."""
+
+from __future__ import annotations
+
+from fe_contact.contact.point_problem import PointProblem, State, dot, subtract
+from fe_contact.types import FloatArray
+from host.loops import njit
+
+
+@njit(cache=True, error_model="numpy")
+def move(problem: PointProblem, state: State) -> None:
+    """Fill in the heights of the curves under the forces on them, u(h).
+
+    It is the gradient of the energy h'K h/2 + sum_j h_j min_y (y t_j + y^2/(2 R_j)) with the tilts t = D h:
+    flanks that tilt press in another place y, no further away than the reference length.
+    """
+    n = state.held.size
+    for j in range(n):
+        state.moved[j] = dot(problem.bodies[j], state.held, n)
+    for j in range(n):
+        if problem.radius[j] > 0.0:
+            tilt, way, _ = rolled(problem, j, state.held)
+            state.moved[j] += way * (tilt + 0.5 * way / problem.radius[j])
+            for k in range(n):
+                state.moved[k] += problem.tilt[j, k] * way * state.held[j]
+
+
+@njit(cache=True, error_model="numpy")
+def rolled(problem: PointProblem, j: int, held: FloatArray) -> tuple[float, float, float]:
+    """Return the tilt of the flanks at a curve, how far it moves their strip in m, and per tilt."""
+    tilt, radius = dot(problem.tilt[j], held, held.size), problem.radius[j]
+    way = min(max(-radius * tilt, -problem.law.length), problem.law.length)
+    return tilt, way, -radius if abs(way) < problem.law.length else 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def fill_yielding(problem: PointProblem, state: State) -> None:
+    """Fill in the derivative of the motions: symmetric."""
+    n, out = state.held.size, state.yielding
+    out[:] = problem.bodies
+    for j in range(n):
+        if problem.radius[j] > 0.0:
+            _, way, rate = rolled(problem, j, state.held)
+            row = problem.tilt[j]
+            for k in range(n):
+                out[j, k] += way * row[k]
+                out[k, j] += way * row[k]
+            if rate != 0.0 and state.held[j] != 0.0:
+                for k in range(n):
+                    subtract(out[k], row, -rate * state.held[j] * row[k])
+
+
+@njit(cache=True, error_model="numpy")
+def yield_to(yielding: FloatArray, change: FloatArray, out: FloatArray) -> None:
+    """Fill in the change of the heights by small changes of the forces."""
+    for j in range(change.size):
+        out[j] = dot(yielding[j], change, change.size)
