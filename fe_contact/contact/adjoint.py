@@ -99,7 +99,7 @@ def _tilts(problem: PointProblem, force: FloatArray, weights: FloatArray) -> Flo
     held, weighed, tilts = np.zeros(n), np.zeros(n), np.zeros(n)
     press(problem, force, held)
     press(problem, weights, weighed)
-    for j in range(n):
+    for j in range(n if problem.tilt.size else 0):
         if held[j] > 0.0 and weighed[j] > 0.0:
             tilts[j] = dot(problem.tilt[j], held + held[j] / weighed[j] * weighed, n)
     return tilts

@@ -117,7 +117,7 @@ def face_contact_problem(
         key = _KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
         _face_assembly_add_gear(grid, reach, key, patches, lever, teeth, bounds, slices.present, compliance)
     planes, modulus = _half_planes(compliances)
-    return ContactProblem(candidates, compliance, np.zeros_like(compliance), modulus, *planes)
+    return ContactProblem(candidates, compliance, np.zeros((len(compliance), 0, 0)), modulus, *planes)
 
 
 TOGETHER = 8

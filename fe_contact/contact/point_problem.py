@@ -312,7 +312,7 @@ class PointProblem(NamedTuple):
     ----------
     bodies : ndarray, shape (n, n)
         Height of curve i per unit force on j, without what is in the local law, m/N.
-    tilt : ndarray, shape (n, n)
+    tilt : ndarray, shape (n, n), or (0, 0) where no radius is above zero
         Tilt of the flanks at curve i per unit force on j, 1/N; see `ContactProblem`.
     radius : ndarray, shape (n,)
         How far tilted flanks move their strip, m.
@@ -351,9 +351,10 @@ def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
     pairs = np.cumsum(there[::count]) - 1  # of all pairs among those that are there
     here = np.flatnonzero(~(every.gap[p] == np.inf))  # also those that are not a number
     at = np.flatnonzero(np.repeat(there[::count], points))
-    inner, tilt = every.bodies[row][slices][:, slices], every.tilt[row][slices][:, slices]
+    inner, tilt = every.bodies[row][slices][:, slices], every.tilt[row]
     inner = _turned(every.heights, _turned(every.heights, inner))
-    tilt = _turned(every.heights, _turned(every.heights, tilt))
+    if tilt.size:
+        tilt = _turned(every.heights, _turned(every.heights, tilt[slices][:, slices]))
     radius = every.radius[row][slices]
     gaps = gap_at(gap_at(every.about, p), at)
     law = _LocalLaw(every.width[p][at], gaps, _free_strips(gaps), every.length, every.modulus[row][at])

@@ -299,7 +299,7 @@ class ContactProblem:
     compliance : ndarray, shape (Q, n, n)
         Of position p at row p modulo Q, P a multiple of Q.
         Normal approach of slice i per unit normal force on j, both gears, m/N.
-    tilt : ndarray, shape (Q, n, n)
+    tilt : ndarray, shape (Q, n, n), or (Q, 0, 0) where patches stay
         How fast that grows as the patches of slice i move towards tip 1, 1/N: how much force on j tilts the
         flanks at i.
     modulus : float
@@ -332,16 +332,20 @@ class ContactProblem:
         near = k_1 * np.log(slices.law_length / slices.patch_1.law_width)
         near = near + k_2 * np.log(slices.law_length / slices.patch_2.law_width)
         near = slices.mean(near) / slices.width
-        way = np.clip(self.candidates.touch.moved, -slices.law_length, slices.law_length)
-        displaced = self.candidates.on_mean(way)[: len(self.tilt), :, None] * self.tilt
-        compliance, diagonal = self.compliance + displaced, np.arange(slices.pair.size)
-        compliance += np.swapaxes(displaced, 1, 2)
+        compliance, diagonal = self.compliance.copy(), np.arange(slices.pair.size)
+        if self.tilt.size:
+            way = np.clip(self.candidates.touch.moved, -slices.law_length, slices.law_length)
+            displaced = self.candidates.on_mean(way)[: len(self.tilt), :, None] * self.tilt
+            compliance += displaced
+            compliance += np.swapaxes(displaced, 1, 2)
         compliance[:, diagonal, diagonal] -= np.where(slices.present, near, 0.0)
         return compliance
 
     @property
     def radius(self) -> FloatArray:
         """How far flanks that tilt by 1 move the middles of their strips back from tip 1 (Q, n), m."""
+        if not self.tilt.size:
+            return np.zeros(self.candidates.slices.present.shape)
         return self.candidates.on_mean(self.candidates.strips.radius)[: len(self.tilt)]
 
     def moved(self, force: FloatArray) -> FloatArray:
@@ -356,6 +360,8 @@ class ContactProblem:
         def times(matrices: FloatArray, forces: FloatArray) -> FloatArray:
             return np.asarray(np.einsum("qij,tqlj->tqli", matrices, forces, optimize=True))
 
+        if not self.tilt.size:
+            return self.candidates.at_points(times(self.bodies, by_pitch).reshape(held.shape))
         tilt = times(self.tilt, by_pitch)
         way = np.clip(-radius * tilt, -longest, longest)
         rolled = way * (tilt + np.divide(0.5 * way, radius, out=np.zeros(way.shape), where=radius > 0.0))
