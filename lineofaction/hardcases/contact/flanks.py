@@ -303,7 +303,8 @@ _SEED = 20260101
     "gap_beyond_deflection",
     "Relief of 0.3 mm where teeth bend by 8 um: gaps and deflections differ by orders of magnitude, and "
     "most candidates never touch.",
-    "Out of reach means without effect: taking those candidates away, or a meter further, changes the last bit at most.",
+    "Out of reach means without effect: taking those candidates away, or a meter further, changes the last "
+    "bit at most.",
 )
 def _gap_beyond_deflection() -> Sequence[Measured]:
     """Relieve both tips by 0.3 mm, so that most pairs cannot touch whatever the load."""

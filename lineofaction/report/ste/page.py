@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from bounds import leftover
+from bounds import engineering, leftover
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.answers import source_rows
@@ -84,7 +84,8 @@ def _biases(receipt: Mapping[str, Any]) -> tuple[str, str]:
         return "", ""
     hidden = f"±{um(bias['either_way_m'], 2)} µm"
     mean, ripple = (
-        hidden if part is None else f"{100.0 * part:+.2g} %" for part in (bias["mean"], bias["peak_to_peak"])
+        hidden if part is None else f"{engineering(100.0 * part, 2, '+')} %"
+        for part in (bias["mean"], bias["peak_to_peak"])
     )
     return f"; gears of this width {mean}", f"; gears of this width {ripple}"
 
