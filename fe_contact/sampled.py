@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_contact.types import FloatArray, IntArray
 
-LOADS, ALIGNMENTS = 3, 3
+LOADS, ALIGNMENTS = 3, 5
 """Nodes of an axis of loads, of misalignments or center distances that are solved; shorter axes whole."""
 WIDE_INTERVALS, WIDE_PROBES = 4, 3
 """Up to so many intervals of an axis of loads hold so many held-out loads each; more of them, which are

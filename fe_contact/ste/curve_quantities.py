@@ -72,6 +72,8 @@ def spectrum(samples: FloatArray, period: int, teeth: tuple[int, int], error: fl
 QUANTITIES = 2 + HARMONICS
 """Mean, peak-to-peak, and the harmonics, in this order."""
 MEAN, PEAK_TO_PEAK, FIRST_HARMONIC = 0, 1, 2
+BY_SOURCE = {"mean_m": MEAN, "peak_to_peak_m": PEAK_TO_PEAK, "first_harmonic_m": FIRST_HARMONIC}
+"""Those whose errors a receipt has by source, m."""
 # samples of a pitch, a dozen for the shortest harmonic, and of a long period where that would be too many
 _PER_PITCH, _PER_PERIOD, _FEWEST = 256, 2**15, 64
 _FEWEST_ROWS = 8

@@ -22,8 +22,8 @@ from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of, some_positions, spr
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, PLANE, SOURCES
 from fe_contact.ste.curve_quantities import (
+    BY_SOURCE,
     FIRST_HARMONIC,
-    MEAN,
     PEAK_TO_PEAK,
     QUANTITIES,
     error_bound,
@@ -302,7 +302,6 @@ pairs of docs/lab/accuracy.md ("Constants"); the level fine has the parts of sta
 HARMONIC_SHARE = 0.3
 """Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k: half the
 slices and coarse meshes err in other harmonics than the table, whose own may hardly change."""
-SHOWN = {"mean_m": MEAN, "peak_to_peak_m": PEAK_TO_PEAK, "first_harmonic_m": FIRST_HARMONIC}
 
 
 def curve_errors(
@@ -408,7 +407,7 @@ def _summary(errors: FloatArray) -> Json:
     """
     known = {name: source for name, source in zip(SOURCES, errors, strict=True) if not np.isnan(source).any()}
     largest = {
-        name: {label: source[i].max(axis=(1, 2)).tolist() for label, i in SHOWN.items()}
+        name: {label: source[i].max(axis=(1, 2)).tolist() for label, i in BY_SOURCE.items()}
         for name, source in known.items()
     }
     return {"curve_error": largest, "not_estimated": [name for name in SOURCES if name not in known]}

@@ -17,7 +17,7 @@ from fe_contact.analysis.pairs.pair_contact import OperatingPoints
 from fe_contact.analysis.tables import PositionNodes
 from fe_contact.contact import ContactSolution
 from fe_contact.planning.plan import NodeRule, Plan
-from fe_contact.sampled import LOADS, sample_of, spread
+from fe_contact.sampled import sample_of, spread
 from fe_contact.ste.curve_quantities import (
     PEAK_TO_PEAK,
     QUANTITIES,
@@ -32,6 +32,8 @@ LEFT_BY_MIDDLES = 1.5
 """Error of the positions over what their middles change: 4/3 for second order, and more for kinks, which may
 stand anywhere in an interval. Peaks at handovers, which would fall with the first power of the spacing, are
 looked for by themselves: the chords beside their interval bound them as they are (`missed_peaks`)."""
+LOADS = 7
+"""Nodes of an axis of loads that are solved: peaks between positions come and go from one to the next."""
 SOLVED_PART = 4
 """Of the intervals between fixed positions one in so many is solved, if so many bend."""
 NEXT_SPACING = 0.25

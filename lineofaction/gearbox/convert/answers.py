@@ -10,6 +10,7 @@ from bounds import engineering
 from bounds.types import Json
 from fe_contact.ste import Curve, SteDatabase, in_own_model
 from fe_contact.ste.curve import PLANE
+from fe_contact.ste.curve_quantities import BY_SOURCE
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.problems import JobFailed
@@ -122,14 +123,10 @@ _NOTHING = 1e-12
 """m: what rounding leaves."""
 
 
-_BY_SOURCE = "mean", "peak_to_peak", "first_harmonic"
-"""Quantities of the receipt whose errors it has by source."""
-
-
 def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float]]:
     """Return what each source states of mean, peak-to-peak and first harmonic at a load, m; no bias."""
     rows = [
-        (name.replace("_", " "), *(float(parts[f"{quantity}_m"][load]) for quantity in _BY_SOURCE))
+        (name.replace("_", " "), *(float(parts[quantity][load]) for quantity in BY_SOURCE))
         for name, parts in receipt.get("curve_error", {}).items()
         if not (name == PLANE and "bias" in receipt)
     ]
