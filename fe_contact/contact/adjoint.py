@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.contact.model import Break, GapTerm
+from fe_contact.contact.model import GapTerm
 from fe_contact.contact.newton import NewtonSystem, empty_system, newton_system
 from fe_contact.contact.point_problem import (
     PointProblem,
@@ -202,8 +202,6 @@ def _answers(problem: PointProblem, force: FloatArray, opened: FloatArray) -> Fl
 
 _NODE = math.sqrt(0.75)
 """Outer ones of three samples in parts of half a strip, the third in its middle."""
-_NEAR = 1e-6
-"""Step of differences along the flank over half a strip."""
 _POINTS = 8
 """Of a strip at which a change is spread over the flank."""
 
@@ -304,14 +302,10 @@ class CarryingStrips:
 
         Linear in the gap. Between its breaks the gap counts as a parabola over each strip.
         """
-        there, mean = self._removed(gap)
+        there, mean, _ = self._removed(gap)
         if gap.along_profile and self.rolled.any():
-            step = _NEAR * self.rest_half
-            ends = (
-                replace(self, middle=self.rest_middle + way, half=self.rest_half)._removed(gap)[1]
-                for way in (step, -step)
-            )
-            mean = mean + self.rolled * (next(ends) - next(ends)) / (2.0 * step)
+            at_rest = replace(self, middle=self.rest_middle, half=self.rest_half)
+            mean = mean + self.rolled * at_rest._removed(gap)[2]
         return np.asarray(self.arm * there + self.normal * (mean - there))
 
     def change(self, opened: FloatArray) -> FloatArray:
@@ -319,11 +313,11 @@ class CarryingStrips:
         rows = self.shape[:2]
         return np.asarray(np.bincount(self.row, self.weight * opened, math.prod(rows)).reshape(rows))
 
-    def _removed(self, gap: GapTerm) -> tuple[FloatArray, FloatArray]:
-        """Return the gap at the touching points and its mean over the strips (k,), m."""
+    def _removed(self, gap: GapTerm) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the gap at the touching points and its mean over the strips (k,), m, and the mean slope."""
         if not gap.along_profile:
             steady = np.asarray(gap(self.pair, *rolls_at(self.pair, self.s_1, self.s_2), self.face))
-            return steady, steady
+            return steady, steady, np.zeros(steady.shape)
         x = self.middle + _NODE * self.half * np.array([[-1.0], [0.0], [1.0]])
         breaks = [(each, each.distance(self.s_1, self.s_2)) for each in gap.breaks(self.pair, self.face)]
         smooth = gap(self.pair, *rolls_at(self.pair, self.s_1 + x, self.s_2 - x), self.face)
@@ -332,16 +326,14 @@ class CarryingStrips:
         bend = (smooth[2] - 2.0 * smooth[1] + smooth[0]) / _NODE**2
         back = -self.middle / self.half
         there = smooth[1] + back * (slope + 0.5 * back * bend)
-        mean = smooth[1] + 0.25 * bend
-        there = there + sum(each.height(-distance) for each, distance in breaks)
-        mean = mean + sum(self._mean_height(each, distance) for each, distance in breaks)
-        return there, mean
-
-    def _mean_height(self, each: Break, distance: FloatArray) -> FloatArray:
-        """Return what a break removes on the mean over the strips (k,), m; `distance` from touch."""
-        beyond = each.side * (distance - self.middle)  # from the middle to the break
-        jump, bend = (np.broadcast_to(value, beyond.shape) for value in (each.jump, each.bend))
-        return _mean_past_break(beyond, self.half, jump, bend)
+        mean, slope = smooth[1] + 0.25 * bend, slope / self.half
+        for each, distance in breaks:
+            there = there + each.height(-distance)
+            beyond = each.side * (distance - self.middle)  # from the middle to the break
+            jump, curved = (np.broadcast_to(value, beyond.shape) for value in (each.jump, each.bend))
+            height, rise = _means_past_break(beyond, self.half, jump, curved)
+            mean, slope = mean + height, slope + each.side * rise
+        return there, mean, slope
 
     def on_flank(
         self, gear: int, roll_length: FloatArray, face_position: FloatArray, rows: FloatArray
@@ -382,14 +374,17 @@ class CarryingStrips:
 
 
 @njit(cache=True, error_model="numpy")
-def _mean_past_break(beyond: FloatArray, half: FloatArray, jump: FloatArray, bend: FloatArray) -> FloatArray:
-    """Return the means over strips (k,) of jump d + bend d^2/2 past a break, m."""
-    means = np.zeros(beyond.size)
+def _means_past_break(
+    beyond: FloatArray, half: FloatArray, jump: FloatArray, bend: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the means over strips (k,) of jump d + bend d^2/2 past a break in m, and of its slope."""
+    height, slope = np.zeros((2, beyond.size))
     for i in range(beyond.size):
         if beyond[i] < half[i]:
-            _, _, ramp, _, square = past_break(beyond[i], half[i])
-            means[i] = (jump[i] * ramp + 0.5 * bend[i] * square) / math.pi
-    return means
+            angle, _, ramp, _, square = past_break(beyond[i], half[i])
+            height[i] = (jump[i] * ramp + 0.5 * bend[i] * square) / math.pi
+            slope[i] = (jump[i] * angle + bend[i] * ramp) / math.pi
+    return height, slope
 
 
 def _between(nodes: FloatArray, at: FloatArray) -> tuple[IntArray, FloatArray]:

@@ -49,7 +49,7 @@ from fe_contact.types import FloatArray
 # of its flanks costs about a third of the curve more.
 
 CENTER_DISTANCE, TORQUE = "center_distance_change", "torque"
-AMOUNT_STEP, LENGTH_STEP = 1e-6, 1e-4
+AMOUNT_STEP, LENGTH_STEP = 1e-6, 1e-6
 """Of differences of the flanks: in m, by which the gap is linear in its amounts; and in parts of a length."""
 DISTANCE_STEP = 1e-7
 """To a larger center distance in m, at which the curve is solved: other places of the flanks touch there."""

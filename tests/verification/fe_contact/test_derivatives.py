@@ -186,8 +186,7 @@ def test_by_the_length_of_a_relief_curves_change_as_differences_say(pair, conden
     name, bodies = "pinion.tip_relief_length", condensed(pair)
     found = curve_derivatives(bodies, PAIRS[pair](), TORQUES, [name]).by[0]
     off = np.abs(found - central(bodies, name, 1e-8)) / np.abs(found).max()
-    assert np.median(off) < 2e-4
-    assert np.quantile(off, 0.99) < 1e-2  # the rest: positions at which a strip begins to reach the relief
+    assert np.median(off) < 2e-4 and off.max() < 1e-2
 
 
 def test_by_misalignment_torque_and_center_distance_curves_change_as_differences_say(condensed):
