@@ -123,7 +123,7 @@ def solve_point(
     touch = np.min(problem.gap / problem.motion_arm)
     gap = problem.gap - problem.motion_arm * touch  # from where the first contact touches
     m, n = force.size, problem.bodies.shape[0]
-    if math.isnan(touch) or not 0.0 < _softness(problem) < math.inf:
+    if math.isnan(touch) or not 0.0 < np.abs(problem.bodies).sum() < math.inf:
         force[:] = 0.0
         return math.nan, math.nan, SINGULAR, 0, False
     state = State(np.zeros(n), np.zeros(n), np.zeros((n, n)), force, np.zeros(m), np.zeros(n))
@@ -156,9 +156,8 @@ def _start(problem: PointProblem, total: float, gap: FloatArray, state: State) -
 
 @njit(cache=True, error_model="numpy")
 def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArray) -> None:
-    """Fill in forces as the gaps would take them if all contacts gave way alike."""
-    depth = total * _softness(problem)
-    carried = 0.0
+    """Fill in forces as the gaps would take them if all contacts gave way as the first one to touch."""
+    depth, carried = total * _softness(problem, np.argmin(gap)), 0.0
     for q in range(gap.size):
         force[q] = max(depth - gap[q], 0.0) * problem.law.width[problem.place[q]]
         carried += problem.torque_arm[q] * force[q]
@@ -166,15 +165,13 @@ def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArr
 
 
 @njit(cache=True, error_model="numpy")
-def _softness(problem: PointProblem) -> float:
-    """Return how far the bodies move at a contact under a unit force on it, on the mean, m/N."""
-    total, (m, width) = 0.0, problem.curve.shape
-    for q in range(m):
-        first, curve = problem.first[q], problem.curve[q]
-        for a in range(width):
-            for b in range(width):
-                total += abs(curve[a] * curve[b] * problem.bodies[first + a, first + b])
-    return float(total / m)
+def _softness(problem: PointProblem, q: int) -> float:
+    """Return how far the bodies move at most at a contact under a unit force on it, m/N."""
+    total, first, curve = 0.0, problem.first[q], problem.curve[q]
+    for a in range(curve.size):
+        for b in range(curve.size):
+            total += abs(curve[a] * curve[b] * problem.bodies[first + a, first + b])
+    return total
 
 
 @njit(cache=True, error_model="numpy")
