@@ -117,7 +117,7 @@ def face_contact_problem(
         key = _KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
         _face_assembly_add_gear(grid, reach, key, patches, lever, teeth, bounds, slices.present, compliance)
     planes, modulus = _half_planes(compliances)
-    return ContactProblem(candidates, compliance, np.zeros((len(compliance), 0, 0)), modulus, *planes)
+    return ContactProblem(candidates, compliance, modulus, *planes)
 
 
 TOGETHER = 8
@@ -216,7 +216,7 @@ def contact_problem(
         laid = np.array([patch.center, patch.half_width, patch.edge_share])
         _add_gear(flank.s, blocks, laid, rows(lever), tip, slices.present, couple_teeth, compliance, tilt)
     planes, modulus = _half_planes(compliances)
-    return ContactProblem(candidates, compliance / slices.width, tilt / slices.width, modulus, *planes)
+    return ContactProblem(candidates, compliance / slices.width, modulus, *planes, tilt / slices.width)
 
 
 def _half_planes(

@@ -256,6 +256,7 @@ class PointProblems(NamedTuple):
     Attributes
     ----------
     bodies, tilt : ndarray, shape (Q, n, n)
+        The tilt is empty where patches stay.
     radius : ndarray, shape (Q, n)
     present : ndarray of bool, shape (Q, n)
     curves, heights : ndarray, shapes (points of a pair, K), (K, K)
@@ -351,10 +352,10 @@ def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
     pairs = np.cumsum(there[::count]) - 1  # of all pairs among those that are there
     here = np.flatnonzero(~(every.gap[p] == np.inf))  # also those that are not a number
     at = np.flatnonzero(np.repeat(there[::count], points))
-    inner, tilt = every.bodies[row][slices][:, slices], every.tilt[row]
+    inner, tilt = every.bodies[row][slices][:, slices], np.zeros((0, 0))
     inner = _turned(every.heights, _turned(every.heights, inner))
-    if tilt.size:
-        tilt = _turned(every.heights, _turned(every.heights, tilt[slices][:, slices]))
+    if every.tilt.size:
+        tilt = _turned(every.heights, _turned(every.heights, every.tilt[row][slices][:, slices]))
     radius = every.radius[row][slices]
     gaps = gap_at(gap_at(every.about, p), at)
     law = _LocalLaw(every.width[p][at], gaps, _free_strips(gaps), every.length, every.modulus[row][at])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.interpolate import BSpline
@@ -299,21 +299,21 @@ class ContactProblem:
     compliance : ndarray, shape (Q, n, n)
         Of position p at row p modulo Q, P a multiple of Q.
         Normal approach of slice i per unit normal force on j, both gears, m/N.
-    tilt : ndarray, shape (Q, n, n), or (Q, 0, 0) where patches stay
-        How fast that grows as the patches of slice i move towards tip 1, 1/N: how much force on j tilts the
-        flanks at i.
     modulus : float
         Contact modulus E*, Pa.
     half_plane_1, half_plane_2 : float
         2 (1 - nu^2)/(pi E) of the gears, 1/Pa.
+    tilt : ndarray, shape (Q, n, n), or (0, 0, 0) where patches stay
+        How fast the compliance grows as the patches of slice i move towards tip 1, 1/N: how much force on j
+        tilts the flanks at i.
     """
 
     candidates: Candidates
     compliance: FloatArray
-    tilt: FloatArray
     modulus: float
     half_plane_1: float
     half_plane_2: float
+    tilt: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
 
     @property
     def half_planes(self) -> tuple[FloatArray, FloatArray]:
@@ -355,7 +355,7 @@ class ContactProblem:
         """
         held = self.candidates.on_slices(force)
         radius, longest = self.radius[:, None], self.candidates.slices.law_length
-        by_pitch = held.reshape(-1, len(self.tilt), *held.shape[1:])
+        by_pitch = held.reshape(-1, len(self.compliance), *held.shape[1:])
 
         def times(matrices: FloatArray, forces: FloatArray) -> FloatArray:
             return np.asarray(np.einsum("qij,tqlj->tqli", matrices, forces, optimize=True))
@@ -374,7 +374,7 @@ class ContactProblem:
             self,
             candidates=self.candidates.rows(keep),
             compliance=self.compliance[keep],
-            tilt=self.tilt[keep],
+            tilt=self.tilt[keep] if self.tilt.size else self.tilt,
         )
 
     def touching(self, candidates: Candidates) -> ContactProblem:

@@ -85,7 +85,7 @@ def picked(problem: Problem, index: np.ndarray) -> Problem:
 
 
 def untilted(n: int) -> tuple[np.ndarray, np.ndarray]:
-    return np.zeros((n, n)), np.zeros(n)
+    return np.zeros((0, 0)), np.zeros(n)
 
 
 class Solved:

@@ -109,8 +109,7 @@ class SpringContact(PairContact):
         plain = contact_candidates(self.pair, seen, position, self.plan.patch, slices)
         touching = with_gaps(self.pair, plain, seen)
         modulus = contact_modulus(self.pair.pinion.material, self.pair.wheel.material)
-        none = np.zeros((position.size, 0, 0))
-        problem = ContactProblem(touching, none, none, modulus, 0.0, 0.0)
+        problem = ContactProblem(touching, np.zeros((position.size, 0, 0)), modulus, 0.0, 0.0)
         if pitch is not None or seen.tooth_gaps:
             problem = in_pitches(problem, seen, np.zeros_like(position, int) if pitch is None else pitch)
         stiffness = _slice_stiffness(self.pair, problem.candidates, self.law)

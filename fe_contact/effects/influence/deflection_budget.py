@@ -88,7 +88,7 @@ class Springs:
             compliance = slice_compliance(self.pair, plain.slices, model)
             modulus = contact_modulus(self.pair.pinion.material, self.pair.wheel.material)
             planes = half_plane(self.pair.pinion), half_plane(self.pair.wheel)
-            self._known[key] = ContactProblem(plain, compliance, 0.0 * compliance, modulus, *planes)
+            self._known[key] = ContactProblem(plain, compliance, modulus, *planes)
         return self._known[key]
 
     def _candidates(self, model: ContactModel) -> Candidates:

@@ -64,8 +64,7 @@ def solved_slices(
     gap = np.where(only, candidates.gap, np.inf)
     candidates = candidates.touching(dataclasses.replace(candidates.touch, gap=gap))
     spring = np.eye(only.size)[None] / (STIFFNESS * WIDTH / COUNT)
-    problem = ContactProblem(candidates, spring, 0.0 * spring, modulus, soft, soft)
-    problem = with_compliances(pair, problem, model)
+    problem = with_compliances(pair, ContactProblem(candidates, spring, modulus, soft, soft), model)
     solution = solve_contact(problem, force)
     assert solution.converged
     return problem, solution, only

@@ -34,7 +34,7 @@ from fe_contact.contact.point_problem import (
     point_problems,
     problem_at,
 )
-from fe_contact.contact.strip import Gap, StripMiddles
+from fe_contact.contact.strip import Gap
 from fe_contact.effects.influence.deflection_budget import Springs
 from fe_contact.types import Status
 
@@ -55,7 +55,7 @@ def point(compliance, gap, motion_arm=None, torque_arm=None, edge_slope=math.nan
     bodies, gaps = np.asarray(compliance, float), np.asarray(gap, float)[there]
     return PointProblem(
         bodies,
-        np.zeros((n, n)),
+        np.zeros((0, 0)),
         np.zeros(n),
         np.ones((there.size, 1)),
         there,
@@ -217,14 +217,11 @@ def two_position_problem() -> ContactProblem:
         gap=np.array([[1e-6, math.inf], [0.0, 0.0]]),
         motion_arm=ARM * full,
         torque_share=full,
-        touch=SimpleNamespace(moved=0.0 * full),
-        on_mean=np.asarray,
-        strips=StripMiddles(*np.zeros((5, 2, 2))),
         gap_about=beside_an_edge(math.nan, 2, 2),
         width=WIDTH * full,
     )
     compliance = np.broadcast_to(STIFF * np.array([[1.0, 0.2], [0.2, 1.0]]), (2, 2, 2)).copy()
-    return ContactProblem(candidates, compliance, 0.0 * compliance, MODULUS, HALF_PLANE, HALF_PLANE)
+    return ContactProblem(candidates, compliance, MODULUS, HALF_PLANE, HALF_PLANE)
 
 
 LOADS = np.array([10.0, 1000.0, 5000.0])
@@ -311,7 +308,7 @@ def test_curves_move_the_contacts_as_the_means_of_their_slices_do() -> None:
     here, rng = candidates(7), np.random.default_rng(2)
     root = rng.normal(size=(here.position.size, here.slices.pair.size, 60))
     bodies = root @ root.transpose(0, 2, 1)
-    problem = ContactProblem(here, bodies, 0.0 * bodies, MODULUS, HALF_PLANE, HALF_PLANE)
+    problem = ContactProblem(here, bodies, MODULUS, HALF_PLANE, HALF_PLANE)
     for p in range(here.position.size):
         point, present = problem_at(point_problems(problem), p)
         parts = np.zeros((present.size, len(point.bodies)))

@@ -111,7 +111,7 @@ def test_pairs_keep_their_teeth_as_they_move_on():
 
 
 def _without_compliance(candidates):
-    return ContactProblem(candidates, *np.zeros((2, 2, 1, 1)), 1.0, 1.0, 1.0)
+    return ContactProblem(candidates, np.zeros((2, 1, 1)), 1.0, 1.0, 1.0)
 
 
 @pytest.mark.parametrize("side", ["pinion", "wheel"])

@@ -168,7 +168,7 @@ def problem_of(pair: GearPair) -> ContactProblem:
     slices = Slices.of_pair(pair, 5)
     candidates = contact_candidates(pair, ContactModel(), np.arange(3) / 3, PatchRule(3e-4, 2e-4), slices)
     springs = 1e-9 * np.eye(candidates.slices.pair.size) + np.zeros((3, 1, 1))
-    return ContactProblem(candidates, springs, 0.0 * springs, 1e11, 1e-11, 1e-11)
+    return ContactProblem(candidates, springs, 1e11, 1e-11, 1e-11)
 
 
 def scene(*shafts: Shaft | None) -> ContactScene:
