@@ -188,7 +188,7 @@ def test_the_stated_errors_of_a_soft_gear_hold_and_are_not_much_too_large(record
 
 
 def test_what_unlike_gears_leave_out_grows_with_the_load_and_with_the_unlikeness():
-    """Of the mean beyond the floor: patches follow the flanks, so that little more than it is left at 10 N m."""
+    """Of the mean beyond the floor: patches follow the flanks, so that little more is left at 10 N m."""
 
     def stated(table: SteDatabase, torque: float) -> np.ndarray:
         curve = table.curve(torque=torque)
