@@ -29,29 +29,20 @@ Quarteroni, A., Manzoni, A., Negri, F. (2016). Reduced basis methods for partial
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
+from fe_contact.compliance.cyclic_harmonics import LeftCuts, TurningLoads, left_cuts
+from fe_contact.compliance.reduced_harmonics import SOFTENED, least_passed, row_space, solve_few
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
 from model_studies.progress import Report, unreported
 
-ComplexArray = NDArray[np.complex128]
 Scalar = TypeVar("Scalar", np.float64, np.complex128)
-# Shares of the largest entry of A:
-LEAST_TOLD = 1e-12  # compliance by what flank loads pass to the cuts that is told from rounding
-LEAST_PASSED = 1e-7  # the same that is solved for where not every harmonic is
-LEAST_ENERGY = 1e-8  # energy under unit loads that a direction of the space holds
-LARGEST_MISSED = 3e-7  # what a flank node may be off by harmonics that are not solved
-
-SOFTENED = 2.0  # what moving neighbors add to the compliance of a cut; where it is more, the space holds it
-RESOLVED = 1e-10  # of the largest energy among vectors: the least that their products show
-SKETCH = 16  # random sums that tell the size of what is unbalanced
 
 
 @dataclass(frozen=True)
@@ -232,34 +223,18 @@ def close_ring(
         A harmonic is not positive definite.
     """
     even, count = even_sector(held), probes.shape[1]
-    size, flank = held.cut_size, len(held.flank) if free is None else free.flank
+    flank = len(held.flank) if free is None else free.flank
     largest = float(np.abs(held.flank[:flank, :flank]).max())
-    # Even steps of the logarithm from 2 on; of few teeth these are all.
-    spread = (round(2.0 * (teeth / 4.0) ** (i / 3.0)) for i in range(4))
-    chosen = sorted({min(number, teeth // 2) for number in (0, 1, *spread)})
-    least = LEAST_TOLD if len(chosen) > teeth // 2 else LEAST_PASSED
+    least = least_passed(teeth)
     # The probes are among them: blocks hold their energy but for rounding.
     modes, _ = np.linalg.qr(np.concatenate([probes, row_space(even.transmitted, least * largest)], axis=1))
     loads, rank = even.transmitted @ np.concatenate([modes, probes], axis=1), modes.shape[1]
-    basis, restraint, spring = np.empty((size, 0)), 0.0, None
-    if free is not None:
-        on_cut = np.zeros((2 * size, len(free.key_cut)))
-        on_cut[:size] = even.force(np.eye(size)[:, free.key_cut])
-        loads = np.concatenate([loads, even.transmitted[:, free.flank :], on_cut], axis=1)
-        restraint = float(np.trace(held.cuts) / (free.turn @ free.turn))
-        spring = np.sqrt(restraint) * even.force(free.turn[:, None])
-        basis = even.scale.T @ free.turn[:, None]
-        basis /= np.linalg.norm(basis)
-    ring = TurningLoads(even.across, loads, teeth, spring)
-    closed = _closed(ring, basis, modes, largest, chosen, slice(rank, rank + count), report)
-    within = np.concatenate([closed.basis.T @ part for part in np.split(even.transmitted, 2)])
-    blocks = np.empty((reach + 1, len(modes), len(modes)))
+    ring, basis, restraint = _turning(held, even, TurningLoads(even.across, loads, teeth), free)
+    closed = solve_few(ring, basis, modes, largest, slice(rank, rank + count), report)
     cuts = left_cuts(closed.solutions, teeth, reach, rank)
-    near = {m: np.concatenate([cuts.near[m], cuts.near[m - 1]]) for m in range(-reach, reach + 1)}
-    moved = {m: within.T @ near[m] for m in near}
-    for m in range(reach + 1):
-        ahead = moved[m] - modes @ (modes.T @ moved[m])
-        blocks[m] = ahead @ modes.T + modes @ moved[-m].T
+    within = np.concatenate([closed.basis.T @ part for part in np.split(even.transmitted, 2)])
+    near = [np.concatenate([cuts.near[m], cuts.near[m - 1]]) for m in range(-reach, reach + 1)]
+    blocks = _blocks([within.T @ each for each in near], modes)
     blocks[0] += held.flank
     everywhere = even.displacement(closed.basis) @ cuts.everywhere
     solved = np.stack([even.displacement(left) for left in closed.solved])
@@ -275,187 +250,30 @@ def close_ring(
     )
 
 
-@dataclass(frozen=True)
-class TurningLoads:
-    """Loads (2 nc, p) on the scaled cuts of a sector of a ring of `teeth`, that turn from tooth to tooth.
-
-    `across` is C, and q the `spring` (nc, 1) of a stiffness q q' against what all cuts have in common.
-    """
-
-    across: FloatArray
-    loads: FloatArray
-    teeth: int
-    spring: FloatArray | None = None
-
-    @property
-    def harmonics(self) -> range:
-        """Numbers of the harmonics; n and z - n are complex conjugate."""
-        return range(self.teeth // 2 + 1)
-
-    def solve(self, number: int) -> ComplexArray:
-        """Return the left cut of sector 0 under harmonic `number`, (nc, p).
-
-        Raises
-        ------
-        SolveError
-            The harmonic is not positive definite.
-        """
-        turn = np.exp(2j * np.pi * number / self.teeth)
-        matrix = np.empty(self.across.shape, dtype=complex, order="F")
-        matrix.real = turn.real * (self.across + self.across.T) + np.eye(len(matrix))
-        matrix.imag = turn.imag * (self.across.T - self.across)
-        if number == 0 and self.spring is not None:
-            matrix.real += self.spring @ self.spring.T
-        factor, info = lapack.zpotrf(matrix, lower=1, clean=0, overwrite_a=1)
-        if info:
-            raise SolveError(f"ring of teeth: harmonic {number} is not positive definite (pivot {info})")
-        left, right = np.split(self.loads, 2)
-        x = blas.ztrsm(1.0, factor, np.asfortranarray(left + turn * right), lower=1, overwrite_b=1)
-        return np.asarray(blas.ztrsm(1.0, factor, x, lower=1, trans_a=2, overwrite_b=1))
-
-    def within(self, basis: FloatArray) -> TurningLoads:
-        """Return the ring whose cuts move in the space of orthonormal columns `basis` (nc, k) only."""
-        loads = np.concatenate([basis.T @ part for part in np.split(self.loads, 2)])
-        spring = None if self.spring is None else basis.T @ self.spring
-        return replace(self, across=basis.T @ (self.across @ basis), loads=loads, spring=spring)
+def _turning(
+    held: HeldSector, even: EvenSector, ring: TurningLoads, free: FreeTurn | None
+) -> tuple[TurningLoads, FloatArray, float]:
+    """Restrain a ring that may turn and load its bore; with what its space holds, and the restraint."""
+    size = held.cut_size
+    if free is None:
+        return ring, np.empty((size, 0)), 0.0
+    on_cut = np.zeros((2 * size, len(free.key_cut)))
+    on_cut[:size] = even.force(np.eye(size)[:, free.key_cut])
+    loads = np.concatenate([ring.loads, even.transmitted[:, free.flank :], on_cut], axis=1)
+    restraint = float(np.trace(held.cuts) / (free.turn @ free.turn))
+    spring = np.sqrt(restraint) * even.force(free.turn[:, None])
+    basis = even.scale.T @ free.turn[:, None]
+    return replace(ring, loads=loads, spring=spring), basis / np.linalg.norm(basis), restraint
 
 
-class _Closed(NamedTuple):
-    """All harmonics in the space of `basis` (nc, k), as `left_cuts` takes them.
-
-    `solved` (z, nc, p) are scaled left cuts under some loads, of which `shares` (z,) act on each tooth so
-    that solved harmonics alone appear; `missed` is what a flank node is off, estimated, m/N.
-    """
-
-    basis: FloatArray
-    solutions: list[ComplexArray]
-    solved: FloatArray
-    shares: FloatArray
-    missed: float
-
-
-def _closed(
-    ring: TurningLoads,
-    basis: FloatArray,
-    modes: FloatArray,
-    largest: float,
-    chosen: list[int],
-    probes: slice,
-    report: Report,
-) -> _Closed:
-    """Solve the harmonics `chosen` and as many more as are asked for, the others in the space of these.
-
-    Parameters
-    ----------
-    basis : (nc, k) array
-        What the space holds to begin with.
-    modes : (nf, r) array
-        Flank loads that the first columns of the loads stand for.
-    largest : float
-        That the limits are shares of, m/N.
-    probes : slice
-        Columns of the loads that `solved` is wanted for.
-    """
-    known: dict[int, ComplexArray] = {}
-    direct = len(chosen) == len(ring.harmonics)
-    while not direct:
-        for number in chosen:
-            x = ring.solve(number)
-            known[number] = x[:, probes]
-            basis = _extended(basis, np.concatenate([x.real, x.imag], axis=1), LEAST_ENERGY * largest)
-            report(len(known) / (len(known) + 2.0))
-        within = ring.within(basis)
-        solutions = [within.solve(number) for number in ring.harmonics]
-        missed = _missed(ring, basis, solutions, modes)
-        if missed.sum(axis=0).max() <= LARGEST_MISSED * largest:
-            break
-        chosen = [int(missed.max(axis=1).argmax())]
-        # as large as the problem, or rounding alone is left
-        direct = 4 * basis.shape[1] > 3 * len(basis) or chosen[0] in known
-    if direct:
-        solutions = [ring.solve(number) for number in ring.harmonics]
-        known = {number: x[:, probes] for number, x in enumerate(solutions)}
-        basis, missed = np.eye(len(basis)), np.zeros((1, 1))
-    weights = _weights(ring.teeth)[list(known)]
-    weights /= weights.sum()
-    turns = np.exp(2j * np.pi / ring.teeth * np.outer(np.arange(ring.teeth), list(known)))
-    solved = np.tensordot(weights * turns, np.stack(list(known.values())), axes=1).real
-    return _Closed(basis, solutions, solved, turns.real @ weights, float(missed.sum(axis=0).max()))
-
-
-def _extended(basis: FloatArray, columns: FloatArray, least: float) -> FloatArray:
-    """Return orthonormal columns that also span `columns` (nc, p), but for directions of less energy.
-
-    The softest come first: beside them rounding hides the stiff ones.
-    """
-    while True:
-        columns = columns - basis @ (basis.T @ columns)
-        gram = _gram(columns)
-        most = gram.diagonal().max()
-        if most <= least:
-            return basis
-        added = columns @ _whitening(gram, max(least, RESOLVED * most))[0]
-        added -= basis @ (basis.T @ added)
-        basis = np.concatenate([basis, added @ _whitening(_gram(added), 0.5)[0]], axis=1)
-
-
-def _missed(
-    ring: TurningLoads, basis: FloatArray, solutions: list[ComplexArray], modes: FloatArray
-) -> FloatArray:
-    """Return the energy of what is unbalanced under unit load, by harmonic and flank node or other load.
-
-    That is told by the squares of `SKETCH` sums of all forces with random signs.
-    """
-    signs = np.random.default_rng(0).choice([-1.0, 1.0], size=(SKETCH, len(basis))) / np.sqrt(SKETCH)
-    left, right = (signs @ part for part in np.split(ring.loads, 2))
-    own, behind, ahead = signs @ basis, signs @ ring.across @ basis, signs @ ring.across.T @ basis
-    rank, missed = modes.shape[1], []
-    for number, (x, weight) in enumerate(zip(solutions, _weights(ring.teeth), strict=True)):
-        turn = np.exp(2j * np.pi * number / ring.teeth)
-        out = left + turn * right - (own + turn.conj() * behind + turn * ahead) @ x
-        if number == 0 and ring.spring is not None:
-            out -= (signs @ ring.spring) @ (ring.spring.T @ basis @ x)
-        out = np.concatenate([out[:, :rank] @ modes.T, out[:, rank:]], axis=1)
-        missed.append(weight * (out.real**2 + out.imag**2).sum(axis=0))
-    return np.stack(missed)
-
-
-def _weights(teeth: int) -> FloatArray:
-    """Return the weight of each harmonic of a load on one tooth, with that of its conjugate."""
-    numbers = np.arange(teeth // 2 + 1)
-    return np.where((numbers == 0) | (2 * numbers == teeth), 1.0, 2.0) / teeth
-
-
-@dataclass(frozen=True)
-class LeftCuts:
-    """Left cuts under many loads on tooth 0: near it for the first ones, in all sectors for the others."""
-
-    near: dict[int, FloatArray]
-    everywhere: FloatArray
-
-
-def left_cuts(solutions: Iterable[ComplexArray], teeth: int, reach: int, first: int) -> LeftCuts:
-    """Sum up the harmonics of the left cuts.
-
-    Parameters
-    ----------
-    solutions : iterable of (nc, p) array
-        Left cut of sector 0 under loads that turn from tooth to tooth, by harmonic.
-    teeth, reach : int
-        See `close_ring`.
-    first : int
-        Number of loads that only the sectors -reach - 1 .. reach are wanted for.
-    """
-    near: dict[int, FloatArray] = {}
-    waves = []
-    for n, (solution, weight) in enumerate(zip(solutions, _weights(teeth), strict=True)):
-        x = weight * solution
-        waves.append(x[:, first:])
-        for j in range(-reach - 1, reach + 1):
-            turn = np.exp(2j * np.pi * n * j / teeth)
-            near[j] = near.get(j, 0.0) + turn.real * x.real[:, :first] - turn.imag * x.imag[:, :first]
-    turns = np.exp(2j * np.pi / teeth * np.outer(np.arange(teeth), np.arange(len(waves))))
-    return LeftCuts(near, np.tensordot(turns, np.stack(waves), axes=1).real)
+def _blocks(moved: list[FloatArray], modes: FloatArray) -> FloatArray:
+    """Return B' G_m B (reach + 1, nf, nf) from what modes V (nf, r) move, T_m of m from -reach to reach."""
+    reach = len(moved) // 2
+    blocks = np.empty((reach + 1, len(modes), len(modes)))
+    for m in range(reach + 1):
+        ahead = moved[reach + m] - modes @ (modes.T @ moved[reach + m])
+        blocks[m] = ahead @ modes.T + modes @ moved[reach - m].T
+    return blocks
 
 
 def loaded_cuts(held: HeldSector, loads: FloatArray, teeth: int, reach: int = -1, first: int = 0) -> LeftCuts:
@@ -465,31 +283,6 @@ def loaded_cuts(held: HeldSector, loads: FloatArray, teeth: int, reach: int = -1
     cuts = left_cuts((ring.solve(number) for number in ring.harmonics), teeth, reach, first)
     near = {j: even.displacement(left) for j, left in cuts.near.items()}
     return LeftCuts(near, np.stack([even.displacement(left) for left in cuts.everywhere]))
-
-
-def row_space(matrix: FloatArray, least: float) -> FloatArray:
-    """Return orthonormal columns (nf, r) that span the rows of a matrix but for squares below `least`."""
-    vectors, values = _whitening(_gram(matrix), least)
-    return vectors * np.sqrt(values)
-
-
-def _gram(columns: FloatArray) -> FloatArray:
-    """Return X'X, lower triangle."""
-    return np.asarray(blas.dsyrk(1.0, np.asfortranarray(columns), trans=1, lower=1))
-
-
-def _whitening(gram: FloatArray, least: float) -> tuple[FloatArray, FloatArray]:
-    """Return T (p, k) with T' G T = 1 and the k eigenvalues above `least` of a Gram matrix, lower triangle.
-
-    They are those of its pivoted factor, which ends when no diagonal entry above `least` is left.
-    """
-    factor, pivots, rank, _ = lapack.dpstrf(np.asfortranarray(gram), lower=1, tol=least)
-    lower = np.tril(factor[:, :rank])
-    values, vectors = np.linalg.eigh(lower.T @ lower)
-    kept = values > least
-    whitening = np.empty((len(gram), int(kept.sum())))
-    whitening[pivots - 1] = lower @ (vectors[:, kept] / values[kept])
-    return whitening, values[kept]
 
 
 def _full(lower: NDArray[Scalar]) -> NDArray[Scalar]:

@@ -25,14 +25,9 @@ from fe_contact.compliance.condensed_gear import (
     residual,
 )
 from fe_contact.compliance.cyclic_compliance import SOLVER
-from fe_contact.compliance.cyclic_ring import (
-    LEAST_TOLD,
-    LeftCuts,
-    RingSolution,
-    even_sector,
-    loaded_cuts,
-    row_space,
-)
+from fe_contact.compliance.cyclic_harmonics import LeftCuts
+from fe_contact.compliance.cyclic_ring import RingSolution, even_sector, loaded_cuts
+from fe_contact.compliance.reduced_harmonics import LEAST_TOLD, row_space
 from fe_contact.compliance.root_stress import (
     COMPONENTS,
     STATIONS,

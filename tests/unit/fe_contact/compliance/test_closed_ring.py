@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from compliance_gears import HELICAL, SPUR, coarse, relative
 
-from fe_contact.compliance import cyclic_ring, flank_compliance_3d
+from fe_contact.compliance import flank_compliance_3d
 from fe_contact.compliance.condensed_gear import CondensedTooth, condensed_tooth, free_turn
 from fe_contact.compliance.cyclic_compliance import usual_reach
-from fe_contact.compliance.cyclic_ring import FreeTurn, RingSolution, TurningLoads, close_ring
+from fe_contact.compliance.cyclic_harmonics import TurningLoads
+from fe_contact.compliance.cyclic_ring import FreeTurn, RingSolution, close_ring
 from fe_contact.geometry import BoreSeat, Gear, GearBlank, Key, RingGear, Toothing
 from fe_contact.mesh import quad_sector
 from fe_contact.mesh.sector_grid import bore_support
@@ -20,7 +21,6 @@ from fe_contact.stage_clock import StageClock
 MANY = replace(SPUR, teeth=120, bore_diameter=380e-3)
 THIN = Gear(120, 4e-3, 20e-3, 100e-3, helix_angle=0.3, blank=GearBlank(5e-3, 5e-3, 120e-3))
 KEYED = replace(HELICAL, teeth=40, bore_diameter=100e-3, seat=BoreSeat(1e13, 2e13, 1e13, key=Key(12e-3)))
-LIMITS = "LEAST_PASSED", "LEAST_ENERGY", "LARGEST_MISSED"
 GEARS = {
     "few teeth": replace(HELICAL, teeth=17),
     "solid": replace(HELICAL, teeth=41, bore_diameter=60e-3),
@@ -54,7 +54,9 @@ def solved_harmonics(monkeypatch: pytest.MonkeyPatch, size: int) -> list[int]:
 
 @pytest.mark.law
 @pytest.mark.parametrize("name", GEARS)
-def test_blocks_are_as_exact_as_stated(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_blocks_are_as_exact_as_stated(
+    name: str, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
     gear = GEARS[name]
     tooth, loads, free = condensed(gear)
     solved = solved_harmonics(monkeypatch, tooth.held.cut_size)
@@ -64,8 +66,7 @@ def test_blocks_are_as_exact_as_stated(name: str, monkeypatch: pytest.MonkeyPatc
 
     found = ring()
     assert len(solved) <= 8  # of any number of teeth
-    for limit in LIMITS:
-        monkeypatch.setattr(cyclic_ring, limit, 1e-13)
+    request.getfixturevalue("exact_ring")
     exact = ring()
     assert exact.error < 1e-12
     flank = slice(0, len(tooth.sector.flank))
@@ -75,7 +76,7 @@ def test_blocks_are_as_exact_as_stated(name: str, monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.law
-def test_a_key_adds_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_key_adds_no_error(request: pytest.FixtureRequest) -> None:
     """The update by the key is made of displacements that are as exact as the blocks."""
 
     def blocks() -> np.ndarray:
@@ -83,7 +84,6 @@ def test_a_key_adds_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
         return np.stack([found.block(tooth, other) for tooth, other in ((0, 0), (2, 1), (-1, 1))])
 
     found = blocks()
-    for limit in LIMITS:
-        monkeypatch.setattr(cyclic_ring, limit, 1e-13)
+    request.getfixturevalue("exact_ring")
     exact = blocks()
     assert 1e-10 < relative(found, exact) < 1e-6
