@@ -11,7 +11,7 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (37_915, 657),
+    ("fe_contact",): (37_959, 662),
     ("dynamics",): (39_795, 745),
     ("lineofaction.gearbox",): (21_672, 429),
     ("lineofaction.report",): (10_500, 200),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_176, 145),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 749
+MOST_FILES = 751
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
