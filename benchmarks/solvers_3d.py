@@ -46,7 +46,7 @@ _SECTOR = (
     _COMMON
     + """
 def own(sector, stiffness):
-    lower = np.tril(condense(sector_tree(sector), sector.element_freedoms, stiffness).matrix)
+    lower = np.tril(condense(sector_tree(sector), sector.element_freedoms, stiffness)[0])
     return lower + np.tril(lower, -1).T
 
 sector, stiffness = meshed(gear, SectorRecipe.standard(gear))

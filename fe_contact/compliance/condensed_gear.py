@@ -41,7 +41,7 @@ class CondensedGear:
     stiffness : ElementStiffness
         Its element matrices.
     condensation : Condensation
-        The sector on its kept freedoms: flank, left cut, right cut.
+        How its freedoms follow from the kept ones: flank, left cut, right cut.
     held : HeldSector
         The sector on its cuts.
     ring : RingSolution
@@ -113,11 +113,11 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     values.append(np.concatenate([turning, everywhere]))
     fields = gear.condensation.expand(np.concatenate(values, axis=1)).T
     forces = [element_forces(sector, gear.stiffness, field) for field in fields]
-    moved = [float(np.sum(gear.cuts(j)[:, 0] * gear.cut_forces(j)[:, 0])) for j in range(1, len(ring.left))]
-    moved.append(float(np.sum(ring.left[:, :, 0] @ ring.restraining[:, 0])))
+    cuts = np.concatenate([ring.left, np.roll(ring.left, 1, axis=0)], axis=1)[1:, :, 0]
+    moved = float(np.sum(cuts @ gear.held.cuts * cuts) + np.sum(ring.left[:, :, 0] @ ring.restraining[:, 0]))
     free = sector.element_freedoms >= 0
     inside = float(np.sum(fields[0][sector.element_freedoms] * forces[0] * free))
-    works = [inside + sum(moved), float(load[:, 0] @ values[0][: len(load), 0])]
+    works = [inside + moved, float(load[:, 0] @ values[0][: len(load), 0])]
     works.append(float(load[:, 0] @ ring.blocks[0] @ load[:, 0]))
     moment = _bore_moment(solved, forces[2], bore_radius)
     diagonals = np.einsum("mii->mi", gear.stiffness.matrices)[gear.stiffness.of_element]
@@ -265,9 +265,9 @@ def condensed_tooth(
     stiffness = sector_stiffness(gear, section, sector)
     clock.finish("assembly")
     report = partial(clock.progress, "condensation")
-    condensation = condense(sector_tree(sector), sector.element_freedoms, stiffness, report)
+    matrix, condensation = condense(sector_tree(sector), sector.element_freedoms, stiffness, report)
     clock.finish("condensation")
-    held = hold_sector(condensation.matrix, len(sector.loaded))
+    held = hold_sector(matrix, len(sector.loaded))
     s_form = tooth_profile(gear).s_form
     loads = np.zeros((len(sector.loaded), 2))
     loads[: len(sector.flank)] = _probe_loads(section.s, sector.layers.ends, sector.flank_index, s_form)

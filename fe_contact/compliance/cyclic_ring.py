@@ -30,10 +30,8 @@ Quarteroni, A., Manzoni, A., Negri, F. (2016). Reduced basis methods for partial
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
 from fe_contact.compliance.cyclic_harmonics import LeftCuts, TurningLoads, left_cuts
@@ -42,7 +40,8 @@ from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
 from model_studies.progress import Report, unreported
 
-Scalar = TypeVar("Scalar", np.float64, np.complex128)
+STRIP = 256
+"""Columns that are mirrored at once."""
 
 
 @dataclass(frozen=True)
@@ -171,13 +170,13 @@ def hold_sector(matrix: FloatArray, flank: int) -> HeldSector:
     factor, info = lapack.dpotrf(np.asfortranarray(matrix[:flank, :flank]), lower=1, clean=1)
     if info:
         raise SolveError(f"tooth sector: flank stiffness is not positive definite (pivot {info})")
-    below = np.asfortranarray(matrix[flank:, :flank])
-    coupling = blas.dtrsm(1.0, factor, below, side=1, lower=1, trans_a=1)
+    coupling = np.asfortranarray(matrix[flank:, :flank])
+    blas.dtrsm(1.0, factor, coupling, side=1, lower=1, trans_a=1, overwrite_b=1)
     rest = np.asfortranarray(matrix[flank:, flank:])
     cuts = blas.dsyrk(-1.0, coupling, beta=1.0, c=rest, lower=1, overwrite_c=1)
     # Minus: a force on the flank and the force it needs on held cuts point the other way.
-    transmitted = blas.dtrsm(-1.0, factor, coupling, side=1, lower=1)
-    inverse, _ = lapack.dpotri(factor, lower=1)
+    transmitted = blas.dtrsm(-1.0, factor, coupling, side=1, lower=1, overwrite_b=1)
+    inverse, _ = lapack.dpotri(factor, lower=1, overwrite_c=1)
     return HeldSector(_full(inverse), transmitted, _full(cuts))
 
 
@@ -285,7 +284,11 @@ def loaded_cuts(held: HeldSector, loads: FloatArray, teeth: int, reach: int = -1
     return LeftCuts(near, np.stack([even.displacement(left) for left in cuts.everywhere]))
 
 
-def _full(lower: NDArray[Scalar]) -> NDArray[Scalar]:
-    """Return the Hermitian matrix of a lower triangle; whatever is above the diagonal is ignored."""
-    part = np.tril(lower)
-    return part + np.tril(part, -1).conj().T
+def _full(lower: FloatArray) -> FloatArray:
+    """Mirror the lower triangle of a matrix up, in its place and strip by strip."""
+    for begin in range(0, len(lower), STRIP):
+        stop = begin + STRIP
+        own = np.tril(lower[begin:stop, begin:stop])
+        lower[begin:stop, begin:stop] = own + np.tril(own, -1).T
+        lower[begin:stop, stop:] = lower[stop:, begin:stop].T
+    return lower

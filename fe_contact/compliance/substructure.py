@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import blas, lapack
@@ -26,12 +27,10 @@ class _FrontFactor:
 
 @dataclass(frozen=True)
 class Condensation:
-    """A sector seen from its kept freedoms.
+    """How all freedoms of a sector follow from its kept ones.
 
     Attributes
     ----------
-    matrix : (k, k) array
-        Stiffness condensed on the kept freedoms, N/m, in Fortran order; the lower triangle is valid.
     factors : tuple of FrontFactor
         From the root down: parents before their children.
     kept : (k,) int array
@@ -40,7 +39,6 @@ class Condensation:
         Number of all freedoms.
     """
 
-    matrix: FloatArray
     factors: tuple[_FrontFactor, ...]
     kept: IntArray
     size: int
@@ -57,7 +55,7 @@ class Condensation:
 
 def condense(
     tree: EliminationTree, freedoms: IntArray, stiffness: ElementStiffness, report: Report = unreported
-) -> Condensation:
+) -> tuple[FloatArray, Condensation]:
     """Eliminate all freedoms but those `tree` keeps.
 
     Parameters
@@ -66,6 +64,11 @@ def condense(
         Freedoms of the elements, -1 where held.
     report : callable
         Called after each front with the fraction of the operations done.
+
+    Returns
+    -------
+    (k, k) array, Condensation
+        Stiffness condensed on the kept freedoms, N/m, whose lower triangle is valid, and how others follow.
 
     Raises
     ------
@@ -79,61 +82,85 @@ def condense(
         nonlocal done
         parts = [run(child) for child in front.children]
         gathered = _gathered(front, parts, tree.order, freedoms, stiffness)
-        if not len(front.inner):
-            return gathered
-        factor, coupling, rest = _eliminated(gathered, len(front.inner))
-        factors.append(_FrontFactor(front, factor, coupling))
-        done += front.operations
-        report(done / whole)
-        return rest
+        if len(front.inner):
+            factors.append(_FrontFactor(front, *_eliminated(gathered)))
+            done += front.operations
+            report(done / whole)
+        return gathered.rest
 
     matrix = run(tree.root)
-    return Condensation(matrix, tuple(factors[::-1]), tree.root.border, len(tree.order))
+    return matrix, Condensation(tuple(factors[::-1]), tree.root.border, len(tree.order))
+
+
+class _Gathered(NamedTuple):
+    """A front by blocks: inner freedoms (i, i), border by inner ones (b, i), rest (b, b), lower triangles.
+
+    Each is an array of its own, so that BLAS works in its place.
+    """
+
+    inner: FloatArray
+    below: FloatArray
+    rest: FloatArray
 
 
 def _gathered(
     front: Front, parts: list[FloatArray], order: IntArray, freedoms: IntArray, stiffness: ElementStiffness
-) -> FloatArray:
-    """Return the lower triangle of a front: inner freedoms first; `parts` is emptied.
+) -> _Gathered:
+    """Return a front; `parts` is emptied.
 
     Both are numbered as they are eliminated, so lower triangles stay lower on the way up.
     """
-    numbers = np.concatenate([order[front.inner], order[front.border]])
-    matrix = np.zeros((len(numbers), len(numbers)), order="F")
+    numbers, count = np.concatenate([order[front.inner], order[front.border]]), len(front.inner)
+    sizes = (count, count), (len(numbers) - count, count), (len(numbers) - count,) * 2
+    blocks = _Gathered(*(np.zeros(size, order="F") for size in sizes))
     for child in front.children:
-        _add_part(matrix, parts.pop(0), np.searchsorted(numbers, order[child.border]))
+        _add_part(blocks, parts.pop(0), np.searchsorted(numbers, order[child.border]))
     if len(front.elements):
         own = freedoms[front.elements]
         positions = np.where(own >= 0, np.searchsorted(numbers, order[own]), -1)
-        _add_elements(matrix, stiffness.matrices, stiffness.of_element[front.elements], positions)
-    return matrix
+        _add_elements(blocks, stiffness.matrices, stiffness.of_element[front.elements], positions)
+    return blocks
 
 
-def _eliminated(matrix: FloatArray, count: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Factorise the first `count` freedoms; return factor, coupling and what is left on the others."""
+def _eliminated(front: _Gathered) -> tuple[FloatArray, FloatArray]:
+    """Factorise the inner freedoms of a front; return factor and coupling. What is left is in its rest."""
     # LAPACK leaves the upper triangle as it was: rubbish that every later call must be told to ignore.
-    factor, info = lapack.dpotrf(np.asfortranarray(matrix[:count, :count]), lower=1, overwrite_a=1, clean=0)
+    factor, info = lapack.dpotrf(front.inner, lower=1, overwrite_a=1, clean=0)
     if info:
         raise SolveError(f"tooth sector: stiffness is not positive definite (pivot {info})")
-    below = np.asfortranarray(matrix[count:, :count])
-    coupling = blas.dtrsm(1.0, factor, below, side=1, lower=1, trans_a=1, overwrite_b=1)
-    right = np.asfortranarray(matrix[count:, count:])
-    return factor, coupling, blas.dsyrk(-1.0, coupling, beta=1.0, c=right, lower=1, overwrite_c=1)
+    coupling = blas.dtrsm(1.0, factor, front.below, side=1, lower=1, trans_a=1, overwrite_b=1)
+    blas.dsyrk(-1.0, coupling, beta=1.0, c=front.rest, lower=1, overwrite_c=1)
+    return factor, coupling
 
 
 @njit(cache=True)
-def _add_part(matrix: FloatArray, part: FloatArray, rows: IntArray) -> None:
-    for j in range(len(rows)):
+def _add_part(front: _Gathered, part: FloatArray, rows: IntArray) -> None:
+    count = len(front.inner)
+    first = np.searchsorted(rows, count)
+    for j in range(first):
+        for i in range(j, first):
+            front.inner[rows[i], rows[j]] += part[i, j]
+        for i in range(first, len(rows)):
+            front.below[rows[i] - count, rows[j]] += part[i, j]
+    for j in range(first, len(rows)):
         for i in range(j, len(rows)):
-            matrix[rows[i], rows[j]] += part[i, j]
+            front.rest[rows[i] - count, rows[j] - count] += part[i, j]
 
 
 @njit(cache=True)
-def _add_elements(matrix: FloatArray, pool: FloatArray, of_element: IntArray, rows: IntArray) -> None:
+def _add_elements(front: _Gathered, pool: FloatArray, of_element: IntArray, rows: IntArray) -> None:
     """Add element matrices at rows `rows` (e, 60), lower triangle only; -1 is held."""
+    count = len(front.inner)
     for e in range(len(of_element)):
         local = pool[of_element[e]]
         for i in range(rows.shape[1]):
             for j in range(rows.shape[1]):
-                if rows[e, j] >= 0 and rows[e, i] >= rows[e, j]:
-                    matrix[rows[e, i], rows[e, j]] += local[i, j]
+                row, column = rows[e, i], rows[e, j]
+                if column < 0 or row < column:
+                    continue
+                if row < count:
+                    front.inner[row, column] += local[i, j]
+                elif column < count:
+                    front.below[row - count, column] += local[i, j]
+                else:
+                    front.rest[row - count, column - count] += local[i, j]
