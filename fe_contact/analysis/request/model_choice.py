@@ -131,6 +131,9 @@ peak-to-peak are 0.8 of the measured change in the median (docs/lab/influence.md
 TRIED = ((2.0, 0.1), (1.25, 0.5))
 """Ratio of expected error to tolerance up to which a mesh is tried, and ratio of its work to that of the mesh
 expected to meet the tolerance: the saving where it suffices exceeds the cost of a failed pass."""
+MEASURED = (5.0, 0.1)
+"""The same of a mesh of the chosen model: errors that it measures tell the next mesh, and predictions are off
+by as much on wide and quiet helical pairs."""
 
 
 def decide(
@@ -146,7 +149,7 @@ def decide(
         Choose mesh and slices only: what is requested is more than the transmission error.
     tried : bool
         The run measures its errors and is refined where they are too large: what is expected to err by
-        somewhat more than the tolerance is tried first where it costs much less (`TRIED`).
+        somewhat more than the tolerance is tried first where it costs much less (`TRIED`, `MEASURED`).
     """
     options = checked.request.options
     if options.tolerance is not None and options.time_budget is not None:
@@ -155,8 +158,9 @@ def decide(
     curves = expected_curves(checked) if _wishes(checked) or checked.model.across_face else None
     chosen = _best(_meshes(models, curves, cache, 1.0))
     if tried and options.tolerance is not None:
-        for stretch, share in TRIED:
-            first = _best(_meshes(models, curves, cache, stretch))
+        for stretch, share in (*TRIED, MEASURED):
+            among = [chosen[0]] if (stretch, share) == MEASURED else models
+            first = _best(_meshes(among, curves, cache, stretch))
             if first[1].met and first[1].option.effort <= share * chosen[1].option.effort:
                 return _planned(first[0], _said_tried(*chosen, first[1]))
     return _planned(*chosen)

@@ -10,7 +10,7 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material, SteDatabase, analyze
-from fe_contact.analysis.request.model_choice import TRIED, decide
+from fe_contact.analysis.request.model_choice import MEASURED, TRIED, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.analysis.tables import _adaptive_nodes
@@ -147,6 +147,19 @@ def test_what_costs_much_less_is_tried_first():
     assert "tried first" in tried.mesh.reason
     loose = check_request(pair(), TableAxes(torques=[40.0]), AnalysisOptions(tolerance=AllowedError(0.01)))
     assert decide(loose, tried=True).mesh == decide(loose).mesh
+
+
+def test_a_mesh_of_a_tenth_of_the_work_is_measured_before_a_fine_one():
+    first, second = (
+        Gear(z, 14e-3, 0.3, 6.3e-3 * z, helix_angle=hand * 0.17) for z, hand in ((23, 1), (75, -1))
+    )
+    wide = GearPair(first, second, 0.5 * 98 * 14e-3 / math.cos(0.17))
+    accuracy = AnalysisOptions(tolerance=AllowedError(0.02))
+    asked = check_request(wide, TableAxes(torques=[3e4]), accuracy)
+    promised, tried = decide(asked).mesh.option, decide(asked, tried=True).mesh.option
+    assert (promised.level, tried.level) == ("fine", "draft")
+    assert promised.error.bought < 0.02 < 0.02 * TRIED[0][0] < tried.error.bought < 0.02 * MEASURED[0]
+    assert tried.effort < MEASURED[1] * promised.effort
 
 
 NM = 1e-9
