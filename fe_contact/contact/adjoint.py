@@ -20,6 +20,7 @@ from fe_contact.contact.point_problem import (
     motion_at,
     point_problems,
     press,
+    pressed_state,
     problem_at,
 )
 from fe_contact.contact.problem import Candidates, ContactProblem
@@ -108,13 +109,10 @@ def _tilts(problem: PointProblem, force: FloatArray, weights: FloatArray) -> Flo
 @njit(cache=True, error_model="numpy")
 def _linearized(problem: PointProblem, force: FloatArray) -> tuple[State, NewtonSystem, int]:
     """Return the state of a solution, and Newton's equations there with their number."""
-    n = problem.bodies.shape[0]
-    state = State(np.zeros(n), np.zeros(n), np.zeros((n, n)), force, np.zeros(force.size), np.zeros(n))
+    state = pressed_state(problem, force)
     for q in range(force.size):
         if force[q] > 0.0:
             state.slope[q] = 1.0 / approach(problem.law, problem.place[q], force[q])[1]
-    press(problem, force, state.pressed)
-    state.held[:] = state.pressed
     system = empty_system(problem)
     return state, system, newton_system(problem, state, system)
 

@@ -219,39 +219,84 @@ def add_compliance(
     what the positions need of a block, all of it at most, is gathered once, and weighed by the forces of a
     slice at all of them.
     """
-    count, ends = lever.shape[0], _ends(tooth)
+    ends = _ends(tooth)
     needed, place = _needed(order, loads, at[1], ends)
+    slices = _slice_forces(loads, at, lever, place, ends)
+    room = np.empty(needed[:, 0].max() ** 2)
+    for a in range(ends.size - 1):
+        for b in range(ends.size - 1):
+            apart = tooth[ends[a]] - tooth[ends[b]]
+            if 0 <= apart < blocks.shape[0] and (apart > 0 or a == b):
+                rows, columns = needed[a, 1 : needed[a, 0] + 1], needed[b, 1 : needed[b, 0] + 1]
+                _add_teeth(_gathered(blocks[apart], rows, columns, room), slices, ends, a, b, out)
+
+
+class _SliceForces(NamedTuple):
+    """Forces of n slices at P positions on the freedoms that their teeth need.
+
+    Attributes
+    ----------
+    low, width : ndarray of int, shape (n,)
+        First place among those freedoms that each slice loads, and how many from there on.
+    start : ndarray of int, shape (n + 1,)
+        Sums of the widths before each.
+    force : ndarray
+        Those of slice i, (P, width), from P start[i] on.
+    lever : ndarray, shape (P, n)
+    """
+
+    low: IntArray
+    width: IntArray
+    start: IntArray
+    force: FloatArray
+    lever: FloatArray
+
+
+@njit(cache=True)
+def _slice_forces(
+    loads: FaceLoads, at: IntArray, lever: FloatArray, place: IntArray, ends: IntArray
+) -> _SliceForces:
+    """Lay the forces of all slices beside each other."""
     low, width, start = _ranges(loads, at[1], place, ends)
-    forces = np.zeros(start[-1] * count)
+    count = lever.shape[0]
+    force = np.zeros(start[-1] * count)
     for r in range(at.shape[1]):
         p, i = at[0, r], at[1, r]
         begin = start[i] * count + p * width[i] - low[i]
         for k in range(loads.used[r]):
-            forces[begin + place[i, loads.nodes[r, k]]] = loads.forces[r, k]
-    most = needed[:, 0].max()
-    gathered, moved = np.empty(most * most), np.empty(count * most)
-    for a in range(ends.size - 1):
-        for b in range(ends.size - 1):
-            apart = tooth[ends[a]] - tooth[ends[b]]
-            if apart < 0 or apart >= blocks.shape[0] or (apart == 0 and a != b):
-                continue
-            rows, columns = needed[a, 1 : needed[a, 0] + 1], needed[b, 1 : needed[b, 0] + 1]
-            block = gathered[: rows.size * columns.size].reshape(rows.size, columns.size)
-            for k in range(rows.size):
-                row = blocks[apart, rows[k]]
-                for m in range(columns.size):
-                    block[k, m] = row[columns[m]]
-            motion = moved[: count * columns.size].reshape(count, columns.size)
-            for i in range(ends[a], ends[a + 1]):
-                force = forces[start[i] * count : start[i + 1] * count].reshape(count, width[i])
-                np.dot(force, block[low[i] : low[i] + width[i]], motion)
-                for j in range(i if a == b else ends[b], ends[b + 1]):
-                    for p in range(count):
-                        begin = start[j] * count + p * width[j]
-                        value = dot(motion[p, low[j] :], forces[begin:], width[j]) * lever[p, i] * lever[p, j]
-                        out[p, i, j] += value
-                        if i != j:
-                            out[p, j, i] += value
+            force[begin + place[i, loads.nodes[r, k]]] = loads.forces[r, k]
+    return _SliceForces(low, width, start, force, lever)
+
+
+@njit(cache=True)
+def _gathered(block: FloatArray, rows: IntArray, columns: IntArray, room: FloatArray) -> FloatArray:
+    """Return the rows and columns of a block beside each other in memory, within `room`."""
+    gathered = room[: rows.size * columns.size].reshape(rows.size, columns.size)
+    for k in range(rows.size):
+        row = block[rows[k]]
+        for m in range(columns.size):
+            gathered[k, m] = row[columns[m]]
+    return gathered
+
+
+@njit(cache=True)
+def _add_teeth(
+    block: FloatArray, slices: _SliceForces, ends: IntArray, a: int, b: int, out: FloatArray
+) -> None:
+    """Add what the slices of tooth b move at those of tooth a, and back."""
+    low, width, start, forces, lever = slices
+    count = lever.shape[0]
+    motion = np.empty((count, block.shape[1]))
+    for i in range(ends[a], ends[a + 1]):
+        force = forces[start[i] * count : start[i + 1] * count].reshape(count, width[i])
+        np.dot(force, block[low[i] : low[i] + width[i]], motion)
+        for j in range(i if a == b else ends[b], ends[b + 1]):
+            for p in range(count):
+                begin = start[j] * count + p * width[j]
+                value = dot(motion[p, low[j] :], forces[begin:], width[j]) * lever[p, i] * lever[p, j]
+                out[p, i, j] += value
+                if i != j:
+                    out[p, j, i] += value
 
 
 @njit(cache=True)

@@ -32,6 +32,7 @@ from fe_contact.contact.point_problem import (
     evaluate,
     motion_at,
     press,
+    pressed_state,
     stiffness,
     subtract,
 )
@@ -122,11 +123,10 @@ def solve_point(
         return math.nan, math.nan, OUT_OF_MODEL, 0, False
     touch = np.min(problem.gap / problem.motion_arm)
     gap = problem.gap - problem.motion_arm * touch  # from where the first contact touches
-    m, n = force.size, problem.bodies.shape[0]
     if math.isnan(touch) or not 0.0 < np.abs(problem.bodies).sum() < math.inf:
         force[:] = 0.0
         return math.nan, math.nan, SINGULAR, 0, False
-    state = State(np.zeros(n), np.zeros(n), np.zeros((n, n)), force, np.zeros(m), np.zeros(n))
+    state = pressed_state(problem, force)
     elastic = _start(problem, total, gap, state)
     elastic, tangent, status, iterations = _iterate(problem, total, gap, elastic, state)
     if status == SINGULAR:
@@ -157,7 +157,7 @@ def _start(problem: PointProblem, total: float, gap: FloatArray, state: State) -
 @njit(cache=True, error_model="numpy")
 def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArray) -> None:
     """Fill in forces as the gaps would take them if all contacts gave way as the first one to touch."""
-    depth, carried = total * _softness(problem, np.argmin(gap)), 0.0
+    depth, carried = total * _softness(problem, int(np.argmin(gap))), 0.0
     for q in range(gap.size):
         force[q] = max(depth - gap[q], 0.0) * problem.law.width[problem.place[q]]
         carried += problem.torque_arm[q] * force[q]

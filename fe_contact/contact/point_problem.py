@@ -418,6 +418,16 @@ class State(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
+def pressed_state(problem: PointProblem, force: FloatArray) -> State:
+    """Return a state with the forces (m,) of the contacts on the curves; what they move is still missing."""
+    n, m = problem.bodies.shape[0], force.size
+    state = State(np.zeros(n), np.zeros(n), np.zeros((n, n)), force, np.zeros(m), np.zeros(n))
+    press(problem, force, state.pressed)
+    state.held[:] = state.pressed
+    return state
+
+
+@njit(cache=True, error_model="numpy")
 def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: State) -> None:
     """Fill in forces and slopes of the contacts, and the forces on the curves, under the motions."""
     width, curvature, free = problem.law.width, problem.law.gap.curvature, problem.law.free

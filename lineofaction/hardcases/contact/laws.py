@@ -10,13 +10,7 @@ import numpy as np
 from fe_contact.analysis.pairs.pair_contact import PairContact, operating_points, pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
-from fe_contact.contact.point_problem import (
-    State,
-    motion_at,
-    point_problems,
-    press,
-    problem_at,
-)
+from fe_contact.contact.point_problem import motion_at, point_problems, pressed_state, problem_at
 from fe_contact.contact.tilted_bodies import fill_yielding, move
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
@@ -170,12 +164,11 @@ def _plain(problem: ContactProblem, position: int, force: FloatArray) -> Problem
     """
     c = problem.candidates
     point, here = problem_at(point_problems(problem), position)
-    n, m = len(point.bodies), here.size
-    state = State(np.zeros(n), np.zeros(n), np.zeros((n, n)), force[here], np.zeros(m), np.zeros(n))
-    press(point, state.force, state.held)
+    state = pressed_state(point, force[here])
     move(point, state)
     fill_yielding(point, state)
-    blend = np.array([[motion_at(point, q, one) for one in np.eye(n)] for q in range(m)])
+    units = np.eye(len(point.bodies))
+    blend = np.array([[motion_at(point, q, one) for one in units] for q in range(here.size)])
     real = np.isin(np.arange(c.pair.size), here)
     motion = c.motion_arm[position, real]
     row = position % len(problem.compliance)
