@@ -11,14 +11,14 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (37_993, 662),
+    ("fe_contact",): (38_046, 663),
     ("dynamics",): (39_795, 745),
     ("lineofaction.gearbox",): (21_672, 429),
     ("lineofaction.report",): (10_500, 200),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_621, 67),
-    ("lineofaction.hardcases",): (3_851, 35),
+    ("lineofaction.hardcases",): (3_844, 35),
     ("bounds", "host", "model_studies"): (4_176, 145),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
