@@ -173,7 +173,7 @@ def _dense_rate() -> float:
     return 0.5 * count * (count + 1) * depth / max(min(times), 1e-6)
 
 
-MODEL_VERSION = 4  # raise it whenever the same input gives another result: old cache files are then not found
+MODEL_VERSION = 5  # raise it whenever the same input gives another result: old cache files are then not found
 SOLVER = "dense substructures and cyclic harmonics (LAPACK)"
 
 

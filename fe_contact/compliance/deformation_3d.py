@@ -15,10 +15,12 @@ import numpy as np
 from fe_contact.compliance.condensed_gear import CondensedGear, condensed_tooth, element_forces
 from fe_contact.compliance.cyclic_ring import RingSolution, loaded_cuts
 from fe_contact.compliance.deformed_gear import DeformedGear, nodal_mean, stress_of, turn_about_axis
+from fe_contact.compliance.plane_elasticity import PlaneHypothesis
 from fe_contact.compliance.sector_stiffness import (
     REFERENCE,
-    gradients_at,
-    lame_parameters,
+    determinants,
+    gradients,
+    hexahedra,
     node_axes,
     placed_layer,
     twist,
@@ -29,7 +31,7 @@ from fe_contact.mesh.quad_sector import QuadSector, quad_sector
 from fe_contact.mesh.quality import quad_quality
 from fe_contact.mesh.recipe import SectorRecipe
 from fe_contact.mesh.sector_grid import bore_support
-from fe_contact.mesh.swept_sector import LOWER_FACE, Batch, SweptSector, swept_sector
+from fe_contact.mesh.swept_sector import LOWER_FACE, SweptSector, swept_sector
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
 
@@ -126,16 +128,17 @@ def _sector_elements(gear: Toothing, section: QuadSector, sector: SweptSector) -
     numbers, points = sector.elements.copy(), len(sector.freedoms)
     parts = []
     for batch in sector.batches:
-        local, frames = _frames(section, batch, axes, twist(gear))
+        local, frames = placed_layer(section, batch, axes, twist(gear))
         middle = np.interp(
             sector.place[batch.elements[:, 0], 2], np.arange(len(sector.layers.ends)), sector.layers.ends
         )
         turns = np.stack([turn_about_axis(twist(gear) * float(z)) for z in middle])
         nodes[batch.elements] = np.einsum("cxy,mpy->cmpx", turns, local)
         nodes[batch.elements, :, 2] += middle[:, None, None]
-        gradient, determinant = gradients_at(local, 0.5 * (np.concatenate([INNER, REFERENCE]).T + 1.0))
-        jacobian[batch.elements] = determinant.min(axis=1) / np.abs(determinant).max(axis=1)
-        parts.append(_Part(batch.elements, frames, np.ascontiguousarray(gradient[:, : len(INNER)]), turns))
+        mesh, (inner, outer) = hexahedra(local), (0.5 * (at.T + 1.0) for at in (INNER, REFERENCE))
+        volume = determinants(mesh, np.hstack([inner, outer]))
+        jacobian[batch.elements] = volume.min(axis=1) / np.abs(volume).max(axis=1)
+        parts.append(_Part(batch.elements, frames, gradients(mesh, inner), turns))
         if batch.half:
             hanging = (batch.elements.size, len(LOWER_FACE))
             own = points + np.arange(hanging[0] * hanging[1]).reshape(hanging)
@@ -145,22 +148,8 @@ def _sector_elements(gear: Toothing, section: QuadSector, sector: SweptSector) -
     quality = {"scaled_jacobian": jacobian, "corner_angle_deg": np.empty(count)}
     for batch in sector.batches:
         quality["corner_angle_deg"][batch.elements] = np.degrees(angle[batch.quads])
-    return _SectorElements(
-        nodes, numbers, points, quality, sector, lame_parameters(gear.material), tuple(parts)
-    )
-
-
-def _frames(
-    section: QuadSector, batch: Batch, axes: FloatArray, turn_per_length: float
-) -> tuple[FloatArray, FloatArray]:
-    """Return nodes (m, 20, 3) and Cartesian displacements per freedom (m, 60, 60) in a layer's frame."""
-    nodes, frames, face = placed_layer(section, batch, axes, turn_per_length)
-    if face is not None:
-        return face.attach(nodes), face.transform(frames)
-    transform = np.zeros((len(nodes), 20, 3, 20, 3))
-    every = np.arange(20)
-    transform[:, every, :, every] = frames.transpose(1, 0, 2, 3)
-    return nodes, transform.reshape(len(nodes), 60, 60)
+    lame = PlaneHypothesis.PLANE_STRAIN.lame_parameters(gear.material)
+    return _SectorElements(nodes, numbers, points, quality, sector, lame, tuple(parts))
 
 
 Load = Mapping[int, FloatArray]

@@ -175,7 +175,7 @@ def _ring_checks(ring: Ring, tooth_index: int, load: _FlankLoad, matrix: FloatAr
     )
 
 
-MODEL_VERSION = 3  # raise it whenever the same input gives another result: old cache files are then not found
+MODEL_VERSION = 4  # raise it whenever the same input gives another result: old cache files are then not found
 USUAL_TEETH = 5
 
 

@@ -6,13 +6,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from skfem import ElementHexS2
+from skfem import Basis, ElementHexS2, MeshHex
 from skfem.quadrature import get_quadrature
 
 from fe_contact.body import BoreSeat
+from fe_contact.compliance.plane_elasticity import PlaneHypothesis, element_stiffness
 from fe_contact.errors import MeshError
 from fe_contact.geometry import Toothing
-from fe_contact.material import Material
 from fe_contact.mesh.quad_sector import QuadSector
 from fe_contact.mesh.sector_grid import SectorGrid
 from fe_contact.mesh.swept_sector import LOWER_FACE, Batch, SweptSector
@@ -31,6 +31,8 @@ REFERENCE = np.array(
 SECTION = np.array([0, 1, 2, 3, 0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7, 0, 1, 2, 3])
 """Node of the quadrilateral that each node of the hexahedron stands above."""
 QUADRATURE_ORDER = 5  # three Gauss points each way
+_APART = np.abs(ElementHexS2.doflocs[:, None] - 0.5 * (REFERENCE + 1.0)).sum(axis=2)
+_NODE, _FUNCTION = _APART.argmin(axis=1), _APART.argmin(axis=0)  # of scikit-fem's functions, and back
 
 
 def _layer_nodes(section: FloatArray, thickness: float, turn: float) -> FloatArray:
@@ -49,6 +51,24 @@ def above(points: FloatArray, level: FloatArray, thickness: float, turn: float) 
     return np.stack([c * x - s * y, s * x + c * y, np.broadcast_to(thickness * level, x.shape)], axis=-1)
 
 
+def hexahedra(nodes: FloatArray) -> MeshHex:
+    """Return scikit-fem's mesh of hexahedra apart from each other with `nodes` (m, 20, 3) in m."""
+    numbers = np.arange(20 * len(nodes)).reshape(-1, 20)
+    return MeshHex(nodes.reshape(-1, 3).T, numbers[:, _NODE].T, elem=ElementHexS2)
+
+
+def determinants(mesh: MeshHex, at: FloatArray) -> FloatArray:
+    """Return the determinants (m, q) of the map from scikit-fem's cube, 0 to 1 each way, at points (3, q)."""
+    rows = mesh.mapping().DF(at)
+    return np.asarray(np.sum(rows[0] * np.cross(rows[1], rows[2], axis=0), axis=0))
+
+
+def gradients(mesh: MeshHex, at: FloatArray) -> FloatArray:
+    """Return the gradients (m, q, 20, 3) of the functions at points (3, q) of that cube."""
+    basis = Basis(mesh, ElementHexS2(), quadrature=(at, np.ones(at.shape[1])), disable_doflocs=True)
+    return np.stack([basis.basis[i][0].grad for i in _FUNCTION]).transpose(2, 3, 0, 1)
+
+
 def _stiffness_of(nodes: FloatArray, lame: tuple[float, float]) -> FloatArray:
     """Return the stiffness (m, 60, 60) of hexahedra with `nodes` (m, 20, 3) in m as in `REFERENCE`, N/m.
 
@@ -59,55 +79,17 @@ def _stiffness_of(nodes: FloatArray, lame: tuple[float, float]) -> FloatArray:
     MeshError
         An element is folded.
     """
-    gradient, volume = _gradients(nodes)
-    weighted = gradient * volume[:, :, None, None]
-    count = len(nodes)
-    products = gradient.reshape(count, -1, 60).transpose(0, 2, 1) @ weighted.reshape(count, -1, 60)
-    products = products.reshape(count, 20, 3, 20, 3)
-    trace = np.einsum("miaja->mij", products)
-    lam, mu = lame
-    local = lam * products + mu * products.transpose(0, 1, 4, 3, 2)
-    for c in range(3):
-        local[:, :, c, :, c] += mu * trace
-    return np.asarray(local.reshape(count, 60, 60))
-
-
-def _in_frames(stiffness: FloatArray, frames: FloatArray) -> FloatArray:
-    """Return Q' K Q for matrices (m, 60, 60) and node frames Q (m, 20, 3, 3), the new axes in columns."""
-    count = len(stiffness)
-    blocks = stiffness.reshape(count, 20, 3, 20, 3).transpose(0, 1, 3, 2, 4)
-    turned = frames.transpose(0, 1, 3, 2)[:, :, None] @ blocks @ frames[:, None]
-    return np.asarray(turned.transpose(0, 1, 3, 2, 4).reshape(count, 60, 60))
-
-
-def _gradients(nodes: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the gradients (m, q, 20, 3) of the functions, and the volume of each Gauss point (m, q)."""
-    at, weights = get_quadrature(ElementHexS2, QUADRATURE_ORDER)
-    gradient, determinant = gradients_at(nodes, at)
-    if not determinant.min() > 0.0:
-        worst = int(determinant.min(axis=1).argmin())
+    mesh = hexahedra(nodes)
+    least = determinants(mesh, get_quadrature(ElementHexS2, QUADRATURE_ORDER)[0]).min(axis=1)
+    if not least.min() > 0.0:
+        worst = int(least.argmin())
         x, y = 1e3 * nodes[worst, :, :2].mean(axis=0)
         raise MeshError(
             f"tooth sector: element {worst} at ({x:.4g}, {y:.4g}) mm is folded. "
             "Try other element sizes in the sector recipe."
         )
-    return gradient, determinant * weights
-
-
-def gradients_at(nodes: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the gradients (m, q, 20, 3) of the functions and the determinants (m, q) at points (3, q).
-
-    The points are of scikit-fem's reference cube, 0 to 1 each way.
-    """
-    element = ElementHexS2()
-    here = np.abs(element.doflocs[:, None] - 0.5 * (REFERENCE + 1.0)).sum(axis=2).argmin(axis=0)
-    slopes = np.stack([element.lbasis(at.copy(), i)[1] for i in here]).transpose(2, 1, 0)  # (q, 3, 20)
-    jacobian = slopes @ nodes[:, None]
-    determinant = np.linalg.det(jacobian)
-    singular = np.abs(determinant) <= 0.0
-    jacobian[singular] = np.eye(3)  # a folded element, which the determinant tells
-    gradient = np.linalg.solve(jacobian, np.broadcast_to(slopes, (len(nodes), *slopes.shape)))
-    return np.ascontiguousarray(gradient.transpose(0, 1, 3, 2)), determinant
+    freedoms = (3 * _FUNCTION[:, None] + np.arange(3)).ravel()
+    return element_stiffness(mesh, QUADRATURE_ORDER, lame)[:, freedoms[:, None], freedoms]
 
 
 def cylindrical_frames(nodes: FloatArray) -> FloatArray:
@@ -268,13 +250,18 @@ def sector_stiffness(gear: Toothing, section: QuadSector, sector: SweptSector) -
     gear : Gear
         Its material and helix matter.
     """
-    axes = node_axes(gear, section)
+    axes, lame = node_axes(gear, section), PlaneHypothesis.PLANE_STRAIN.lame_parameters(gear.material)
+    bodies = [batch for batch in sector.batches if not batch.seat]
+    placed = [placed_layer(section, batch, axes, twist(gear)) for batch in bodies]
+    solid = _stiffness_of(np.concatenate([nodes for nodes, _ in placed]), lame)
+    ends = np.cumsum([len(batch.quads) for batch in bodies])
     matrices = [
-        np.tile(_seat_stiffness(gear, sector.grid, batch.thickness, sector.seat), (len(batch.quads), 1, 1))
-        if batch.seat
-        else _batch_stiffness(gear.material, section, batch, axes, twist(gear))
-        for batch in sector.batches
+        moved.transpose(0, 2, 1) @ local @ moved
+        for local, (_, moved) in zip(np.split(solid, ends[:-1]), placed, strict=True)
     ]
+    for batch in sector.batches[len(bodies) :]:
+        seat = _seat_stiffness(gear, sector.grid, batch.thickness, sector.seat)
+        matrices.append(np.tile(seat, (len(batch.quads), 1, 1)))
     of_element = np.empty(len(sector.elements), dtype=np.int64)
     first = 0
     for batch in sector.batches:
@@ -285,28 +272,15 @@ def sector_stiffness(gear: Toothing, section: QuadSector, sector: SweptSector) -
 
 def placed_layer(
     section: QuadSector, batch: Batch, axes: FloatArray, turn_per_length: float
-) -> tuple[FloatArray, FloatArray, _CoarseFace | None]:
-    """Return nodes (m, 20, 3) and axes (m, 20, 3, 3) of a batch, and the coarse face that it may hang on."""
+) -> tuple[FloatArray, FloatArray]:
+    """Return nodes (m, 20, 3) of a batch and Cartesian displacements (m, 60, 60) per freedom."""
     quads, turn = section.grid.quads[batch.quads], batch.thickness * turn_per_length
     corners = section.points[quads]
     nodes = _layer_nodes(corners, batch.thickness, turn)
-    face = _coarse_face(corners, batch.thickness, turn, batch.half) if batch.half else None
-    return nodes, cylindrical_frames(nodes) @ axes[quads[:, SECTION]], face
-
-
-def lame_parameters(material: Material) -> tuple[float, float]:
-    """Return lambda and mu of the solid, Pa."""
-    E, nu = material.youngs_modulus, material.poissons_ratio
-    return E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 * E / (1.0 + nu)
-
-
-def _batch_stiffness(
-    material: Material, section: QuadSector, batch: Batch, axes: FloatArray, turn_per_length: float
-) -> FloatArray:
-    """Return the matrices of one batch, (m, 60, 60)."""
-    nodes, frames, face = placed_layer(section, batch, axes, turn_per_length)
-    lame = lame_parameters(material)
-    if face is None:
-        return _in_frames(_stiffness_of(nodes, lame), frames)
-    transform = face.transform(frames)
-    return np.asarray(transform.transpose(0, 2, 1) @ _stiffness_of(face.attach(nodes), lame) @ transform)
+    frames = cylindrical_frames(nodes) @ axes[quads[:, SECTION]]
+    if batch.half:
+        face = _coarse_face(corners, batch.thickness, turn, batch.half)
+        return face.attach(nodes), face.transform(frames)
+    transform, every = np.zeros((len(nodes), 20, 3, 20, 3)), np.arange(20)
+    transform[:, every, :, every] = frames.transpose(1, 0, 2, 3)
+    return nodes, transform.reshape(len(nodes), 60, 60)

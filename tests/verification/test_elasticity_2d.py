@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
+from skfem import Basis, ElementTriP2, ElementVector, MeshTri2
+from skfem.models.elasticity import linear_elasticity
 
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
@@ -38,6 +40,19 @@ def test_patch_of_curved_elements_keeps_constant_strain(hypothesis: PlaneHypothe
     assert moments == pytest.approx(stress * area, rel=1e-9, abs=1e-9 * np.abs(moments).max())
     exact = element_areas(sector.points, sector.triangles)
     assert area == pytest.approx(exact, rel=1e-9)
+
+
+def test_equals_the_weak_form_of_scikit_fem() -> None:
+    """In its own vector element, apart from numbers of nodes: the same energy of any motion."""
+    points, triangles = ring_mesh(6)
+    lame = PlaneHypothesis.PLANE_STRESS.lame_parameters(STEEL)
+    basis = Basis(MeshTri2(points.T, triangles.T), ElementVector(ElementTriP2()), intorder=4)
+    expected = linear_elasticity(*lame).assemble(basis)
+    number = np.empty(2 * len(points), dtype=int)
+    number[(2 * triangles[:, :, None] + np.arange(2)).reshape(-1, 12).T] = basis.element_dofs
+    found = stiffness_matrix(points, triangles, lame, np.full(len(triangles), 0.3))
+    difference = found - 0.3 * expected[number][:, number]
+    assert abs(difference).max() < 1e-12 * abs(found).max()
 
 
 def element_areas(points: np.ndarray, triangles: np.ndarray) -> float:
