@@ -175,7 +175,7 @@ def _checksum(arrays: dict[str, np.ndarray[Any, Any]], facts: str) -> str:
     for name, value in arrays.items():
         array = np.ascontiguousarray(value)
         digest.update(f"{name} {array.dtype.str} {array.shape}".encode())
-        digest.update(array.tobytes())
+        digest.update(array.data)
     return digest.hexdigest()
 
 

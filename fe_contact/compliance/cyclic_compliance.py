@@ -49,13 +49,17 @@ def usual_reach(gear: Toothing) -> int:
 # Prediction of the cost of a three-dimensional flank compliance.
 
 
-RANK_SHARE = 0.13  # flank loads that are solved for over flank freedoms; measured 0.12 to 0.14
-SPACE = 2.2  # dimension of the space of solutions over loads; measured 2.0 to 2.4
+RANK_SHARE = 0.23  # flank loads that are solved for over flank freedoms, at most; measured 0.22 to 0.24
+RANK, RANK_FACE = 45.0, 6.0  # the same of fine meshes: so many and so many for each module of the face
+SPACE = 2.2  # dimension of the space of solutions over loads; measured 2.0 to 2.5
 SOLVED = 6  # harmonics solved on all freedoms of a cut; more on thin rims
-MESH_SECONDS = 0.15  # gmsh's child process
+MESH_SECONDS = 0.08  # the transverse section
 # Measured against the dense rate, on gears of 20 to 80 teeth from draft to fine:
-GATHERING = 100.0  # gathering one number of a front costs as much as so many multiplications with addition
-ELEMENT = 1e6  # one element matrix, likewise
+FRONTS = 1.2  # time of the fronts over that of their operations at the dense rate
+GATHERING = 110.0  # gathering one number of a front costs as much as so many multiplications with addition
+ELEMENT = 4e6  # one element matrix, likewise
+CHECKED = 130.0  # one number of a factor that the checks pass over, likewise
+KEEPING = 1000.0  # one number of the result that is hashed, written and mirrored, likewise
 RING_LOSS = 1.6  # time of the ring's steps over that of their operations at the dense rate
 NUMBER = 8  # bytes
 _RATES = (1e6, 1e15)
@@ -78,7 +82,7 @@ class _SectorSizes(NamedTuple):
     """Numbers that the cost follows from.
 
     Freedoms of the flank, of one cut and of a keyed bore, harmonics, the largest distance of teeth that is
-    kept, different element matrices.
+    kept, different element matrices, and the face width in modules.
     """
 
     flank: int
@@ -87,11 +91,12 @@ class _SectorSizes(NamedTuple):
     harmonics: int
     reach: int
     matrices: int
+    face: float
 
     @property
     def loads(self) -> float:
         """Loads that the ring is solved for."""
-        return RANK_SHARE * self.flank + self.key
+        return min(RANK_SHARE * self.flank, RANK + RANK_FACE * self.face) + self.key
 
     @property
     def space(self) -> float:
@@ -121,13 +126,15 @@ def predict_cost(
     matrices = sum(len(batch.quads) for batch in sector.batches)
     harmonics, reach = gear.teeth // 2 + 1, usual_reach(gear)
     key = len(sector.key_bore) + len(sector.key_cut)
-    sizes = _SectorSizes(len(sector.loaded), len(sector.left), key, harmonics, reach, matrices)
+    face = gear.face_width / gear.normal_module
+    sizes = _SectorSizes(len(sector.loaded), len(sector.left), key, harmonics, reach, matrices, face)
     answers = float(gear.teeth * sizes.cut * key)  # of all cuts to forces on the bore
     operations = {
-        "condensation": tree.operations + GATHERING * tree.front_entries + ELEMENT * sizes.matrices,
+        "condensation": FRONTS * tree.operations + GATHERING * tree.front_entries + ELEMENT * sizes.matrices,
         "ring": RING_LOSS * _ring_operations(sizes),
-        "checks": tree.factor_entries * GATHERING / 10.0,  # they pass twice over the factors
+        "checks": CHECKED * tree.factor_entries,
         "key": 2.0 * answers * sizes.flank,
+        "keeping": KEEPING * (reach + 1) * sizes.flank**2,
     }
     keyed = int(NUMBER * (5.0 * answers + gear.teeth * sizes.flank * key))
     rate = kept_speed(cache, "dense_rate", _dense_rate, _RATES)
@@ -143,21 +150,22 @@ def _ring_operations(sizes: _SectorSizes) -> float:
     solved = 4.0 * (nc**3 / 6.0 + nc**2 * loads) + 2.0 * nc * loads * (space + 2.0 * loads)
     within = 2.0 * nc * space * (nc + nf)
     harmonic = 4.0 * (space**3 / 6.0 + space**2 * loads)
-    summing = GATHERING / 10.0 * 2 * (sizes.reach + 1) * space * loads
+    summing = 20.0 * (sizes.reach + 1) * space * loads
     back = (2 * sizes.reach + 1) * 2.0 * nf * space * loads + (sizes.reach + 1) * 2.0 * nf**2 * loads
     whole = min(SOLVED, sizes.harmonics) * solved + sizes.harmonics * (harmonic + summing)
     return holding + scaling + within + whole + back
 
 
 def _working_bytes(tree: EliminationTree, sizes: _SectorSizes) -> int:
-    """Return the bytes of the largest working set: factorising fronts, or closing the ring."""
+    """Return the bytes of the largest working set: factorizing, holding the flank, closing the ring."""
     nf, nc, loads, space = sizes.flank, sizes.cut, sizes.loads, sizes.space
     kept = 3600 * sizes.matrices + tree.factor_entries
-    held = (nf + 2 * nc) ** 2 + nf**2 + 4 * nc**2 + 4 * nf * nc + 2 * nc**2
+    held = nf**2 + 4 * nc**2 + 2 * nf * nc
+    scaled = 2 * nf * nc + 2 * nc**2
     summed = 2 * (sizes.reach + 1 + sizes.harmonics) * space * loads
     blocks = (sizes.reach + 2) * nf**2 + 2 * sizes.reach * nf * loads
-    ring = held + max(6 * nc**2 + 4 * nc * loads, summed + blocks)
-    return int(NUMBER * (kept + max(tree.working_entries(), ring)))
+    ring = held + scaled + max(5 * nc**2 + 4 * nc * loads, summed + blocks)
+    return int(NUMBER * (kept + max(tree.working_entries(), (nf + 2 * nc) ** 2 + held, ring)))
 
 
 @lru_cache(maxsize=1)
@@ -170,7 +178,7 @@ def _dense_rate() -> float:
         start = time.process_time()
         blas.dsyrk(1.0, panel, lower=1)
         times.append(time.process_time() - start)
-    return 0.5 * count * (count + 1) * depth / max(min(times), 1e-6)
+    return 0.5 * count * (count + 1) * depth / max(float(np.median(times)), 1e-6)
 
 
 MODEL_VERSION = 5  # raise it whenever the same input gives another result: old cache files are then not found

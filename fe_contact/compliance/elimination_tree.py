@@ -90,12 +90,13 @@ class EliminationTree:
 
 
 def _working(front: Front) -> int:
-    """Return the peak of one front: its children's results wait for it, then it is copied once."""
+    """Return the peak of one front: its children's results wait for it."""
     peak = held = 0
     for child in front.children:
         peak = max(peak, held + _working(child))
         held += len(child.border) ** 2
-    return max(peak, held + 2 * (len(front.inner) + len(front.border)) ** 2)
+    inner, border = len(front.inner), len(front.border)
+    return max(peak, held + inner * (inner + border) + border**2)
 
 
 def _elimination_tree(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -78,18 +79,29 @@ def condense(
     factors: list[_FrontFactor] = []
     done, whole = 0.0, tree.operations
 
-    def run(front: Front) -> FloatArray:
+    def eliminate(front: Front, gathered: _Gathered) -> None:
         nonlocal done
-        parts = [run(child) for child in front.children]
-        gathered = _gathered(front, parts, tree.order, freedoms, stiffness)
-        if len(front.inner):
-            factors.append(_FrontFactor(front, *_eliminated(gathered)))
-            done += front.operations
-            report(done / whole)
-        return gathered.rest
+        factors.append(_FrontFactor(front, *_eliminated(gathered)))
+        done += front.operations
+        report(done / whole)
 
-    matrix = run(tree.root)
+    matrix = _reduced(tree.root, tree.order, freedoms, stiffness, eliminate)
     return matrix, Condensation(tuple(factors[::-1]), tree.root.border, len(tree.order))
+
+
+def _reduced(
+    front: Front,
+    order: IntArray,
+    freedoms: IntArray,
+    stiffness: ElementStiffness,
+    eliminate: Callable[[Front, _Gathered], None],
+) -> FloatArray:
+    """Return what a front passes up; no closure that calls itself, which would keep all factors alive."""
+    parts = [_reduced(child, order, freedoms, stiffness, eliminate) for child in front.children]
+    gathered = _gathered(front, parts, order, freedoms, stiffness)
+    if len(front.inner):
+        eliminate(front, gathered)
+    return gathered.rest
 
 
 class _Gathered(NamedTuple):

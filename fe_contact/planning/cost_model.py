@@ -31,8 +31,8 @@ from model_studies.run_log import corrections
 # the search ends with the positions expected; a level without a floor may ask for twice as many.
 
 _PLANE_POSITION, _PLANE_POINT, _PLANE_CANDIDATE = 4e-5, 3e-6, 0.55e-6
-_FACE_POSITION = 0.9e-6
-"""Per slice of a tooth pair and square of the elements of a module along the profile."""
+_FACE_POSITION, _FACE_SLICE = 0.4e-6, 2.2e-5
+"""Per slice of a tooth pair and square of the elements of a module along the profile, and per slice."""
 _FACE_CANDIDATE = 4.6e-6
 _PLANE_EXPECTED, _FACE_EXPECTED = 118, 76
 """Positions that the search ends with; of 10 helical pairs 64 to 145, with a tolerance 64 to 66."""
@@ -43,8 +43,8 @@ _SOLVED_MIDDLES = 0.25
 """Part of the intervals between fixed positions whose middles are solved, at most."""
 _HELD_OUT_DISTANCES = 16
 """Positions at which an interval of center distances is assessed."""
-_PLANE_CHECK = 6e-3
-"""CPU seconds that the estimate of errors takes beside its solutions."""
+_PLANE_CHECK, _FACE_CHECK = 6e-3, 0.12
+"""CPU seconds that the estimate of errors takes beside its solutions; over the face the table, too."""
 _TABLE_POINT = 2e-6
 """CPU seconds to interpolate one point of a table."""
 
@@ -84,6 +84,7 @@ def _contact_seconds(
     work = unit_work(pair, plan, plan.discretization.slices)
     search = work.of(tried * distances, tried * assessed * loads)
     table = work.of(kept * distances, kept * rows * (loads + plan.support.size))
+    table += _FACE_CHECK if plan.discretization.slices > 1 else 0.0
     return search, table, _errors(pair, plan, model.period, alignments) if with_errors else 0.0
 
 
@@ -104,7 +105,8 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     held = rows * (held_out_loads + (alignments[0] - 1) * some)
     apart = _HELD_OUT_DISTANCES * (alignments[1] - 1)
     seconds += work.of(apart, held + apart * some)
-    return _PLANE_CHECK + seconds + _TABLE_POINT * kept * period * alignments[0] * alignments[1] * loads
+    seconds += _FACE_CHECK if made.slices > 1 else _PLANE_CHECK
+    return seconds + _TABLE_POINT * kept * period * alignments[0] * alignments[1] * loads
 
 
 def _contact_bytes(pair: ParallelAxes, plan: Plan) -> float:
@@ -127,7 +129,7 @@ def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> _Work:
     if not isinstance(made, FaceDiscretization):
         return _Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
-    return _Work(_FACE_POSITION * elements**2 * count, _FACE_CANDIDATE * count)
+    return _Work((_FACE_POSITION * elements**2 + _FACE_SLICE) * count, _FACE_CANDIDATE * count)
 
 
 def expected_tries(plan: Plan) -> int:
@@ -155,10 +157,12 @@ _SECTOR, _RING, _HUB_FREEDOM, _DEPTH = 1.89e-9, 2.06e-7, 5.34e-5, 2.72e-6
 _DEEP_RING = 9.4
 """Depth of a body in modules beyond which the mesh has a hub: three root circle pitches."""
 
-_READ_PLANE, _READ_SOLID = 1.5e-3, {True: 0.02, False: 0.007}
+_READ_PLANE, _READ_SOLID = 1.5e-3, {True: 0.06, False: 0.02}
 """CPU seconds to read what is kept of a gear in the plane, and over the face of a helical or a spur gear."""
 _WORKING = 1.2
 """Memory of a solid over its largest working set: what was given back is not all used again."""
+_READING = 1.25
+"""The same of one that is read, over what is kept: its mirror image, and what contacts gather of a block."""
 _SECTOR_BYTES, _HUB_BYTES = 9_000, 12_000
 """For each freedom of a sector, and for each of a hub of so many: the factors of larger ones fill more."""
 _HUB_FREEDOMS, _FILL = 20_000, 0.33
@@ -299,7 +303,7 @@ def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: b
 
 def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> _Cost:
     if kept := solid_kept(gear, recipe, cache):
-        return _Cost(_READ_SOLID[gear.helix_angle != 0.0], 0.0, kept)
+        return _Cost(_READ_SOLID[gear.helix_angle != 0.0], _READING * kept, kept)
     predicted = predict_cost(gear, recipe, cache=cache)
     return _Cost(predicted.seconds, _WORKING * predicted.bytes, 0.0)
 
