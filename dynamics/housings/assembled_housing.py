@@ -12,7 +12,7 @@ import scipy.sparse as sp
 
 from bounds import inside
 from dynamics.errors import InputError, SolveError
-from dynamics.housings.quadrature import over_surface, over_volume, tetrahedron
+from dynamics.housings.quadrature import over_surface, over_volume
 from dynamics.housings.reduced_housing import RigidBody, rigid_body, rigid_motions
 from dynamics.housings.reduced_matrices import MeshedHousing
 from dynamics.housings.supports import Foot, SeatBore, SeatFrame, in_axes, mean_motion
@@ -100,10 +100,6 @@ def _independent_freedoms(points: FloatArray, faces: tuple[_RigidFace, ...]) -> 
 # Mass and stiffness matrices of quadratic tetrahedra.
 
 
-BATCH = 2000
-"""Elements at a time: bounds the memory of what is dense."""
-
-
 def _mass_and_stiffness(mesh: TetrahedralMesh, material: Material) -> tuple[sp.csr_array, sp.csr_array]:
     """Return the consistent mass matrix per direction and the stiffness matrix.
 
@@ -114,39 +110,14 @@ def _mass_and_stiffness(mesh: TetrahedralMesh, material: Material) -> tuple[sp.c
     stiffness : (3 n, 3 n) sparse array
         N/m; freedom 3 i + k is the displacement of node i along axis k.
     """
-    count = len(mesh.points)
-    numbers = mesh.tetrahedra
-    freedoms = np.reshape(3 * numbers[:, :, None] + np.arange(3), (len(numbers), 30))
-    masses = np.empty((len(numbers), 10, 10))
-    stiffnesses = np.empty((len(numbers), 30, 30))
-    for first in range(0, len(numbers), BATCH):
-        part = slice(first, first + BATCH)
-        masses[part], stiffnesses[part] = _element_matrices(mesh.points, numbers[part], material)
-    return _assembled(masses, numbers, count), _assembled(stiffnesses, freedoms, 3 * count)
-
-
-def _element_matrices(
-    points: FloatArray, tetrahedra: IntArray, material: Material
-) -> tuple[FloatArray, FloatArray]:
-    """Return the matrices of some elements: (e, 10, 10) and (e, 30, 30)."""
-    volume, gradient = over_volume(points, tetrahedra)
-    shape, (lame, shear) = tetrahedron().shape, material.lame
-    mass = material.density * np.einsum("ap,bp,ep->eab", shape, shape, volume, optimize=True)
-    flat = gradient.reshape(len(volume), 30, -1)
-    # product[e, a, i, b, j]: integral of the slope of a along i times that of b along j
-    product = ((flat * volume[:, None]) @ flat.transpose(0, 2, 1)).reshape(-1, 10, 3, 10, 3)
-    stiffness = lame * product + shear * product.transpose(0, 1, 4, 3, 2)
-    trace = shear * np.einsum("eakbk->eab", product)
-    for axis in range(3):
-        stiffness[:, :, axis, :, axis] += trace
-    return mass, stiffness.reshape(-1, 30, 30)
-
-
-def _assembled(matrices: FloatArray, freedoms: IntArray, size: int) -> sp.csr_array:
-    short = freedoms.astype(np.int32)  # half the memory
-    rows, columns = np.broadcast_arrays(short[:, :, None], short[:, None, :])
-    entries = (matrices.ravel(), (rows.ravel(), columns.ravel()))
-    return sp.coo_array(entries, shape=(size, size)).tocsr()
+    shapes, slopes = over_volume(mesh.points, mesh.tetrahedra)
+    lame, shear = material.lame
+    blocks = [[lame * slopes[3 * i + j] + shear * slopes[3 * j + i] for j in range(3)] for i in range(3)]
+    for i in range(3):
+        blocks[i][i] += shear * (slopes[0] + slopes[4] + slopes[8])
+    by_node = np.arange(3 * len(mesh.points)).reshape(3, -1).T.ravel()
+    stiffness = sp.block_array(blocks, format="csr")[by_node][:, by_node]
+    return material.density * shapes, stiffness
 
 
 HELD = 1e-12

@@ -18,7 +18,7 @@ from scipy.sparse.csgraph import connected_components
 from bounds import from_to
 from dynamics.checks import one_of, positive
 from dynamics.errors import InputError, SolveError
-from dynamics.housings.quadrature import over_volume, tetrahedron
+from dynamics.housings.quadrature import determinants
 from dynamics.housings.tetrahedral_mesh import EDGES, TetrahedralMesh, raised
 from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES, STEP_SUFFIXES, check_mesh_content, mesh_text
 from dynamics.types import FloatArray, IntArray
@@ -53,11 +53,12 @@ def _check_quality(mesh: TetrahedralMesh) -> None:
         raise InputError(
             f"{FIELD}.shape", float(shape.min()), bound, f"{count} elements are slivers: mesh again."
         )
-    volume, _ = over_volume(mesh.points, mesh.tetrahedra)
-    folded = int(np.sum((volume / tetrahedron().weight).min(axis=1) <= 0.0))  # one weight is negative
+    folded = int(np.sum(determinants(mesh.points, mesh.tetrahedra).min(axis=1) <= 0.0))
     if folded:
         advice = "Mid-side nodes fold them: refine where the surface is curved, or use straight edges."
-        raise InputError(f"{FIELD}.elements", f"{folded} of {len(volume)} folded", "without folds", advice)
+        raise InputError(
+            f"{FIELD}.elements", f"{folded} of {len(mesh.tetrahedra)} folded", "without folds", advice
+        )
     corners = mesh.tetrahedra[:, :4]
     row, column = np.repeat(corners[:, :1], 3, axis=1).ravel(), corners[:, 1:].ravel()
     graph = sp.coo_array((np.ones(len(row)), (row, column)), shape=2 * (len(mesh.points),))

@@ -1,11 +1,14 @@
-"""Shape functions of scikit-fem at its quadrature points, and integrals of them over quadratic elements."""
+"""Integrals over quadratic elements: scikit-fem's forms on tetrahedra, its shape functions on triangles."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
-from typing import NamedTuple
+from itertools import combinations_with_replacement
+from typing import Any, NamedTuple
 
 import numpy as np
+import scipy.sparse as sp
 
 from dynamics.types import FloatArray, IntArray
 
@@ -21,13 +24,6 @@ class _ShapeFunctions(NamedTuple):
     slope: FloatArray
 
 
-class _VolumeIntegral(NamedTuple):
-    """Volumes in m^3 and gradients in 1/m at the quadrature points: (e, p) and (e, 10, 3, p)."""
-
-    volume: FloatArray
-    gradient: FloatArray
-
-
 class _SurfaceIntegral(NamedTuple):
     """Area vectors, outward, in m^2 and points in m at the quadrature points: both (t, p, 3)."""
 
@@ -36,44 +32,54 @@ class _SurfaceIntegral(NamedTuple):
 
 
 @cache
-def tetrahedron() -> _ShapeFunctions:
-    """Return the reference of tetrahedra with ten nodes."""
-    from skfem import ElementTetP2  # noqa: PLC0415 (start-up time)
-    from skfem.refdom import RefTet  # noqa: PLC0415
-
-    return _reference(ElementTetP2(), RefTet, 10)
-
-
-@cache
 def triangle() -> _ShapeFunctions:
-    """Return the reference of triangles with six nodes."""
+    """Return the reference of triangles with six nodes, which scikit-fem orders as we do."""
     from skfem import ElementTriP2  # noqa: PLC0415 (start-up time)
-    from skfem.refdom import RefTri  # noqa: PLC0415
+    from skfem.quadrature import get_quadrature  # noqa: PLC0415
 
-    return _reference(ElementTriP2(), RefTri, 6)
-
-
-def _reference(element: object, domain: object, nodes: int) -> _ShapeFunctions:
-    """Evaluate an element of scikit-fem, whose nodes are ordered as ours."""
-    from skfem.quadrature import get_quadrature  # noqa: PLC0415 (start-up time)
-
-    points, weight = get_quadrature(domain, ORDER)
-    values = [element.lbasis(points, node) for node in range(nodes)]  # type: ignore[attr-defined]
+    points, weight = get_quadrature(ElementTriP2, ORDER)
+    values = [ElementTriP2().lbasis(points, node) for node in range(6)]
     shape = np.array([np.broadcast_to(value, weight.shape) for value, _ in values])
     return _ShapeFunctions(weight, shape, np.array([slope for _, slope in values]))
 
 
-def over_volume(points: FloatArray, tetrahedra: IntArray) -> _VolumeIntegral:
-    """Map the reference onto elements; a volume is negative where an element is turned inside out."""
-    rule = tetrahedron()
-    jacobian = np.einsum("eai,akp->epik", points[tetrahedra], rule.slope, optimize=True)
-    determinant = np.linalg.det(jacobian)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        a, b, c = (jacobian[..., :, k] for k in range(3))
-        rows = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-2)
-        inverse = rows / determinant[..., None, None]
-    gradient = np.einsum("akp,epki->eaip", rule.slope, inverse, optimize=True)
-    return _VolumeIntegral(determinant * rule.weight, gradient)
+def _apart(points: FloatArray, tetrahedra: IntArray) -> Any:
+    """Return scikit-fem's mesh of the tetrahedra apart from each other, whose nodes it orders as we do."""
+    from skfem import MeshTet2  # noqa: PLC0415 (start-up time)
+
+    numbers = np.arange(tetrahedra.size).reshape(tetrahedra.shape)
+    return MeshTet2(points[tetrahedra].reshape(-1, 3).T, numbers.T)
+
+
+def determinants(points: FloatArray, tetrahedra: IntArray) -> FloatArray:
+    """Return those of the map from the reference at the quadrature points, (e, p): not above 0 in a fold."""
+    from skfem.quadrature import get_quadrature  # noqa: PLC0415 (start-up time)
+
+    mesh = _apart(points, tetrahedra)
+    rows = mesh.mapping().DF(get_quadrature(mesh.elem, ORDER)[0])
+    return np.asarray(np.sum(rows[0] * np.cross(rows[1], rows[2], axis=0), axis=0))
+
+
+def over_volume(points: FloatArray, tetrahedra: IntArray) -> tuple[sp.csr_array, dict[int, sp.csr_array]]:
+    """Integrate products over a mesh without folds: of the shapes a, b of nodes in m^3, of their slopes in m.
+
+    Matrix 3 i + j of the second has slopes of a along i, of b along j; all are (n, n).
+    """
+    from skfem import Basis, BilinearForm, ElementTetP2  # noqa: PLC0415 (start-up time)
+
+    basis = Basis(_apart(points, tetrahedra), ElementTetP2(), intorder=ORDER, disable_doflocs=True)
+    node = np.empty(basis.N, dtype=np.int32)
+    node[basis.element_dofs] = tetrahedra.T
+
+    def assembled(product: Callable[..., FloatArray]) -> sp.csr_array:
+        local = BilinearForm(product).elemental(basis)
+        return sp.coo_array((local.data, tuple(node[local.indices])), shape=2 * (len(points),)).tocsr()
+
+    slopes = {}
+    for i, j in combinations_with_replacement(range(3), 2):
+        slopes[3 * j + i] = assembled(lambda a, b, _, i=i, j=j: a.grad[i] * b.grad[j])
+        slopes[3 * i + j] = slopes[3 * j + i].T.tocsr()
+    return assembled(lambda a, b, _: a * b), slopes
 
 
 def over_surface(points: FloatArray, triangles: IntArray) -> _SurfaceIntegral:

@@ -254,7 +254,7 @@ def reduction_cost(freedoms: int, modes: int, motions: int) -> Cost:
     return Cost(seconds, FILL * size**1.1 + 8.0 * freedoms * vectors)
 
 
-REDUCTION_VERSION = 4
+REDUCTION_VERSION = 5
 """Raised with every change of the numbers of a reduction, or of what is kept with them."""
 WORK = "housing reduction"
 """Name of a reduction in the log of runs."""

@@ -11,6 +11,9 @@ import pytest
 import scipy.sparse as sp
 from lattice_meshes import box, tube
 from scipy.sparse.linalg import ArpackNoConvergence, eigsh, spsolve
+from skfem import Basis, BilinearForm, ElementTetP2, ElementVector, MeshTet2
+from skfem.helpers import dot
+from skfem.models.elasticity import linear_elasticity
 from surface_motions import normal_displacement
 
 from dynamics.errors import InputError, SolveError
@@ -81,6 +84,18 @@ def relative(found, expected) -> float:
 def nearest(frequencies: np.ndarray, expected: float) -> float:
     """Deviation of the nearest frequency."""
     return float(np.abs(frequencies / expected - 1.0).min())
+
+
+def test_mass_and_stiffness_equal_the_vector_element_of_scikit_fem() -> None:
+    mesh = tube(OUTER, BORE, LENGTH, (6, 1, 2))
+    basis = Basis(MeshTet2(mesh.points.T, mesh.tetrahedra.T), ElementVector(ElementTetP2()), intorder=4)
+    number = np.empty(mesh.freedoms, dtype=int)
+    number[(3 * mesh.tetrahedra[:, :, None] + np.arange(3)).reshape(-1, 30).T] = basis.element_dofs
+    nodal, stiffness = _mass_and_stiffness(mesh, STEEL)
+    mass = STEEL.density * BilinearForm(lambda u, v, _: dot(u, v)).assemble(basis)[number][:, number]
+    assert abs(sp.kron(nodal, sp.eye_array(3)) - mass).max() < 1e-12 * abs(mass).max()
+    expected = linear_elasticity(*STEEL.lame).assemble(basis)[number][:, number]
+    assert abs(stiffness - expected).max() < 1e-12 * abs(expected).max()
 
 
 def test_a_clamped_tube_without_contraction_stretches_at_a_quarter_wave() -> None:
