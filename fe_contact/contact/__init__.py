@@ -2,7 +2,13 @@
 
 import host.analysis  # noqa: F401 (says what to install)
 from fe_contact.contact.adjoint import CarryingStrips, adjoint, force_changes
-from fe_contact.contact.assembly import contact_problem, face_contact_problem, in_pitches, with_compliances
+from fe_contact.contact.assembly import (
+    contact_problem,
+    face_contact_problem,
+    in_pitches,
+    with_compliances,
+    with_flanks,
+)
 from fe_contact.contact.candidates import (
     PatchRule,
     contact_candidates,
@@ -40,5 +46,6 @@ __all__ = [
     "solve_contact",
     "teeth_in_reach",
     "with_compliances",
+    "with_flanks",
     "with_gaps",
 ]

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.compliance import FlankCompliance, FlankCompliance3D
+from fe_contact.contact.candidates import with_gaps
 from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, load_vector
@@ -60,6 +61,19 @@ def in_pitches(problem: ContactProblem, model: ContactModel, pitch: IntArray) ->
         width=np.concatenate([candidates.width] * times),
     )
     return problem.touching(moved)
+
+
+def with_flanks(pair: ParallelAxes, problem: ContactProblem, model: ContactModel) -> ContactProblem:
+    """Add the gaps of the model to a problem of plain involutes.
+
+    Where patches follow the flanks, the touch says how far the middles of the strips have moved.
+    """
+    plain = problem.candidates
+    modified = with_gaps(pair, plain, model)
+    if problem.tilt.size:
+        moved = modified.touch.moved + modified.strips.middle - plain.strips.middle
+        modified = modified.touching(replace(modified.touch, moved=moved))
+    return problem.touching(modified)
 
 
 # Compliance of what carries the gears, added to that of the teeth and bodies.

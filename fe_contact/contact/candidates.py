@@ -131,15 +131,12 @@ def with_gaps(pair: ParallelAxes, candidates: Candidates, model: ContactModel) -
     """Add the gaps of the model: how far apart the rigid flanks are, and their course about that place.
 
     The load patches stay where plain involutes touch, so that the compliance between the candidates depends
-    on the macro geometry alone and serves every modification, misalignment and load; the touch says how far
-    the middles of the strips are from there.
+    on the macro geometry alone and serves every modification, misalignment and load.
     """
     if not model.gaps:
         return candidates
     touch = modified_touch(pair, candidates.touch, candidates.face_position, model.gaps)
-    modified = candidates.touching(touch)
-    moved = touch.moved + modified.strips.middle - candidates.strips.middle
-    return candidates.touching(replace(touch, moved=moved))
+    return candidates.touching(touch)
 
 
 def teeth_in_reach(pair: ParallelAxes) -> int:

@@ -156,7 +156,7 @@ class Touch:
     place, jump, bend : ndarray, shape (P, n, B)
         Its breaks.
     moved : ndarray
-        How far modifications move the middle of the strip towards tip 1, m.
+        How far modifications move the touching point, or the middle of the strip, towards tip 1, m.
     roll_1 : ndarray
         Nominal roll lengths of gear 1, m.
     """

@@ -33,7 +33,7 @@ from fe_contact.contact import (
     in_pitches,
     solve_contact,
     with_compliances,
-    with_gaps,
+    with_flanks,
 )
 from fe_contact.effects import ContactScene, compose
 from fe_contact.geometry import ParallelAxes
@@ -106,7 +106,7 @@ class PairContact:
     ) -> ContactProblem:
         """Assemble what `solve` solves."""
         problem = self._problem(model, position)
-        problem = problem.touching(with_gaps(self.pair, problem.candidates, model))
+        problem = with_flanks(self.pair, problem, model)
         if pitch is None and not model.tooth_gaps:
             return problem
         first = np.zeros(position.size, dtype=np.int64)

@@ -22,7 +22,7 @@ from fe_contact.contact import (
     in_pitches,
     solve_contact,
     with_compliances,
-    with_gaps,
+    with_flanks,
 )
 from fe_contact.effects.composer import compose
 from fe_contact.effects.effect import ContactScene
@@ -77,7 +77,7 @@ class Springs:
     def problem(self, model: ContactModel) -> ContactProblem:
         """Return the contact problem of one base pitch with the gaps and compliances of a model."""
         problem = with_compliances(self.pair, self._springs(model), model)
-        return problem.touching(with_gaps(self.pair, problem.candidates, model))
+        return with_flanks(self.pair, problem, model)
 
     def _springs(self, model: ContactModel) -> ContactProblem:
         """Return the springs of a model in one base pitch, flanks as plain involutes."""
