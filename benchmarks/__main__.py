@@ -22,6 +22,7 @@ from benchmarks import (
     finite_width,
     full_contact_cost,
     full_contact_coverage,
+    full_contact_helical,
     full_contact_over_face,
     full_contact_picture,
     housed_run,
@@ -58,6 +59,7 @@ SUBJECTS = (
     static_table,
     full_contact_cost,
     full_contact_coverage,
+    full_contact_helical,
     full_contact_over_face,
     finite_width,
     run_up,
@@ -116,8 +118,12 @@ def main(arguments: Sequence[str]) -> int:
         if "full_contact_coverage" in record:
             full_contact_coverage.publish(full_contact_coverage.assessed(), machine)
             full_contact_picture.draw()
-        if "full_contact_over_face" in record:
-            full_contact_over_face.publish()
+        over_face = {
+            "full_contact_helical": full_contact_helical.publish,
+            "full_contact_over_face": full_contact_over_face.publish,
+        }
+        for name in over_face.keys() & record.keys():
+            over_face[name]()
         if "live_coverage" in record:
             live_coverage.publish(live_coverage.assessed(), machine)
         if "tolerance_kept" in record:

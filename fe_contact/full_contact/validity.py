@@ -7,7 +7,7 @@ from fe_contact.geometry import CLAMPED, ParallelAxes, Toothing
 
 def refusal(pair: ParallelAxes) -> str | None:
     """Say why a pair is not one of two clamped, solid spur gears alike all along the face; None if it is."""
-    if (reason := _of_pair(pair)) is not None:
+    if (reason := _spur(pair) or _of_pair(pair)) is not None:
         return reason
     if any(gear.modification.varies_along_face for gear in (pair.pinion, pair.wheel)):
         return "flanks that vary across the face"
@@ -16,6 +16,11 @@ def refusal(pair: ParallelAxes) -> str | None:
 
 def refusal_over_face(pair: ParallelAxes) -> str | None:
     """Say why a pair is not one of two clamped, solid external spur gears of equal faces; None if it is."""
+    return _spur(pair) or refusal_helical(pair)
+
+
+def refusal_helical(pair: ParallelAxes) -> str | None:
+    """Say why a pair is not one of two clamped, solid external gears of equal faces; None if it is."""
     if (reason := _of_pair(pair)) is not None:
         return reason
     if pair.internal:
@@ -26,10 +31,14 @@ def refusal_over_face(pair: ParallelAxes) -> str | None:
     return None
 
 
-def _of_pair(pair: ParallelAxes) -> str | None:
-    """Say what of a pair no extruded plane mesh holds."""
+def _spur(pair: ParallelAxes) -> str | None:
     if pair.pinion.helix_angle != 0.0:
         return "helical: its meshes are plane ones, which hold spur pairs only"
+    return None
+
+
+def _of_pair(pair: ParallelAxes) -> str | None:
+    """Say what of a pair no mesh of sections holds."""
     if pair.shafts != (None, None):
         return "shafts: the bores are held rigidly"
     for gear in (pair.pinion, pair.wheel):
