@@ -11,7 +11,7 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (38_040, 666),
+    ("fe_contact",): (39_180, 690),
     ("dynamics",): (39_773, 745),
     ("lineofaction.gearbox",): (21_672, 429),
     ("lineofaction.report",): (10_500, 200),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_176, 145),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 751
+MOST_FILES = 757
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
