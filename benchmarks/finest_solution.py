@@ -21,6 +21,7 @@ from fe_contact.planning.plan import (
     Plan,
     PlaneDiscretization,
     make_plan,
+    patch_rules,
 )
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray
@@ -45,7 +46,9 @@ def finest_plan(checked: Checked) -> Plan:
     """Plan a request of the level fine on meshes, or in slices, beyond it."""
     request = checked.request
     plan = make_plan(request.pair, request.load, request.options, checked.model)
-    return replace(plan, discretization=_finer(plan.discretization, plan.bodies(request.pair)))
+    made = _finer(plan.discretization, plan.bodies(request.pair))
+    patch, _, _ = patch_rules(request.pair, float(plan.load[-1]), made)
+    return replace(plan, discretization=made, patch=patch)
 
 
 def solved_finely(checked: Checked, contact: PairContact) -> FloatArray:

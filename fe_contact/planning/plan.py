@@ -33,8 +33,16 @@ SLICES = 15
 """Of the face; false orders of helical pairs are then about 1 nm."""
 FINER_SLICES = (23, 31)
 """What a tolerance may ask for beside them."""
-RESOLVED = 2.0
-"""Elements in the half-width of a load patch over the face."""
+PLANE_RESOLVED, FACE_RESOLVED = 3.0, 1.5
+"""Elements in the half-width of a load patch at least. A wider one spreads a load over more of the flank than
+its strip does: over the face two elements cost 1.3 % of peak-to-peak, one and a half 0.3 %. With less the
+mesh errs by more: in the plane 0.1 % of the mean of drafts at one and a half (docs/lab/accuracy.md)."""
+WIDER = 1.25
+"""Width over that of a patch at which the change is measured at least."""
+PATCHES_SEEN = 0.7
+"""Of what second order leaves over that change, the part that counts: strips are not as narrow as points."""
+PLANE_EDGE, FACE_EDGE = 1.5, 2.0
+"""Elements in the length of a patch at a tip edge at least."""
 SLICE_ORDER = 2.3
 """Of STE in the number of slices: measured 2.2 to 2.9 on helical pairs between 7 and 15."""
 SLICE_OVER_PATCH = 1.0
@@ -66,12 +74,7 @@ class PlaneDiscretization:
     """Error left over the difference of the two meshes: ratio two, second order or better."""
     coarse_slices = 1
     remaining_slices = 0.0
-    least_edge = 0.0
-
-    @property
-    def least_patch(self) -> float:
-        """Half-width in m that both meshes resolve: one and a half elements of the coarse one."""
-        return 1.5 * max(recipe.flank_size for recipe in self.coarse_recipes)
+    resolved, resolved_edge = PLANE_RESOLVED, PLANE_EDGE
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -107,6 +110,7 @@ class FaceDiscretization:
     most_slices: int
 
     corrected = False
+    resolved, resolved_edge = FACE_RESOLVED, FACE_EDGE
 
     @property
     def remaining(self) -> float:
@@ -133,16 +137,6 @@ class FaceDiscretization:
         if self.slices == self.coarse_slices:
             return 0.0
         return 1.0 / (float((self.slices / self.coarse_slices) ** SLICE_ORDER) - 1.0)
-
-    @property
-    def least_edge(self) -> float:
-        """Length in m of a patch at a tip edge that the mesh resolves: two elements."""
-        return 2.0 * max(recipe.tip_size for recipe in self.recipes)
-
-    @property
-    def least_patch(self) -> float:
-        """Half-width in m that the mesh resolves along the profile and, as well as that, along the face."""
-        return RESOLVED * max(recipe.flank_size for recipe in self.recipes)
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -179,7 +173,7 @@ def face_discretization(pair: ParallelAxes, level: str, slices: int | None = Non
 def _most_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:
     """Return how many slices of the common face a mesh tells apart, by its layers and load patches."""
     layers = recipe.layers * pair.face_width / gear.face_width
-    patches = pair.face_width / (RESOLVED * recipe.flank_size)
+    patches = pair.face_width / (FACE_RESOLVED * recipe.flank_size)
     return max(math.floor(min(1.5 * layers, patches / SLICE_OVER_PATCH) * (1.0 + 1e-9)), 1)
 
 
@@ -272,6 +266,11 @@ class Plan:
 
     Attributes
     ----------
+    patch, coarse_patch : PatchRule
+        Load patches, and wider ones, which the coarse meshes resolve.
+    remaining_patches : float
+        Error left over the change to the wider ones: of second order in the width, against patches as narrow
+        as the strips of the largest load ask for; 0 where the run has those.
     positions : int or None
         Fixed number, or None for adaptive nodes.
     nodes : NodeRule
@@ -288,6 +287,8 @@ class Plan:
 
     discretization: Discretization
     patch: PatchRule
+    coarse_patch: PatchRule
+    remaining_patches: float
     positions: int | None
     nodes: NodeRule
     load: FloatArray
@@ -341,7 +342,7 @@ def make_plan(
         stress = options.model == "plane_stress"
         hypothesis = PlaneHypothesis.PLANE_STRESS if stress else PlaneHypothesis.PLANE_STRAIN
         discretization = _plane_discretization(pair, level, hypothesis, model.finite_width)
-    patch = _patch_rule(pair, float(levels[-1]), discretization)
+    patches = patch_rules(pair, float(levels[-1]), discretization)
     nodes = FACE_NODES if model.across_face else PLANE_NODES
     if options.tolerance is not None:
         nodes = nodes.for_tolerance(options.tolerance)
@@ -350,7 +351,7 @@ def make_plan(
     support = np.concatenate([np.geomspace(low, high, below + 1)[:-1], [LARGEST_SUPPORT * levels[-1]]])
     return Plan(
         discretization,
-        patch,
+        *patches,
         options.positions,
         nodes,
         levels,
@@ -360,17 +361,29 @@ def make_plan(
     )
 
 
-def _patch_rule(pair: ParallelAxes, force: float, made: Discretization) -> PatchRule:
-    """Return patches wider than any contact strip, within reason, and than the meshes ask for.
+def patch_rules(pair: ParallelAxes, force: float, made: Discretization) -> tuple[PatchRule, PatchRule, float]:
+    """Return the load patches, wider ones that tell what they cost, and the part of that change that is left.
 
-    `force` is the largest requested load in N.
+    Patches are as wide as any strip, within reason, and as the mesh asks; the wider ones as the coarse mesh
+    asks, but no wider than a slice if that tells enough. `force` is the largest requested load in N.
     """
     cosine = math.cos(pair.base_helix_angle)
     modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
     edge_load = 4.0 * EDGE_SHARE * force * cosine / (pair.face_width * math.pi * modulus)
-    widest = max(made.least_patch, wanted_patch(pair, LARGEST_SUPPORT * force))
-    least_edge = max(made.least_edge, EDGE_PATCH * pair.pinion.normal_module)
-    return PatchRule(widest, least_edge, edge_load)
+    wanted = wanted_patch(pair, LARGEST_SUPPORT * force)
+    half, edge = _resolved(made, made.recipes)
+    half, edge = max(half, wanted), max(edge, EDGE_PATCH * pair.pinion.normal_module)
+    coarse, coarse_edge = _resolved(made, made.coarse_recipes)
+    slice_width = pair.face_width / (SLICE_OVER_PATCH * made.slices)
+    wider = max(min(coarse, slice_width), WIDER * half if half > wanted else half)
+    left = PATCHES_SEEN * (1.0 - (wanted / half) ** 2) / ((wider / half) ** 2 - 1.0) if half > wanted else 0.0
+    return PatchRule(half, edge, edge_load), PatchRule(wider, max(coarse_edge, edge), edge_load), left
+
+
+def _resolved(made: Discretization, recipes: tuple[MeshRecipe | SectorRecipe, ...]) -> tuple[float, float]:
+    """Return the half-width of a load patch and the length of one at a tip edge that meshes resolve, m."""
+    half = made.resolved * max(recipe.flank_size for recipe in recipes)
+    return half, made.resolved_edge * max(recipe.tip_size for recipe in recipes)
 
 
 def wanted_patch(pair: ParallelAxes, force: float) -> float:

@@ -76,8 +76,8 @@ def _usual_curves(pair: ParallelAxes, plan: Plan) -> ExpectedCurves:
 # Prediction of the error that a run will state of a model, a mesh and slices.
 
 
-_PLANE = {"draft": (9e-4, 6e-4), "standard": (3.6e-4, 3e-4), "fine": (5.4e-5, 5e-5)}
-_SPUR = {"draft": (2.9e-3, 1.5e-3), "standard": (1.1e-3, 7.5e-4), "fine": (4.6e-4, 4.6e-4)}
+_PLANE = {"draft": (8e-4, 1.2e-3), "standard": (2.6e-4, 2.6e-4), "fine": (5.4e-5, 5e-5)}
+_SPUR = {"draft": (2.2e-3, 1.1e-3), "standard": (1.1e-3, 6e-4), "fine": (4.6e-4, 4.6e-4)}
 _HELICAL = {"draft": (5e-3, 3e-3), "standard": (1.8e-3, 1.2e-3), "fine": (8e-4, 5e-4)}
 _RELIEVED = {"draft": (4e-3, 1.8e-3), "standard": (1.6e-3, 6e-4), "fine": (6e-4, 3e-4)}
 """Mesh: of mean and of peak-to-peak in parts of what the load adds to the mean. In the plane; over the face

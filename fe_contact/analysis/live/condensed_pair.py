@@ -43,15 +43,14 @@ from fe_contact.planning.planned import usual_mesh_error
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES
-from fe_contact.ste.curve_quantities import MEAN, QUANTITIES, quantity_changes
+from fe_contact.ste.curve_quantities import MEAN, QUANTITIES
 from fe_contact.types import FloatArray, Json
 
 # Errors of a table that was solved on a condensed pair, at a part of the cost of solving it.
 #
 # The rougher discretizations are those of an analysis, at half of the positions or fewer, and the parts of
 # their changes that are left are the same. What is between the positions is told by half of them. Coarse
-# meshes that are not at hand are no reason to compute any: the error known of the level stands in. Wide load
-# patches, which the mesh asks for, count with it.
+# meshes that are not at hand are no reason to compute any: the error known of the level stands in.
 
 OVER_MEDIAN = 2.0
 """Factor on the median error of a level: nine runs of ten state less."""
@@ -75,20 +74,15 @@ def _condensed_errors(
 
     own = sample.taken([solution])
     plane = solved(contacts.plane, own)
-    nested = Nested(sample, own, plane, solved(contacts.coarse, plane), solved(contacts.sliced, own))
+    patched = solved(contacts.patched, own)
+    coarse = solved(contacts.coarse, patched)
+    nested = Nested(sample, own, plane, patched, coarse, solved(contacts.sliced, own))
     positions = errors_by_halves(table.position, solution.deflection, points.period)
     measured = points, [solution], nested, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     if contacts.coarse is None:
         errors[BY_MESH], band = _expected(table, plan, contacts.own)
         sources = replace(sources, discretization=np.broadcast_to(band, sources.contact.shape))
-    if contacts.patched is not None:
-        wider, part = solved(contacts.patched, own), contacts.left_by_patches
-        first, second = (values.reshape(sample.knots.size, -1) for values in (own, wider))
-        change = part * quantity_changes(sample.knots, first, second, sample.period)
-        errors[BY_MESH] = np.hypot(errors[BY_MESH], sample.spread(change.reshape(QUANTITIES, *own.shape[1:])))
-        band = sample.spread_points(part * np.nan_to_num(np.abs(own - wider)))
-        sources = replace(sources, discretization=sources.discretization + band)
     bias = plane_bias(table, points, plan)
     return AssessedTable(sources.total, with_axes(errors, {}), sources.to_json(), {}, bias)
 

@@ -153,10 +153,12 @@ class PairContact:
         plan = replace(self.plan, discretization=made.in_slices(count))
         return replace(self, plan=plan, _problems={})
 
-    def in_patches(self, wider: float) -> PairContact:
-        """Return the same bodies under load patches `wider` times as wide."""
-        patch = replace(self.plan.patch, half_width=wider * self.plan.patch.half_width)
-        return replace(self, plan=replace(self.plan, patch=patch), _problems={})
+    @property
+    def in_coarse_patches(self) -> PairContact:
+        """The same bodies under the load patches of the coarse meshes; itself where those are no wider."""
+        if self.plan.coarse_patch == self.plan.patch:
+            return self
+        return replace(self, plan=replace(self.plan, patch=self.plan.coarse_patch), _problems={})
 
     def _problem(self, model: ContactModel, position: FloatArray) -> ContactProblem:
         """Return the problem of plain involutes, kept: gaps and loads do not change its compliance."""
@@ -211,15 +213,16 @@ def pair_contact(
     cache : Path, optional
         Directory of stored compliances; None computes afresh.
     coarse : bool
-        Take the coarse meshes, which serve the error estimate; in the plane without the correction for the
-        finite width, which has an error of its own.
+        Take the coarse meshes and their patches, which serve the error estimate; in the plane without the
+        correction for the finite width, which has an error of its own.
     distance_changes : ndarray, optional
         Changes of the center distance in m at which the same compliance will be used.
     report : callable
         Called with the fraction done over the face, by predicted cost; in the plane it is not called.
     """
-    made = plan.discretization
-    gears = plan.bodies(pair)
+    made, gears = plan.discretization, plan.bodies(pair)
+    if coarse:
+        plan = replace(plan, patch=plan.coarse_patch)
     if isinstance(made, FaceDiscretization):
         first, second = flank_compliances_3d(
             gears, made.coarse_recipes if coarse else made.recipes, cache=cache, report=report
@@ -333,6 +336,11 @@ class OperatingPoints:
     def in_plane_strain(self) -> OperatingPoints:
         """The same places without the correction for the finite width."""
         return self._with_contacts(lambda contact: contact.in_plane_strain)
+
+    @property
+    def in_coarse_patches(self) -> OperatingPoints:
+        """The same places under the load patches of the coarse meshes."""
+        return self._with_contacts(lambda contact: contact.in_coarse_patches)
 
     def on_bodies(self, nominal: PairContact) -> OperatingPoints:
         """Return the same places over other compliances of the gears, those of `nominal`."""

@@ -39,8 +39,13 @@ def test_narrow_gears_approach_plane_stress_and_wide_ones_plane_strain(record_fi
     pair = GearPair(gear, gear, 80e-3)
     torque = 100.0 * width / 25e-3
     space, corrected, strain, stress = (
-        analyze(pair, torques=[torque], level="draft", positions=16, model=model)
-        for model in ("3d", "auto", "plane_strain", "plane_stress")
+        analyze(pair, torques=[torque], level=level, positions=16, model=model)
+        for level, model in (
+            ("standard", "3d"),
+            ("draft", "auto"),
+            ("draft", "plane_strain"),
+            ("draft", "plane_stress"),
+        )
     )
     mean = {id(t): t.static_transmission_error.mean() for t in (space, corrected, strain, stress)}
     excess, estimate = mean[id(space)] / mean[id(strain)] - 1.0, finite_width_excess(pair)[0]

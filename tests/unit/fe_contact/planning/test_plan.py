@@ -44,6 +44,22 @@ def test_patches_are_wider_than_contacts_but_for_an_overload(pair):
     assert make_plan(pair, loads, AnalysisOptions(), ContactModel()).patch.half_width >= strip / 0.66
 
 
+def test_coarse_patches_are_wider_as_the_elements_are_but_for_strips_and_slices(pair):
+    light, heavy = np.array([1.0]), np.array([pair.normal_force(1e5)])
+    for model in (ContactModel(), ContactModel(across_face=True)):
+        found = make_plan(pair, light, AnalysisOptions(), model)
+        made = found.discretization
+        elements = made.coarse_recipes[0].flank_size / made.recipes[0].flank_size
+        assert found.coarse_patch.half_width / found.patch.half_width == pytest.approx(elements, rel=1e-12)
+        assert make_plan(pair, heavy, AnalysisOptions(), model).coarse_patch.half_width == pytest.approx(
+            make_plan(pair, heavy, AnalysisOptions(), model).patch.half_width, rel=1e-12
+        )
+    narrow = replace(pair, pinion=replace(pair.pinion, face_width=2e-3))
+    found = make_plan(narrow, light, AnalysisOptions(), ContactModel(across_face=True))
+    slice_width = narrow.face_width / found.discretization.slices
+    assert found.coarse_patch.half_width <= max(slice_width, found.patch.half_width)
+
+
 def test_slices_follow_the_layers(pair):
     """More slices than freedoms along the face would make the compliance between them singular."""
     for level in ("draft", "standard", "fine"):
