@@ -27,7 +27,7 @@ REFERENCE = ROOT / "tests" / "reference" / "full_contact_helical.csv"
 PAGE, SECTION = ROOT / "docs" / "lab" / "accuracy.md", "helical full contact"
 SUBJECT = "3-D standard against helical full contact"
 HEAD = ("case", "load", "position_driver", "ste_um", "error_um")
-NUMBERS = ("43.2",)
+NUMBERS = ("43.2", "43.5", "43.10")
 """Of drawn pairs: seed and place."""
 POSITIONS = np.arange(16) / 16.0
 """Base pitches."""

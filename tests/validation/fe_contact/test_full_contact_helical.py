@@ -30,17 +30,20 @@ def test_without_helix_it_is_full_contact_over_the_face(record_figure) -> None:
 
 
 @pytest.mark.nightly
-def test_stated_errors_of_helical_tables_cover_the_mean(record_figure) -> None:
+def test_stated_errors_of_helical_tables_cover_full_contact(record_figure) -> None:
     """Peak-to-peak is not covered at every load: docs/accuracy.md says where."""
     found = assessed()
-    covered, off = (
+    covered, ripples, off = (
         100.0 * float(value)
         for value in (
             np.mean([one.covered[0] for one in found]),
+            np.mean([one.covered[1] for one in found]),
             max(float(((one.true - one.own) / one.value)[0].max()) for one in found),
         )
     )
     record_figure("means of helical tables covered", covered, "100 %", "%", SOURCE)
+    record_figure("peak-to-peak of helical tables covered", ripples, "at least 85 %", "%", SOURCE)
+    assert ripples >= 85.0
     record_figure("means of helical tables, worst", off, f"at most {LIMIT} %", "%", SOURCE)
     assert covered == 100.0
     assert off < LIMIT
