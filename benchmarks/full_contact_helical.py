@@ -6,7 +6,6 @@ minutes a pair.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
@@ -18,15 +17,16 @@ from benchmarks.drawn_pairs import drawn_pairs
 from benchmarks.figures import Figure
 from benchmarks.marked_section import replace_section
 from benchmarks.pair_cases import PairCase
+from benchmarks.recorded_peer import record, recorded
 from fe_contact import ste_database
 from fe_contact.full_contact import solve_full_contact_helical
 from fe_contact.types import FloatArray
 
 ROOT = Path(__file__).parents[1]
-REFERENCE = ROOT / "tests" / "reference" / "full_contact_helical.csv"
+REFERENCE = "full_contact_helical.csv"
 PAGE, SECTION = ROOT / "docs" / "lab" / "accuracy.md", "helical full contact"
 SUBJECT = "3-D standard against helical full contact"
-HEAD = ("case", "load", "position_driver", "ste_um", "error_um")
+AXES = ("load", "position_driver")
 NUMBERS = ("43.2", "43.5", "43.10")
 """Of drawn pairs: seed and place."""
 POSITIONS = np.arange(16) / 16.0
@@ -76,14 +76,9 @@ def quantities(ste: FloatArray) -> FloatArray:
 
 def reference(case: PairCase) -> tuple[FloatArray, FloatArray]:
     """Return STE of the peer and how far a coarser mesh is from it (positions, loads), m."""
-    with REFERENCE.open(encoding="utf-8", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["case"] == case.name]
-    values = {
-        (float(row["load"]), float(row["position_driver"])): (float(row["ste_um"]), float(row["error_um"]))
-        for row in rows
-    }
+    values = recorded(REFERENCE, case.name, AXES)
     found = np.array([[values[load, at] for load in case.loads] for at in POSITIONS.tolist()])
-    ste, error = 1e-6 * np.moveaxis(found, 2, 0)
+    ste, error = np.moveaxis(found, 2, 0)
     return ste, error
 
 
@@ -109,28 +104,19 @@ def publish() -> None:
     replace_section(PAGE, SECTION, markdown(assessed()))
 
 
-def record() -> None:
-    """Solve the peer for all cases and write the reference."""
-    with REFERENCE.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(HEAD)
-        for case in helical_cases():
-            writer.writerows(solved_rows(case))
-            file.flush()
-
-
-def solved_rows(case: PairCase) -> Iterator[tuple[str, ...]]:
-    """Solve the peer for a case and give its rows of the reference."""
-    arm = case.pair.pinion.base_radius * np.cos(case.pair.base_helix_angle)
-    torques = [float(arm * force) for force in case.forces]
-    (table,) = solve_full_contact_helical(
-        case.pair, torques, POSITIONS.tolist(), case.options.get("misalignments", (0.0,)), estimate_error=True
-    )
-    for at, row in zip(POSITIONS.tolist(), table.points, strict=True):
-        for load, point in zip(case.loads, row, strict=True):
-            values = (1e6 * point.transmission_error, 1e6 * point.error_estimate)
-            yield (case.name, f"{load:g}", f"{at:g}", *(f"{value:.6f}" for value in values))
+def solved_rows() -> Iterator[tuple[str, tuple[float, ...], float, float]]:
+    """Solve the peer for all cases and give the rows of its reference."""
+    for case in helical_cases():
+        arm = case.pair.pinion.base_radius * np.cos(case.pair.base_helix_angle)
+        torques = [float(arm * force) for force in case.forces]
+        skews = case.options.get("misalignments", (0.0,))
+        (table,) = solve_full_contact_helical(
+            case.pair, torques, POSITIONS.tolist(), skews, estimate_error=True
+        )
+        for at, row in zip(POSITIONS.tolist(), table.points, strict=True):
+            for load, point in zip(case.loads, row, strict=True):
+                yield case.name, (load, at), point.transmission_error, point.error_estimate
 
 
 if __name__ == "__main__":
-    record()
+    record(REFERENCE, AXES, solved_rows())

@@ -6,7 +6,6 @@ minutes.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -16,15 +15,16 @@ import numpy as np
 
 from benchmarks.figures import Figure
 from benchmarks.marked_section import replace_section
+from benchmarks.recorded_peer import record, recorded
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.full_contact import solve_full_contact_over_face
 from fe_contact.types import FloatArray
 
 ROOT = Path(__file__).parents[1]
-REFERENCE = ROOT / "tests" / "reference" / "full_contact_over_face.csv"
+REFERENCE = "full_contact_over_face.csv"
 PAGE, SECTION = ROOT / "docs" / "lab" / "accuracy.md", "full contact over the face"
 SUBJECT = "3-D standard against full contact over the face"
-HEAD = ("case", "misalignment_um", "torque_n_m", "position_driver", "ste_um", "error_um")
+AXES = ("misalignment_um", "torque_n_m", "position_driver")
 
 
 @dataclass(frozen=True)
@@ -126,15 +126,9 @@ def assess(case: FaceCase) -> tuple[AssessedFace, ...]:
 
 def reference(case: FaceCase, misalignment: float) -> tuple[FloatArray, FloatArray]:
     """Return STE of the peer and its own error (positions, loads), m."""
-    with REFERENCE.open(encoding="utf-8", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["case"] == case.name]
-    values = {
-        tuple(float(row[name]) for name in HEAD[1:4]): (float(row["ste_um"]), float(row["error_um"]))
-        for row in rows
-    }
-    skew = round(1e6 * misalignment, 6)
+    values, skew = recorded(REFERENCE, case.name, AXES), round(1e6 * misalignment, 6)
     found = [[values[skew, torque, at] for torque in case.torques] for at in case.positions]
-    ste, error = 1e-6 * np.moveaxis(np.array(found), 2, 0)
+    ste, error = np.moveaxis(np.array(found), 2, 0)
     return ste, error
 
 
@@ -162,27 +156,18 @@ def publish() -> None:
     replace_section(PAGE, SECTION, markdown(assessed()))
 
 
-def record() -> None:
-    """Solve the peer for all cases, position by position, and write the reference."""
-    with REFERENCE.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(HEAD)
-        for case in face_cases():
-            for position in case.positions:
-                writer.writerows(solved_rows(case, position))
-
-
-def solved_rows(case: FaceCase, position: float) -> Iterator[tuple[str, ...]]:
-    """Solve the peer at a position and give its rows of the reference."""
-    tables = solve_full_contact_over_face(
-        case.pair, case.torques, [position], case.misalignments, estimate_error=True
-    )
-    for misalignment, table in zip(case.misalignments, tables, strict=True):
-        for point in table.points[0]:
-            numbers = (1e6 * misalignment, point.torque, point.position)
-            values = (1e6 * point.transmission_error, 1e6 * point.error_estimate)
-            yield (case.name, *(f"{n:g}" for n in numbers), *(f"{value:.6f}" for value in values))
+def solved_rows() -> Iterator[tuple[str, tuple[float, ...], float, float]]:
+    """Solve the peer for all cases, position by position, and give the rows of its reference."""
+    for case in face_cases():
+        for position in case.positions:
+            tables = solve_full_contact_over_face(
+                case.pair, case.torques, [position], case.misalignments, estimate_error=True
+            )
+            for misalignment, table in zip(case.misalignments, tables, strict=True):
+                for point in table.points[0]:
+                    at = (1e6 * misalignment, point.torque, point.position)
+                    yield case.name, at, point.transmission_error, point.error_estimate
 
 
 if __name__ == "__main__":
-    record()
+    record(REFERENCE, AXES, solved_rows())

@@ -1,7 +1,10 @@
-"""Pairs that the full contact is set up for, in the plane and over the face."""
+"""Pairs and axes that the full contact is set up for, in the plane and over the face."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from fe_contact.errors import InputError, finite, positive
 from fe_contact.geometry import CLAMPED, ParallelAxes, Toothing
 
 
@@ -58,3 +61,19 @@ def _of_gear(gear: Toothing) -> str | None:
     if gear.tip_form_roll_length != gear.tip_roll_length:
         return "rounded or chamfered tips: those of its meshes are sharp"
     return None
+
+
+def check_axes(
+    torques: Sequence[float], positions: Sequence[float], misalignments: Sequence[float] = (0.0,)
+) -> None:
+    """Refuse an axis without a number, torques that are not positive, and what is no number."""
+    axes = {"torques": torques, "positions": positions, "misalignments": misalignments}
+    for name, values in axes.items():
+        if len(values) == 0:
+            raise InputError(name, "none", "at least one number")
+    for torque in torques:
+        positive("torques", torque, "On gear 1, in N m.")
+    for position in positions:
+        finite("positions", position, "By the driving gear, in base pitches.")
+    for misalignment in misalignments:
+        finite("misalignments", misalignment, "In m: 30 um is 30e-6.")

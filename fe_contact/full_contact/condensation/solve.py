@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.errors import InputError, MeshError, SolveError, finite, positive
+from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.full_contact.condensation.contact_model import ContactModel, PlaneStrain, softness
 from fe_contact.full_contact.condensation.linearized_contact import (
     ActiveSetSolution,
@@ -19,11 +19,12 @@ from fe_contact.full_contact.condensation.linearized_contact import (
 )
 from fe_contact.full_contact.condensation.placed_mesh import placed_bodies
 from fe_contact.full_contact.condensation.sites import Range, Resolution, contact_sites, least_gap_left_out
-from fe_contact.full_contact.table import FullContactPoint, FullContactTable
-from fe_contact.full_contact.validity import refusal
+from fe_contact.full_contact.table import FullContactPoint, FullContactTable, SolvedPosition, tables_of
+from fe_contact.full_contact.validity import check_axes, refusal
 from fe_contact.geometry import ParallelAxes
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import Status
+from model_studies.progress import Report
 
 # One position of one contact geometry under all torques, settled on the deformed gears.
 
@@ -129,15 +130,6 @@ def _status(state: _Settled, residual: float) -> tuple[Status, str]:
 
 ATTEMPTS = 4
 WIDER = 1.6
-Loads = tuple[FullContactPoint, ...]
-
-
-@dataclass(frozen=True)
-class _SolvedPosition:
-    """Points of each contact of the model under all torques, and the unknowns of both bodies."""
-
-    contacts: tuple[Loads, ...]
-    unknowns: int
 
 
 def _solve_position(
@@ -146,7 +138,7 @@ def _solve_position(
     torques: Sequence[float],
     position: float,
     resolution: Resolution,
-) -> _SolvedPosition:
+) -> SolvedPosition:
     """Solve one position, in base pitches of the driving gear, for torques on gear 1 in N m.
 
     Where there is no mesh or no body it has no unknowns, and points that say why.
@@ -158,7 +150,7 @@ def _solve_position(
         lost = tuple(
             FullContactPoint.failed(Status.NOT_COMPUTED, reason, torque=torque) for torque in torques
         )
-        return _SolvedPosition((lost,) * model.count, 0)
+        return SolvedPosition((lost,) * model.count, 0)
 
 
 def _solved(
@@ -167,7 +159,7 @@ def _solved(
     torques: Sequence[float],
     position: float,
     resolution: Resolution,
-) -> _SolvedPosition:
+) -> SolvedPosition:
     """Mesh and solve; again with more pairs or longer strips where those do not hold the contact."""
     phase = position - round(position)
     least, most = (float(pair.normal_force(torque)) for torque in (min(torques), max(torques)))
@@ -186,11 +178,10 @@ def _solved(
         if lag < least_gap_left_out(pair, phase, sites) and not cut_off:
             break
         held = Range(loads, max(held.lag, 1.3 * lag), held.longer * (WIDER if cut_off else 1.0))
-    return _SolvedPosition(solved, unknowns)
+    return SolvedPosition(solved, unknowns)
 
 
 COARSER = 1.5
-Report = Callable[[float], None]
 
 
 def solve_full_contact(
@@ -233,6 +224,7 @@ def solve_full_contact(
     """
     if (reason := refusal(pair)) is not None:
         raise InputError("pair", "this pair", f"one that full contact in the plane holds; {reason}")
+    check_axes(torques, positions)
     meshes = resolutions(resolution or Resolution(), estimate_error=estimate_error)
     (table,) = contact_tables(PlaneStrain(), pair, torques, positions, meshes, report)
     return table
@@ -250,53 +242,18 @@ def contact_tables(
 
     The first mesh is that of the result; its difference from a second one is stated as error.
     """
-    _check(torques, positions)
-    solved: list[_SolvedPosition] = []
-    seconds = []
+    solved: list[SolvedPosition] = []
     for count, position in enumerate(positions):
         if report is not None:
             report(count / len(positions))
         clock = StageClock()
         with clock.stage("position"):
-            solutions = [_solve_position(model, pair, torques, position, mesh) for mesh in meshes]
-        solved.append(_with_error(solutions[0], solutions[1]) if len(solutions) > 1 else solutions[0])
-        seconds.append(clock.seconds["position"])
-    return tuple(
-        FullContactTable(
-            position=np.array(positions, dtype=float),
-            torque=np.array(torques, dtype=float),
-            points=tuple(position.contacts[number] for position in solved),
-            unknowns=np.array([position.unknowns for position in solved], dtype=np.int64),
-            cpu_seconds=np.array(seconds) / model.count,
-        )
-        for number in range(model.count)
-    )
+            found = [_solve_position(model, pair, torques, position, mesh) for mesh in meshes]
+        one = found[0].with_error(found[1]) if len(found) > 1 else found[0]
+        solved.append(replace(one, cpu_seconds=clock.seconds["position"]))
+    return tables_of(positions, torques, solved)
 
 
 def resolutions(resolution: Resolution, *, estimate_error: bool) -> tuple[Resolution, ...]:
     """Return the meshes to solve on: the coarser one too where the error is requested."""
     return (resolution, resolution.coarser(COARSER)) if estimate_error else (resolution,)
-
-
-def _check(torques: Sequence[float], positions: Sequence[float]) -> None:
-    for name, values in (("torques", torques), ("positions", positions)):
-        if len(values) == 0:
-            raise InputError(name, "none", "at least one number")
-    for torque in torques:
-        positive("torques", torque, "On gear 1, in N m.")
-    for position in positions:
-        finite("positions", position, "By the driving gear, in base pitches.")
-
-
-def _with_error(fine: _SolvedPosition, coarse: _SolvedPosition) -> _SolvedPosition:
-    contacts = zip(fine.contacts, coarse.contacts, strict=True)
-    return replace(fine, contacts=tuple(_apart(own, other) for own, other in contacts))
-
-
-def _apart(fine: Loads, coarse: Loads) -> Loads:
-    return tuple(
-        replace(own, error_estimate=abs(own.transmission_error - other.transmission_error))
-        if own.status.usable
-        else own
-        for own, other in zip(fine, coarse, strict=True)
-    )

@@ -8,18 +8,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.errors import InputError, finite, integer, within
+from fe_contact.errors import InputError, integer, within
 from fe_contact.full_contact.condensation.linearized_contact import ActiveSetSolution, solve_active_set
 from fe_contact.full_contact.condensation.sites import Resolution
-from fe_contact.full_contact.condensation.solve import Report, _check
 from fe_contact.full_contact.helical.flank_bodies import BodyMesh, HelicalGear, helical_gear
 from fe_contact.full_contact.helical.line_contact import LineContact, line_contact
-from fe_contact.full_contact.table import FullContactPoint, FullContactTable
-from fe_contact.full_contact.validity import refusal_helical
+from fe_contact.full_contact.table import FullContactPoint, FullContactTable, SolvedPosition, tables_of
+from fe_contact.full_contact.validity import check_axes, refusal_helical
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import contact_modulus, half_width
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import Status
+from model_studies.progress import Report
 
 
 @dataclass(frozen=True)
@@ -199,46 +199,26 @@ def solve_full_contact_helical(
     """
     if (reason := refusal_helical(pair)) is not None:
         raise InputError("pair", "this pair", f"one that helical full contact holds; {reason}")
-    if len(misalignments) == 0:
-        raise InputError("misalignments", "none", "at least one number")
-    for misalignment in misalignments:
-        finite("misalignments", misalignment, "In m: 30 um is 30e-6.")
-    _check(torques, positions)
-    usual = mesh or HelicalMesh()
-    clock = StageClock()
-    solved = []
-    with clock.stage("all"):
+    check_axes(torques, positions, misalignments)
+    usual, clock = mesh or HelicalMesh(), StageClock()
+    with clock.stage("bodies"):
         meshes = [usual, usual.coarser] if estimate_error else [usual]
         bodies = [_condensed(pair, max(torques), each) for each in meshes]
-        for count, position in enumerate(positions):
-            if report is not None:
-                report(count / len(positions))
-            solved.append(
-                [
-                    _with_error([_solved(body, position, torques, misalignment) for body in bodies])
-                    for misalignment in misalignments
-                ]
-            )
-    seconds = clock.seconds["all"] / (len(positions) * len(misalignments))
-    return tuple(
-        FullContactTable(
-            position=np.array(positions, dtype=float),
-            torque=np.array(torques, dtype=float),
-            points=tuple(row[number] for row in solved),
-            unknowns=np.full(len(positions), bodies[0].unknowns, dtype=np.int64),
-            cpu_seconds=np.full(len(positions), seconds),
-        )
-        for number in range(len(misalignments))
-    )
+    solved = []
+    for count, position in enumerate(positions):
+        if report is not None:
+            report(count / len(positions))
+        with clock.stage(f"position {count}"):
+            found = [_solved_position(body, position, torques, misalignments) for body in bodies]
+        one = found[0].with_error(found[1]) if estimate_error else found[0]
+        seconds = clock.seconds[f"position {count}"] + clock.seconds["bodies"] / len(positions)
+        solved.append(replace(one, cpu_seconds=seconds))
+    return tables_of(positions, torques, solved)
 
 
-def _with_error(solved: list[tuple[FullContactPoint, ...]]) -> tuple[FullContactPoint, ...]:
-    """Return the points of the first mesh; their differences from a second one are their errors."""
-    if len(solved) == 1:
-        return solved[0]
-    return tuple(
-        replace(own, error_estimate=abs(own.transmission_error - other.transmission_error))
-        if own.status.usable
-        else own
-        for own, other in zip(*solved, strict=True)
-    )
+def _solved_position(
+    body: _CondensedPair, position: float, torques: Sequence[float], misalignments: Sequence[float]
+) -> SolvedPosition:
+    """Solve one position under all misalignments and torques."""
+    contacts = tuple(_solved(body, position, torques, misalignment) for misalignment in misalignments)
+    return SolvedPosition(contacts, body.unknowns)

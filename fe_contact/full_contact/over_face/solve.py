@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.optimize import brentq
 
-from fe_contact.errors import InputError, finite
+from fe_contact.errors import InputError
 from fe_contact.full_contact.condensation.contact_model import at_end, softness
 from fe_contact.full_contact.condensation.linearized_contact import (
     LEAST_FACING,
@@ -29,14 +29,15 @@ from fe_contact.full_contact.condensation.sites import (
     material_removed,
     removed_at_roll,
 )
-from fe_contact.full_contact.condensation.solve import Report, contact_tables, resolutions
+from fe_contact.full_contact.condensation.solve import contact_tables, resolutions
 from fe_contact.full_contact.condensation.weak_gap import FlankCurve, WeakGap, weak_gap
 from fe_contact.full_contact.over_face.extruded_body import ExtrudedBody, extruded_body
 from fe_contact.full_contact.over_face.extruded_stiffness import Layers, graded_layers
 from fe_contact.full_contact.table import FullContactTable
-from fe_contact.full_contact.validity import refusal_over_face
+from fe_contact.full_contact.validity import check_axes, refusal_over_face
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
+from model_studies.progress import Report
 
 # Weak gap of one tooth pair over the face: that of its sections, against hats along the face.
 
@@ -370,10 +371,7 @@ def solve_full_contact_over_face(
     """
     if (reason := refusal_over_face(pair)) is not None:
         raise InputError("pair", "this pair", f"one that full contact over the face holds; {reason}")
-    if len(misalignments) == 0:
-        raise InputError("misalignments", "none", "at least one number")
-    for misalignment in misalignments:
-        finite("misalignments", misalignment, "In m: 30 um is 30e-6.")
+    check_axes(torques, positions, misalignments)
     meshes = resolutions(resolution, estimate_error=estimate_error)
     model = _WholeFace(tuple(float(misalignment) for misalignment in misalignments))
     return contact_tables(model, pair, torques, positions, meshes, report)
