@@ -69,7 +69,7 @@ class _SectorElements:
     Attributes
     ----------
     nodes : (e, 20, 3) array
-        m, in the order of `SweptSector.elements`, which is VTK's.
+        m, in the order of `SweptSector.elements`, which is VTK's; none of an elastic seat.
     numbers : (e, 20) int array
         Point of each; nodes that hang on a coarser face have points of their own.
     points : int
@@ -121,13 +121,12 @@ _EXTRAPOLATION = _trilinear(REFERENCE) @ np.linalg.inv(_trilinear(INNER))
 
 
 def _sector_elements(gear: Toothing, section: QuadSector, sector: SweptSector) -> _SectorElements:
-    """Place the elements of a sector; the gear is right hand or spur, as the sector was made for."""
-    axes = node_axes(gear, section)
-    count = len(sector.elements)
-    nodes, jacobian = np.empty((count, 20, 3)), np.empty(count)
-    numbers, points = sector.elements.copy(), len(sector.freedoms)
+    """Place the bodies of a sector; the gear is right hand or spur, as the sector was made for."""
+    axes, bodies = node_axes(gear, section), [batch for batch in sector.batches if not batch.seat]
+    nodes, jacobian = np.empty((sector.bodies, 20, 3)), np.empty(sector.bodies)
+    numbers, points = sector.elements[: sector.bodies].copy(), len(sector.freedoms)
     parts = []
-    for batch in sector.batches:
+    for batch in bodies:
         local, frames = placed_layer(section, batch, axes, twist(gear))
         middle = np.interp(
             sector.place[batch.elements[:, 0], 2], np.arange(len(sector.layers.ends)), sector.layers.ends
@@ -145,8 +144,8 @@ def _sector_elements(gear: Toothing, section: QuadSector, sector: SweptSector) -
             numbers[batch.elements.ravel()[:, None], LOWER_FACE] = own
             points += own.size
     angle = quad_quality(section.points, section.grid.quads).angle
-    quality = {"scaled_jacobian": jacobian, "corner_angle_deg": np.empty(count)}
-    for batch in sector.batches:
+    quality = {"scaled_jacobian": jacobian, "corner_angle_deg": np.empty(sector.bodies)}
+    for batch in bodies:
         quality["corner_angle_deg"][batch.elements] = np.degrees(angle[batch.quads])
     lame = PlaneHypothesis.PLANE_STRAIN.lame_parameters(gear.material)
     return _SectorElements(nodes, numbers, points, quality, sector, lame, tuple(parts))
@@ -277,7 +276,7 @@ def _deformed(
     return DeformedGear(
         points=points * flip,
         cells=cells[:, UPSIDE_DOWN] if left else cells,
-        tooth=np.repeat(shown, len(gear.sector.elements)),
+        tooth=np.repeat(shown, len(elements.nodes)),
         displacement=displacement * flip,
         stress=mean * np.outer(flip, flip),
         quality={name: np.tile(values, len(shown)) for name, values in elements.quality.items()},

@@ -180,6 +180,7 @@ def test_a_gear_on_an_elastic_seat_moves_as_its_compliance_and_a_key_is_refused(
         expected = flank.block(tooth, 0) @ load[0]
         assert moved == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.abs(expected).max())
     assert found.residual < 1e-9
+    assert len(np.unique(np.sort(found.cells, axis=1), axis=0)) == len(found.cells) == len(found.tooth)
     with pytest.raises(InputError, match=r"seat\.key"):
         deformed_solids(replace(gear, seat=replace(seat, key=Key(1e-3))), recipe, [load])
 
