@@ -95,6 +95,8 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     rougher = [work, *([work] if made.corrected else [])]
     if made.slices > 1:
         rougher.append(unit_work(pair, plan, made.coarse_slices))
+    if plan.coarse_patch != plan.patch:
+        rougher.append(work)
     some, rows = min(loads, LOADS), some_positions(kept).size
     skews, distances = (min(count, ALIGNMENTS) for count in alignments)
     seconds = sum(w.of(rows * distances, rows * period * skews * distances * some) for w in rougher)

@@ -128,12 +128,28 @@ WIDTH_SHARE = 0.8
 peak-to-peak are 0.8 of the measured change in the median (docs/lab/influence.md)."""
 
 
-TRIED = ((2.0, 0.1), (1.25, 0.5))
-"""Ratio of expected error to tolerance up to which a mesh is tried, and ratio of its work to that of the mesh
-expected to meet the tolerance: the saving where it suffices exceeds the cost of a failed pass."""
-MEASURED = (5.0, 0.1)
-"""The same of a mesh of the chosen model: errors that it measures tell the next mesh, and predictions are off
-by as much on wide and quiet helical pairs."""
+@dataclass(frozen=True)
+class _Trial:
+    """What is tried before the mesh that is expected to meet the tolerance.
+
+    Attributes
+    ----------
+    error : float
+        Largest ratio of expected error to tolerance.
+    work : float
+        Largest ratio of its work to that of the expected mesh.
+    models : bool
+        Whether other models are tried too, not meshes of the expected one alone.
+    """
+
+    error: float
+    work: float
+    models: bool = True
+
+
+TRIED = _Trial(2.0, 0.1), _Trial(1.25, 0.5), _Trial(5.0, 0.1, models=False)
+"""In this order. Where the trial suffices it saves more than a failed pass costs. A mesh of the same model
+measures errors, which tell the next mesh: predictions are off by as much on wide and quiet helical pairs."""
 
 
 def decide(
@@ -149,7 +165,7 @@ def decide(
         Choose mesh and slices only: what is requested is more than the transmission error.
     tried : bool
         The run measures its errors and is refined where they are too large: what is expected to err by
-        somewhat more than the tolerance is tried first where it costs much less (`TRIED`, `MEASURED`).
+        somewhat more than the tolerance is tried first where it costs much less (`TRIED`).
     """
     options = checked.request.options
     if options.tolerance is not None and options.time_budget is not None:
@@ -158,10 +174,10 @@ def decide(
     curves = expected_curves(checked) if _wishes(checked) or checked.model.across_face else None
     chosen = _best(_meshes(models, curves, cache, 1.0))
     if tried and options.tolerance is not None:
-        for stretch, share in (*TRIED, MEASURED):
-            among = [chosen[0]] if (stretch, share) == MEASURED else models
-            first = _best(_meshes(among, curves, cache, stretch))
-            if first[1].met and first[1].option.effort <= share * chosen[1].option.effort:
+        for trial in TRIED:
+            among = models if trial.models else [chosen[0]]
+            first = _best(_meshes(among, curves, cache, trial.error))
+            if first[1].met and first[1].option.effort <= trial.work * chosen[1].option.effort:
                 return _planned(first[0], _said_tried(*chosen, first[1]))
     return _planned(*chosen)
 
