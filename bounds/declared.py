@@ -47,6 +47,7 @@ class Kind(StrEnum):
     LOAD = auto()
     """A force or a moment."""
     SPEED = auto()
+    TEMPERATURE = auto()
     TIME = auto()
     FREQUENCY = auto()
     COUNT = auto()

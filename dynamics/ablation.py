@@ -153,7 +153,8 @@ def ablate(
         The scene itself has no equilibrium or stops early.
     """
     names = chosen("only", only, [effect.name for effect in EFFECTS])
-    scene = assemble(decide_effects(scene).scene).resolved_scene  # one output grid for all runs
+    scene = decide_effects(scene).scene
+    scene = assemble(scene).resolved(scene)  # one output grid for all runs
     scene = replace(scene, on_violation="report", tolerance=None)
     result, seconds = _timed(scene)
     influences = estimate_influences(scene, SETTLED)

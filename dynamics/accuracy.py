@@ -389,7 +389,7 @@ def frontier(
         Fewer than two fidelities came to their end.
     """
     system = assemble(scene)
-    blocks, scene = _Blocks.of(system), system.resolved_scene
+    blocks, scene = _Blocks.of(system), system.resolved(scene)
     names = chosen("fidelities", fidelities, [fidelity.name for fidelity in FIDELITIES])
     outcomes, left_out = run_fidelities(
         [fidelity for fidelity in FIDELITIES if fidelity.name in names],

@@ -34,16 +34,25 @@ MESH_SUFFIXES = tuple(MESH_FORMATS)
 _YOUNG = Declared(Kind.STIFFNESS, "Pa", between(1e6, 2e12), "Young's modulus", 110e9)
 _POISSON = Declared(Kind.RATIO, "", between(0.0, 0.49), "Poisson's ratio", 0.26)
 _DENSITY = Declared(Kind.INERTIA, "kg/m^3", up_to(1e5), "Density", 7200.0)
+_EXPANSION = Declared(
+    Kind.RATIO,
+    "1/K",
+    between(0.0, 1e-3),
+    "Coefficient of thermal expansion; needed where the housing has a temperature",
+    21e-6,
+    later=True,
+)
 
 
 @described
 @dataclass(frozen=True)
 class Material:
-    """Isotropic elasticity and density."""
+    """Isotropic elasticity, density and thermal expansion."""
 
     youngs_modulus: float = required(_YOUNG)
     poissons_ratio: float = required(_POISSON)
     density: float = required(_DENSITY)
+    thermal_expansion: float | None = declared(None, _EXPANSION)
 
     def __post_init__(self) -> None:
         declared_fields(self)
@@ -56,12 +65,12 @@ class Material:
         return 2.0 * shear * poisson / (1.0 - 2.0 * poisson), shear
 
 
-GRAY_CAST_IRON = Material(110e9, 0.26, 7200.0)
-"""EN-GJL-250 (EN 1561, annex A: 103 to 118 GPa, 0.26, 7200 kg/m^3)."""
-SPHEROIDAL_CAST_IRON = Material(169e9, 0.275, 7100.0)
+GRAY_CAST_IRON = Material(110e9, 0.26, 7200.0, 11.7e-6)
+"""EN-GJL-250 (EN 1561, annex A: 103 to 118 GPa, 0.26, 7200 kg/m^3, 20 to 200 degrees Celsius)."""
+SPHEROIDAL_CAST_IRON = Material(169e9, 0.275, 7100.0, 12.5e-6)
 """EN-GJS-400 (EN 1563, annex)."""
-CAST_ALUMINUM = Material(73e9, 0.33, 2700.0)
-"""Die-cast aluminum-silicon alloys, usual value."""
+CAST_ALUMINUM = Material(73e9, 0.33, 2700.0, 21e-6)
+"""Die-cast aluminum-silicon alloys, usual values."""
 MATERIALS = {
     "gray_cast_iron": GRAY_CAST_IRON,
     "spheroidal_cast_iron": SPHEROIDAL_CAST_IRON,

@@ -306,13 +306,12 @@ class System:
         """Rows of the transmission errors among the local coordinates, (m,): driving flanks come first."""
         return self.arrays.elements.first[: len(self.scene.meshes)]
 
-    @property
-    def resolved_scene(self) -> Scene:
-        """The scene with the output rate and the highest frequency of its shafts spelled out."""
-        outputs = replace(self.scene.outputs, sample_rate=self.sampling.rate)
+    def resolved(self, scene: Scene) -> Scene:
+        """Return `scene`, of which it is made, with output rate and highest frequency spelled out."""
+        outputs = replace(scene.outputs, sample_rate=self.sampling.rate)
         elastic = [rotor.elastic.highest for rotor in self.rotors if rotor.elastic is not None]
-        highest = elastic[0] if elastic else self.scene.highest_frequency
-        return replace(self.scene, outputs=outputs, highest_frequency=highest)
+        highest = elastic[0] if elastic else scene.highest_frequency
+        return replace(scene, outputs=outputs, highest_frequency=highest)
 
     def bearing_force(self, local: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
         """Return the force (N) on the ground or the pin at each support in its own frame, (b, 3, T).

@@ -8,16 +8,35 @@ References
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from bounds import Choice, Declared, Kind, above, below, between, declared, described, integers, required
-from dynamics.bearings.seat import POSITION, Bushing
+from bounds import (
+    Choice,
+    Declared,
+    Kind,
+    above,
+    below,
+    between,
+    declared,
+    described,
+    inside,
+    integers,
+    required,
+)
+from dynamics.bearings.ring_fits import BORE, OUTSIDE, RingFits
+from dynamics.bearings.seat import POSITION, SEAT_TEMPERATURE, Bushing
 from dynamics.checks import declared_fields, one_of, positive
 from dynamics.errors import InputError
-from dynamics.shafts.bodies import STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
+from dynamics.shafts.bodies import (
+    EXPANSION,
+    STEEL_EXPANSION,
+    STEEL_POISSON_RATIO,
+    STEEL_YOUNGS_MODULUS,
+    TEMPERATURE,
+)
 from dynamics.types import FloatArray
 
 # Rows of equal elements, and a line of a bearing catalog.
@@ -59,6 +78,12 @@ class _Row:
         return self.diameter * math.cos(self.contact_angle) / self.pitch_diameter
 
     @property
+    def raceways(self) -> tuple[float, float]:
+        """Return the diameters of the inner and the outer raceway where they touch an element, m."""
+        across = self.diameter * math.cos(self.contact_angle)
+        return self.pitch_diameter - across, self.pitch_diameter + across
+
+    @property
     def cage_ratio(self) -> float:
         """Return the speed of the cage over that of the inner ring, the outer at rest and nothing slips."""
         return (1.0 - self.slenderness) / 2.0
@@ -79,8 +104,6 @@ class _Row:
             raise InputError("pitch_diameter", self.pitch_diameter, bound, suggestion)
 
 
-BORE = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Bore of the inner ring", 0.025)
-OUTSIDE = Declared(Kind.LENGTH, "m", between(1e-4, 20.0), "Outside diameter of the outer ring", 0.062)
 RATING = Declared(Kind.FORCE, "N", between(1.0, 1e9), "Basic static load rating C_0", 11600.0)
 
 
@@ -387,6 +410,18 @@ DYNAMIC_CAPACITY = Declared(
 )
 
 
+_FITS = Declared(
+    Kind.PART,
+    "",
+    None,
+    "Fits of its rings; left out: at temperature the rings expand by themselves",
+    part=RingFits,
+    later=True,
+)
+_INNER = replace(TEMPERATURE, description="Steady temperature of the inner ring")
+_OUTER = replace(TEMPERATURE, description="Steady temperature of the outer ring", example=70.0)
+
+
 @described
 @dataclass(frozen=True)
 class RollingBearing:
@@ -401,6 +436,9 @@ class RollingBearing:
     An element of load Q pushes back with ``Q (1 + d p')``, p' the rate at which it is pressed, and never
     pulls (Hunt and Crossley); d follows from `damping_ratio` with the mass of the shaft and its gears divided
     by the number of its bearings.
+
+    `axial_shift` (m) is how far the inner ring stands along z against the outer beside what the preload does;
+    at temperature it has taken the place of the preload as drawn.
     """
 
     name: str
@@ -411,9 +449,18 @@ class RollingBearing:
     damping_ratio: float = declared(0.05, DAMPING_RATIO)
     dynamic_capacity: float | None = declared(None, DYNAMIC_CAPACITY)
     locating: str = declared(BOTH, LOCATING)
+    inner_temperature: float | None = declared(None, _INNER)
+    outer_temperature: float | None = declared(None, _OUTER)
+    seat_temperature: float | None = declared(None, SEAT_TEMPERATURE)
+    thermal_expansion: float = declared(STEEL_EXPANSION, EXPANSION)
+    fits: RingFits | None = declared(None, _FITS)
+    axial_shift: float = 0.0
 
     def __post_init__(self) -> None:
         declared_fields(self)
+        if self.fits is not None:
+            with inside("fits"):
+                self.fits.check_around(self.row.raceways)
         angle, preload = self.row.contact_angle, self.axial_preload
         if preload != 0.0 and angle == 0.0 and isinstance(self.row, RollerBearing):
             bound = "0: cylindrical rollers carry no axial force"

@@ -54,7 +54,9 @@ class _RowLaw:
 
     @cached_property
     def shift(self) -> float:
-        """Displacement of the inner ring against the outer, along z, that makes the axial preload, m.
+        """Displacement of the inner ring against the outer, along z, where the shaft is not displaced, m.
+
+        What makes the axial preload, and what temperatures add.
 
         Raises
         ------
@@ -62,8 +64,9 @@ class _RowLaw:
             If no displacement makes it.
         """
         if self.bearing.axial_preload == 0.0:
-            return 0.0
-        return float(self.loaded.displacement((0.0, 0.0, self.bearing.axial_preload, 0.0, 0.0))[2])
+            return self.bearing.axial_shift
+        preloaded = self.loaded.displacement((0.0, 0.0, self.bearing.axial_preload, 0.0, 0.0))
+        return float(preloaded[2]) + self.bearing.axial_shift
 
     def rows(self, duty: BearingDuty) -> FloatArray:
         return np.diag([1.0, 1.0, 1.0, self.lever, self.lever])
@@ -71,6 +74,10 @@ class _RowLaw:
     def typical(self, duty: BearingDuty) -> FloatArray:
         """Return the stiffness of the rows at the typical load, (5,), N/m."""
         return np.diag(self._under(duty)[1].tangent) / np.diag(self.rows(duty)) ** 2
+
+    def way(self, duty: BearingDuty) -> float:
+        """Return the displacement under the typical load across the axis, m."""
+        return self._under(duty)[0]
 
     def missed(self, duty: BearingDuty) -> float:
         way, at = self._under(duty)

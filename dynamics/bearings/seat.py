@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from bounds import Declared, Kind, between, declared, described, required
 from dynamics.bearings.matrix import PRECISION, Matrix, check_matrix
 from dynamics.checks import declared_fields, finite, not_negative
 from dynamics.errors import InputError
+from dynamics.shafts.bodies import TEMPERATURE
 from dynamics.types import FloatArray
 
 DEFAULT_DAMPING_RATIO = 0.05
@@ -35,6 +36,11 @@ DAMPING_RATIO = Declared(
     between(0.0, 10.0),
     "Damping ratio of the shaft bouncing on its bearings, where a damping is left out",
     0.05,
+)
+
+
+SEAT_TEMPERATURE = replace(
+    TEMPERATURE, description="Steady temperature of the housing at this seat; left out: that of the housing"
 )
 
 
@@ -137,6 +143,7 @@ class Bushing(_Seat):
     stiffness: Matrix | None = None
     damping: Matrix | None = None
     preload: tuple[float, ...] | None = None
+    seat_temperature: float | None = declared(None, SEAT_TEMPERATURE)
 
     def __post_init__(self) -> None:
         self.check_seat()

@@ -17,6 +17,7 @@ from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.meshes.gear_mesh import GearMesh
+from dynamics.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,13 @@ class Effect:
     adds: ClassVar[tuple[str, ...]] = ()
     linear: ClassVar[bool] = True
     at_rest: ClassVar[bool | None] = None
+
+    def prepared(self, scene: Scene) -> Scene:
+        """Return `scene` with what the effect, if it is not switched off, changes of its parts.
+
+        Raises `InputError`.
+        """
+        return scene
 
     def check(self, mechanism: Mechanism) -> None:
         """Refuse a mechanism that the effect, if it is not switched off, cannot do with.

@@ -171,6 +171,8 @@ def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechan
         one_of(f"effects.{name}", choice, CHOICES)
     allowed = [effect for effect in registry if scene.effects.get(effect.name) != "off"]
     requested = [effect for effect in registry if scene.effects.get(effect.name) == "on"]
+    for effect in allowed:
+        scene = effect.prepared(scene)
     mechanism = gather_mechanism(scene, Additions(_added(allowed), _added(requested)))
     for effect in allowed:
         effect.check(mechanism)

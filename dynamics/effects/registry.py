@@ -5,6 +5,7 @@ from __future__ import annotations
 from dynamics.effects.axial import Axial
 from dynamics.effects.backlash import Backlash
 from dynamics.effects.bearing_clearance import BearingClearance
+from dynamics.effects.bearing_temperature import BearingTemperature
 from dynamics.effects.centrifugal_load import CentrifugalLoad
 from dynamics.effects.dynamic_center_distance import DynamicCenterDistance
 from dynamics.effects.dynamic_misalignment import DynamicMisalignment
@@ -15,6 +16,7 @@ from dynamics.effects.friction import Friction
 from dynamics.effects.gyroscopic import Gyroscopic
 from dynamics.effects.housing_modes import HousingModes
 from dynamics.effects.lateral import Lateral
+from dynamics.effects.mesh_temperature import MeshTemperature
 from dynamics.effects.moving_application_point import MovingApplicationPoint
 from dynamics.effects.tilt import Tilt
 
@@ -22,12 +24,14 @@ EFFECTS: tuple[Effect, ...] = (
     Lateral(),
     Axial(),
     Tilt(),
+    BearingTemperature(),
     BearingClearance(),
     ElementPassing(),
     Gyroscopic(),
     CentrifugalLoad(),
     FlexibleShafts(),
     HousingModes(),
+    MeshTemperature(),
     Backlash(),
     DynamicMisalignment(),
     DynamicCenterDistance(),
@@ -39,5 +43,6 @@ LEFT_OUT: dict[str, str] = {
     "friction of bearings": "bearings turn without loss",
     "point of application along the path of contact": "the mesh force acts at the operating pitch point",
     "flexible members of planetary sets": "sun, ring, carrier and planets are rigid on their shafts",
+    "temperature fields": "each part has one steady temperature and expands freely; base pitches stay",
     "damping that turns with a flexible shaft": "material damping acts as on a shaft at rest",
 }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from itertools import chain
 from typing import Any, get_args, get_origin, get_type_hints
@@ -24,6 +24,7 @@ from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.joints.housing import DEFINITE
 from dynamics.loads import AppliedForce, LoadTorque, TimeLaw, Unbalance
 from dynamics.meshes import GearMesh
+from dynamics.scene.temperatures import Temperatures
 from dynamics.settings import Integration, Outputs
 from dynamics.shafts import DiscBody, GearBody, Shaft
 from dynamics.shafts.shaft import on_length
@@ -233,6 +234,28 @@ def _check_names(scene: Scene) -> None:
                 one_of(f"{kind}[{index}].{side}", getattr(part, side), names)
 
 
+def _check_temperatures(scene: Scene) -> None:
+    """Every part that expands has a temperature where the housing has one, and none otherwise."""
+    for path, value, needed in _temperatures(scene):
+        if scene.temperatures is None and value is not None:
+            raise InputError(path, value, "left out without [temperatures]", "Give that of the housing.")
+        if scene.temperatures is not None and needed and value is None:
+            advice = "With [temperatures] shafts, gears and rings of rolling bearings have one each."
+            raise InputError(path, None, "given", advice)
+
+
+def _temperatures(scene: Scene) -> Iterator[tuple[str, Any, bool]]:
+    """Yield field and value of every temperature of a part, and whether it has to be given."""
+    rings = ("inner_temperature", "outer_temperature")
+    of_kinds = {"shafts": ("temperature",), "gears": ("temperature",), "rolling_bearings": rings}
+    for kind, names in of_kinds.items():
+        for index, part in enumerate(getattr(scene, kind)):
+            yield from ((f"{kind}[{index}].{name}", getattr(part, name), True) for name in names)
+    for kind in ("bushings", "rolling_bearings"):
+        for index, part in enumerate(getattr(scene, kind)):
+            yield f"{kind}[{index}].seat_temperature", part.seat_temperature, False
+
+
 PLACED = ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings", "forces", "unbalances")
 """Kinds whose parts lie within the length of their shaft."""
 ON_VIOLATION = ("repeat", "fail", "report")
@@ -271,6 +294,8 @@ class Scene(StatedLaws):
         automatic effects may cause in a run; None: effects are as the scene calls for them.
     highest_frequency : float or None
         Hz to which flexible shafts are resolved; None: half the output rate.
+    temperatures : Temperatures or None
+        Of the housing; shafts, gears and rings of rolling bearings then have their own. None: as drawn.
     """
 
     shafts: tuple[Shaft, ...]
@@ -296,6 +321,7 @@ class Scene(StatedLaws):
     on_violation: str = "repeat"
     tolerance: float | None = None
     highest_frequency: float | None = None
+    temperatures: Temperatures | None = None
 
     def __post_init__(self) -> None:
         not_negative("duration", self.duration)
@@ -307,6 +333,7 @@ class Scene(StatedLaws):
         check_samples(self.duration, self.outputs.sample_rate or LEAST_RATE)
         _check_names(self)
         self._check_references()
+        _check_temperatures(self)
         for check in (_check_frames, _check_gravity, _check_couplings, _check_housings, _check_bearing_laws):
             check(self)
 

@@ -17,6 +17,20 @@ STEEL_YOUNGS_MODULUS = 210e9
 STEEL_POISSON_RATIO = 0.3
 STEEL_DENSITY = 7850.0
 """kg/m^3."""
+STEEL_EXPANSION = 11.5e-6
+"""1/K, from 20 to 100 degrees Celsius."""
+
+TEMPERATURE = Declared(
+    Kind.TEMPERATURE,
+    "degC",
+    between(-273.15, 1000.0),
+    "Steady temperature; given where [temperatures] is",
+    80.0,
+    later=True,
+)
+EXPANSION = Declared(
+    Kind.RATIO, "1/K", between(0.0, 1e-3), "Coefficient of thermal expansion", STEEL_EXPANSION, later=True
+)
 
 
 _MASS = Declared(Kind.INERTIA, "kg", between(0.0, 1e9), "Mass", 2.0)
@@ -106,6 +120,8 @@ class GearBody:
     base_helix_angle: float = 0.0
     inertia: Inertia = field(default_factory=Inertia)
     internal: bool = False
+    temperature: float | None = declared(None, TEMPERATURE)
+    thermal_expansion: float = declared(STEEL_EXPANSION, EXPANSION)
 
     def __post_init__(self) -> None:
         declared_fields(self)

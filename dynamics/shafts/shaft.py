@@ -11,7 +11,7 @@ from bounds import Declared, Kind, Quantity, Text, between, declared, described,
 from dynamics.checks import declared_fields, finite
 from dynamics.errors import InputError
 from dynamics.shafts.beam_section import BeamSection
-from dynamics.shafts.bodies import Inertia
+from dynamics.shafts.bodies import EXPANSION, STEEL_EXPANSION, TEMPERATURE, Inertia
 
 SAME_POSITION = 1e-9
 """Of the shaft's length: positions nearer than this coincide. n added lengths round by n eps of their sum."""
@@ -68,6 +68,8 @@ class Shaft:
     frame: str | None = None
     sections: tuple[BeamSection, ...] = ()
     damping_ratio: float = declared(0.005, _DAMPING)
+    temperature: float | None = declared(None, TEMPERATURE)
+    thermal_expansion: float = declared(STEEL_EXPANSION, EXPANSION)
 
     def __post_init__(self) -> None:
         declared_fields(self)

@@ -49,6 +49,8 @@ _OF_SI = {
     "kg m": "_g_mm",
     "kg m^2": "_kg_m2",
     "kg/m^3": "_kg_per_m3",
+    "degC": "_degc",
+    "1/K": "_per_k",
 }
 """The ending of a declared field by its unit; depths are in um."""
 

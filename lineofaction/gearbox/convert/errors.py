@@ -12,6 +12,7 @@ from pydantic import BaseModel
 
 from bounds import Declared, Reader, RefusedValue, Unit
 from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
+from dynamics.bearings.ring_fits import RingFits
 from dynamics.bearings.rolling_bearing import RollingBearing
 from dynamics.bearings.seat import Bushing, PlanetBearing
 from dynamics.errors import DynamicsError
@@ -20,6 +21,7 @@ from dynamics.joints.coupling import Coupling
 from dynamics.joints.housing import Housing
 from dynamics.joints.rotations import FreeRotation, ImposedRotation
 from dynamics.loads.applied_force import AppliedForce, Unbalance
+from dynamics.scene.temperatures import Temperatures
 from dynamics.settings.run import Integration, Outputs
 from dynamics.shafts.beam_section import BeamSection
 from dynamics.shafts.bodies import DiscBody, GearBody, Inertia
@@ -73,10 +75,10 @@ _ANYWHERE = (
     Outputs,
     *(Bushing, Housing, PlanetBearing, Coupling, FreeRotation, AppliedForce, Unbalance),
     *(SeatWall, HousingMaterial, ReductionSettings),
-    *(RollingBearing, BallBearing, RollerBearing, CatalogLine),
+    *(RollingBearing, BallBearing, RollerBearing, CatalogLine, RingFits),
 )
 """What declares its fields, by names that mean the same in every table."""
-_OF_TABLE = {"drives": ImposedRotation, "integration": Integration}
+_OF_TABLE = {"drives": ImposedRotation, "integration": Integration, "temperatures": Temperatures}
 """What declares fields whose names mean something else in other tables."""
 DECLARED = (*_ANYWHERE, *_OF_TABLE.values())
 
@@ -139,7 +141,7 @@ def boundary_name(name: str) -> str:
 
 def scene_field(name: str) -> str:
     """Return the scene file's name of a field of dynamics, e.g. ``bushings[0].radial_stiffness_n_per_m``."""
-    parts = name.split(".")
+    parts = ["coast_flank" if part == "coast" else part for part in name.split(".")]
     head, index = _split_index(parts[-1])
     table = _OF_TABLE.get(_split_index(parts[0])[0])
     if len(parts) == 2 and table and head in (own := _fields_of(table)):

@@ -24,7 +24,9 @@ from dynamics.mechanism.kinematics import check_motion
 from dynamics.meshes import CoastFlank, GearMesh, MeshTable
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
 from dynamics.scene import Integration, Outputs, Scene
+from dynamics.scene.temperatures import Temperatures
 from dynamics.shafts import BeamSection, DiscBody, GearBody, Inertia, Shaft, hollow_cylinder
+from dynamics.solid_housing import Material
 from fe_contact.ste import PairFacts, SteDatabase
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.declared import in_si, part_of
@@ -439,6 +441,8 @@ def _assembled(
         outputs = Outputs(**in_si(Outputs, scene.outputs))
     with named("integration"):
         integration = Integration(**in_si(Integration, scene.integration))
+    with named("temperatures"):
+        temperatures = _temperatures(scene)
     laws: dict[str, Any] = {kind: tuple(_laws_of(kind, scene)) for kind in STATED}
     with named(""):
         return Scene(
@@ -459,9 +463,18 @@ def _assembled(
             loads=_all(scene, "loads", _load_torque),
             forces=_all(scene, "forces", _force),
             unbalances=_all(scene, "unbalances", _plain(Unbalance)),
+            temperatures=temperatures,
             outputs=outputs,
             integration=integration,
         )
+
+
+def _temperatures(scene: SceneInput) -> Temperatures | None:
+    table = scene.temperatures
+    if table is None:
+        return None
+    material = part_of(Material, table.housing_material, "housing_material")
+    return Temperatures(**in_si(Temperatures, table) | {"housing_material": material})
 
 
 def _with_all_planets(inputs: SceneInput, scene: Scene) -> Scene:

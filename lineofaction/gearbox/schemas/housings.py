@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from dynamics.joints.housing import Housing
+from dynamics.scene.temperatures import Temperatures
 from dynamics.solid_housing import MATERIALS, Material, ReductionSettings, SeatWall
 from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
 from lineofaction.gearbox.schemas.files import FileContentInput
@@ -32,15 +33,32 @@ Rates = Annotated[Listed[Annotated[float, Field(ge=0.0, le=1e15)]], _THREE]
 
 
 def _material_by_name(value: object) -> object:
+    """Return the figures of a material by name; without those that came after results had been stored."""
+    return _figures_of(value, later=False)
+
+
+def _figures_of(value: object, *, later: bool) -> object:
     if isinstance(value, str) and value in MATERIALS:
-        material = MATERIALS[value]
-        return {figure.field: figure.own(getattr(material, figure.name)) for figure in figures(Material)}
+        own = (figure for figure in figures(Material) if later or not figure.what.later)
+        return {figure.field: figure.own(getattr(MATERIALS[value], figure.name)) for figure in own}
     return value
 
 
 @with_fields(declared_in(Material))
 class HousingMaterialInput(BoundaryModel):
     """Linear elastic, isotropic material with its density."""
+
+
+@with_fields(declared_in(Temperatures))
+class TemperaturesInput(BoundaryModel):
+    """Steady temperature of the housing; shafts, gears and rings of rolling bearings then state theirs."""
+
+    housing_material: Annotated[
+        HousingMaterialInput, BeforeValidator(lambda value: _figures_of(value, later=True))
+    ] = Field(
+        description="Its material with thermal_expansion_per_k, or by its name",
+        examples=["cast_aluminum"],
+    )
 
 
 @with_fields(declared_in(SeatWall))

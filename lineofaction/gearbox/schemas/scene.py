@@ -19,7 +19,7 @@ from lineofaction.gearbox.schemas.bodies import (
 from lineofaction.gearbox.schemas.case import EffectName, Switch
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.faults import model_in
-from lineofaction.gearbox.schemas.housings import HousingInput
+from lineofaction.gearbox.schemas.housings import HousingInput, TemperaturesInput
 from lineofaction.gearbox.schemas.loads import (
     DriveInput,
     ForceInput,
@@ -98,6 +98,12 @@ class SceneInput(BoundaryModel):
     loads: Listed[LoadTorqueInput] = Field(default=(), max_length=1000)
     forces: Listed[ForceInput] = Field(default=(), max_length=1000)
     unbalances: Listed[UnbalanceInput] = Field(default=(), max_length=1000)
+    temperatures: TemperaturesInput | None = Field(
+        default=None,
+        description="Steady temperatures; left out: all parts are as drawn",
+        examples=[{"housing_degc": 70.0, "housing_material": "cast_aluminum"}],
+        exclude_if=lambda value: value is None,
+    )
     accuracy: SceneAccuracyInput = Field(
         default=SceneAccuracyInput(), description="Tolerance that decides on automatic effects", examples=[{}]
     )

@@ -1,0 +1,124 @@
+"""Steady temperatures change the play of bearings, and the preload of those that hold a shaft together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from scipy.optimize import brentq
+
+from bounds import engineering
+from dynamics.bearings import RollingBearing
+from dynamics.bearings.row_law import row_law
+from dynamics.effects.effect import RotorEffect, Verdict
+from dynamics.effects.loaded_parts import LoadedRotor
+from dynamics.mechanism.warmed import warmed_bearings
+from dynamics.scene.scene import Scene
+from dynamics.scene.temperatures import WarmBearing
+
+LEAST_CHANGE = 1e-12  # m
+UNLOADED = 1e-9  # m; within it rows of a pair just touch
+
+
+class BearingTemperature(RotorEffect):
+    """Other rows in the place of those as drawn."""
+
+    name = "bearing_temperature"
+    at_rest = True
+    cost = "none"
+
+    def prepared(self, scene: Scene) -> Scene:
+        """Return `scene` with its bearings at temperature."""
+        return warmed_bearings(scene)
+
+    def called_for(self, rotor: LoadedRotor) -> Verdict:
+        """Call for it wherever temperatures change a bearing.
+
+        Its influence is how far the shaft moves at a mesh as its rows yield more, or less, under their loads.
+        """
+        scene, name = rotor.mechanism.scene, rotor.rotor.shaft.name
+        if scene.temperatures is None:
+            return Verdict(False, False, "the scene has no temperatures", 0.0)
+        rows = [row for row in _warm_rows(scene) if row.drawn.shaft == name]
+        changed = [row for row in rows if _differs(row)]
+        if not changed:
+            return Verdict(False, False, "temperatures change no bearing with a row", 0.0)
+        words = [*_plays(changed), *_pair(rows)]
+        words += [f'"{row.drawn.name}" {ring} loose' for row in changed for ring in row.loose]
+        return Verdict(True, True, "; ".join(words), _moved(rotor, rows))
+
+
+def _warm_rows(scene: Scene) -> Sequence[WarmBearing]:
+    warm = warmed_bearings(scene).temperatures
+    return list((warm.bearings or {}).values()) if warm else []
+
+
+def _differs(row: WarmBearing) -> bool:
+    changes = (
+        row.warm.row.clearance - row.drawn.row.clearance,
+        row_law(row.warm).shift - row_law(row.drawn).shift,
+    )
+    return bool(row.loose) or max(map(abs, changes)) > LEAST_CHANGE
+
+
+def _plays(rows: Sequence[WarmBearing]) -> Iterator[str]:
+    """Say what becomes of every row without a contact angle; a negative clearance is a preload."""
+    for row in rows:
+        if row.drawn.row.contact_angle == 0.0:
+            before, after = (1e6 * part.row.clearance for part in (row.drawn, row.warm))
+            along = 1e6 * (row_law(row.warm).shift - row_law(row.drawn).shift)
+            words = f'clearance of "{row.drawn.name}" {before:.4g} to {after:.4g} um'
+            words += ", a preload" if after < 0.0 else ""
+            yield words + (f", rings {along:+.4g} um apart along z" if along else "")
+
+
+def _pair(rows: Sequence[WarmBearing]) -> Iterator[str]:
+    """Say the play or the preload of rows with contact angles that hold the shaft against each other."""
+    angled = [row for row in rows if row.drawn.row.contact_angle]
+    if len({row.drawn.row.contact_angle > 0.0 for row in angled}) == 2:
+        names = ", ".join(f'"{row.drawn.name}"' for row in angled)
+        before, after = (_state([getattr(row, at) for row in angled]) for at in ("drawn", "warm"))
+        yield f"pair {names}: {before} to {after}"
+
+
+def _state(pair: Sequence[RollingBearing]) -> str:
+    play, force = axial_state(pair)
+    return f"preload {engineering(force, 4)} N" if play <= UNLOADED else f"play {1e6 * play:.4g} um"
+
+
+def axial_state(bearings: Sequence[RollingBearing]) -> tuple[float, float]:
+    """Return play and preload of a shaft that nothing loads between rows with contact angles, m and N.
+
+    The preload is the axial force of those that hold it along z; 0 where there is play.
+    """
+    ends: dict[float, list[float]] = {1.0: [], -1.0: []}
+    for part in bearings:
+        side = math.copysign(1.0, part.row.contact_angle)
+        ends[side].append(side * part.row.clearance - row_law(part).shift)
+    high, low = min(ends[1.0]), max(ends[-1.0])  # where the first row touches
+    if high >= low:
+        return high - low, 0.0
+
+    def force(moved: float, sides: tuple[float, ...] = (1.0, -1.0)) -> float:
+        own = (part for part in bearings if math.copysign(1.0, part.row.contact_angle) in sides)
+        laws = (row_law(part) for part in own)
+        return sum(
+            float(law.loaded.evaluate((0.0, 0.0, moved + law.shift, 0.0, 0.0)).force[2]) for law in laws
+        )
+
+    rest = float(brentq(force, high, low, xtol=1e-15))
+    return 0.0, force(rest, (1.0,))
+
+
+def _moved(rotor: LoadedRotor, rows: Sequence[WarmBearing]) -> float:
+    """Return the largest change of the displacement at a mesh, linear between the bearings, m."""
+    mechanism, own = rotor.mechanism, rotor.rotor
+    duties, more, at = mechanism.bearing_duty, [], []
+    for row in rows:
+        duty = duties[row.drawn.name]
+        more.append(row_law(row.warm).way(duty) - row_law(row.drawn).way(duty))
+        at.append(own.shaft.origin[2] + row.drawn.position - float(own.center[2]))
+    levers = [mesh.lever for mesh in rotor.meshes] or [0.0]
+    line = np.polyfit(at, more, 1 if np.ptp(at) > 0.0 else 0)
+    return float(np.max(np.abs(np.polyval(line, levers))))

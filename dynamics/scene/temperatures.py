@@ -1,0 +1,79 @@
+"""Steady temperatures of a scene: those of its parts beside the one of the housing at which drawings hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from bounds import declared, described, required
+from dynamics.bearings import RollingBearing
+from dynamics.checks import declared_fields
+from dynamics.errors import InputError
+from dynamics.shafts.bodies import TEMPERATURE
+from dynamics.solid_housing import Material
+
+_HOUSING = replace(TEMPERATURE, description="Steady temperature of the housing", example=70.0)
+_REFERENCE = replace(TEMPERATURE, description="Temperature at which drawings hold", example=20.0)
+
+
+@dataclass(frozen=True)
+class WarmBearing:
+    """A rolling bearing as drawn and as steady temperatures leave it.
+
+    Attributes
+    ----------
+    loose : mapping of str to float
+        Play of a ring in its seat by the ring's name, m: of rings that their fits no longer hold.
+    """
+
+    drawn: RollingBearing
+    warm: RollingBearing
+    loose: dict[str, float]
+
+
+@dataclass(frozen=True)
+class WarmMesh:
+    """What steady temperatures change of a mesh, m.
+
+    Attributes
+    ----------
+    apart : float
+        Growth of the center distance less that of the gears' pitch radii.
+    backlash : float
+        Along the transverse line of action.
+    misalignment : float
+        As the table counts it: from seats of unlike temperature.
+    """
+
+    apart: float
+    backlash: float
+    misalignment: float
+
+
+@described
+@dataclass(frozen=True)
+class Temperatures:
+    """The temperature of the housing, and where drawings hold; the other parts have their own.
+
+    `bearings` and `meshes` are what they changed in the scene that has them; None: parts are as drawn.
+    """
+
+    housing_material: Material
+    housing: float = required(_HOUSING)
+    reference: float = declared(20.0, _REFERENCE)
+    bearings: dict[str, WarmBearing] | None = None
+    meshes: tuple[WarmMesh, ...] | None = None
+
+    def __post_init__(self) -> None:
+        declared_fields(self)
+        if self.housing_material.thermal_expansion is None:
+            advice = "Give it, or a material by its name."
+            raise InputError("housing_material.thermal_expansion", None, "given", advice)
+
+    def strain(self, expansion: float, temperature: float | None) -> float:
+        """Return the thermal strain of a part of this expansion (1/K); None: as the housing is warm."""
+        warm = self.housing if temperature is None else temperature
+        return expansion * (warm - self.reference)
+
+    def housing_strain(self, temperature: float | None = None) -> float:
+        """Return the strain of the housing, or where it has another temperature."""
+        return self.strain(self.housing_material.thermal_expansion or 0.0, temperature)
