@@ -27,7 +27,7 @@ REFERENCE = "full_contact_helical.csv"
 PAGE, SECTION = ROOT / "docs" / "lab" / "accuracy.md", "helical full contact"
 SUBJECT = "3-D standard against helical full contact"
 AXES = ("load", "position_driver")
-NUMBERS = ("43.2", "43.5", "43.10")
+NUMBERS = ("43.2", "43.5", "43.10", "43.15", "43.90", "43.145")
 """Of drawn pairs: seed and place."""
 POSITIONS = np.arange(16) / 16.0
 """Base pitches."""

@@ -18,8 +18,8 @@ def refusal(pair: ParallelAxes) -> str | None:
 
 
 def refusal_over_face(pair: ParallelAxes) -> str | None:
-    """Say why a pair is not one of two clamped, solid external spur gears of equal faces; None if it is."""
-    return _spur(pair) or refusal_helical(pair)
+    """Say why a pair is not one of two clamped, solid spur gears of equal faces; None if it is."""
+    return _spur(pair) or _of_pair(pair) or _of_faces(pair)
 
 
 def refusal_helical(pair: ParallelAxes) -> str | None:
@@ -27,7 +27,12 @@ def refusal_helical(pair: ParallelAxes) -> str | None:
     if (reason := _of_pair(pair)) is not None:
         return reason
     if pair.internal:
-        return "ring gear: over the face it is set up for external pairs"
+        return "ring gear: in the frame that turns with the helix it is set up for external pairs"
+    return _of_faces(pair)
+
+
+def _of_faces(pair: ParallelAxes) -> str | None:
+    """Say why the faces of a pair cannot be meshed in the same layers."""
     widths = (pair.pinion.face_width, pair.wheel.face_width)
     if max(widths) - pair.face_width > 1e-9 * pair.face_width:
         return "unlike or offset faces: both are meshed in the same layers"

@@ -33,11 +33,6 @@ from fe_contact.types import FloatArray, IntArray
 
 TEETH = 7
 """Real teeth of a section."""
-SPREAD = 1.5
-"""Elements to either side over which loads are spread on the mesh over the face.
-
-A narrow load that slants through its elements it would find too stiff, a wide one it resolves.
-"""
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 AT_TIP = 0.15
 """Size of the finest elements at a tip edge over that on the flank."""
@@ -73,13 +68,13 @@ class FlankStrip:
         linear = (np.stack([1.0 - x, x], axis=-1).ravel(), (np.repeat(rows, 2), ends.ravel()))
         return sp.csr_array(quadratic, shape=shape[0]), sp.csr_array(linear, shape=shape[1])
 
-    def spread(self, s: FloatArray) -> tuple[sp.csr_array, sp.csr_array]:
-        """Return both averaged about s (q,) over SPREAD elements to either side, or as far as the tip edge.
+    def spread(self, s: FloatArray, elements: float) -> tuple[sp.csr_array, sp.csr_array]:
+        """Return both averaged about s (q,) over `elements` to either side, or as far as the tip edge.
 
         What is spread has the same force and the same moment.
         """
         size = float(np.mean(np.diff(self.s[::2])))
-        half = np.minimum(SPREAD * size, np.maximum(self.s[-1] - s, 0.0))
+        half = np.minimum(elements * size, np.maximum(self.s[-1] - s, 0.0))
         quadratic, linear = self.shapes(np.concatenate([s + half * x for x in _GAUSS]))
         weights = (0.75 * (1.0 - _GAUSS**2) * _WEIGHTS)[None]
         average = sp.csr_array(sp.kron(weights, sp.eye_array(len(s)), format="csr"))
@@ -172,6 +167,9 @@ class FaceBody:
         First freedom of a tooth.
     compliance : (m, m) array
         m/N.
+    spread : float
+        Elements to either side over which loads are spread on its mesh: a narrow load that slants through
+        its elements it would find too stiff, a wide one it resolves.
     """
 
     meshed: MeshedSection
@@ -179,10 +177,11 @@ class FaceBody:
     starts: dict[int, int]
     compliance: FloatArray
     unknowns: int
+    spread: float
 
     def shapes(self, tooth: int, s: FloatArray, z: FloatArray) -> sp.csr_array:
         """Return the freedoms' functions (q, m) at places of a flank, s and z (q,)."""
-        quadratic, linear = self.meshed.strips[tooth].spread(s)
+        quadratic, linear = self.meshed.strips[tooth].spread(s, self.spread)
         functions = self.layers.functions(z)
         hats = self.layers.count + 1
         own = sp.hstack(
@@ -206,7 +205,7 @@ def _rowwise(one: sp.csr_array, other: FloatArray) -> sp.csr_array:
     return sp.csr_array((data, (row, columns)), shape=(one.shape[0], one.shape[1] * other.shape[1]))
 
 
-def face_body(meshed: MeshedSection, layers: Layers, material: Material) -> FaceBody:
+def face_body(meshed: MeshedSection, layers: Layers, material: Material, spread: float) -> FaceBody:
     """Assemble over the face, eliminate, keep what the loaded flanks do along their normals."""
     section = meshed.section
     stiffness = twisted_stiffness(section, layers, material)
@@ -229,7 +228,7 @@ def face_body(meshed: MeshedSection, layers: Layers, material: Material) -> Face
         meshed, stiffness.node[kept], stiffness.component[kept], stiffness.function[kept], layers
     )
     moved = loads @ cho_solve(cho_factor(complement, lower=True, overwrite_a=True), loads.T.toarray())
-    return FaceBody(meshed, layers, first, 0.5 * (moved + moved.T), len(free))
+    return FaceBody(meshed, layers, first, 0.5 * (moved + moved.T), len(free), spread)
 
 
 def _normal_loads(
@@ -283,7 +282,7 @@ class HelicalGear:
     def lacking(self, tooth: int, s: FloatArray, loads: FloatArray) -> FloatArray:
         """Return what loads (q, i) at places s (q,) of a section give way more, (i, i) m per N/m."""
         own = self.fine.shapes(s)[0].T @ loads
-        coarse = self.body.meshed.strips[tooth].spread(s)[0].T @ loads
+        coarse = self.body.meshed.strips[tooth].spread(s, self.body.spread)[0].T @ loads
         near = np.flatnonzero(np.any(own != 0.0, axis=1))
         local = self.fine_compliance[np.ix_(near, near)]
         return np.asarray(own[near].T @ local @ own[near] - coarse.T @ self.coarse_compliance[tooth] @ coarse)
@@ -291,13 +290,14 @@ class HelicalGear:
 
 @dataclass(frozen=True)
 class BodyMesh:
-    """Sizes of a condensed gear, m; its layers, and what lies behind the flanks of body and section."""
+    """Sizes of a condensed gear, m; its layers, what lies behind flanks of body and section, its spread."""
 
     flank: float
     fine: float
     layers: int
     body: Resolution
     section: Resolution
+    spread: float
 
 
 def helical_gear(gear: Toothing, face: float, teeth: range, mesh: BodyMesh) -> HelicalGear:
@@ -306,7 +306,7 @@ def helical_gear(gear: Toothing, face: float, teeth: range, mesh: BodyMesh) -> H
     fine = meshed_section(gear, range(1), mesh.fine, AT_TIP * mesh.fine, mesh.section)
     planes = np.linspace(-0.5 * face, 0.5 * face, mesh.layers + 1)
     return HelicalGear(
-        face_body(coarse, Layers(planes), gear.material),
+        face_body(coarse, Layers(planes), gear.material, mesh.spread),
         fine.strips[0],
         section_compliance(fine, gear.material)[0],
         section_compliance(coarse, gear.material),

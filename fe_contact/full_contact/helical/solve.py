@@ -30,6 +30,8 @@ class HelicalMesh:
     ----------
     flank : float
         Elements on the flanks over the face, modules, 0.05 to 0.4.
+    spread : float
+        Elements to either side of a load over which it is spread on the body, 0.5 to 6.
     layers : int
         Over the face, 2 to 24.
     across, along : int
@@ -43,9 +45,11 @@ class HelicalMesh:
     across: int = 25
     along: int = 25
     per_half_width: float = 5.0
+    spread: float = 1.5
 
     def __post_init__(self) -> None:
         within("flank", self.flank, 0.05, 0.4, "0.15 is usual.")
+        within("spread", self.spread, 0.5, 6.0, "1.5 is usual.")
         within("per_half_width", self.per_half_width, 1.5, 16.0, "5 is usual.")
         for name, least, most in (("layers", 2, 24), ("across", 5, 101), ("along", 5, 201)):
             integer(name, getattr(self, name), least, most)
@@ -54,7 +58,8 @@ class HelicalMesh:
     def coarser(self) -> HelicalMesh:
         """Return the same with all sizes larger by COARSER."""
         counts = {name: round(getattr(self, name) / COARSER) for name in ("layers", "across", "along")}
-        return HelicalMesh(COARSER * self.flank, per_half_width=self.per_half_width / COARSER, **counts)
+        sizes = COARSER * self.flank, self.per_half_width / COARSER
+        return HelicalMesh(sizes[0], per_half_width=sizes[1], spread=self.spread, **counts)
 
 
 COARSER = 1.4
@@ -95,6 +100,7 @@ def _condensed(pair: ParallelAxes, torque: float, mesh: HelicalMesh) -> _Condens
         mesh.layers,
         Resolution(max(1.5, 0.33 / mesh.flank), 1.0, 1),
         Resolution(min(16.0, 0.8 / mesh.flank), 1.0, 1),
+        mesh.spread,
     )
     teeth = range(-ahead, ahead + 1)
     first, second = (helical_gear(gear, pair.face_width, teeth, sizes) for gear in (pair.pinion, pair.wheel))

@@ -101,7 +101,7 @@ def test_normals_touch_the_base_circle() -> None:
 
 def test_a_body_gives_way_as_its_functions_add_up() -> None:
     """The functions of a flank are one together, also where the middle node stands aside."""
-    body = face_body(meshed(), LAYERS, STEEL)
+    body = face_body(meshed(), LAYERS, STEEL, 1.5)
     strip = body.meshed.strips[0]
     s = np.linspace(strip.s[0], strip.s[-1], 17)
     shapes = body.shapes(0, s, np.linspace(-6e-3, 6e-3, 17))

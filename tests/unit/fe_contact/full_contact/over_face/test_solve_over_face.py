@@ -14,6 +14,7 @@ from fe_contact.errors import InputError
 from fe_contact.full_contact import (
     FullContactTable,
     Resolution,
+    refusal_helical,
     refusal_over_face,
     solve_full_contact,
     solve_full_contact_over_face,
@@ -25,6 +26,8 @@ from fe_contact.full_contact.over_face.solve import _WholeFace
 SLOPE, TORQUE, POSITION = 20e-6, 150.0, 0.1
 CROWNED = FlankModification(helix_crowning=6e-6, helix_slope=SLOPE)
 COARSE = Resolution(1.5, 1.0, 1)
+RING = RingGear(72, 4e-3, 25e-3, rim_diameter=328e-3, addendum_coefficient=0.85)
+INSIDE = InternalGearPair(Gear(24, 4e-3, 25e-3, bore_diameter=48e-3), RING)
 
 
 def over_face(pair: GearPair, *misalignments: float) -> tuple[FullContactTable, ...]:
@@ -69,6 +72,22 @@ def test_a_slope_is_a_misalignment() -> None:
     np.testing.assert_allclose(found, plain()[1].transmission_error, rtol=0.0, atol=2e-9)
 
 
+@pytest.mark.law
+def test_a_misalignment_in_a_ring_gear_undoes_the_slope_of_either_gear() -> None:
+    """Both remove towards positive face positions, and the misalignment closes the gap there."""
+    sloped = FlankModification(helix_slope=SLOPE)
+    plain = over_face(INSIDE, 0.0)[0]
+    for side in ("pinion", "wheel"):
+        gear = replace(getattr(INSIDE, side), modification=sloped)
+        open_there, undone = over_face(replace(INSIDE, **{side: gear}), 0.0, -SLOPE)
+        np.testing.assert_allclose(undone.transmission_error, plain.transmission_error, rtol=0.0, atol=5e-9)
+        assert np.all(open_there.transmission_error < undone.transmission_error - 50e-9)
+    for point in plain.points[0]:
+        assert point.status.usable, point.reason
+        assert point.residual < 1e-10
+        assert point.torque_ratio == pytest.approx(3.0, rel=2e-3)
+
+
 def test_it_is_a_little_softer_than_plane_strain() -> None:
     flat = solve_full_contact(PAIR, [20.0, TORQUE], [POSITION], COARSE).transmission_error
     ratio = plain()[0].transmission_error / flat
@@ -102,9 +121,8 @@ def test_what_it_cannot_hold_is_refused_by_reason() -> None:
     tilted = GearPair(*helical, center_distance=helical[0].reference_radius * 2.0)
     assert "helical" in str(refusal_over_face(tilted))
     assert "faces" in str(refusal_over_face(replace(PAIR, wheel=replace(GEAR, face_width=20e-3))))
-    ring = RingGear(72, 4e-3, 25e-3, rim_diameter=328e-3, addendum_coefficient=0.85)
-    inside = InternalGearPair(Gear(24, 4e-3, 25e-3, bore_diameter=48e-3), ring)
-    assert "ring gear" in str(refusal_over_face(inside))
+    assert refusal_over_face(INSIDE) is None
+    assert "ring gear" in str(refusal_helical(INSIDE))
     for pair, misalignments, torque, match in (
         (tilted, [0.0], 1.0, "helical"),
         (PAIR, [], 1.0, "misalignments"),
