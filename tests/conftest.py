@@ -12,7 +12,6 @@ from pathlib import Path
 
 import pytest
 from coarse_sectors import coarse_sectors
-from compiled_once import compile_once
 from condensed_once import condensed_bodies, condensed_once
 from drawn_cases import leave_to_the_night
 from hypothesis import settings
@@ -48,8 +47,6 @@ def pytest_configure(config: pytest.Config) -> None:
         if config.getoption("keyword") or config.getoption("markexpr") not in ("", "not nightly"):
             raise pytest.UsageError("--record renews whole files: without -k, and no -m but -m ''")
         config.pluginmanager.register(SuiteRecords())
-    if "PYTEST_XDIST_WORKER" in os.environ:
-        compile_once()
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 

@@ -148,7 +148,7 @@ def _sweep(
     """
     for p in range(every.gap.shape[0]):
         point, here = problem_at(every, p)
-        start, last = np.zeros((2, here.size))
+        start, last = np.zeros(here.size), np.zeros(here.size)
         for k in range(loads.size):
             if first.shape[0] > 0:
                 start = first[p, k][here]

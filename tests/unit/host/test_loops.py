@@ -1,8 +1,12 @@
-"""Compiled loops that name what an upgrade in place has taken away are compiled anew."""
+"""Compiled loops: what an upgrade took away is compiled anew, and one process compiles for all."""
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
+from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 
@@ -32,3 +36,46 @@ def test_an_entry_that_names_what_is_gone_is_none(
     assert cache.load("key") is None
     cache.save("key", "code of now")
     assert cache.load("key") == "code of now"
+
+
+LOOP = """
+import sys
+import numpy as np
+from host.loops import njit
+
+@njit(cache=True)
+def middle_of(x):
+    return np.median(np.sort(np.full(9, x)))
+
+
+if __name__ == "__main__":
+    print("ready", flush=True)
+    sys.stdin.readline()
+    middle_of(2.0)
+    print(sum(middle_of.stats.cache_misses.values()), flush=True)
+"""
+
+
+def test_processes_that_need_a_loop_at_once_compile_it_once(tmp_path: Path) -> None:
+    file = tmp_path / "loop.py"
+    file.write_text(LOOP, encoding="utf-8")
+    house = str(Path(loops.__file__).parents[1])
+    command = partial(
+        subprocess.Popen,
+        [sys.executable, str(file)],
+        env={**os.environ, "PYTHONPATH": house, "NUMBA_CACHE_DIR": str(tmp_path / "kept")},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    with ExitStack() as stack:
+        children = [stack.enter_context(command()) for _ in range(3)]
+        for child in children:
+            assert child.stdout is not None
+            assert child.stdout.readline() == "ready\n"
+        for child in children:
+            assert child.stdin is not None
+            child.stdin.write("\n")
+            child.stdin.flush()
+        compiled = [int(child.communicate()[0]) for child in children]
+    assert sorted(compiled) == [0, 0, 1]
