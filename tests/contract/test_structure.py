@@ -19,7 +19,7 @@ BUDGETS = {
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_621, 67),
     ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_177, 145),
+    ("bounds", "host", "model_studies"): (4_227, 145),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 762
