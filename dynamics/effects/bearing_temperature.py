@@ -15,7 +15,7 @@ from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.mechanism.warmed import warmed_bearings
 from dynamics.scene.scene import Scene
-from dynamics.scene.temperatures import WarmBearing
+from dynamics.temperatures import WarmBearing
 
 LEAST_CHANGE = 1e-12  # m
 UNLOADED = 1e-9  # m; within it rows of a pair just touch

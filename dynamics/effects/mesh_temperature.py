@@ -8,7 +8,7 @@ from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.mechanism.warmed import warmed_meshes
 from dynamics.scene.scene import Scene
-from dynamics.scene.temperatures import WarmMesh
+from dynamics.temperatures import WarmMesh
 from dynamics.types import FloatArray
 
 

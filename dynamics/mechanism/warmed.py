@@ -23,8 +23,8 @@ from dynamics.mechanism.kinematics import mesh_shafts, solve_kinematics
 from dynamics.mechanism.line_of_action import UNIT_Z, line_of_action, misalignment_per_tilt
 from dynamics.meshes import GearMesh
 from dynamics.scene.scene import Scene
-from dynamics.scene.temperatures import Temperatures, WarmBearing, WarmMesh
 from dynamics.shafts import Shaft
+from dynamics.temperatures import Temperatures, WarmBearing, WarmMesh
 from dynamics.types import FloatArray
 
 # Bearings: the play of rows, and how far shafts outgrow the housing between their seats.

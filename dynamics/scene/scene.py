@@ -24,10 +24,10 @@ from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.joints.housing import DEFINITE
 from dynamics.loads import AppliedForce, LoadTorque, TimeLaw, Unbalance
 from dynamics.meshes import GearMesh
-from dynamics.scene.temperatures import Temperatures
 from dynamics.settings import Integration, Outputs
 from dynamics.shafts import DiscBody, GearBody, Shaft
 from dynamics.shafts.shaft import on_length
+from dynamics.temperatures import Temperatures
 from dynamics.types import FloatArray
 
 # Housings and bushings with matrices: what they can carry, and where.

@@ -9,9 +9,9 @@ from geared_scenes import gear_pair_scene, with_mesh
 
 from dynamics.bearings import BallBearing, RollerBearing, RollingBearing
 from dynamics.meshes import CoastFlank
-from dynamics.scene.temperatures import Temperatures
 from dynamics.shafts import BeamSection, Inertia
 from dynamics.solid_housing import CAST_ALUMINUM
+from dynamics.temperatures import Temperatures
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on"}
 DEEP_GROOVE = BallBearing(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, clearance=2e-5)

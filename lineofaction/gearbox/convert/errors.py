@@ -21,13 +21,13 @@ from dynamics.joints.coupling import Coupling
 from dynamics.joints.housing import Housing
 from dynamics.joints.rotations import FreeRotation, ImposedRotation
 from dynamics.loads.applied_force import AppliedForce, Unbalance
-from dynamics.scene.temperatures import Temperatures
 from dynamics.settings.run import Integration, Outputs
 from dynamics.shafts.beam_section import BeamSection
 from dynamics.shafts.bodies import DiscBody, GearBody, Inertia
 from dynamics.shafts.shaft import Shaft as TurningShaft
 from dynamics.solid_housing import Material as HousingMaterial
 from dynamics.solid_housing import ReductionSettings, SeatWall
+from dynamics.temperatures import Temperatures
 from fe_contact.body import Shaft
 from fe_contact.errors import FeContactError, InfeasibleGeometry
 from fe_contact.errors import InputError as ContactInputError

@@ -24,9 +24,9 @@ from dynamics.mechanism.kinematics import check_motion
 from dynamics.meshes import CoastFlank, GearMesh, MeshTable
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
 from dynamics.scene import Integration, Outputs, Scene
-from dynamics.scene.temperatures import Temperatures
 from dynamics.shafts import BeamSection, DiscBody, GearBody, Inertia, Shaft, hollow_cylinder
 from dynamics.solid_housing import Material
+from dynamics.temperatures import Temperatures
 from fe_contact.ste import PairFacts, SteDatabase
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.declared import in_si, part_of

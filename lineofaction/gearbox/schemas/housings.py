@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from dynamics.joints.housing import Housing
-from dynamics.scene.temperatures import Temperatures
 from dynamics.solid_housing import MATERIALS, Material, ReductionSettings, SeatWall
+from dynamics.temperatures import Temperatures
 from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
 from lineofaction.gearbox.schemas.files import FileContentInput
 from lineofaction.gearbox.schemas.model import (
@@ -49,12 +49,16 @@ class HousingMaterialInput(BoundaryModel):
     """Linear elastic, isotropic material with its density."""
 
 
+_BY_NAME: Any = Literal[tuple(MATERIALS)] | HousingMaterialInput
+"""What a scene may write for a material."""
+
+
 @with_fields(declared_in(Temperatures))
 class TemperaturesInput(BoundaryModel):
     """Steady temperature of the housing; shafts, gears and rings of rolling bearings then state theirs."""
 
     housing_material: Annotated[
-        HousingMaterialInput, BeforeValidator(lambda value: _figures_of(value, later=True))
+        HousingMaterialInput, BeforeValidator(lambda value: _figures_of(value, later=True), _BY_NAME)
     ] = Field(
         description="Its material with thermal_expansion_per_k, or by its name",
         examples=["cast_aluminum"],
@@ -232,7 +236,7 @@ class HousingInput(_MatrixHousing):
     material: (
         Annotated[
             HousingMaterialInput,
-            BeforeValidator(_material_by_name, Literal[tuple(MATERIALS)] | HousingMaterialInput),
+            BeforeValidator(_material_by_name, _BY_NAME),
         ]
         | None
     ) = Field(

@@ -45,7 +45,8 @@ def test_an_ablation_is_assessed_beside_its_estimate() -> None:
 def test_every_effect_can_be_on_in_some_scene(monkeypatch: pytest.MonkeyPatch) -> None:
     """On tables in closed form: what needs a table's axes or its ripple is left to the study itself.
 
-    The study has no planetary set, and its bearings have no elements that pass.
+    The study has no planetary set, its bearings have no elements that pass, and temperatures are sized on
+    scenes of their own, `warm_scenes`.
     """
     monkeypatch.setattr(dynamic_influence_cases, "table", lambda *_: straight_table(3e8))
     on = {
@@ -56,4 +57,5 @@ def test_every_effect_can_be_on_in_some_scene(monkeypatch: pytest.MonkeyPatch) -
     }
     names = {effect.name for effect in EFFECTS}
     by_tables = {"dynamic_misalignment", "dynamic_center_distance", "moving_application_point", "friction"}
-    assert on >= names - by_tables - {"backlash", "centrifugal_load", "element_passing"}
+    beside = {"backlash", "centrifugal_load", "element_passing", "bearing_temperature", "mesh_temperature"}
+    assert on >= names - by_tables - beside

@@ -30,8 +30,8 @@ from dynamics.effects.bearing_temperature import axial_state
 from dynamics.effects.ledger import mechanism_of
 from dynamics.errors import InputError
 from dynamics.mechanism.warmed import warmed_bearings, warmed_meshes
-from dynamics.scene.temperatures import Temperatures
 from dynamics.solid_housing import CAST_ALUMINUM, Material
+from dynamics.temperatures import Temperatures
 
 EXACT = {"rel": 1e-6, "abs": 1e-15}
 REFERENCE = 20.0
