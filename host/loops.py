@@ -45,26 +45,26 @@ def _one_at_a_time(compiled: Callable[..., Any]) -> Callable[..., Any]:
         folder = getattr(self._cache, "cache_path", None)
         if folder is None:
             return compiled(self, signature)
-        with global_compiler_lock, _locked(Path(folder), self.py_func.__qualname__):
+        name = f"{self.py_func.__module__}.{self.py_func.__qualname__}"
+        with global_compiler_lock, _locked(Path(folder) / f"{name}.lock"):
             return compiled(self, signature)
 
     return compile_or_read
 
 
 @contextmanager
-def _locked(folder: Path, name: str) -> Iterator[None]:
-    """Hold the lock of a function, where the system has locks and the folder can be written.
+def _locked(file: Path) -> Iterator[None]:
+    """Hold the lock of a function, by its file, where the system has locks and the folder can be written.
 
     A function that calls itself holds it already. Locks nest as calls do: no two processes wait for each
     other.
     """
-    file = folder / f"{name}.lock"
     if file in _held:
         yield
         return
     descriptor = -1
     with suppress(OSError, Unavailable):
-        folder.mkdir(parents=True, exist_ok=True)
+        file.parent.mkdir(parents=True, exist_ok=True)
         descriptor = os.open(file, os.O_CREAT | os.O_RDWR, 0o666)
         lock(descriptor, wait=True)
     _held.add(file)

@@ -30,14 +30,14 @@ class HelicalMesh:
     ----------
     flank : float
         Elements on the flanks over the face, modules, 0.05 to 0.4.
-    spread : float
-        Elements to either side of a load over which it is spread on the body, 0.5 to 6.
     layers : int
         Over the face, 2 to 24.
     across, along : int
         Hats of pressure across a contact line and along one that runs over the whole face.
     per_half_width : float
         Elements of the fine sections in Hertz' half-width.
+    spread : float
+        Elements to either side of a load over which it is spread on the body, 0.5 to 6.
     """
 
     flank: float = 0.15
