@@ -13,7 +13,7 @@ from dynamics.bearings import RollingBearing
 from dynamics.bearings.row_law import row_law
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
-from dynamics.mechanism.warmed import warmed_bearings
+from dynamics.mechanism.thermal_expansion import warmed_bearings
 from dynamics.scene.scene import Scene
 from dynamics.temperatures import WarmBearing
 

@@ -29,7 +29,7 @@ from dynamics.bearings.spring_curve import SpringCurve
 from dynamics.effects.bearing_temperature import axial_state
 from dynamics.effects.ledger import mechanism_of
 from dynamics.errors import InputError
-from dynamics.mechanism.warmed import warmed_bearings, warmed_meshes
+from dynamics.mechanism.thermal_expansion import warmed_bearings, warmed_meshes
 from dynamics.solid_housing import CAST_ALUMINUM, Material
 from dynamics.temperatures import Temperatures
 
