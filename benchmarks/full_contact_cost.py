@@ -15,7 +15,7 @@ from benchmarks.figures import Figure
 from fe_contact import Gear, GearPair, frontier
 from fe_contact.analysis.studies.measured_full_contact import MeasuredFullContact
 from fe_contact.options import TableAxes
-from fe_contact.stage_clock import StageClock
+from model_studies.stage_clock import StageClock
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "fakes"))
 from calculix import find_calculix, solve_position

@@ -17,8 +17,8 @@ from dynamics.motion.sampled_states import States
 from dynamics.results.checks import Check, SeriesBlock
 from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
-from host import cpu_seconds
 from model_studies import in_unit
+from model_studies.stage_clock import TimeTaken
 
 # The change by leaving an effect out, by linear theory: an ablation before integration.
 
@@ -217,14 +217,14 @@ class Decided:
         Effects that the tolerance decided against what the scene calls for, and why.
     influences : mapping of str to Influence
         Estimates; empty where there was no tolerance to decide by.
-    seconds : float
-        CPU time that deciding took, s.
+    taken : TimeTaken
+        By deciding.
     """
 
     scene: Scene
     automatic: Mapping[str, str] = field(default_factory=dict)
     influences: Mapping[str, Influence] = field(default_factory=dict)
-    seconds: float = 0.0
+    taken: TimeTaken = field(default_factory=TimeTaken)
 
     @property
     def neglected(self) -> dict[str, Influence]:
@@ -242,7 +242,7 @@ def decide_effects(scene: Scene) -> Decided:
     """
     if scene.tolerance is None:
         return Decided(scene)
-    began = cpu_seconds()
+    began = TimeTaken.now()
     influences = estimate_influences(scene)
     allowed = SHARE * scene.tolerance
     free = {
@@ -264,7 +264,7 @@ def decide_effects(scene: Scene) -> Decided:
                 f"neglected for the tolerance of {scene.tolerance:g}: influence {influence.words}"
             )
     chosen = replace(scene, effects={**scene.effects, **choices})
-    return Decided(chosen, automatic, influences, cpu_seconds() - began)
+    return Decided(chosen, automatic, influences, TimeTaken.now().since(began))
 
 
 ANY_PART = ""

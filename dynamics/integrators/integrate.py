@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from time import perf_counter
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from dynamics.integrators.static import StaticSolution
 from dynamics.motion.sampled_states import States
 from dynamics.scene import Integration
 from dynamics.types import FloatArray
+from model_studies.stage_clock import TimeTaken
 
 
 @dataclass(frozen=True)
@@ -59,12 +59,12 @@ def integrate(
     polled about fifty times or more. `trail` saves the states of the run; `taken`
     is where it goes on for another run.
     """
-    began = perf_counter()
+    began = TimeTaken.now()
     march = start_march(system, start, integration, velocity)
     sink = MemorySink(march.samples, march.widths)
     if taken is not None:
         taken.into(march, sink)
     status = march_on(march, sink, progress, cancel, None if trail is None else trail.watch(march))
-    end = ending(march, sink, status, perf_counter() - began)
+    end = ending(march, sink, status, TimeTaken.now().since(began))
     time = np.arange(end.samples) / system.sampling.rate
     return Trajectory(**vars(end), time=time, states=sink.states(0, end.samples))

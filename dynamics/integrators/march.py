@@ -31,6 +31,7 @@ from dynamics.motion.observation import local_state, observe_laws
 from dynamics.motion.sampled_states import Widths
 from dynamics.scene import Integration
 from dynamics.types import FloatArray, IntArray, Json, RunStatus
+from model_studies.stage_clock import TimeTaken
 
 
 @dataclass(frozen=True)
@@ -232,8 +233,8 @@ class Ending:
         Statistics, in the order of `Count`.
     step_range : (2,) array
         Smallest and largest accepted step, s.
-    seconds : float
-        Wall time of the stepping, s; in a process's first run with reading or making the compiled code.
+    taken : TimeTaken
+        By the stepping; in a process's first run with reading or making the compiled code.
     figures : _SampleFigures
         Peaks and rms over the run, and what the anti-alias filter took away.
     """
@@ -246,7 +247,7 @@ class Ending:
     fallen: float
     count: IntArray
     step_range: FloatArray
-    seconds: float
+    taken: TimeTaken
     figures: _SampleFigures
 
 
@@ -321,7 +322,7 @@ def _advance_to(march: March, stop: float, sink: StateSink) -> RunStatus:
     return status
 
 
-def ending(march: March, sink: StateSink, status: RunStatus, seconds: float) -> Ending:
+def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -> Ending:
     """Return the status of the march; the samples that the filter still holds go into `sink`.
 
     They are filtered as if the motion went on turned about its last point. The march itself stays as it
@@ -347,7 +348,7 @@ def ending(march: March, sink: StateSink, status: RunStatus, seconds: float) -> 
         float(np.max(work.fallen)),
         work.counts,
         _step_range(work),
-        seconds,
+        taken,
         _sample_figures(march.system, ring, int(work.counts[Count.POINT]), samples),
     )
 

@@ -63,7 +63,7 @@ def blocks(samples: int) -> Iterator[tuple[int, int]]:
 # Checkpoints of a run: every array its workspace carries, in one file that appears whole or not at all.
 
 
-VERSION = 1
+VERSION = 2
 Arrays = dict[str, Any]
 
 

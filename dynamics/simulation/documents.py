@@ -39,7 +39,7 @@ from dynamics.scene import Integration
 from dynamics.shafts import ElasticShaft
 from dynamics.simulation.violations import FIRST, EarlierRun
 from dynamics.types import FloatArray, Json
-from host import cpu_seconds
+from model_studies.stage_clock import StageClock
 
 NOT_CHECKED = "no; toggling it measures it (ablation)"
 POSITIONS = 32
@@ -295,7 +295,7 @@ def documents(
     system: System,
     end: Ending,
     checks: RunChecks,
-    seconds: dict[str, float],
+    clock: StageClock,
     error: Json,
     decided: Decided,
     before: EarlierRun = FIRST,
@@ -306,22 +306,23 @@ def documents(
     `before` is the run that this one repeats, `choice` that of its method; None: it never started.
     """
     automatic = {**decided.automatic, **before.reasons}
-    began = cpu_seconds()
-    influences = _known_influences(decided, system, end)
-    seconds = {**seconds, "influence_estimates": cpu_seconds() - began + decided.seconds}
+    with clock.stage("influence_estimates"):
+        influences = _known_influences(decided, system, end)
+    clock.book("influence_estimates", decided.taken)
     audit = None
     if system.scene.outputs.energy_audit:
         audit = EnergyAudit.from_arrays(end.work, end.stored, end.fallen)
     held = [*checks.checks(), *([] if audit is None else [audit.check()])]
     steps = int(end.count[Count.ACCEPTED] + end.count[Count.REJECTED])
-    method = {"method": choice.to_json(end.end / steps, end.seconds)} if choice and steps else {}
+    method = {"method": choice.to_json(end.end / steps, end.taken.cpu_seconds)} if choice and steps else {}
     return {
         "status": end.status,
         "statistics": _statistics(system, end),
         "energy": audit,
         "effect_ledger": _effect_ledger(system, held, automatic, influences),
         "receipt": {
-            "seconds": seconds,
+            "seconds": clock.seconds,
+            "wall_seconds": clock.wall_seconds,
             "error": {**error, "sampling": end.figures.error(system)},
             "sampling": system.sampling.to_json(),
             "peaks": end.figures.to_json(system),
@@ -369,11 +370,11 @@ def requested_error(integration: Integration) -> Json:
     return {"time_step": {"rms": integration.tolerance, "unit": "m", "source": "tolerance of step control"}}
 
 
-def measured_error(total: float, samples: int, meshes: int, seconds: float) -> Json:
+def measured_error(total: float, samples: int, meshes: int, finer: Ending) -> Json:
     """Return the step error from the sum of squared differences from a finer run."""
     rms = float(np.sqrt(total / max(samples * meshes, 1)))
     source = f"difference from a run at {ERROR_CHECK_FACTOR:g} of the tolerance"
-    return {"time_step": {"rms": rms, "unit": "m", "source": source, "seconds": seconds}}
+    return {"time_step": {"rms": rms, "unit": "m", "source": source, "seconds": finer.taken.cpu_seconds}}
 
 
 def squared_difference(system: System, q: FloatArray, other: FloatArray) -> float:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import time as clock
 from collections.abc import Iterator
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -43,11 +43,12 @@ from dynamics.simulation.documents import (
 from dynamics.simulation.error_by_source import error_by_source
 from dynamics.simulation.violations import FIRST, EarlierRun, StatesOf, needed_effects, taken_over
 from dynamics.types import Json, RunStatus
+from model_studies.stage_clock import StageClock, TimeTaken
 
 
 @dataclass(frozen=True)
 class _MadeRun:
-    """A run as made: its status, effect ledger and wall time (s), its saved states, its records."""
+    """A run as made: its status, effect ledger and CPU time (s), its saved states, its records."""
 
     status: RunStatus
     ledger: Json
@@ -75,7 +76,7 @@ class _Leg:
             system.arrays, control, self.march.sampler, work.step_sizes, start.displacement, duration
         )
         self.spool = stack.enter_context(StateSpool(path, self.march.widths))
-        self._seconds = 0.0
+        self._taken = TimeTaken()
         self._status: RunStatus | None = None
         self.since = 0.0
         checkpoint = self.spool.checkpoint() if resume else None
@@ -92,7 +93,8 @@ class _Leg:
             raise ResultError(f"{path}: of another scene or version. Start a new run.")
         restore(self.march.state, arrays, path)
         self.spool.resume(int(facts["samples"]))
-        self._seconds, self.since = float(facts["seconds"]), float(facts["since"])
+        self._taken = TimeTaken(float(facts["cpu_seconds"]), float(facts["wall_seconds"]))
+        self.since = float(facts["since"])
         status = RunStatus(int(facts["status"]))
         self._status = None if status is RunStatus.CANCELLED else status
 
@@ -109,29 +111,28 @@ class _Leg:
         self, progress: Progress | None, cancel: Cancel | None, every: float, trail: Trail | None = None
     ) -> Ending:
         """March on to the end, with checkpoints; one that had ended stays as it is."""
-        began = saved = clock.perf_counter()
-        before = self._seconds
+        before, began, saved = self._taken, TimeTaken.now(), monotonic()
         remember = None if trail is None else trail.watch(self.march)
 
         def after_block() -> None:
             nonlocal saved
             if remember is not None:
                 remember()
-            if clock.perf_counter() - saved >= every:
+            self._taken = before.plus(TimeTaken.now().since(began))
+            if monotonic() - saved >= every:
                 self._save(RunStatus.CANCELLED)
-                saved = clock.perf_counter()
-            self._seconds = before + clock.perf_counter() - began
+                saved = monotonic()
 
         if self._status is None:
             status = march_on(self.march, self.spool, progress, cancel, after_block)
-            self._seconds = before + clock.perf_counter() - began
+            self._taken = before.plus(TimeTaken.now().since(began))
             self._save(status)
             self._status = status
-        return marching.ending(self.march, self.spool, self._status, self._seconds)
+        return marching.ending(self.march, self.spool, self._status, self._taken)
 
     def _save(self, status: RunStatus) -> None:
         samples = int(self.march.work.counts[Count.OUTPUT])
-        facts = {"mark": self._mark, "samples": samples, "seconds": self._seconds, "since": self.since}
+        facts = {"mark": self._mark, "samples": samples, "since": self.since, **asdict(self._taken)}
         self.spool.save(self.march.state, **facts, status=int(status))
 
 
@@ -208,13 +209,13 @@ class _Run:
 
 @dataclass(frozen=True)
 class _Start:
-    """A system at rest in equilibrium, the method that a run takes, and the wall time so far, s."""
+    """A system at rest in equilibrium, the method that a run takes, and the clock of the run."""
 
     system: System
     rest: StaticSolution
     choice: MethodChoice
     trail: Trail
-    seconds: dict[str, float]
+    clock: StageClock
 
     @classmethod
     def of(cls, decided: Decided) -> _Start:
@@ -225,18 +226,18 @@ class _Start:
         SolveError
             There is none; ``partial`` shows where the search for it ended.
         """
-        began = clock.perf_counter()
-        system = assemble(decided.scene)
-        rest = static_equilibrium(system)
-        seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
+        clock = StageClock()
+        with clock.stage("assembly_and_equilibrium"):
+            system = assemble(decided.scene)
+            rest = static_equilibrium(system)
         if not rest.status.usable:
             message = (
                 f"no static equilibrium at t = 0: {rest.status.name.lower()}, {rest.residual:.3g} N left"
             )
-            raise SolveError(message, _result(system, _no_trajectory(system, rest), seconds, {}, decided))
+            raise SolveError(message, _result(system, _no_trajectory(system, rest), clock, {}, decided))
         choice = choose_method(system, rest.displacement, decided.scene.integration)
         made = choice.of(with_static_reference(system, rest.displacement))
-        return cls(made, rest, choice, Trail(system), seconds)
+        return cls(made, rest, choice, Trail(system), clock)
 
 
 def _run(
@@ -256,9 +257,10 @@ def _run(
     trajectory = integrate(
         system, start.rest, system.scene.integration, progress, cancel=cancel, trail=start.trail, taken=taken
     )
-    start.seconds["integration"] = trajectory.seconds
-    error = _error_estimate(system, start.rest, trajectory, progress)
-    result = _result(system, trajectory, start.seconds, error, decided, before, start.choice)
+    start.clock.book("integration", trajectory.taken)
+    with start.clock.stage("error_estimate"):
+        error = _error_estimate(system, start.rest, trajectory, progress)
+    result = _result(system, trajectory, start.clock, error, decided, before, start.choice)
     if not trajectory.status.usable:
         reached = f"at {trajectory.end:.6g} s of {decided.scene.duration:g} s"
         raise SolveError(f"run ended early, {trajectory.status.name.lower()} {reached}", result)
@@ -268,17 +270,16 @@ def _run(
 def _result(
     system: System,
     trajectory: Trajectory,
-    seconds: dict[str, float],
+    clock: StageClock,
     error: Json,
     decided: Decided,
     before: EarlierRun = FIRST,
     choice: MethodChoice | None = None,
 ) -> RunResult:
-    began = clock.perf_counter()
     checks = RunChecks(system, [NeglectedChecks(decided)])
-    parts = list(_checked_series(system, trajectory.states.rows, trajectory.samples, checks))
-    seconds = {**seconds, "outputs": clock.perf_counter() - began}
-    about = documents(system, trajectory, checks, seconds, error, decided, before, choice)
+    with clock.stage("outputs"):
+        parts = list(_checked_series(system, trajectory.states.rows, trajectory.samples, checks))
+    about = documents(system, trajectory, checks, clock, error, decided, before, choice)
     return RunResult(**_joined(parts), **about)
 
 
@@ -314,7 +315,7 @@ def _error_estimate(
         return error
     check = integrate(system, start, finer(integration), progress)
     total = squared_difference(system, trajectory.q, check.q)
-    return error | measured_error(total, trajectory.samples, len(system.scene.meshes), check.seconds)
+    return error | measured_error(total, trajectory.samples, len(system.scene.meshes), check)
 
 
 def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:
@@ -323,7 +324,7 @@ def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:
     sink = MemorySink(1, march.widths)
     marching.sample_rest(march, sink)
     return Trajectory(
-        **vars(marching.ending(march, sink, RunStatus.NO_EQUILIBRIUM, 0.0)),
+        **vars(marching.ending(march, sink, RunStatus.NO_EQUILIBRIUM, TimeTaken())),
         time=np.zeros(1),
         states=sink.states(0, 1),
     )
@@ -413,7 +414,7 @@ def _run_to_file(
 ) -> _MadeRun:
     """Run once, `going` as `_Leg.go` does; `before` says what of the run `earlier` it repeats."""
     start = _Start.of(decided)
-    system, rest, seconds = start.system, start.rest, start.seconds
+    system, rest, clock = start.system, start.rest, start.clock
     integration = system.scene.integration
     folder = interrupted_run(path)
     folder.mkdir(exist_ok=True)
@@ -421,17 +422,18 @@ def _run_to_file(
         leg = _Leg(stack, folder / "run", system, rest, integration, resume, earlier)
         before = replace(before, since=leg.since)
         end = leg.go(*going, start.trail)
+        clock.book("integration", end.taken)
         error = requested_error(integration)
-        if end.status.usable:
-            error = error_by_source(system, leg.spool.states, end.samples)
-        if integration.estimate_error and end.status.usable:
-            check = _Leg(stack, folder / "check", system, rest, finer(integration), resume)
-            other = check.go(*going)
-            end = replace(end, status=other.status)
-            error = error | (_difference(system, leg, check, other) if other.status.usable else {})
-        seconds["integration"] = end.seconds
+        with clock.stage("error_estimate"):
+            if end.status.usable:
+                error = error_by_source(system, leg.spool.states, end.samples)
+            if integration.estimate_error and end.status.usable:
+                check = _Leg(stack, folder / "check", system, rest, finer(integration), resume)
+                other = check.go(*going)
+                end = replace(end, status=other.status)
+                error = error | (_difference(system, leg, check, other) if other.status.usable else {})
         ledger = _write(path, leg, end, start, error, decided, before)
-    return _MadeRun(end.status, ledger, sum(seconds.values()), start.trail, leg.march.widths)
+    return _MadeRun(end.status, ledger, sum(clock.seconds.values()), start.trail, leg.march.widths)
 
 
 def _read_earlier(folder: Path) -> EarlierRun:
@@ -451,7 +453,7 @@ def _difference(system: System, leg: _Leg, check: _Leg, end: Ending) -> Json:
         total += squared_difference(
             system, leg.spool.states(first, stop).q, check.spool.states(first, stop).q
         )
-    return measured_error(total, end.samples, len(system.scene.meshes), end.seconds)
+    return measured_error(total, end.samples, len(system.scene.meshes), end)
 
 
 def _write(
@@ -464,13 +466,13 @@ def _write(
     before: EarlierRun,
 ) -> Json:
     """Make the series from the states, block by block, into the file; return the effect ledger."""
-    began, system = clock.perf_counter(), leg.march.system
+    system = leg.march.system
     checks = RunChecks(system, [NeglectedChecks(decided)])
     with RunFile(path) as file:
-        for series in _checked_series(system, leg.spool.states, end.samples, checks):
-            file.append(series)
-        start.seconds["outputs"] = clock.perf_counter() - began
-        about = documents(system, end, checks, start.seconds, error, decided, before, start.choice)
+        with start.clock.stage("outputs"):
+            for series in _checked_series(system, leg.spool.states, end.samples, checks):
+                file.append(series)
+        about = documents(system, end, checks, start.clock, error, decided, before, start.choice)
         file.publish(attributes(about))
     return dict(about["effect_ledger"])
 

@@ -24,7 +24,7 @@ class EarlierRun:
     turned_on : mapping of str to str
         Automatic effects that it showed to be needed, and why.
     seconds : float
-        What it took, s of wall time.
+        What it took, s of CPU time.
     since : float
         Time from which on it is repeated, s: before that the effects carry no force.
     """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -22,7 +21,7 @@ from dynamics.study.responses import Response, responses_of
 from dynamics.types import FloatArray, IntArray, Json
 from model_studies import LeftOut, Progress, silent
 from model_studies.spread import quantile_bounds, rank_correlation
-from model_studies.workers import InProcess, Workers
+from model_studies.workers import InProcess, Workers, task_cpu_seconds
 
 FRACTIONS = (0.05, 0.5, 0.95)
 POINT = ("point",)
@@ -66,7 +65,7 @@ class Study(ArrayFile):
     reason : tuple of str
         Why a run has no figures; empty where it has.
     seconds : (N, 2) array
-        CPU time of each run in all, and wall time of its integration, s.
+        CPU time of each run in all, and of its integration, s.
     samples : int
         Of each combination of grid and list, in a row.
     confidence : float
@@ -88,7 +87,7 @@ class Study(ArrayFile):
     error: FloatArray = field(metadata=stored("", "stated errors of the responses", "point", "response"))
     reason: tuple[str, ...]
     seconds: FloatArray = field(
-        metadata=stored("s", "CPU time in all, wall time of the integration", "point", "cost")
+        metadata=stored("s", "CPU time in all, and of the integration", "point", "cost")
     )
     samples: int
     confidence: float
@@ -222,7 +221,7 @@ class _PointResult:
     reason : str
         Why the run has no figures; empty where it has.
     seconds : list of float
-        Of this thread for all of it, and of the time integration (wall time), s.
+        CPU time of all of it and of the time integration, s.
     """
 
     figures: list[float]
@@ -253,7 +252,7 @@ def _run_batch(task: StudyTask, batch: Batch) -> list[_PointResult]:
 
 def _run_point(task: StudyTask, values: tuple[float, ...]) -> _PointResult:
     """Run one point; what fails is a marked point with its reason."""
-    began, integration, none = clock.thread_time(), NAN, [NAN] * len(task.responses)
+    began, integration, none = task_cpu_seconds(), NAN, [NAN] * len(task.responses)
     try:
         scene = task.scene(values)
         stored = {"energy_audit": False, "displacements": False, "accelerations": False}
@@ -265,7 +264,7 @@ def _run_point(task: StudyTask, values: tuple[float, ...]) -> _PointResult:
         figures, errors, reason = none, none, str(error)
     except MemoryError:
         figures, errors, reason = none, none, "out of memory"
-    return _PointResult(figures, errors, reason, [clock.thread_time() - began, integration])
+    return _PointResult(figures, errors, reason, [task_cpu_seconds() - began, integration])
 
 
 NEGLECTED = ("errors of steps and tables measured in windows of the run", "estimated influence of effects")

@@ -31,11 +31,11 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run
 from fe_contact.planning.cost_model import Prediction, expected_tries
 from fe_contact.planning.plan import MOST_ROWS, FaceDiscretization, NodeRule, Plan
-from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
 from model_studies.progress import Report, by_cost, unreported
+from model_studies.stage_clock import StageClock
 from model_studies.workers import InProcess, pays
 
 # Positions of the database: equally spaced, or denser where the curves bend.

@@ -19,8 +19,8 @@ from fe_contact.mesh.quad_sector import QuadSector
 from fe_contact.mesh.recipe import SectorRecipe
 from fe_contact.mesh.sector_grid import BoreSupport
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
+from model_studies.stage_clock import StageClock
 
 # Checks of a condensed three-dimensional gear on its uncondensed mesh, by the field of one load.
 

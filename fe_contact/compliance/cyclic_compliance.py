@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Mapping, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
@@ -28,10 +27,11 @@ from fe_contact.mesh.quad_sector import quad_sector, sector_outline
 from fe_contact.mesh.recipe import SectorRecipe
 from fe_contact.mesh.sector_grid import BoreSupport, bore_support
 from fe_contact.mesh.swept_sector import swept_sector
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import Json
+from host import cpu_seconds
 from model_studies.host_speed import kept_speed
 from model_studies.progress import Report, by_cost, unreported
+from model_studies.stage_clock import StageClock
 
 # The distance of teeth whose flanks can carry load at once.
 
@@ -175,9 +175,9 @@ def _dense_rate() -> float:
     panel = np.asfortranarray(np.sin(np.arange(count * depth, dtype=float)).reshape(count, depth))
     times = []
     for _ in range(5):
-        start = time.process_time()
+        start = cpu_seconds()
         blas.dsyrk(1.0, panel, lower=1)
-        times.append(time.process_time() - start)
+        times.append(cpu_seconds() - start)
     return 0.5 * count * (count + 1) * depth / max(float(np.median(times)), 1e-6)
 
 

@@ -32,8 +32,8 @@ from fe_contact.mesh.quality import quad_quality
 from fe_contact.mesh.recipe import SectorRecipe
 from fe_contact.mesh.sector_grid import bore_support
 from fe_contact.mesh.swept_sector import LOWER_FACE, SweptSector, swept_sector
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
+from model_studies.stage_clock import StageClock
 
 # The hexahedra of one tooth sector in space: nodes, displacements from freedoms, stresses, quality.
 

@@ -36,8 +36,8 @@ from fe_contact.compliance.ring_2d import (
 from fe_contact.errors import InputError, integer
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray, Json
+from model_studies.stage_clock import StageClock
 
 # Checks of a condensed gear on its uncondensed mesh, by the field of one load.
 

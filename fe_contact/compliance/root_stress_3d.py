@@ -48,8 +48,8 @@ from fe_contact.mesh.quad_sector import QuadSector, quad_sector
 from fe_contact.mesh.recipe import SectorRecipe
 from fe_contact.mesh.sector_grid import BoreSupport
 from fe_contact.mesh.swept_sector import SweptSector
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
+from model_studies.stage_clock import StageClock
 
 ROWS_AT_ONCE = 256  # stresses passed up the tree together: bounds the memory
 # Nodes of a surface element over profile (-1 .. 1) and layer (-1 .. 1): corners, then middles.

@@ -51,8 +51,8 @@ from fe_contact.mesh import MeshRecipe, SectorRecipe, mesh_gear
 from fe_contact.mesh.sector_grid import BoreSupport, bore_support
 from fe_contact.mesh.tooth_sector import ToothSector
 from fe_contact.mesh.triangulation import SIDES
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
+from model_studies.stage_clock import StageClock
 
 MODEL_VERSION = 1  # raise it whenever the same input gives another result: old cache files are then not found
 

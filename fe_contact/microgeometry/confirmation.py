@@ -23,10 +23,10 @@ from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ONE_NODE, Scatter
 from fe_contact.microgeometry.variables import effect_of, figure, modified
 from fe_contact.options import LARGEST_DEVIATION, AnalysisOptions, Levels, Run, TableAxes
-from fe_contact.stage_clock import StageClock
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate, FloatArray, IntArray
 from model_studies import NOT_STORED, in_unit
+from model_studies.stage_clock import StageClock
 
 # The loads at which designs are assessed: torques, each with the misalignment of the mesh under it.
 

@@ -31,9 +31,9 @@ from fe_contact.microgeometry.search import (
 from fe_contact.microgeometry.variables import GEARS, QUANTITIES, DesignVariable
 from fe_contact.options import Run
 from fe_contact.solver_version import SOLVER_VERSION
-from fe_contact.stage_clock import StageClock
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray
+from model_studies.stage_clock import StageClock
 from model_studies.workers import InProcess, OrHere, Workers, WorkersLost, divided
 
 # Assessed designs on disk: a search that was killed, or may use more evaluations, continues.

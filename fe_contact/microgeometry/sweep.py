@@ -22,10 +22,10 @@ from fe_contact.microgeometry.evaluator import over_face
 from fe_contact.microgeometry.scatter import MISALIGNMENT
 from fe_contact.microgeometry.variables import GEARS, DesignVariable, check_variables, modified
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
-from fe_contact.stage_clock import StageClock
 from fe_contact.ste import SteDatabase
 from fe_contact.types import BoolArray, FloatArray, Json, Status
 from model_studies import in_unit
+from model_studies.stage_clock import StageClock
 
 # The request of a sweep: one or two axes over operating conditions and figures of the flanks.
 

@@ -22,10 +22,10 @@ from fe_contact.microgeometry.objective import NO_LIMITS
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ONE_NODE, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.variables import GEARS, figure, gear_and_quantity
 from fe_contact.options import AnalysisOptions, Levels, Run
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json
 from model_studies import in_unit
 from model_studies.spread import quantile_bounds, rank_correlation
+from model_studies.stage_clock import StageClock
 
 # Tolerances of assembly and manufacture: how figures are distributed between the limits of inspection.
 

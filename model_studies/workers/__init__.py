@@ -17,6 +17,7 @@ from model_studies.workers.executor import (
     local_processes,
     pays,
     spent,
+    task_cpu_seconds,
 )
 from model_studies.workers.remembering import Remembering
 
@@ -35,4 +36,5 @@ __all__ = [
     "local_processes",
     "pays",
     "spent",
+    "task_cpu_seconds",
 ]

@@ -116,15 +116,16 @@ class _Done(Generic[R]):
 
 def do_task(function: Callable[[Any, Any], R], item: Any, packed: Packed) -> _Done[R]:
     """Do one task, on a worker."""
-    begun = _cpu_seconds()
+    begun = task_cpu_seconds()
     try:
         result = function(packed.unpacked(), item)
     except KeyboardInterrupt:  # a Ctrl-C reaches the processes of a pool, too
         raise WorkersLost("A worker was interrupted.") from None
-    return _Done(result, _cpu_seconds() - begun, peak_memory())
+    return _Done(result, task_cpu_seconds() - begun, peak_memory())
 
 
-def _cpu_seconds() -> float:
+def task_cpu_seconds() -> float:
+    """Return the CPU seconds of a task's process, or of its thread beside others, and of children."""
     alone = threading.current_thread() is threading.main_thread()
     own = time.process_time() if alone else time.thread_time()
     return own + children_cpu_seconds()

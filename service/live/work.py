@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import time
 from collections import OrderedDict
 from pathlib import Path
 from typing import Any
 
 from fe_contact.analysis.live.condensed_pair import CondensedPair
+from host import cpu_seconds
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.live import condensed_of, live_curves, plan_json, plan_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
@@ -24,14 +24,14 @@ _pairs: OrderedDict[str, tuple[Case, CondensedPair]] = OrderedDict()
 
 def live_ste(inputs: Json) -> Json:
     """Return the curves of a question; the compliances requested last stay in memory."""
-    begin = time.process_time()
+    begin = cpu_seconds()
     question = LiveInput.model_validate_json(json.dumps(inputs["question"]))
     paths = Path(inputs["file"]), Path(inputs["cache"])
     case, bodies = _bodies(inputs["key"], *paths, compute=question.condense)
-    read = time.process_time() - begin
+    read = cpu_seconds() - begin
     answer = live_curves(case, bodies, question)
     answer["cost"]["compliance_cpu_seconds"] += read
-    return answer | {"cpu_seconds": time.process_time() - begin}
+    return answer | {"cpu_seconds": cpu_seconds() - begin}
 
 
 def live_plan(inputs: Json) -> Json:

@@ -24,8 +24,8 @@ from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.planning.plane_bias import PlaneBias
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json
+from model_studies.stage_clock import StageClock
 
 # Depth of tip edges inside the mating flanks in a contact that was solved without them.
 

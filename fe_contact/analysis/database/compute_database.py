@@ -30,7 +30,6 @@ from fe_contact.options import Run
 from fe_contact.planning.cost_model import log_name
 from fe_contact.plausibility import merged, table_findings
 from fe_contact.solver_version import SOLVER_VERSION
-from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, PLANE, all_sources
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
@@ -38,6 +37,7 @@ from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray, Json, Status
 from model_studies.progress import by_cost
 from model_studies.run_log import record
+from model_studies.stage_clock import StageClock
 from model_studies.workers import InProcess, RunCost
 
 # The contact solver in the receipt: how hard the points were, and which failed.

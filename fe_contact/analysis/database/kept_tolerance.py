@@ -24,10 +24,10 @@ from fe_contact.planning.plan import (
     NodeRule,
     face_discretization,
 )
-from fe_contact.stage_clock import StageClock
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve import AT_NODES, all_sources
 from fe_contact.types import FloatArray, Json
+from model_studies.stage_clock import StageClock
 
 # The refinement of the next pass, decided by the errors that a pass has measured.
 #

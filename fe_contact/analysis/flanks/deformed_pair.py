@@ -24,8 +24,8 @@ from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.mesh.export import write_cells
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.planning.plan import FaceDiscretization
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
+from model_studies.stage_clock import StageClock
 
 Both = tuple[DeformedGear, DeformedGear]
 

@@ -20,12 +20,12 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.plausibility import flank_findings, merged, unexpected
 from fe_contact.solver_version import SOLVER_VERSION
-from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata
 from fe_contact.ste.facts import content_hash
 from fe_contact.ste.netcdf import FileFormat, digest, json_attribute
 from fe_contact.types import FloatArray, Json
 from model_studies.netcdf import NetcdfContent, Variable
+from model_studies.stage_clock import StageClock
 
 if TYPE_CHECKING:
     from fe_contact.analysis.flanks.load_distribution import LoadDistribution

@@ -23,9 +23,9 @@ from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.planning.plan import FaceDiscretization, PlaneDiscretization
 from fe_contact.plausibility import root_findings, unexpected
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import BoolArray, Estimate, FloatArray, IntArray, Json
 from model_studies import in_unit
+from model_studies.stage_clock import StageClock
 
 # Stress of the tooth roots of one gear over the mesh cycle: history, peaks, where they are.
 

@@ -17,8 +17,8 @@ from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.analysis.tables import condensed_bodies
 from fe_contact.errors import InputError, SolveError, finite
 from fe_contact.options import Run
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json, Status
+from model_studies.stage_clock import StageClock
 
 POSITIONS = 64
 """Over one mesh cycle, where none are requested."""

@@ -40,11 +40,11 @@ from fe_contact.options import TableAxes
 from fe_contact.planning.cost_model import condensed_teeth
 from fe_contact.planning.plan import LARGEST_SUPPORT, Plan
 from fe_contact.planning.planned import usual_mesh_error
-from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES
 from fe_contact.ste.curve_quantities import MEAN, QUANTITIES
 from fe_contact.types import FloatArray, Json
+from model_studies.stage_clock import StageClock
 
 # Errors of a table that was solved on a condensed pair, at a part of the cost of solving it.
 #

@@ -37,7 +37,6 @@ from fe_contact.geometry import Gear, GearPair, ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning.plan import PLANE_REFINEMENT, Plan
 from fe_contact.solver_version import SOLVER_VERSION
-from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray
@@ -51,6 +50,7 @@ from model_studies import (
     silent,
 )
 from model_studies.frontier import Errors
+from model_studies.stage_clock import StageClock
 
 # The accuracy study: ways to the transmission error from a closed form to fine finite elements.
 

@@ -22,9 +22,9 @@ from fe_contact.full_contact.condensation.sites import Range, Resolution, contac
 from fe_contact.full_contact.table import FullContactPoint, FullContactTable, SolvedPosition, tables_of
 from fe_contact.full_contact.validity import check_axes, refusal
 from fe_contact.geometry import ParallelAxes
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import Status
 from model_studies.progress import Report
+from model_studies.stage_clock import StageClock
 
 # One position of one contact geometry under all torques, settled on the deformed gears.
 

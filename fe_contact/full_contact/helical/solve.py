@@ -17,9 +17,9 @@ from fe_contact.full_contact.table import FullContactPoint, FullContactTable, So
 from fe_contact.full_contact.validity import check_axes, refusal_helical
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import contact_modulus, half_width
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import Status
 from model_studies.progress import Report
+from model_studies.stage_clock import StageClock
 
 
 @dataclass(frozen=True)

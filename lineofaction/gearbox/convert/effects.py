@@ -80,7 +80,8 @@ def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
     if earlier:
         for name, reason in earlier["turned_on"].items():
             since = f", from {earlier['since']:.6g} s on" if earlier.get("since") else ""
-            yield f"repeated with {name}: {reason} (first run {engineering(earlier['seconds'], 2)} s{since})"
+            cost = f"{engineering(earlier['seconds'], 2)} CPU s"
+            yield f"repeated with {name}: {reason} (first run {cost}{since})"
     corrected = {**attributes, **attributes.get("receipt", {})}.get("base_radius_corrected", {})
     for gear, radius in corrected.items():
         stated, used = (1e3 * radius[name] for name in ("given", "used"))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import cast
@@ -21,6 +20,7 @@ from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
 from fe_contact.microgeometry.linearized_design import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
+from host import cpu_seconds
 from lineofaction.gearbox.convert.answers import curve_json
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, gear_pair
 from lineofaction.gearbox.convert.errors import boundary_name
@@ -171,10 +171,10 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Jso
 
     for name, made in (("flanks", on_flanks), ("derivatives", derivatives)):
         if getattr(change, name):
-            begin = time.process_time()
+            begin = cpu_seconds()
             for curve, part in zip(curves, made(), strict=True):
                 curve[name] = part
-            answer["cost"][f"{name}_cpu_seconds"] = time.process_time() - begin
+            answer["cost"][f"{name}_cpu_seconds"] = cpu_seconds() - begin
     return answer
 
 

@@ -188,11 +188,14 @@ def dynamic_making(run: RunResult) -> tuple[Section, ...]:
     text = "The scene with all defaults, in SI."
     scene = Section("Scene", text, folded=(facts("Scene", run.case),), part=Part.INPUT)
     steps = facts("Step statistics", vars(run.statistics))
-    stages = run.receipt.get("seconds", {})
-    rows = tuple((name.replace("_", " "), number(value, 3)) for name, value in stages.items())
+    elapsed = run.receipt.get("wall_seconds", {})
+    rows = tuple(
+        (name.replace("_", " "), number(spent, 3), number(elapsed.get(name, np.nan), 3))
+        for name, spent in run.receipt.get("seconds", {}).items()
+    )
     receipt = Section(
         "Receipt of the run",
-        tables=(Table("Time of the run by stage", ("stage", "wall s"), rows),),
+        tables=(Table("Time of the run by stage", ("stage", "CPU s", "wall s"), rows),),
         folded=(steps,),
         part=Part.RECEIPT,
     )

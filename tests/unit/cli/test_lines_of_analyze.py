@@ -98,7 +98,7 @@ def test_a_run_says_what_it_was_repeated_for_and_what_does_not_hold() -> None:
         )
     )
     assert told == [
-        "repeated with backlash: mesh: parted (first run 2 s)",
+        "repeated with backlash: mesh: parted (first run 2 CPU s)",
         "VIOLATED: force inside the table (mesh); forces up to 12 N of 10 N",
     ]
     assert list(run_lines({})) == []

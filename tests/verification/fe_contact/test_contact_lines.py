@@ -17,7 +17,7 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import condensed_bodies
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, solve_contact
 from fe_contact.options import Run
-from fe_contact.stage_clock import StageClock
+from model_studies.stage_clock import StageClock
 
 LOAD = np.array([2500.0])
 POSITIONS = 16

@@ -81,7 +81,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
         return replace(result, facts={**result.facts, "design": inputs.model_dump(mode="json"), "runs": runs})
 
     def _derived(self, result: Study) -> Json:
-        wall = np.nanmean(result.seconds[:, 1]) if result.usable else None
+        integration = float(np.nanmean(result.seconds[:, 1])) if result.usable else None
         failed = [(k, reason) for k, reason in enumerate(result.reason) if reason]
         kinds = zip(result.factor, result.kind, strict=True)
         return {
@@ -93,7 +93,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
                 for k in map(int, result.worst)
             ],
             "failed": [{"point": k, "values": _values(result, k), "reason": reason} for k, reason in failed],
-            "cpu_seconds": {"mean": float(np.mean(result.seconds[:, 0])), "integration_wall_mean": wall},
+            "cpu_seconds": {"mean": float(np.mean(result.seconds[:, 0])), "integration_mean": integration},
         }
 
     def kept(self, result: Study, means: Means) -> Mapping[str, Path]:

@@ -16,7 +16,7 @@ from fe_contact.compliance.cyclic_ring import FreeTurn, RingSolution, close_ring
 from fe_contact.geometry import BoreSeat, Gear, GearBlank, Key, RingGear, Toothing
 from fe_contact.mesh import quad_sector
 from fe_contact.mesh.sector_grid import bore_support
-from fe_contact.stage_clock import StageClock
+from model_studies.stage_clock import StageClock
 
 MANY = replace(SPUR, teeth=120, bore_diameter=380e-3)
 THIN = Gear(120, 4e-3, 20e-3, 100e-3, helix_angle=0.3, blank=GearBlank(5e-3, 5e-3, 120e-3))

@@ -26,7 +26,7 @@ from fe_contact.geometry import Gear, GearBlank
 from fe_contact.geometry.web_compliance import torsion_compliance
 from fe_contact.material import STEEL
 from fe_contact.mesh import ClampedBore, mesh_gear, quad_sector
-from fe_contact.stage_clock import StageClock
+from model_studies.stage_clock import StageClock
 
 SOLID = Gear(teeth=21, normal_module=4e-3, face_width=24e-3, bore_diameter=24e-3)
 BLANK = GearBlank(rim_thickness=9e-3, web_thickness=8e-3, hub_diameter=32e-3)

@@ -30,8 +30,8 @@ from fe_contact.microgeometry.search import (
 )
 from fe_contact.microgeometry.variables import DesignVariable, modified
 from fe_contact.options import AnalysisOptions, Run
-from fe_contact.stage_clock import StageClock
 from lineofaction.gearbox.studies.optimize.run import RUN
+from model_studies.stage_clock import StageClock
 
 
 def helical(hand: int) -> GearPair:

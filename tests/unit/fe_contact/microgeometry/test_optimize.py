@@ -21,8 +21,8 @@ from fe_contact.microgeometry.scatter import Scatter
 from fe_contact.microgeometry.search import NelderMead, Search
 from fe_contact.microgeometry.variables import DesignVariable, modified
 from fe_contact.options import AnalysisOptions, Run
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
+from model_studies.stage_clock import StageClock
 
 TORQUE = 200.0
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}

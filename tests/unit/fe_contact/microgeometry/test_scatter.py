@@ -29,7 +29,7 @@ from fe_contact.microgeometry.tolerance_study import (
 )
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, Run
-from fe_contact.stage_clock import StageClock
+from model_studies.stage_clock import StageClock
 
 SLOPE, CROWNING = "pinion.profile_slope", "wheel.profile_crowning"
 

@@ -30,8 +30,8 @@ from fe_contact.microgeometry.search import (
 )
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
-from fe_contact.stage_clock import StageClock
 from fe_contact.types import Estimate, FloatArray
+from model_studies.stage_clock import StageClock
 from model_studies.workers import ByExecutor, InProcess, RunCost, WorkersLost, executor
 
 START = np.array([0.9, 0.1, 0.5])

@@ -26,7 +26,7 @@ from fe_contact.contact import (
 from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, RingGear, Toothing, tooth_profile
 from fe_contact.options import OperatingPoint, Run
-from fe_contact.stage_clock import StageClock
+from model_studies.stage_clock import StageClock
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 

@@ -21,7 +21,7 @@ from fe_contact.compliance import unit_root_stress, unit_root_stress_3d
 from fe_contact.geometry import InternalGearPair, RingGear
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.options import Run
-from fe_contact.stage_clock import StageClock
+from model_studies.stage_clock import StageClock
 
 FORCE = 2000.0
 SPUR = GearPair(GEAR, GEAR, 80e-3)

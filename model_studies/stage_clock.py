@@ -1,0 +1,101 @@
+"""Time of the stages of a computation, for its receipt."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+
+from bounds.types import Json
+from host import children_peak_memory, cpu_seconds, peak_memory
+from model_studies.progress import Progress, silent
+from model_studies.workers.executor import RunCost
+
+
+@dataclass(frozen=True)
+class TimeTaken:
+    """Time of a piece of work.
+
+    Attributes
+    ----------
+    cpu_seconds : float
+        CPU time of this process, its finished children and others' tasks: the cost.
+    wall_seconds : float
+        Elapsed time, s.
+    """
+
+    cpu_seconds: float = 0.0
+    wall_seconds: float = 0.0
+
+    @classmethod
+    def now(cls, remote: RunCost | None = None) -> TimeTaken:
+        """Read both clocks, to be told apart from a later reading; `remote` counts tasks of others."""
+        own = cpu_seconds()
+        return cls(own + (remote.cpu_seconds if remote else 0.0), time.perf_counter())
+
+    def plus(self, other: TimeTaken) -> TimeTaken:
+        """Return the time of both."""
+        return TimeTaken(self.cpu_seconds + other.cpu_seconds, self.wall_seconds + other.wall_seconds)
+
+    def since(self, begun: TimeTaken) -> TimeTaken:
+        """Return the time from one reading to this one."""
+        return TimeTaken(self.cpu_seconds - begun.cpu_seconds, self.wall_seconds - begun.wall_seconds)
+
+
+class StageClock:
+    """Collects the stages of one run; repeated stages are added up.
+
+    Parameters
+    ----------
+    remote : RunCost, optional
+        What tasks cost that others do for this process: it counts beside its own time and its children's.
+    progress : callable
+        Called as progress(stage, fraction).
+    """
+
+    def __init__(self, remote: RunCost | None = None, progress: Progress = silent) -> None:
+        self.stages: dict[str, TimeTaken] = {}
+        self.progress = progress
+        self._remote = remote
+        self._last = TimeTaken.now(remote)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time what happens inside."""
+        begun = TimeTaken.now(self._remote)
+        try:
+            yield
+        finally:
+            self._end(name, begun)
+
+    def finish(self, name: str) -> None:
+        """Book the time since the last stage ended, or since the clock was made."""
+        self._end(name, self._last)
+
+    def book(self, name: str, taken: TimeTaken) -> None:
+        """Add the time of a stage that was taken apart."""
+        self.stages[name] = self.stages.get(name, TimeTaken()).plus(taken)
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """CPU seconds by stage."""
+        return {name: taken.cpu_seconds for name, taken in self.stages.items()}
+
+    @property
+    def wall_seconds(self) -> dict[str, float]:
+        """Wall seconds by stage."""
+        return {name: taken.wall_seconds for name, taken in self.stages.items()}
+
+    def to_json(self) -> Json:
+        """Return times by stage, their sum, and the peak memory in bytes."""
+        return {
+            "stages": {name: asdict(taken) for name, taken in self.stages.items()},
+            "cpu_seconds": sum(self.seconds.values()),
+            "wall_seconds": sum(self.wall_seconds.values()),
+            "peak_memory_bytes": max(peak_memory(), children_peak_memory()),
+        }
+
+    def _end(self, name: str, begun: TimeTaken) -> None:
+        self._last = TimeTaken.now(self._remote)
+        self.book(name, self._last.since(begun))
