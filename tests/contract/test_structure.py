@@ -11,15 +11,15 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (39_198, 694),
-    ("dynamics",): (40_615, 758),
-    ("lineofaction.gearbox",): (21_717, 430),
-    ("lineofaction.report",): (10_500, 200),
+    ("fe_contact",): (39_114, 693),
+    ("dynamics",): (40_618, 758),
+    ("lineofaction.gearbox",): (21_718, 430),
+    ("lineofaction.report",): (10_503, 200),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_621, 67),
     ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_227, 145),
+    ("bounds", "host", "model_studies"): (4_331, 148),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 762
