@@ -80,10 +80,12 @@ def free_field_pressure(power: ArrayLike, distance: float, impedance: float) -> 
     return np.asarray(np.sqrt(np.asarray(power, dtype=float) * impedance / (4.0 * np.pi)) / distance)
 
 
-STEPS = 9
-"""Values of a range that are tried, ends included: a resonance may lie inside it."""
+ENDS = (0.05, 0.95)
+"""Quantiles at which a band ends: nine of ten cases lie between."""
+CASES = 64
+"""Joint cases of all parameters; each end leaves out 5 % of further cases, give or take 2 %."""
 JOINTLY = "jointly"
-"""Contribution of parameters that act on each other."""
+"""Contribution of parameters that act on each other, and of extremes inside a range."""
 SEED = 22
 """Of the joint cases: bands are the same each time."""
 
@@ -100,13 +102,16 @@ class Range:
         if not self.low <= self.nominal <= self.high:
             raise InputError("nominal", self.nominal, f"from {self.low:g} to {self.high:g}")
 
+    def at(self, share: float) -> float:
+        """Return the value at a share of the range, 0 at its low end."""
+        return self.low + share * (self.high - self.low)
+
 
 @dataclass(frozen=True)
 class LevelBand:
-    """A level and how far it may lie below and above.
+    """A level and how far it may lie below and above in nine of ten cases.
 
-    Contributions are independent, so that their deviations add up in squares. Where each is even over its
-    range this is at least 1.7 standard deviations: 9 of 10 cases, all of them with one contribution.
+    Contributions are independent: their deviations add up in squares.
 
     Attributes
     ----------
@@ -144,51 +149,38 @@ class LevelBand:
 
 
 def level_bands(
-    levels: Callable[[Mapping[str, float]], FloatArray],
-    ranges: Mapping[str, Range],
-    steps: int = STEPS,
-    joint: int = 0,
+    levels: Callable[[Mapping[str, float]], FloatArray], ranges: Mapping[str, Range], cases: int = CASES
 ) -> tuple[LevelBand, ...]:
-    """Return the bands of several levels, by varying one parameter at a time over its range.
+    """Return the bands of several levels over the ranges of what they depend on.
 
-    A wider range never narrows a band where its level is monotone in each parameter. An extremum inside a
-    range is found as far as it shows at `steps` equal steps. Where parameters act on each other, as one
-    resonance that meets another, sums in squares fall short: the bands then reach as far as the levels of
-    `joint` cases, all parameters at once, spread evenly over the ranges. What
-    that adds is the contribution `JOINTLY`.
+    The ends are quantiles (`ENDS`) of joint cases, in which all parameters are even over their ranges and
+    independent; the nominal level always lies inside. The contribution of a parameter is what it changes
+    alone between the same quantiles of its range. Where squares of contributions add up to less than the
+    band, as where one resonance meets another, the rest is `JOINTLY`; where to more, each is reduced alike.
 
     Parameters
     ----------
     levels : callable
         From the values of all parameters by name to levels in dB, (L,).
-    steps : int
-        Values of each range that are tried, at least its ends.
-    joint : int
-        Joint cases, best a power of two.
+    cases : int
+        Joint cases, spread evenly; best a power of two.
 
     Raises
     ------
     InputError
-        Fewer than two steps, or a negative number of cases.
+        No case, or more than 4096.
     """
-    integer("steps", steps, 2, 1000)
-    integer("joint", joint, 0, 4096)
+    integer("cases", cases, 1, 4096)
     nominal = {name: span.nominal for name, span in ranges.items()}
     middle = levels(nominal)
-    deviation = {
-        name: [
-            levels({**nominal, name: float(value)}) - middle
-            for value in np.linspace(span.low, span.high, steps)
-            if value != span.nominal
-        ]
+    together = [levels(values) - middle for values in _cases(ranges, cases)] if ranges else [0.0 * middle]
+    alone = {
+        name: [levels({**nominal, name: span.at(end)}) - middle for end in ENDS]
         for name, span in ranges.items()
     }
-    below = {name: -np.min([0.0 * middle, *rows], axis=0) for name, rows in deviation.items()}
-    above = {name: np.max([0.0 * middle, *rows], axis=0) for name, rows in deviation.items()}
-    if joint and len(ranges) > 1:
-        together = np.array([levels(values) for values in _cases(ranges, joint)]) - middle
-        below[JOINTLY] = _beyond(-together.min(axis=0), below)
-        above[JOINTLY] = _beyond(together.max(axis=0), above)
+    low, high = np.quantile(together, ENDS, axis=0, method="weibull")  # of further cases, not of these
+    below = _parts(-low, {name: -np.min(rows, axis=0) for name, rows in alone.items()})
+    above = _parts(high, {name: np.max(rows, axis=0) for name, rows in alone.items()})
     return tuple(
         LevelBand(float(middle[k]), _entries(below, k), _entries(above, k)) for k in range(middle.size)
     )
@@ -198,17 +190,21 @@ def _cases(ranges: Mapping[str, Range], count: int) -> Iterator[dict[str, float]
     """Yield values of all parameters, spread evenly: scrambled points of Sobol's sequence."""
     from scipy.stats.qmc import Sobol  # noqa: PLC0415 (start-up time)
 
-    for shares in Sobol(len(ranges), seed=SEED).random(count):
-        yield {
-            name: span.low + share * (span.high - span.low)
-            for share, (name, span) in zip(shares.tolist(), ranges.items(), strict=True)
-        }
+    for shares in Sobol(len(ranges), seed=SEED).random(count).tolist():
+        yield {name: span.at(share) for share, (name, span) in zip(shares, ranges.items(), strict=True)}
 
 
-def _beyond(reached: FloatArray, deviations: Mapping[str, FloatArray]) -> FloatArray:
-    """Return what is to be added in squares to the deviations so that they reach as far."""
-    squares = np.sum([value**2 for value in deviations.values()], axis=0)
-    return np.asarray(np.sqrt(np.maximum(np.maximum(reached, 0.0) ** 2 - squares, 0.0)))
+def _parts(reached: FloatArray, alone: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """Return deviations, at least 0, that add up in squares to what is reached, the rest as `JOINTLY`."""
+    whole = np.maximum(reached, 0.0) ** 2
+    squares = {name: np.maximum(value, 0.0) ** 2 for name, value in alone.items()}
+    sum_of_squares = np.sum([0.0 * whole, *squares.values()], axis=0)
+    share = np.minimum(whole / np.maximum(sum_of_squares, 1e-300), 1.0)
+    squares = {name: share * value for name, value in squares.items()}
+    return {
+        name: np.sqrt(value)
+        for name, value in (*squares.items(), (JOINTLY, np.maximum(whole - sum_of_squares, 0.0)))
+    }
 
 
 def _entries(deviations: Mapping[str, FloatArray], index: int) -> dict[str, float]:

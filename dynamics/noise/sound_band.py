@@ -18,6 +18,7 @@ from dynamics.acoustics import (
     order_power,
     sound_power_level,
 )
+from dynamics.acoustics.levels import CASES
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.checks import one_of
@@ -189,10 +190,6 @@ frequencies too high, and walls of castings vary by some per cent."""
 USUAL_RANGES = {name: guess.usual for name, guess in GUESSES.items()}
 
 
-STEPS, JOINT = 5, 16
-"""Values of each range, and joint cases. Bands of the largest levels hold at least 90 % of 200 blind
-variations of a meshed housing (docs/theory/sound-power.md)."""
-
 MOST_MISSED = 10.0
 """dB; speeds that miss more are no map of a resonance."""
 
@@ -252,17 +249,16 @@ def sound_band(
     orders: int,
     ranges: Mapping[str, Range] | None = None,
     *,
-    steps: int = STEPS,
-    joint: int = JOINT,
+    cases: int = CASES,
     alternatives: Mapping[str, SoundModel] | None = None,
     progress: Progress = silent,
 ) -> SoundBand:
     """Return the bands of the levels that a scene radiates in its linear response.
 
-    Guesses vary one at a time over the whole chain, as damping and stiffness change the bearing forces too:
-    a linear response for each of up to (steps - 1) values of each, for `joint` cases of all at once, one of
-    the nominal values, and one with half of the housings' modes. What that changes is taken for the error of
-    the number of modes, both ways.
+    Guesses vary over the whole chain, as damping and stiffness change the bearing forces too: a linear
+    response for each of `cases` joint cases and two of each guess alone, one of the nominal values, and one
+    with half of the housings' modes. What that changes is taken for the error of the number of modes, both
+    ways.
 
     Parameters
     ----------
@@ -273,8 +269,8 @@ def sound_band(
     ranges : mapping of str to Range, optional
         Of factors, by name in `GUESSES`; default: their usual ones. Those of what a scene does not have, e.g.
         mounts, contribute nothing.
-    steps, joint : int
-        Values of each range that are tried, and joint cases: see `level_bands`.
+    cases : int
+        As of `level_bands`.
     alternatives : mapping of str to SoundModel, optional
         Further models that may be right, e.g. with the resistance of another radiation model, by the name of
         their contribution: their difference, both ways.
@@ -296,7 +292,7 @@ def sound_band(
         lambda housing, part: with_modes(housing, max(int(part * len(housing.frequency)), 1)), model, 0.5
     )
     others = {"mode_number": fewer, **(alternatives or {})}
-    count, done = 1 + len(others) + len(ranges) * (steps - 1) + joint, [0]
+    count, done = 1 + len(others) + 2 * len(ranges) + cases, [0]
 
     def powers(varied: SoundModel) -> tuple[FloatArray, OrderPower]:
         result = forced_power(varied, speed, orders)
@@ -304,7 +300,7 @@ def sound_band(
         progress("band", min(done[0] / count, 1.0))
         return result
 
-    varied = partial(level_bands, ranges=ranges, steps=steps, joint=joint)
+    varied = partial(level_bands, ranges=ranges, cases=cases)
     return _band(model, np.asarray(speed, dtype=float), varied, others, powers)
 
 
