@@ -148,11 +148,12 @@ def ablate(
     Raises
     ------
     InputError
-        An unknown effect, or a run shorter than a few base pitches.
+        No mesh, an unknown effect, or a run shorter than a few base pitches.
     SolveError
         The scene itself has no equilibrium or stops early.
     """
     names = chosen("only", only, [effect.name for effect in EFFECTS])
+    scene.require_meshes()
     scene = decide_effects(scene).scene
     scene = assemble(scene).resolved(scene)  # one output grid for all runs
     scene = replace(scene, on_violation="report", tolerance=None)

@@ -384,10 +384,11 @@ def frontier(
     Raises
     ------
     InputError
-        No such fidelity, or a run too short to compare.
+        No mesh, no such fidelity, or a run too short to compare.
     SolveError
         Fewer than two fidelities came to their end.
     """
+    scene.require_meshes()
     system = assemble(scene)
     blocks, scene = _Blocks.of(system), system.resolved(scene)
     names = chosen("fidelities", fidelities, [fidelity.name for fidelity in FIDELITIES])

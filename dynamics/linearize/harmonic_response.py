@@ -17,11 +17,14 @@ from dynamics.linearize.load_harmonics import load_multiples
 from dynamics.linearize.operating_speeds import LARGEST_DENOMINATOR
 from dynamics.linearize.steady_vibration import (
     EXCITATIONS,
+    ROUNDED,
     Excited,
     Steady,
     excited,
+    solved,
     steady_vibration,
     swept_vibration,
+    unbounded,
 )
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.motion.observation import local_state
@@ -272,6 +275,8 @@ def parametric_response(
         answer = steady.displacement[:, family.harmonic] @ row[family.meshes].T
         made = np.asarray(0.5 * (answer - steady.static[family.meshes][:, family.harmonic].T))
         push = _push(family, row[family.meshes] @ moved, made)
+        if push is None:
+            raise unbounded(at.linear, steady.omega)
         u[:, family.harmonic] -= 2.0 * np.einsum("shnf,shf->shn", moved[:, 1:], push[:, 1:])
         own = np.ix_(family.meshes, np.arange(speed.size), family.harmonic)
         extra[own] += 2.0 * np.moveaxis(push[:, 1:], 2, 0)
@@ -320,8 +325,8 @@ def _coefficients(at: Excited, mesh: int, highest: int) -> ComplexArray:
     return coefficients
 
 
-def _push(family: _Family, receptance: ComplexArray, made: ComplexArray) -> ComplexArray:
-    """Solve the balance at S speeds.
+def _push(family: _Family, receptance: ComplexArray, made: ComplexArray) -> ComplexArray | None:
+    """Solve the balance at S speeds; None where nothing bounds the motion.
 
     Parameters
     ----------
@@ -343,8 +348,12 @@ def _push(family: _Family, receptance: ComplexArray, made: ComplexArray) -> Comp
     size = step.size * meshes
     matrix = np.einsum("siab,bij->siajb", whole, varying).reshape(speeds, size, size)
     matrix += np.eye(size)
-    w = np.linalg.solve(matrix, forcing.reshape(speeds, size, 1)).reshape(forcing.shape)
-    return np.asarray(np.einsum("bij,sjb->sib", varying[:, count:], w))
+    right = forcing.reshape(speeds, size, 1)
+    w = solved(matrix, right)
+    rounded = np.finfo(float).eps * np.max(np.abs(matrix) @ np.abs(w), axis=(1, 2))
+    if not np.all(rounded <= ROUNDED * np.max(np.abs(right), axis=(1, 2), initial=1e-300)):
+        return None
+    return np.asarray(np.einsum("bij,sjb->sib", varying[:, count:], w.reshape(forcing.shape)))
 
 
 def _at_rest(at: Excited, row: FloatArray) -> ComplexArray:

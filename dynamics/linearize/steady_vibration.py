@@ -14,7 +14,7 @@ from dynamics.errors import SolveError
 from dynamics.forces.laws import Law
 from dynamics.linearize.campbell import terms_at
 from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
-from dynamics.linearize.linear_system import LinearSystem, about_running, linearize
+from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, natural_modes
 from dynamics.linearize.load_harmonics import load_harmonics
 from dynamics.linearize.operating_speeds import CommonPeriod, common_period, law_speeds
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
@@ -65,7 +65,7 @@ class _ModalElimination:
         bottom = np.concatenate([receptance @ into, unit + receptance @ along], axis=-1)
         answer = right[..., first:, :] / own[..., None]
         pushed = np.concatenate([right[..., :first, :], self.shape @ answer], axis=-2)
-        found = _solved(np.concatenate([top, bottom], axis=-2), pushed)
+        found = solved(np.concatenate([top, bottom], axis=-2), pushed)
         moved, along_rows = found[..., :first, :], found[..., first:, :]
         force = into @ moved + along @ along_rows
         return np.concatenate([moved, answer - (self.shape.T @ force) / own[..., None]], axis=-2)
@@ -138,10 +138,6 @@ BLOCK = 1_000_000  # entries of the matrices solved at once
 NOTHING = 1e-12  # of the largest exciting force: harmonics below it are left out
 ROUNDED = 1e-3
 """Largest part of the exciting force that rounding of the elastic forces may be."""
-UNBOUNDED = (
-    "the vibration is unbounded: at one of the speeds a harmonic excites an undamped mode. Give the meshes, "
-    "shafts or supports damping, or leave that speed out"
-)
 SWEPT = 0.34
 """Rate of decay over the root of the rate of the circular frequency that limits a resonance as a sweep does:
 1.17 sqrt(2 pi/h)/(2 m w) is the largest amplitude of an undamped oscillator per force (Lewis, 1932)."""
@@ -361,30 +357,50 @@ def _solve(
             for k in (0, 1)
             if terms
         ]
-        if small is None:
-            solved, miss = _dense(parts, omega[part], swept, right)
-        else:
-            turning = [matrix[:, :first, :first] for matrix in swept]
-            solved = small.solve(omega[part], right, turning)
-            miss = np.abs(small.product(omega[part], solved[..., :1], turning) - right[..., :1])
+        with np.errstate(divide="ignore", invalid="ignore"):  # of an undamped mode at its very frequency
+            if small is None:
+                moved, miss = _dense(parts, omega[part], swept, right)
+            else:
+                turning = [matrix[:, :first, :first] for matrix in swept]
+                moved = small.solve(omega[part], right, turning)
+                miss = np.abs(small.product(omega[part], moved[..., :1], turning) - right[..., :1])
         left = np.maximum(left, np.max(miss, initial=0.0))  # not a number, if any of them is
-        displacement[part] = solved * per_meter[:, None]
+        displacement[part] = moved * per_meter[:, None]
         if progress is not None:
             progress(min(start + block, omega.shape[0]) / omega.shape[0])
     largest = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
-    moved = np.max(np.abs(displacement[..., 0] / per_meter), axis=(0, 1), initial=0.0)
-    elastic = np.max(np.abs(total) @ moved, initial=0.0)
+    farthest = np.max(np.abs(displacement[..., 0] / per_meter), axis=(0, 1), initial=0.0)
+    elastic = np.max(np.abs(total) @ farthest, initial=0.0)
     if not np.maximum(left, np.finfo(float).eps * elastic) <= ROUNDED * largest:
-        raise SolveError(UNBOUNDED)
+        raise unbounded(linear, omega)
     return displacement, float(left / largest)
 
 
-def _solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
-    """Solve; `SolveError` where nothing bounds the motion."""
+def unbounded(linear: LinearSystem, omega: FloatArray | ComplexArray) -> SolveError:
+    """Return the refusal of a vibration that nothing bounds at one of the frequencies, rad/s.
+
+    It names the mode with the least distance from a frequency and damping, both in parts of its own.
+    """
+    modes, excited = natural_modes(linear), np.unique(np.abs(omega)) / (2.0 * math.pi)
+    held = np.flatnonzero(modes.frequency)
+    words = "a harmonic of the speed excites an undamped mode"
+    if held.size:
+        own = modes.frequency[held]
+        off = np.abs(excited[:, None] / own - 1.0) + modes.damping_ratio[held]
+        at, mode = np.unravel_index(np.argmin(off), off.shape)
+        part = modes.freedom[int(np.argmax(modes.kinetic_energy[held[mode]]))]
+        words = f"{excited[at]:.6g} Hz excite the mode at {own[mode]:.6g} Hz, in which {part} moves most and "
+        words += f"whose damping ratio is {modes.damping_ratio[held[mode]]:.1g}"
+    advice = "Give the meshes, shafts or supports damping, or leave that speed out"
+    return SolveError(f"the vibration is unbounded: {words}. {advice}")
+
+
+def solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
+    """Solve for all of a stack; what nothing bounds is not a number, and the caller refuses it."""
     try:
         return np.asarray(np.linalg.solve(matrix, right), dtype=complex)
     except np.linalg.LinAlgError:
-        raise SolveError(UNBOUNDED) from None
+        return np.full(right.shape, np.nan, dtype=complex)
 
 
 def _dense(
@@ -398,6 +414,6 @@ def _dense(
     by_part = np.concatenate([np.ones_like(w), -w * w, 1j * w], axis=-1)
     matrix = (by_part[..., 0, :] @ parts.reshape(3, -1)).reshape(*w.shape[:2], size, size)
     matrix += _turning_terms(w, swept)
-    solved = _solved(matrix, right)
-    miss = np.abs(np.einsum("shij,shj->shi", matrix, solved[..., 0]) - right[..., 0])
-    return solved, np.asarray(miss, dtype=float)
+    moved = solved(matrix, right)
+    miss = np.abs(np.einsum("shij,shj->shi", matrix, moved[..., 0]) - right[..., 0])
+    return moved, np.asarray(miss, dtype=float)

@@ -371,6 +371,11 @@ class Scene(StatedLaws):
         rows = (row_law(bearing, bearing.name in passing) for bearing in self.rolling_bearings)
         return (*chain.from_iterable(getattr(self, kind) for kind in STATED), *rows)
 
+    def require_meshes(self) -> None:
+        """Refuse a scene without meshes to a study that compares transmission errors."""
+        if not self.meshes:
+            raise InputError("meshes", 0, "at least one: transmission errors are compared")
+
     def gear(self, name: str) -> GearBody:
         """Return the gear called `name`."""
         return next(gear for gear in self.gears if gear.name == name)

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from bounds import Quantity, Text
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.orders import bearing_signals
@@ -134,6 +135,8 @@ def _on_seats(
 
 ROUNDING = 1e-9
 """Of the damping of two modes: what couples them by less is rounding."""
+UNDAMPED = 1e-12
+"""Of the stiffness of a mode: what is left of it in a resonance without damping is rounding."""
 BLOCK = 64
 """Frequencies whose matrices are held at a time, where modes are coupled by damping."""
 
@@ -168,16 +171,19 @@ def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: Comp
     pushed = np.asarray(force) @ shape[: np.shape(force)[-1]]
     own = np.diag(damping)
     square = natural**2 - omega[:, None] ** 2
-    try:
-        if np.all(np.abs(damping - np.diag(own)) <= ROUNDING * np.sqrt(np.outer(own, own).clip(0.0))):
-            dynamic = square + 1j * omega[:, None] * own  # stiffness of every mode, (N, m)
-            if not np.all(dynamic):
-                raise np.linalg.LinAlgError("a dynamic stiffness is zero")
-            return np.asarray(pushed / dynamic[:, None, :])
-        return _coupled(square, omega, damping, pushed)
-    except np.linalg.LinAlgError as error:
-        advice = "The housing resonates there without damping, or moves freely."
-        raise InputError("frequency", "singular", "off resonances without damping", advice) from error
+    dynamic = square + 1j * omega[:, None] * own  # stiffness of every mode, (N, m)
+    unheld = ~(np.abs(dynamic) > UNDAMPED * (natural**2 + omega[:, None] ** 2))
+    if np.any(unheld):
+        at, mode = np.argwhere(unheld)[0]
+        advice = (
+            "Give the housing damping, by loss_factor, damping_ratio or its mounts, or leave that speed out."
+        )
+        where = Quantity(float(natural[mode] / (2.0 * math.pi)), "Hz")
+        off = Text.of("off the natural frequency of a mode of the housing without damping, ", where)
+        raise InputError("frequency", float(omega[at] / (2.0 * math.pi)), off, advice)
+    if np.all(np.abs(damping - np.diag(own)) <= ROUNDING * np.sqrt(np.outer(own, own).clip(0.0))):
+        return np.asarray(pushed / dynamic[:, None, :])
+    return _coupled(square, omega, damping, pushed)
 
 
 def _coupled(

@@ -60,7 +60,7 @@ def _quantities(states: SteadyStates, mesh: int) -> list[tuple[str, FloatArray]]
     if not states.mesh:
         if not states.bearing:
             return []
-        loudest = int(np.argmax(np.nanmax(states.rms_bearing_force, axis=0)))
+        loudest = int(np.argmax(np.nan_to_num(np.fmax.reduce(states.rms_bearing_force, axis=0))))
         return [(f"rms force on {states.bearing[loudest]}, N", states.rms_bearing_force[:, loudest])]
     name = f" of {states.mesh[mesh]}" if len(states.mesh) > 1 else ""
     quantities = [

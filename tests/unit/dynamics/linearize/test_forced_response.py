@@ -6,22 +6,34 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, spring_table, with_gear, with_mesh
+from geared_scenes import (
+    BASE_RADIUS,
+    RPM,
+    gear_pair_scene,
+    spring_table,
+    square_wave_table,
+    with_gear,
+    with_mesh,
+)
 from sliced_face import sliced_database
 
 from dynamics.assembly.assemble import assemble
 from dynamics.assembly.varied import _operating_points_at, with_static_reference
 from dynamics.errors import InputError, SolveError
+from dynamics.influence import estimate_influences
 from dynamics.integrators import static_equilibrium
 from dynamics.linearize import (
     ForcedResponse,
     forced_response,
     harmonic_response,
     modal_analysis,
+    natural_modes,
     peaks,
     steady_vibration,
 )
+from dynamics.linearize.harmonic_response import parametric_response
 from dynamics.linearize.load_harmonics import load_harmonics
+from dynamics.linearize.steady_vibration import excited
 from dynamics.loads import TimeLaw
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate
@@ -74,18 +86,54 @@ def test_the_peak_of_one_freedom_is_that_of_its_closed_form(sense):
 def test_an_undamped_resonance_is_refused_and_a_speed_beside_it_is_not(off):
     undamped = assemble(one_freedom(0.0))
     natural = 2.0 * np.pi * forced_response(undamped, [1.0], 1).natural_frequency[-1]
-    with pytest.raises(SolveError, match=r"unbounded: .* undamped mode.* damping, or leave"):
-        forced_response(undamped, [natural / 20 * (1.0 + off)], 1)
+    hertz = f"{natural / 2.0 / np.pi:.6g}"
+    with pytest.raises(SolveError, match="unbounded") as caught:
+        forced_response(undamped, [1.0, natural / 20 * (1.0 + off)], 1)
+    words = f"{hertz} Hz excite the mode at {hertz} Hz, in which output.rotation moves most"
+    assert words in str(caught.value) and "damping, or leave that speed out" in str(caught.value)
     beside = forced_response(undamped, [natural / 20 * (1.0 + 1e-4)], 1)
     amplitude = np.abs(beside.dynamic_transmission_error).max() / RIPPLE
     assert amplitude == pytest.approx(0.5e4, rel=1e-3)
+
+
+def varying_and_undamped():
+    """One freedom on a mesh whose stiffness varies, and the speed at which it would be in resonance."""
+    system = assemble(with_mesh(one_freedom(0.0), table=square_wave_table()))
+    at = excited(system, 0.0, 3)
+    return at, 2.0 * np.pi * natural_modes(at.linear).frequency[-1] / 20
+
+
+def test_a_varying_stiffness_without_damping_is_refused_where_nothing_bounds_it():
+    """The response goes through infinity from one sign to the other: it is never a number out of rounding."""
+    at, resonance = varying_and_undamped()
+    below, above = 0.97 * resonance, 0.99 * resonance
+
+    def response(speed):
+        found, _ = parametric_response(at, np.array([speed]), np.zeros(1), 3)
+        return float(found.dynamic_transmission_error[0, 0, 0].real)
+
+    positive = response(below) > 0.0
+    assert positive != (response(above) > 0.0)
+    with pytest.raises(SolveError, match=r"unbounded: .* Hz excite the mode at .* damping, or leave"):
+        while below < (middle := 0.5 * (below + above)) < above:
+            here = (response(middle) > 0.0) == positive
+            below, above = (middle, above) if here else (below, middle)
+
+
+def test_a_run_in_an_undamped_resonance_is_computed_and_its_estimates_left_out():
+    """In time the amplitude grows with every period; linear theory of the steady state says nothing."""
+    natural = 2.0 * np.pi * forced_response(assemble(one_freedom(0.0)), [1.0], 1).natural_frequency[-1]
+    scene = one_freedom(0.0, speed=TimeLaw.constant(natural / 20), duration=0.01)
+    assert estimate_influences(scene) == {}
+    run = simulate(replace(scene, tolerance=0.01, on_violation="report"))
+    assert np.all(np.isfinite(run.dynamic_transmission_error))
 
 
 @pytest.mark.parametrize("blocks", [1, 10**6])
 def test_a_vibration_that_is_not_a_number_is_refused(blocks, monkeypatch):
     """An undamped mode at its very frequency divides by zero; a NaN passes any comparison that it loses."""
     system, speed = assemble(gear_pair_scene()), np.linspace(50.0, 500.0, 3)
-    solved, calls = steady_vibration._solved, []
+    solved, calls = steady_vibration.solved, []
 
     def divided_by_zero(matrix, right):
         calls.append(matrix)
@@ -95,7 +143,7 @@ def test_a_vibration_that_is_not_a_number_is_refused(blocks, monkeypatch):
         return answer
 
     monkeypatch.setattr(steady_vibration, "BLOCK", blocks)
-    monkeypatch.setattr(steady_vibration, "_solved", divided_by_zero)
+    monkeypatch.setattr(steady_vibration, "solved", divided_by_zero)
     with pytest.raises(SolveError, match="unbounded"):
         harmonic_response(system, speed, 4)
     assert calls

@@ -77,6 +77,19 @@ def test_transfer_functions_add_up_to_the_motion_under_all_forces(quantity):
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-9 * np.abs(expected).max())
 
 
+@pytest.mark.parametrize("off", [0.0, 1e-15, -1e-14])
+@pytest.mark.parametrize("coupled", [False, True])
+def test_a_housing_without_damping_is_refused_in_its_resonance_and_not_beside_it(coupled, off):
+    damped = random_housing(coupled=coupled)
+    housing = replace(damped, damping=0.0 * damped.damping)
+    hertz = np.array([0.9, 1.0 + off, 1.1]) * housing.frequency[0]
+    row = housing.points[0].motion[:1]
+    with pytest.raises(InputError, match=r"frequency = .* off the natural frequency .* Hz") as caught:
+        transfer_functions(housing, hertz, row)
+    assert f"{housing.frequency[0]:.7g} Hz" in str(caught.value) and "damping" in str(caught.value)
+    assert np.all(np.isfinite(transfer_functions(housing, hertz[[0, 2]], row)))
+
+
 def test_a_stiff_housing_on_a_mount_is_a_mass_on_a_spring():
     stiffness, loss = 1e6, 60.0
     housing = two_seats(on_mount(stiffness, loss))
