@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
-from rotors_on_bearings import rotor
 
 from dynamics.ablation import ablate
 from dynamics.accuracy import FIDELITIES, FIGURES, _Blocks, _knee_of_results, _TimeIntegration, frontier
@@ -93,7 +92,7 @@ def test_it_can_be_written_as_json(found):
 @pytest.mark.parametrize("study", [frontier, ablate])
 def test_a_scene_without_meshes_has_no_transmission_errors_to_compare(study):
     with pytest.raises(InputError, match="meshes = 0: must be at least one"):
-        study(rotor(()))
+        study(replace(RUN_UP, meshes=()))
 
 
 def test_runs_too_short_to_compare_and_unknown_fidelities_are_refused():
