@@ -96,14 +96,14 @@ def _address(process: subprocess.Popen[str], log: Path) -> str:
 
 
 def _compute(address: str, out: Path) -> dict[str, float]:
-    """Have the tables computed, run the dynamics on the first beside the second; wall seconds by step."""
+    """Have the tables computed, and the dynamics on the first beside the second; wall seconds by step."""
     times: dict[str, float] = {}
     start = time.perf_counter()
     with LineOfActionClient(address, progress=_show_progress) as client:
         client.analyze.submit(HELICAL)
-        shutil.copyfile(client.fetch_file(client.analysis_key(CASE)), out / "ste.nc")
         simulate = [sys.executable, "-m", "lineofaction.cli", "simulate", str(SCENE), "--service", address]
         with subprocess.Popen([*simulate, "-o", str(out / "run.nc")], stdout=subprocess.DEVNULL) as run:
+            shutil.copyfile(client.fetch_file(client.analysis_key(CASE)), out / "ste.nc")
             key = client.analysis_key(HELICAL)
             shutil.copyfile(client.fetch_file(key), out / "helical.nc")
             with urllib.request.urlopen(f"{address}/v1/results/{key}/figures"):  # the page opens on them

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
 from dynamics.scene import Scene
-from dynamics.simulation import interrupted_run, simulate_to_file
+from dynamics.simulation import compile_ahead, interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
 from fe_contact.ste import SteDatabase
 from host.directories import cache_home
@@ -70,11 +72,16 @@ def tabled_scene(
     """Return the scene with its tables and with its cases written out; its files are relative to `folder`."""
     cases, source, run = CheckedCases(), None, finished
 
-    def watch(state: JobState) -> None:
-        if state.stage:
-            report(state.stage, state.stage_progress / 100.0)
-
     with ExitStack() as stack:
+        beside = stack.enter_context(ThreadPoolExecutor(1))
+        ahead = cache(partial(beside.submit, compile_ahead))
+
+        def watch(state: JobState) -> None:
+            if state.stage:
+                report(state.stage, state.stage_progress / 100.0)
+            if not state.ended:
+                ahead()
+
         if service is not None:
             client = stack.enter_context(LineOfActionClient(service, progress=watch))
             source, run = ServiceTables(client), client.driver.run

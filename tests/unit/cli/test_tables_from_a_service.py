@@ -1,0 +1,35 @@
+from contextlib import nullcontext
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+import lineofaction.cli.simulate as verb
+from lineofaction.client import JobState
+
+
+@pytest.mark.parametrize(
+    ("seen", "times"),
+    [(("accepted", "running", "running", "successful"), 1), (("successful",), 0)],
+    ids=["a table that is waited for", "a table that is there"],
+)
+def test_the_loops_of_a_run_are_compiled_once_while_it_waits(
+    monkeypatch: pytest.MonkeyPatch, seen: tuple[str, ...], times: int
+) -> None:
+    compiled: list[int] = []
+
+    def client(_service, progress):
+        def run(_steps):
+            for status in seen:
+                progress(JobState("1-2", "analyze", status, "", "", 0, 0))
+            return "table"
+
+        return nullcontext(SimpleNamespace(driver=SimpleNamespace(run=run)))
+
+    monkeypatch.setattr(verb, "LineOfActionClient", client)
+    monkeypatch.setattr(verb, "ServiceTables", lambda _: None)
+    monkeypatch.setattr(verb, "MeshTables", lambda *_: SimpleNamespace(of=lambda *_: None))
+    monkeypatch.setattr(verb, "scene_by_tables", lambda scene, folder, table_of, *_: table_of(0, scene))
+    monkeypatch.setattr(verb, "compile_ahead", lambda: compiled.append(1))
+    assert verb.tabled_scene(None, Path(), "http://127.0.0.1:9", print) == "table"
+    assert len(compiled) == times
