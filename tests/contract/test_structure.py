@@ -12,17 +12,17 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (39_114, 693),
-    ("dynamics",): (40_648, 760),
+    ("dynamics",): (40_677, 761),
     ("lineofaction.gearbox",): (21_718, 430),
     ("lineofaction.report",): (10_503, 200),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
-    ("lineofaction.cli",): (4_621, 67),
+    ("lineofaction.cli",): (4_628, 67),
     ("lineofaction.hardcases",): (3_844, 35),
     ("bounds", "host", "model_studies"): (4_331, 148),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 762
+MOST_FILES = 763
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
