@@ -8,6 +8,7 @@ output trails the integration by half the filter, and its delay is compensated.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -89,10 +90,10 @@ class _Peaks(NamedTuple):
 
     Attributes
     ----------
-    last : (2, P) array
-        Values at the point before the current one, and at that before it.
+    last : (3, P) array
+        Values at the three points before the current one, the nearest first; NaN before the start.
     now, largest, square : (P,) arrays
-        Values; largest magnitude so far, by the parabola through three points; sum of squares.
+        Values; largest magnitude so far, by the cubic through four points; sum of squares.
     """
 
     last: FloatArray
@@ -152,7 +153,7 @@ class SampleRing(NamedTuple):
             make_local(arrays.elements, arrays.turn.shape[0]),
             np.zeros((laws, MOTION_COLUMNS)),
             np.zeros(laws, dtype=np.int64),
-            _Peaks(np.zeros((2, signals)), *(np.zeros(signals) for _ in range(3))),
+            _Peaks(np.full((3, signals), np.nan), *(np.zeros(signals) for _ in range(3))),
             np.zeros(rows),
             np.zeros(rows),
             np.zeros(rows),
@@ -171,7 +172,7 @@ def sample_start(
     for i in range(ring.q.size):
         ring.q[i], ring.v[i], ring.a[i] = work.q[i], work.v[i], work.a[i]
     _look(system, work, sampler, ring, work.time[0], 0)
-    _see_peaks(ring, sampler, 0, True)
+    _see_peaks(ring, sampler, 0)
     work.counts[Count.POINT] = 1
     _store_if_due(work, sampler, ring, 0, out)
 
@@ -196,7 +197,7 @@ def sample_step(
         _look(system, work, sampler, ring, time, row)
         if point <= sampler.taps.size // 2:
             _mirror(ring, 0, point, -point)
-        _see_peaks(ring, sampler, row, False)
+        _see_peaks(ring, sampler, row)
         counts[Count.POINT] = point + 1
         _store_if_due(work, sampler, ring, point, out)
 
@@ -290,8 +291,8 @@ def _look(
 
 
 @inner
-def _see_peaks(ring: SampleRing, sampler: Sampler, row: int, first: bool) -> None:
-    """Add the point `row` to the running figures; a peak is the vertex through the last three points."""
+def _see_peaks(ring: SampleRing, sampler: Sampler, row: int) -> None:
+    """Add the point `row` to the running figures; a peak lies between the middle two of four points."""
     rows, point, peaks, bearings = ring.local.force.size, ring.point, ring.peaks, sampler.bearings
     for r in range(rows):
         peaks.now[r] = point[row, r]
@@ -301,17 +302,26 @@ def _see_peaks(ring: SampleRing, sampler: Sampler, row: int, first: bool) -> Non
             force += bearings.weight[entry] * point[row, bearings.column[entry]]
         peaks.now[rows + s] = force
     for p in range(peaks.now.size):
-        now = peaks.now[p]
-        if first:
-            peaks.last[0, p], peaks.last[1, p] = now, now
-        middle, before = peaks.last[0, p], peaks.last[1, p]
-        height = abs(now)
-        bend = before - 2.0 * middle + now
-        if (middle - before) * (now - middle) < 0.0 and bend * middle < 0.0:
-            height = max(height, abs(middle - (now - before) ** 2 / (8.0 * bend)))
-        peaks.largest[p] = max(peaks.largest[p], height)
+        now, right, left, far = peaks.now[p], peaks.last[0, p], peaks.last[1, p], peaks.last[2, p]
+        peaks.largest[p] = max(peaks.largest[p], abs(now), _between(far, left, right, now))
         peaks.square[p] += now * now
-        peaks.last[1, p], peaks.last[0, p] = middle, now
+        peaks.last[2, p], peaks.last[1, p], peaks.last[0, p] = left, right, now
+
+
+@inner
+def _between(far: float, left: float, right: float, now: float) -> float:
+    """Return the magnitude of the cubic through four points where it turns between the middle two, else 0.
+
+    It is left + a u + b u^2 + c u^3, u from 0 to 1; one root of the slope lies there if the slope changes
+    its sign. NaN has none.
+    """
+    a = right - left / 2.0 - far / 3.0 - now / 6.0
+    b = (far + right) / 2.0 - left
+    c = (left - right) / 2.0 + (now - far) / 6.0
+    if not a * (a + 2.0 * b + 3.0 * c) < 0.0:
+        return 0.0
+    u = abs(a) / (math.sqrt(b * b - 3.0 * a * c) - math.copysign(b, a * b))
+    return abs(left + u * (a + u * (b + u * c)))
 
 
 @inner

@@ -21,7 +21,7 @@ DESIGN = STOP_BAND + 3.0
 INNER_PER_PITCH = 64.0
 """Inner samples per base pitch, or period of a load's highest order, at the least: as many as steps."""
 LEAST_FACTOR = 3
-"""Inner samples per output sample at the least."""
+"""Inner samples at the least, per output sample and per sample that would pass the highest resolved mode."""
 PASSING_ORDERS = 4
 """Multiples of the passing of elements that matter: the fifth is below 3 % of the first on loaded rows."""
 SPEED_POINTS = 257
@@ -153,7 +153,8 @@ def choose_sampling(scene: Scene, kinematics: Kinematics, mode: float) -> Sampli
         elif by_order >= by_mode:
             chosen = f"{outputs.mesh_orders} orders of the highest mesh frequency, {mesh:.4g} Hz"
         check_samples(scene.duration, rate)
-    factor = max(LEAST_FACTOR, math.ceil(INNER_PER_PITCH * max(mesh, load) / rate))
+    inner = max(INNER_PER_PITCH * max(mesh, load), LEAST_FACTOR * PER_BAND * mode)
+    factor = max(LEAST_FACTOR, math.ceil(inner / rate))
     stop_band = STOP_BAND if outputs.anti_alias else 0.0
     return Sampling(
         rate=rate,
