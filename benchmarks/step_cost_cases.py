@@ -12,7 +12,6 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import assemble
 from dynamics.forces.elements import evaluate
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.integrators.advance import add_table_work
 from dynamics.integrators.explicit_step import accelerate, set_motion, write_powers
 from dynamics.integrators.march import march_on, start_march
 from dynamics.integrators.state_sink import MemorySink
@@ -64,19 +63,12 @@ def _powers(system: SystemArrays, work: Workspace, start: float, times: int) -> 
         write_powers(system, work, 1, start + k * 1e-9)
 
 
-@compiled
-def _tables(system: SystemArrays, work: Workspace, start: float, times: int) -> None:
-    for _ in range(times):
-        add_table_work(system, work, work.step_sizes[work.counts[Count.LEVEL]])
-
-
 PARTS: dict[str, Part] = {
     "motion of the laws and phases": _motion,
     "local coordinates": _coordinates,
     "force laws": _laws,
     "one evaluation": _evaluation,
     "powers at a stage": _powers,
-    "work of the tables over a step": _tables,
 }
 
 

@@ -14,6 +14,7 @@ from dynamics.forces.laws import COMPILED, Compiled, ElementLaws, Law
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import inner
 from dynamics.kernels.local_state import LocalState
+from dynamics.meshes.spatial_flank import spatial_energy
 from dynamics.types import FloatArray, IntArray
 
 # numba takes the numbers of kinds from names of this file
@@ -186,17 +187,24 @@ def evaluate_linear(elements: Elements, local: LocalState, e: int) -> None:
 
 
 @inner
-def power_along_axes(elements: Elements, local: LocalState, e: int) -> float:
-    """Return the power that the elastic forces along a table's axes give to the bodies, W."""
-    if elements.law[e] != SPATIAL_FLANK:
-        return 0.0
-    row, entry, laws = elements.first[e], elements.entry[e], elements.laws.spatial_flank
-    power = 0.0
-    for axis in range(2):
-        to = laws.row[entry, axis]
-        if to > 0:
-            power += local.elastic[row + to] * local.rate[row + to]
-    return power
+def power_along_axes(elements: Elements, local: LocalState, e: int) -> tuple[float, float]:
+    """Return the power that the elastic forces along a table's axes give to the bodies, W.
+
+    And the one that the table stores as it is read elsewhere along them.
+    """
+    given, stored = 0.0, 0.0
+    if elements.law[e] == SPATIAL_FLANK:
+        row, entry, laws = elements.first[e], elements.entry[e], elements.laws.spatial_flank
+        for axis in range(2):
+            to = laws.row[entry, axis]
+            if to > 0:
+                given += local.elastic[row + to] * local.rate[row + to]
+        to_m, to_a = laws.row[entry, 0], laws.row[entry, 1]
+        if laws.follows[entry, 0] + laws.follows[entry, 1] > 0:
+            _, _, in_m, in_a = spatial_energy(laws, entry, local, row, elements.mesh[e])
+            stored += in_m * local.rate[row + to_m] if to_m > 0 else 0.0
+            stored += in_a * local.rate[row + to_a] if to_a > 0 else 0.0
+    return given, stored
 
 
 @inner

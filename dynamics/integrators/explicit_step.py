@@ -46,14 +46,16 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
 
     Drives supply the torque on their own shafts times their speeds. A table V(x, d) exerts dV/dd only along
     the line of action; what dV/dx stores as the position moves on is counted as supplied by the position,
-    and likewise along the table's other axes, less the work of forces along them. The rotation of frames
-    and the change of its speed count with the position.
+    and likewise along the table's other axes, less the work of forces along them. All that a table stores is
+    dV, so the position has what d and the axes do not supply; dV itself is added at the end of the run. The
+    rotation of frames and the change of its speed count with the position.
     """
     velocity = work.stage_v[stage]
     laws, modal = work.motion.shape[0], system.sparse.modal
     drives, loads = 0.0, 0.0
     for k in range(laws):
-        drives += _drive_torque(system, work, k, velocity, time) * work.motion[k, SPEED]
+        if work.motion[k, SPEED] != 0.0:
+            drives += _drive_torque(system, work, k, velocity, time) * work.motion[k, SPEED]
     for load in range(system.load.direction.shape[0]):
         value = law_value(system.load.torque, load, time)
         rate = 0.0
@@ -62,18 +64,20 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
         for i in range(modal.first):
             rate += system.load.direction[load, i] * velocity[i]
         loads += value * rate
-    lost_in_bearings, mesh, friction, supplied, kept = _in_elements(system, work)
-    bushing = lost_in_bearings
+    bushing, mesh, friction, supplied, kept, pressed = _in_elements(system, work)
     loads += supplied
     drives -= kept
     damping = system.sparse.damping
     for i in range(modal.first):
         bushing += velocity[i] * row_product(damping, damping.weight, i, velocity)
     bushing += modal_loss(modal, velocity)
-    axes, position = 0.0, 0.0
+    axes, position = 0.0, -pressed
     for e in range(system.elements.law.size):
-        axes -= power_along_axes(system.elements, work.local, e)
-        position += power_by_frames(system.elements, work.local, e) + _by_frame_speed(system, work, e)
+        given, stored = power_along_axes(system.elements, work.local, e)
+        axes += stored - given
+        position += (
+            power_by_frames(system.elements, work.local, e) + _by_frame_speed(system, work, e) - stored
+        )
     work.power[stage, Power.DRIVE] = drives
     work.power[stage, Power.LOAD] = loads
     work.power[stage, Power.POSITION] = position
@@ -104,29 +108,33 @@ def _by_frame_speed(system: SystemArrays, work: Workspace, e: int) -> float:
 
 
 @inner
-def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, float, float, float]:
+def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, float, float, float, float]:
     """Return the powers lost in bearings, flanks and friction, and the one that loads supply.
 
     Then that which the kinematic motion exchanges with rotating frames: kinetic energy in the product of
-    displacements and speeds, which the balance does not hold.
+    displacements and speeds, which the balance does not hold. Last, that stored by pressing flanks.
     """
-    bearing, mesh, friction, supplied, kept = 0.0, 0.0, 0.0, 0.0, 0.0
-    for e in range(system.elements.law.size):
-        for r in range(system.elements.first[e], system.elements.first[e + 1]):
-            lost = (work.force[r] - work.local.elastic[r]) * work.local.rate[r]
-            if system.elements.law[e] == UNBALANCE:
-                continue  # its work is what it stores
-            if system.elements.law[e] == SPEED_TORQUE or system.elements.law[e] == APPLIED_FORCE:
-                supplied -= work.force[r] * (work.local.rate[r] + work.local.drift[r])
-            elif slides(system.elements, e, r):
-                friction += work.force[r] * (work.local.rate[r] + work.local.drift[r])
-            elif system.elements.law[e] == FLANK or system.elements.law[e] == SPATIAL_FLANK:
-                mesh += lost
+    bearing, mesh, friction, supplied, kept, pressed = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    elements, force, elastic = system.elements, work.force, work.local.elastic
+    rate, drift = work.local.rate, work.local.drift
+    for e in range(elements.law.size):
+        law, first, end, lost = elements.law[e], elements.first[e], elements.first[e + 1], 0.0
+        if law == UNBALANCE:
+            continue  # its work is what it stores
+        for r in range(first, end):
+            if law in (SPEED_TORQUE, APPLIED_FORCE):
+                supplied -= force[r] * (rate[r] + drift[r])
+            elif law == SPATIAL_FLANK and slides(elements, e, r):
+                friction += force[r] * (rate[r] + drift[r])
             else:
-                bearing += lost
-                if system.elements.law[e] == ROTATING_FRAME:
-                    kept += work.force[r] * work.local.drift[r]
-    return bearing, mesh, friction, supplied, kept
+                lost += (force[r] - elastic[r]) * rate[r]
+                kept += force[r] * drift[r] if law == ROTATING_FRAME else 0.0
+        if law in (FLANK, SPATIAL_FLANK):
+            mesh += lost
+            pressed += elastic[first] * rate[first]
+        else:
+            bearing += lost
+    return bearing, mesh, friction, supplied, kept, pressed
 
 
 @inner
@@ -157,12 +165,15 @@ def add_drive_work(system: SystemArrays, work: Workspace) -> None:
     """Add what drives gave to the inertia of their own shafts over the step that ends in ``work.motion``.
 
     It is the kinetic energy gained, W I W/2: where a law has a kink, no stages' weights integrate its power.
+    The end becomes the start of the next step.
     """
-    inertia, speed = system.drive.inertia, work.before.speed
+    inertia, speed = system.drive.inertia, work.speed
     for k in range(speed.size):
         for j in range(speed.size):
             gained = work.motion[k, SPEED] * work.motion[j, SPEED] - speed[k] * speed[j]
             work.work[Power.DRIVE] += 0.25 * (inertia[k, j] + inertia[j, k]) * gained
+    for k in range(speed.size):
+        speed[k] = work.motion[k, SPEED]
 
 
 # Compiled parts that implicit and explicit stages share.

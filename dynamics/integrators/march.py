@@ -23,7 +23,7 @@ from dynamics.integrators.sampler import (
 from dynamics.integrators.state_sink import BLOCK, StateSink
 from dynamics.integrators.static import StaticSolution
 from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED_ORDER, IMPLICIT_EMBEDDED_ORDER
-from dynamics.integrators.workspace import Count, Workspace, geometric_steps
+from dynamics.integrators.workspace import Count, Power, Workspace, geometric_steps
 from dynamics.kernels.by_address import by_address, by_value
 from dynamics.kernels.compiled import compiled
 from dynamics.kernels.local_state import LocalState
@@ -339,12 +339,14 @@ def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -
     continue_past_the_end(*held, march.sampler.taps.size // 2, by_address(room))
     sink.keep(before, samples - before)
     final = stored_energy(march.system.arrays, end, work.q, work.v, work.moved)
+    done = work.work.copy()
+    done[Power.POSITION] += final[2] - march.initial[2]
     return Ending(
         status,
         samples,
         end,
         np.array([march.initial, final]),
-        work.work,
+        done,
         float(np.max(work.fallen)),
         work.counts,
         _step_range(work),

@@ -12,16 +12,14 @@ from dynamics.integrators.march import March
 from dynamics.integrators.sampler import SampleRing
 from dynamics.integrators.state_sink import StateSink, blocks
 from dynamics.integrators.workspace import Count
-from dynamics.motion.observation import local_state
 from dynamics.motion.sampled_states import States
 from dynamics.types import FloatArray, IntArray
 
 STATE = (
     *("time", "time_rest", "error", "q", "v", "v_rest", "a", "moved"),
-    *("power", "work", "highest", "fallen", "counts"),
+    *("speed", "power", "work", "highest", "fallen", "counts"),
 )
 """What a workspace carries from step to step beside what is per row of the force elements."""
-MOTION = ("position", "pace", "speed")
 MOST_SAVED = 128
 """In memory at once: when there are more, every second one is forgotten."""
 
@@ -34,10 +32,8 @@ class _SavedState:
     ----------
     state : dict of str to array
         Fields `STATE` of its workspace.
-    motion : dict of str to array
-        `position`, `pace` and `speed` at the last step's end.
-    force, coordinate, rate : (R,) arrays
-        Local forces, coordinates and rates there.
+    force : (R,) array
+        Local forces at the last step's end.
     point : (L, C) array
         Of its ring.
     figures : tuple of arrays
@@ -45,10 +41,7 @@ class _SavedState:
     """
 
     state: dict[str, FloatArray]
-    motion: dict[str, FloatArray]
     force: FloatArray
-    coordinate: FloatArray
-    rate: FloatArray
     point: FloatArray
     figures: tuple[FloatArray, ...]
 
@@ -66,11 +59,8 @@ class _SavedState:
 def _saved_state(march: March) -> _SavedState:
     work, ring = march.state
     state = {name: np.array(getattr(work, name)) for name in STATE}
-    motion = {name: np.array(getattr(work.before, name)) for name in MOTION}
-    rows = (work.force, work.before.coordinate, work.before.rate)
     figures = tuple(part.copy() for part in _figures(ring))
-    force, coordinate, rate = (np.array(part) for part in rows)
-    return _SavedState(state, motion, force, coordinate, rate, ring.point.copy(), figures)
+    return _SavedState(state, work.force.copy(), ring.point.copy(), figures)
 
 
 def _figures(ring: SampleRing) -> tuple[FloatArray, ...]:
@@ -136,20 +126,11 @@ class StartValue:
 
     def start(self, march: March) -> None:
         """Start `march` from there; elements that it has beside those of the other one carry no force."""
-        work, arrays, at = march.work, march.system.arrays, self.at
+        work, at = march.work, self.at
         for name, values in at.state.items():
             getattr(work, name)[...] = values
-        here = local_state(arrays, at.time, work.q, work.v, work.moved)
-        before = work.before
-        for name, values in at.motion.items():
-            getattr(before, name)[...] = values
-        for target, values, known in (
-            (work.force, np.zeros(work.force.size), at.force),
-            (before.coordinate, here.coordinate, at.coordinate),
-            (before.rate, here.rate, at.rate),
-        ):
-            target[...] = values
-            target[self.rows_of] = known
+        work.force[...] = 0.0
+        work.force[self.rows_of] = at.force
         self._fill_ring(march)
 
     def _fill_ring(self, march: March) -> None:

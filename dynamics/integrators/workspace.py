@@ -49,26 +49,6 @@ class Count(IntEnum):
     POINT = 10  # next point of the inner grid
 
 
-class StepEnd(NamedTuple):
-    """Motion at one end of a step: m meshes, R local coordinates, k laws.
-
-    Attributes
-    ----------
-    position, pace : (m,) arrays
-        Of the meshes, base pitches, and per second with the driving gear's own rate.
-    coordinate, rate : (R,) arrays
-        m and m/s.
-    speed : (k,) array
-        Of the laws, rad/s.
-    """
-
-    position: FloatArray
-    pace: FloatArray
-    coordinate: FloatArray
-    rate: FloatArray
-    speed: FloatArray
-
-
 class Workspace(NamedTuple):
     """State and scratch of a run with n freedoms, m meshes and R local coordinates of elements.
 
@@ -91,8 +71,6 @@ class Workspace(NamedTuple):
         Local forces at the current stage, as Newton's method found them, N.
     local : LocalState
         Of the elements at the current stage.
-    before, after : StepEnd
-        Motion at the start and the end of the step accepted, for the audit.
     free, free_rate, free_acceleration : (R,) arrays
         Local coordinates, their rates and accelerations without the elements' forces.
     free_position : (m,) array
@@ -105,6 +83,8 @@ class Workspace(NamedTuple):
         Accelerations of coordinates and positions by the local forces in `force`.
     motion : (k, 4) array
         Of the laws at the current stage.
+    speed : (k,) array
+        Their speeds at the start of the step, rad/s, for the audit.
     moved : (k,) int array
         Quanta of a revolution by which each free train's own rotation was moved into the reference.
     update, correction : (R,) arrays
@@ -154,8 +134,6 @@ class Workspace(NamedTuple):
     stage_a: FloatArray
     force: FloatArray
     local: LocalState
-    before: StepEnd
-    after: StepEnd
     free: FloatArray
     free_rate: FloatArray
     free_acceleration: FloatArray
@@ -164,6 +142,7 @@ class Workspace(NamedTuple):
     resting: FloatArray
     response: FloatArray
     motion: FloatArray
+    speed: FloatArray
     moved: IntArray
     update: FloatArray
     correction: FloatArray
@@ -197,13 +176,12 @@ class Workspace(NamedTuple):
             solved=np.full(rows + 1, -1, dtype=np.int64),
             jacobian=np.zeros((rows, 2 * rows)),
             local=make_local(system.elements, meshes),
-            before=_step_end(meshes, rows, laws),
-            after=_step_end(meshes, rows, laws),
             free_position=np.zeros(meshes),
             linear=linear,
             resting=np.zeros(2 * len(linear)),
             response=np.zeros(rows + meshes),
             motion=np.zeros((laws, MOTION_COLUMNS)),
+            speed=np.zeros(laws),
             moved=np.zeros(laws, dtype=np.int64),
             power=np.zeros((STAGES, len(Power))),
             work=np.zeros(len(Power)),
@@ -248,7 +226,3 @@ def _linear_rows(elements: Elements) -> IntArray:
             start = len(rows)
             rows += [(first + k, start, start + count) for k in range(count)]
     return np.array(rows, dtype=np.int64).reshape(-1, 3)
-
-
-def _step_end(meshes: int, rows: int, laws: int) -> StepEnd:
-    return StepEnd(*(np.zeros(size) for size in (meshes, meshes, rows, rows, laws)))

@@ -65,7 +65,7 @@ def test_steep_handovers_cost_no_energy(method, technique, record_figure):
     """What tables supply changes within a part of a step there; the balance gets better with the steps."""
     scene = gear_pair_scene(handover_table(), speed=TimeLaw.constant(60.0), duration=0.2, technique=technique)
     missing = []
-    for tolerance in (1e-9, 1e-11):
+    for tolerance in (1e-8, 1e-10):
         result = simulate(replace(scene, integration=Integration(method, tolerance)))
         missing.append(result.energy.relative)
     name = f"energy balance over steep handovers, {method}, {technique}"
