@@ -92,21 +92,26 @@ def _lay_out(value: Any, words: list[int]) -> _AddressType:
     first: list[int] = []
     start = len(words)
     for field in value:
-        part = by_value(field)
         first.append(len(words) - start)
-        if isinstance(part, np.ndarray):
-            if not part.flags.c_contiguous:
-                raise TypeError(f"compiled functions take C-contiguous arrays, not strides of {part.strides}")
-            kinds.append((part.dtype.char, part.ndim))
-            words.append(part.__array_interface__["data"][0])
-            words.extend(part.shape)
-        elif isinstance(part, tuple):
-            kinds.append(_lay_out(part, words))
+        if isinstance(field, np.ndarray):
+            seen = field.__array_interface__  # all of it at once: asking for each part takes as long
+            if seen["strides"] is not None:
+                raise TypeError(
+                    f"compiled functions take C-contiguous arrays, not strides of {field.strides}"
+                )
+            kinds.append((field.dtype.char, field.ndim))
+            words.append(seen["data"][0])
+            words.extend(seen["shape"])
+        elif isinstance(field, _Addressed):
+            kinds.append(field._numba_type_)
+            words.extend(field._words.tolist())
+        elif isinstance(field, tuple):
+            kinds.append(_lay_out(field, words))
         else:
             kinds.append(
-                bool if isinstance(part, bool | np.bool_) else int if isinstance(part, Integral) else float
+                bool if isinstance(field, bool | np.bool_) else int if isinstance(field, Integral) else float
             )
-            words.append(int(np.float64(part).view(np.int64)) if kinds[-1] is float else int(part))
+            words.append(int(np.float64(field).view(np.int64)) if kinds[-1] is float else int(field))
     cls: Any = type(value)
     kind = _address_type(cls, tuple(kinds), tuple(first))
     if _seen.setdefault(cls, kind) != kind:
