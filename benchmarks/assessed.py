@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.figures import Figure
+from fe_contact.ste import Curve
 from fe_contact.types import FloatArray
 
 HARMONICS = 3
@@ -51,6 +52,22 @@ class Assessed:
         return np.asarray(self.stated / np.maximum(self.true, np.maximum(self.own, 1e-5 * self.value[0])))
 
 
+def assessed_at_positions(
+    name: str, level: str, curves: Sequence[Curve], exact: FloatArray, error: FloatArray
+) -> Assessed:
+    """Hold mean and peak-to-peak (2, loads) of curves at the positions of a reference against it.
+
+    The reference and its own error are (positions, loads) in m; that of its peak-to-peak is the sum of those
+    at both extremes.
+    """
+    found = np.array([curve.ste for curve in curves]).T
+    stated = np.array([[curve.mean.error, curve.peak_to_peak.error] for curve in curves]).T
+    value, truth = (np.stack([ste.mean(axis=0), np.ptp(ste, axis=0)]) for ste in (found, exact))
+    ends = np.stack([exact.argmax(axis=0), exact.argmin(axis=0)])
+    own = np.stack([error.mean(axis=0), np.take_along_axis(error, ends, axis=0).sum(axis=0)])
+    return Assessed(name, level, value, stated, np.abs(value - truth), own)
+
+
 def coverage_figures(found: Sequence[Assessed], subject: str, target: float) -> list[Figure]:
     """Return by quantity how many per cent are not covered, and the median of stated over true errors."""
     rows = []
@@ -79,6 +96,23 @@ def coverage_table(groups: Mapping[str, Sequence[Assessed]]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def table_against_peer(found: Sequence[Assessed], loads: Sequence[Sequence[float]], head: str) -> str:
+    """Return a row of Markdown for each pair and load: errors of mean and peak-to-peak, the peer's beside."""
+    lines = [
+        f"| pair | {head} | mean, um | off, % (stated) | peer's own, % | peak-to-peak, um | off, % (stated) "
+        "| peer's own, % |",
+        "|---|---:|---:|---:|---:|---:|---:|---:|",
+    ]
+    for one, of_one in zip(found, loads, strict=True):
+        own = 100.0 * np.asarray(one.own) / one.value
+        for k, load in enumerate(of_one):
+            cells = [one.name, f"{load:g}"]
+            for q in range(2):
+                cells += [f"{1e6 * one.value[q, k]:.3g}", error_cell(one, q, k), f"{own[q, k]:.2g}"]
+            lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
 def error_cell(one: Assessed, quantity: int, load: int) -> str:
     """Return true and, in brackets, stated error in per cent of the value; bold where it is not covered."""
     off, told = (
@@ -89,7 +123,7 @@ def error_cell(one: Assessed, quantity: int, load: int) -> str:
 
 
 def _by_quantity(found: Sequence[Assessed]) -> list[tuple[str, FloatArray, FloatArray]]:
-    """Return name, coverage and ratios of all curves by quantity."""
+    """Return name, coverage and ratios of all curves by quantity, of as many as they hold."""
     covered = np.concatenate([one.covered for one in found], axis=1)
     ratio = np.concatenate([one.ratio for one in found], axis=1)
-    return list(zip(QUANTITIES, covered, ratio, strict=True))
+    return list(zip(QUANTITIES[: len(covered)], covered, ratio, strict=True))

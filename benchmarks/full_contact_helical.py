@@ -1,4 +1,6 @@
-"""Do the stated errors of helical tables cover the truth? 3-D standard against helical full contact.
+"""Do the stated errors over the face cover the truth? 3-D standard against full contact along the helix.
+
+Six helical pairs, and two misaligned spur pairs, whose helix is none.
 
 `python -m benchmarks.full_contact_helical` solves the peer anew and writes its reference: some three CPU
 minutes a pair.
@@ -6,20 +8,21 @@ minutes a pair.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.assessed import Assessed, error_cell
-from benchmarks.drawn_pairs import drawn_pairs
+from benchmarks.assessed import Assessed, assessed_at_positions, table_against_peer
+from benchmarks.drawn_pairs import LOADS, drawn_pairs
 from benchmarks.figures import Figure
 from benchmarks.marked_section import replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.recorded_peer import record, recorded
-from fe_contact import ste_database
+from fe_contact import FlankModification, Gear, GearPair, ste_database
 from fe_contact.full_contact import solve_full_contact_helical
+from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.types import FloatArray
 
 ROOT = Path(__file__).parents[1]
@@ -27,8 +30,8 @@ REFERENCE = "full_contact_helical.csv"
 PAGE, SECTION = ROOT / "docs" / "lab" / "accuracy.md", "helical full contact"
 SUBJECT = "3-D standard against helical full contact"
 AXES = ("load", "position_driver")
-NUMBERS = ("43.2", "43.5", "43.10", "43.15", "43.90", "43.145")
-"""Of drawn pairs: seed and place."""
+NUMBERS = ("43.2", "43.5", "43.10", "43.15", "43.90", "43.145", "43.7")
+"""Of drawn pairs: seed and place; the last is a spur pair."""
 POSITIONS = np.arange(16) / 16.0
 """Base pitches."""
 
@@ -37,7 +40,17 @@ POSITIONS = np.arange(16) / 16.0
 def helical_cases() -> tuple[PairCase, ...]:
     """Return the pairs; none sets a constant."""
     places = [tuple(map(int, number.split("."))) for number in NUMBERS]
-    return tuple(drawn_pairs(seed, place)[-1] for seed, place in places)
+    return (*(drawn_pairs(seed, place)[-1] for seed, place in places), _unlike_spur())
+
+
+def _unlike_spur() -> PairCase:
+    """Return a misaligned spur pair of a ratio of 2.7, crowned and relieved on its pinion alone."""
+    modification = FlankModification(tip_relief=9e-6, tip_relief_length=0.9e-3, helix_crowning=5e-6)
+    pinion = Gear(19, 2e-3, 16e-3, 18e-3, profile_shift_coefficient=0.3, modification=modification)
+    wheel = Gear(52, 2e-3, 16e-3, 50e-3)
+    pair = GearPair(pinion, wheel, reference_center_distance(pinion, wheel))
+    name = "spur 19/52, 2 mm, pinion relieved, misaligned"
+    return PairCase(name, pair, LOADS, {"misalignments": (12e-6,)})
 
 
 def figures() -> list[Figure]:
@@ -61,17 +74,7 @@ def assess(case: PairCase, level: str = "standard") -> Assessed:
     table = ste_database(case.pair, *case.request(level=level))
     (skew,) = case.options.get("misalignments", (0.0,))
     curves = [table.curve(force=force, misalignment=skew, at=POSITIONS.tolist()) for force in case.forces]
-    found = np.array([curve.ste for curve in curves]).T
-    stated = np.array([[curve.mean.error, curve.peak_to_peak.error] for curve in curves]).T
-    value, true = quantities(found), np.abs(quantities(found) - quantities(exact))
-    ends = np.stack([exact.argmax(axis=0), exact.argmin(axis=0)])
-    own = np.stack([np.mean(error, axis=0), np.take_along_axis(error, ends, axis=0).sum(axis=0)])
-    return Assessed(case.name, level, value, stated, true, own)
-
-
-def quantities(ste: FloatArray) -> FloatArray:
-    """Return mean and peak-to-peak (2, loads) of STE (positions, loads)."""
-    return np.stack([ste.mean(axis=0), np.ptp(ste, axis=0)])
+    return assessed_at_positions(case.name, level, curves, exact, error)
 
 
 def reference(case: PairCase) -> tuple[FloatArray, FloatArray]:
@@ -82,26 +85,10 @@ def reference(case: PairCase) -> tuple[FloatArray, FloatArray]:
     return ste, error
 
 
-def markdown(found: Sequence[Assessed]) -> str:
-    """Return the section of docs/lab/accuracy.md: a row for each pair and load."""
-    lines = [
-        "| pair | load | mean, um | off, % (stated) | peer's own, % | peak-to-peak, um | off, % (stated) "
-        "| peer's own, % |",
-        "|---|---:|---:|---:|---:|---:|---:|---:|",
-    ]
-    for one, case in zip(found, helical_cases(), strict=True):
-        own = 100.0 * np.asarray(one.own) / one.value
-        for k, load in enumerate(case.loads):
-            cells = [one.name, f"{load:g}"]
-            for q in range(2):
-                cells += [f"{1e6 * one.value[q, k]:.3g}", error_cell(one, q, k), f"{own[q, k]:.2g}"]
-            lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n"
-
-
 def publish() -> None:
     """Write the section of the page between its marks."""
-    replace_section(PAGE, SECTION, markdown(assessed()))
+    loads = [case.loads for case in helical_cases()]
+    replace_section(PAGE, SECTION, table_against_peer(assessed(), loads, "load"))
 
 
 def solved_rows() -> Iterator[tuple[str, tuple[float, ...], float, float]]:

@@ -1,4 +1,4 @@
-"""Helical full contact against that of spur pairs over the face, and helical tables against it."""
+"""Helical full contact against that of spur pairs over the face, and tables over the face against it."""
 
 from __future__ import annotations
 
@@ -32,21 +32,24 @@ def test_without_helix_it_is_full_contact_over_the_face(record_figure) -> None:
 
 
 @pytest.mark.nightly
-def test_stated_errors_of_helical_tables_cover_full_contact(record_figure) -> None:
+def test_stated_errors_of_tables_cover_full_contact(record_figure) -> None:
     """Peak-to-peak is not covered at every load: docs/accuracy.md says where."""
     found = assessed()
-    assert len(found) == 6
-    covered, ripples, off = (
+    assert len(found) == 8
+    covered, ripples, all_of_them, off = (
         100.0 * float(value)
         for value in (
             np.mean([one.covered[0] for one in found]),
             np.mean([one.covered[1] for one in found]),
+            np.mean([one.covered for one in found]),
             max(float(((one.true - one.own) / one.value)[0].max()) for one in found[:LIMITED]),
         )
     )
-    record_figure("means of helical tables covered", covered, "100 %", "%", SOURCE)
-    record_figure("peak-to-peak of helical tables covered", ripples, "at least 85 %", "%", SOURCE)
-    assert ripples >= 85.0
+    record_figure("means of tables over the face covered", covered, "100 %", "%", SOURCE)
+    record_figure("peak-to-peak of tables over the face covered", ripples, "at least 90 %", "%", SOURCE)
+    record_figure("both of tables over the face covered", all_of_them, "at least 95 %", "%", SOURCE)
+    assert ripples >= 90.0
+    assert all_of_them >= 95.0
     record_figure("means of helical tables, worst", off, f"at most {LIMIT} %", "%", SOURCE)
     assert covered == 100.0
     assert off < LIMIT
