@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dynamics.arrays.arrays import SystemArrays
-from dynamics.arrays.sparse_rows import sparse_matrices
 from dynamics.assembly.assemble import System
+from dynamics.forces.elements import Elements, evaluate
 from dynamics.kernels.by_address import by_address
+from dynamics.kernels.compiled import compiled
 from dynamics.kernels.local_state import LocalState
 from dynamics.linearize.linear_system import LinearSystem
-from dynamics.motion.observation import Watch, local_state, observe, static_deflections
+from dynamics.motion.observation import local_state, static_deflections
 from dynamics.types import FloatArray
 
 SAMPLES, LEAST_SAMPLES, MOST_POSITIONS = 512, 64, 8192
@@ -63,16 +63,14 @@ def flank_cycles(
     `samples` positions per base pitch.
     """
     arrays, rest = system.arrays, np.zeros(system.arrays.mass.shape[0])
-    at_rest = local_state(arrays, time, linear.equilibrium.displacement, rest)
-    probe = by_address(_by_coordinates(arrays))  # laid out once for thousands of look-ups
-    origin = local_state(probe, time, *_states(probe, np.zeros(at_rest.coordinate.size), 0.0)).position
+    at_rest = by_address(local_state(arrays, time, linear.equilibrium.displacement, rest))
     force = linear.equilibrium.mesh_force
     cycles = []
     for index, mesh in enumerate(system.scene.meshes):
         period = mesh.table.period
         count = max(min(samples, MOST_POSITIONS // period), min(samples, LEAST_SAMPLES), 4 * orders)
         position = np.arange(count * period) / count
-        cycles.append(_cycle(system, probe, time, at_rest, origin, index, float(force[index]), position))
+        cycles.append(_cycle(system, at_rest, index, float(force[index]), position))
     return tuple(cycles)
 
 
@@ -90,71 +88,63 @@ def averaged(
     return replace(linear, stiffness=stiffness, spring_stiffness=spring)
 
 
-def _by_coordinates(arrays: SystemArrays) -> SystemArrays:
-    """Return arrays whose freedoms are the R local coordinates and the m positions themselves."""
-    rows, meshes = arrays.direction.shape[0], arrays.turn.shape[0]
-    direction, turn = np.eye(rows, rows + meshes), np.eye(meshes, rows + meshes, rows)
-    none = np.zeros((rows + meshes, rows + meshes))
-    return arrays._replace(
-        direction=direction,
-        turn=np.ascontiguousarray(turn),
-        sparse=sparse_matrices(np.eye(rows + meshes), none, none, direction, turn),
-        elements=arrays.elements._replace(offset=np.zeros(rows)),
-    )
-
-
-def _states(probe: SystemArrays, coordinate: FloatArray, moved: float) -> tuple[FloatArray, FloatArray]:
-    """Return q and v of the probe: coordinates (R,), and all positions moved alike."""
-    q = np.concatenate([coordinate, np.full(probe.turn.shape[0], moved)])
-    return q, np.zeros(q.size)
-
-
-def _cycle(
-    system: System,
-    probe: SystemArrays,
-    time: float,
-    at_rest: LocalState,
-    origin: FloatArray,
-    index: int,
-    force: float,
-    position: FloatArray,
-) -> FlankCycle:
-    """Walk one flank over the positions (T,)."""
-    first, end = (int(row) for row in system.arrays.elements.first[index : index + 2])
-    rows = slice(first, end)
+def _cycle(system: System, local: LocalState, index: int, force: float, position: FloatArray) -> FlankCycle:
+    """Walk one flank over the positions (T,); `local` is left as it was but for this flank."""
+    elements = by_address(system.arrays.elements)
+    rows = slice(*(int(row) for row in elements.first[index : index + 2]))
     level = system.flanks.tables[index].level
     force = max(force, LEAST_FORCE * float(level[1] - level[0]))
     guess = np.empty_like(position)
     static_deflections(system.flanks.law.table, index, position, force, guess)
-    watch = Watch(probe)
-    samples = [
-        _held(watch, rows, time, *_states(probe, at_rest.coordinate, x - origin[index]), force, d)
-        for x, d in zip(position, guess, strict=True)
-    ]
-    coordinate, force_here, tangents = (np.array(part) for part in zip(*samples, strict=True))
-    tangent = np.mean(tangents, axis=0)
-    held = np.tile(_states(probe, at_rest.coordinate, 0.0)[0], (position.size, 1))
-    held[:, first] = np.mean(coordinate[:, 0])
-    held[:, -origin.size :] = (position - origin[index])[:, None]
-    seen = observe(probe, np.full(position.size, time), held, np.zeros_like(held))
-    return FlankCycle(rows, coordinate, force_here, tangent, seen.force[rows].T, tangents[:, 0, 0])
+    size = rows.stop - rows.start
+    coordinate, held, blocked = (np.empty((position.size, size)) for _ in range(3))
+    tangent = np.empty((position.size, size, size))
+    _hold(elements, local, index, force, position, guess, coordinate, held, tangent)
+    _block(elements, local, index, float(np.mean(coordinate[:, 0])), position, blocked)
+    return FlankCycle(rows, coordinate, held, np.mean(tangent, axis=0), blocked, tangent[:, 0, 0].copy())
 
 
-def _held(
-    watch: Watch, rows: slice, time: float, q: FloatArray, v: FloatArray, force: float, guess: float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return coordinates (p,), forces (p,) and tangents (p, p) of `rows` where the first carries `force`.
+@compiled
+def _hold(
+    elements: Elements,
+    local: LocalState,
+    e: int,
+    force: float,
+    position: FloatArray,
+    guess: FloatArray,
+    coordinate: FloatArray,
+    held: FloatArray,
+    tangent: FloatArray,
+) -> None:
+    """Write coordinates (T, p), forces (T, p) and tangents (T, p, p) where the first row carries `force`.
 
-    Newton's method, from `guess`; pressed on where flanks part.
+    Newton's method, from `guess` (T,); pressed on where flanks part.
     """
-    row, size = rows.start, rows.stop - rows.start
-    q[row] = guess
-    step = abs(guess)
-    for _ in range(ITERATIONS):
-        seen = watch.look(time, q, v)
-        left = force - seen.force[row]
-        if abs(left) <= HELD * force:
-            break
-        stiffness = seen.tangent[row, 0]
-        q[row] += left / stiffness if stiffness > 0.0 else step
-    return seen.coordinate[rows].copy(), seen.force[rows].copy(), seen.tangent[rows, :size].copy()
+    row, mesh = elements.first[e], elements.mesh[e]
+    for t in range(position.size):
+        local.position[mesh], local.coordinate[row] = position[t], guess[t]
+        for _ in range(ITERATIONS):
+            evaluate(elements, local, e)
+            left, stiffness = force - local.force[row], local.tangent[row, 0]
+            coordinate[t, 0] = local.coordinate[row]
+            if abs(left) <= HELD * force:
+                break
+            local.coordinate[row] += left / stiffness if stiffness > 0.0 else abs(guess[t])
+        for p in range(held.shape[1]):
+            held[t, p] = local.force[row + p]
+            coordinate[t, p] = local.coordinate[row + p] if p > 0 else coordinate[t, 0]
+            for s in range(held.shape[1]):
+                tangent[t, p, s] = local.tangent[row + p, s]
+
+
+@compiled
+def _block(
+    elements: Elements, local: LocalState, e: int, error: float, position: FloatArray, blocked: FloatArray
+) -> None:
+    """Write the forces (T, p) while the transmission error is `error`."""
+    row = elements.first[e]
+    for t in range(position.size):
+        local.position[elements.mesh[e]], local.coordinate[row] = position[t], error
+        evaluate(elements, local, e)
+        for p in range(blocked.shape[1]):
+            blocked[t, p] = local.force[row + p]

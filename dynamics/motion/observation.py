@@ -63,25 +63,6 @@ def local_state(
     return local
 
 
-class Watch:
-    """One system looked at in one state after another, everything laid out for compiled functions once."""
-
-    def __init__(self, system: SystemArrays) -> None:
-        rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
-        self.local = make_local(system.elements, meshes)
-        seen = Observed(*(np.empty((size, 1)) for size in (meshes, rows, rows)))
-        self._at = by_address(system), by_address(self.local), np.empty((laws, MOTION_COLUMNS))
-        self._counted, self._seen = np.zeros((1, laws), dtype=np.int64), by_address(seen)
-        self._scratch = np.empty((2, system.direction.shape[1]))
-
-    def look(self, time: float, q: FloatArray, v: FloatArray) -> LocalState:
-        """Return what `local_state` does, in arrays that the next look writes over."""
-        moment = np.array([time])
-        states = q[np.newaxis], v[np.newaxis]
-        _observe(*self._at, moment, self._counted, *states, self._scratch, self._seen)
-        return self.local
-
-
 def _look(
     system: SystemArrays,
     local: LocalState,
