@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from bounds import from_to
 from dynamics.bearings.rolling_bearing import BallBearing, CatalogLine
@@ -92,4 +92,4 @@ def _diameter(count: int, pitch: float, static_rating: float) -> float:
     def missed(diameter: float) -> float:
         return count * _rating(diameter, pitch) * diameter**2 - static_rating
 
-    return float(brentq(missed, 0.0, pitch, xtol=1e-12)) if missed(pitch) > 0.0 else pitch
+    return float(scipy.optimize.brentq(missed, 0.0, pitch, xtol=1e-12)) if missed(pitch) > 0.0 else pitch

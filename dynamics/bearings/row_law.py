@@ -6,7 +6,7 @@ import math
 from functools import cached_property, lru_cache
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from dynamics.bearings import BallBearing, RollerBearing
 from dynamics.bearings.ball_elements import BallElements, RowPlacement
@@ -109,7 +109,7 @@ class _RowLaw:
         far = LEAST_PRESS
         while reaction(far).force[0] < load:
             far *= 2.0
-        way = float(brentq(lambda x: float(reaction(x).force[0]) - load, 0.0, far, xtol=1e-15))
+        way = float(scipy.optimize.brentq(lambda x: float(reaction(x).force[0]) - load, 0.0, far, xtol=1e-15))
         return way, reaction(way)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+import scipy
 
 from dynamics.bearings.bearing_law import BearingDuty
 from dynamics.checks import finite, increasing, one_of
@@ -130,7 +130,7 @@ class SpringCurve:
         one beyond it.
         """
         x, f = np.asarray(self.displacement, dtype=float), np.asarray(self.force, dtype=float)
-        inside = PchipInterpolator(x, f)
+        inside = scipy.interpolate.PchipInterpolator(x, f)
         slope = inside.derivative()
         first, last = [[f[0], float(slope(x[0])), 0.0, 0.0]], [[f[-1], float(slope(x[-1])), 0.0, 0.0]]
         return np.array([x[0], *x]), np.concatenate([first, inside.c[::-1].T, last])

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from bounds import engineering
 from dynamics.bearings import RollingBearing
@@ -107,7 +107,7 @@ def axial_state(bearings: Sequence[RollingBearing]) -> tuple[float, float]:
             float(law.loaded.evaluate((0.0, 0.0, moved + law.shift, 0.0, 0.0)).force[2]) for law in laws
         )
 
-    rest = float(brentq(force, high, low, xtol=1e-15))
+    rest = float(scipy.optimize.brentq(force, high, low, xtol=1e-15))
     return 0.0, force(rest, (1.0,))
 
 

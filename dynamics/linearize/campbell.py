@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+import scipy
 
 from dynamics.assembly.assemble import System
 from dynamics.bearings.seat import SEAT
@@ -242,7 +242,9 @@ def _continued(linear: LinearSystem, before: _WhirlModes, branch: list[int], mod
     """Return the branch of each mode: that of its predecessor, or a new one."""
     apart = np.abs(before.frequency[:, None] - modes.frequency)
     apart = apart / (before.frequency[:, None] + modes.frequency)
-    rows, columns = linear_sum_assignment(TIE * apart - likeness(linear, before.shape, modes.shape))
+    rows, columns = scipy.optimize.linear_sum_assignment(
+        TIE * apart - likeness(linear, before.shape, modes.shape)
+    )
     known = dict(zip(columns.tolist(), (branch[row] for row in rows), strict=True))
     fresh = max(branch, default=-1)
     numbers = []

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
+import scipy
 
 from dynamics.assembly.assemble import System
 from dynamics.checks import integer
@@ -86,8 +86,8 @@ def motion(
     finest = max((step_end.size - 1) / pitches, samples_per_pitch)
     samples = pitches * 2 ** int(np.ceil(np.log2(finest)))
     time = orbit.duration * np.arange(samples) / samples
-    q = np.ascontiguousarray(CubicHermiteSpline(step_end, path[0], path[1])(time))
-    v = np.ascontiguousarray(CubicHermiteSpline(step_end, path[1], path[2])(time))
+    q = np.ascontiguousarray(scipy.interpolate.CubicHermiteSpline(step_end, path[0], path[1])(time))
+    v = np.ascontiguousarray(scipy.interpolate.CubicHermiteSpline(step_end, path[1], path[2])(time))
     system, arrays = problem.system, over_period.arrays
     seen = observe(arrays, time, q, v)
     meshes, driving = len(system.scene.meshes), system.driving_rows

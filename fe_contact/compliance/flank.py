@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol, TypeVar
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from fe_contact.errors import SolveError
 from fe_contact.geometry import Toothing
@@ -68,7 +68,7 @@ def least_face_width(gear: Toothing, layers: int) -> float:
             _disc_rounding(10.0**power, gear.helix_angle, layers, gear.material) / LARGEST_ROUNDING
         )
 
-    return abs(gear.root_radius - gear.held_radius) / float(10.0 ** brentq(beyond, -3.0, 9.0))
+    return abs(gear.root_radius - gear.held_radius) / float(10.0 ** scipy.optimize.brentq(beyond, -3.0, 9.0))
 
 
 # Compliance of the flanks of one gear: what the contact analysis needs of its finite elements.

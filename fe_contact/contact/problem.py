@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.interpolate import BSpline
+import scipy
 
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.strip import Gap, StripMiddles, strip_middles
@@ -71,7 +71,9 @@ class Slices:
         knots = np.concatenate([np.zeros(degree + 1), knots[2:-2], np.full(degree + 1, float(count))])
         at = (self.point_center - self.center[0]) / self.width + 0.5
         within = np.arange(count)[:, None] + 0.5 + np.array([-1.0, 1.0]) / math.sqrt(12.0)  # Gauss points
-        curves, means = (BSpline.design_matrix(x, knots, degree).toarray() for x in (at, within.ravel()))
+        curves, means = (
+            scipy.interpolate.BSpline.design_matrix(x, knots, degree).toarray() for x in (at, within.ravel())
+        )
         return curves, np.linalg.inv(means.reshape(count, 2, count).mean(axis=1))
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.optimize import Bounds, LinearConstraint, milp
+import scipy
 from scipy.sparse import coo_array
 
 from bounds import Bound, SiNote, above, at_least
@@ -232,8 +232,9 @@ class _Program:
         matrix = coo_array((value, (row, column)), shape=(self._rows, cost.size)).tocsr()
         least, most = np.array(self._least), np.full(cost.size, np.inf)
         least[: low.size], most[: high.size] = low, high
-        rows = LinearConstraint(matrix, ub=np.concatenate(self._right))
-        solution = milp(cost, constraints=rows, bounds=Bounds(least, most))  # no column is an integer
+        rows = scipy.optimize.LinearConstraint(matrix, ub=np.concatenate(self._right))
+        bounds = scipy.optimize.Bounds(least, most)
+        solution = scipy.optimize.milp(cost, constraints=rows, bounds=bounds)  # no column is an integer
         if solution.x is None:
             return np.zeros(low.size), np.inf
         return np.asarray(solution.x[: low.size]), float(solution.fun)

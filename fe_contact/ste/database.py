@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar, Unpack
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import isotonic_regression
 
 from fe_contact.errors import SolveError
 from fe_contact.ste import extraction, netcdf
@@ -135,7 +135,7 @@ def _isotonic(levels: FloatArray, force: FloatArray, least: float) -> FloatArray
     tilt = least * np.concatenate([[0.0], force])
     weights = np.ones_like(levels)
     weights[0] = _LIFT_OFF_WEIGHT
-    return np.asarray(isotonic_regression(levels - tilt, weights=weights).x + tilt)
+    return np.asarray(scipy.optimize.isotonic_regression(levels - tilt, weights=weights).x + tilt)
 
 
 def in_own_model(table: Table) -> Table:

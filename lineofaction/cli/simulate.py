@@ -24,8 +24,6 @@ from lineofaction.cli.output import (
     print_result,
     progress_bar,
 )
-from lineofaction.client import JobState, LineOfActionClient
-from lineofaction.client.client import ServiceTables
 from lineofaction.gearbox.convert.case import CheckedCases
 from lineofaction.gearbox.convert.effects import model_lines
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -76,13 +74,16 @@ def tabled_scene(
         beside = stack.enter_context(ThreadPoolExecutor(1))
         ahead = cache(partial(beside.submit, compile_ahead))
 
-        def watch(state: JobState) -> None:
-            if state.stage:
-                report(state.stage, state.stage_progress / 100.0)
-            if not state.ended:
-                ahead()
-
         if service is not None:
+            from lineofaction.client import JobState, LineOfActionClient  # noqa: PLC0415 (start-up time)
+            from lineofaction.client.client import ServiceTables  # noqa: PLC0415 (start-up time)
+
+            def watch(state: JobState) -> None:
+                if state.stage:
+                    report(state.stage, state.stage_progress / 100.0)
+                if not state.ended:
+                    ahead()
+
             client = stack.enter_context(LineOfActionClient(service, progress=watch))
             source, run = ServiceTables(client), client.driver.run
         here = ComputedTables(lambda case: analyzed(cases.of(case), report, workers))
