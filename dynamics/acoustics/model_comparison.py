@@ -33,6 +33,8 @@ PAIR, PAIR_SHAPE = 48e-9, 0.1e-9
 """CPU seconds of a pair of panels: its resistance, and for each shape."""
 WAVE, WAVE_SHAPE = 11e-9, 0.065e-9
 """CPU seconds of a panel and a plane wave: its phase, and for each shape; 720 to 13 520 panels."""
+OFF_AT, OFF = (1.5, 2.5), ((-7.0, -9.0), (2.0, 1.0))
+"""ka, and what monopoles are off there, dB: least and most of spheres, a box and modes of five gear cases."""
 WAVES_HELD = 4
 """Arrays of phases."""
 
@@ -86,9 +88,12 @@ class ElementalRadiators:
         return Cost(seconds, 8.0 * (WAVES_HELD * WAVES + 3.0 * panels * shapes))
 
     def error_band(self, ka: float) -> tuple[float, float]:
-        """Return what monopoles were off on spheres and boxes, but for pulsation alone near ka = pi."""
-        del ka
-        return (-4.0, 5.0) if self.baffled else (-7.0, 2.0)
+        """Return what monopoles were off on spheres, boxes and gear cases, but for interior resonances.
+
+        They fall silent there, as a pulsating sphere near ka = pi. The Rayleigh integral is 3 dB above them.
+        """
+        low, high = (float(np.interp(ka, OFF_AT, values)) for values in OFF)
+        return (low + 3.0, high + 3.0) if self.baffled else (low, high)
 
     def panel_power(
         self, hull: Hull, frequency: float, normal_velocity: ComplexArray, air: Air

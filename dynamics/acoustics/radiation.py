@@ -224,8 +224,8 @@ class EquivalentRadiatedPower:
         return Cost(PRODUCT * panels * shapes**2, 16.0 * panels * shapes)
 
     def error_band(self, ka: float) -> tuple[float, float]:
-        """Return -2 dB, and what a smaller sphere with four poles is off, at least 4 dB."""
-        return -2.0, max(4.0, *errors_db(SMALLER * ka)[self.model_name].tolist())
+        """Return -2 dB, and what a smaller sphere with four poles is off, at least 3 dB."""
+        return -2.0, max(3.0, *errors_db(SMALLER * ka)[self.model_name].tolist())
 
     def panel_power(
         self, hull: Hull, frequency: float, normal_velocity: ComplexArray, air: Air

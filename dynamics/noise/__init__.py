@@ -1,6 +1,7 @@
 """Sound of the housings of a scene by `acoustics`: power by order and speed, shares, bands, recordings."""
 
 from dynamics.noise.coarse_hull import radiating_hull
+from dynamics.noise.estimated_radiation import EstimatedRadiation, estimated_radiation
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation, kept_radiation
 from dynamics.noise.housing_recordings import (
     pressure_recording,
@@ -19,6 +20,7 @@ from dynamics.noise.sound_over_time import SoundOverTime, sound_over_time
 __all__ = [
     "GUESSES",
     "DesignFigure",
+    "EstimatedRadiation",
     "HousingRadiation",
     "LoudPoint",
     "PanelSound",
@@ -28,6 +30,7 @@ __all__ = [
     "SoundBand",
     "SoundModel",
     "SoundOverTime",
+    "estimated_radiation",
     "forced_power",
     "housing_radiation",
     "kept_radiation",

@@ -247,6 +247,11 @@ class HousingRadiation(ModalResistance, ArrayFile):
                 return radiating_hull(outer, last, sound_speed)
         return None
 
+    def radiating(self, velocity: ComplexArray, knot: float) -> ComplexArray:
+        """Return the velocity (r,) that the model radiates at a computed frequency, Hz: as it is."""
+        del knot
+        return velocity
+
     def efficiency(self, power: FloatArray, velocity: ComplexArray) -> FloatArray:
         """Return the radiation efficiency of powers (B,) in W of velocities (B, r), 0 where nothing moves."""
         flow = np.sum(velocity.conj() * (velocity @ self.surface), axis=1).real

@@ -138,8 +138,8 @@ def panel_sound(
     panels = radiation.hull_at(outer, weights[0][0], air.sound_speed)
     if panels is None:
         panels, model = RadiatingHull(outer.hull, outer.shapes), EquivalentRadiatedPower()
-    moving: ComplexArray = np.asarray(panels.shapes @ velocity)
-    parts = [weight * panel_power(model, panels.hull, knot, moving, air) for knot, weight in weights]
+    moving = {knot: np.asarray(panels.shapes @ radiation.radiating(velocity, knot)) for knot, _ in weights}
+    parts = [weight * panel_power(model, panels.hull, knot, moving[knot], air) for knot, weight in weights]
     return PanelSound(panels.hull, np.asarray(np.sum(parts, axis=0)))
 
 

@@ -416,6 +416,12 @@ def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str,
     if highest > valid:
         words = "0.7 of the highest mode kept, modes are missing: keep more"
         yield f"above {number(valid, 3)} Hz", words
+    if replaced := compared.get("replaced"):
+        modes = ", ".join(number(hertz, 4) for hertz in replaced)
+        yield (
+            f"modes at {modes} Hz",
+            "near interior resonances of the monopoles' surface: by the velocity alone",
+        )
     for model, reason in compared.get("left_out", {}).items():
         yield f"without {model.replace('_', ' ')}", reason
 

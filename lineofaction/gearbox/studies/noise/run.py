@@ -24,11 +24,13 @@ from dynamics.acoustics import (
 from dynamics.acoustics.recording import LOWEST
 from dynamics.housings import ReducedHousing, write_surface
 from dynamics.noise import (
+    EstimatedRadiation,
     HousingRadiation,
     PanelSound,
     RadiatedSound,
     Region,
     SoundOverTime,
+    estimated_radiation,
     kept_radiation,
     loudest,
     models_at,
@@ -37,6 +39,7 @@ from dynamics.noise import (
     regions,
     sound_over_time,
 )
+from dynamics.noise.estimated_radiation import NAME as ESTIMATE
 from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.noise.sound_over_time import BLOCK
 from dynamics.results import RunResult
@@ -54,7 +57,11 @@ from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
 from model_studies.workers import spent
 
 PLANE, MONOPOLES = EquivalentRadiatedPower(), ElementalRadiators()
-MODELS: dict[str, PanelModel] = {model.model_name: model for model in (PLANE, MONOPOLES)}
+MODELS: dict[str, PanelModel] = {
+    ESTIMATE: MONOPOLES,
+    **{model.model_name: model for model in (PLANE, MONOPOLES)},
+}
+"""What is computed for a radiation."""
 
 
 def _write_panels(sound: RadiatedSound, _scene: SceneInput, file: Path) -> None:
@@ -209,7 +216,8 @@ def _radiation(
         ends = [LOWEST, float(means.run.receipt["sampling"]["pass_frequency"])]
         hertz = np.append(hertz.ravel(), ends)
     model, cache = MODELS[inputs.radiation], means.home / FOLDER
-    return kept_radiation(body, model, hertz, cache=cache, progress=means.report, workers=means.workers)
+    own = kept_radiation(body, model, hertz, cache=cache, progress=means.report, workers=means.workers)
+    return estimated_radiation(body, own) if inputs.radiation == ESTIMATE else own
 
 
 def _compared(
@@ -237,7 +245,7 @@ def _compared(
         offered=ladder_of,
         cache=cache,
     )
-    return {
+    compared = {
         "order": points[0].order,
         "speed": points[0].speed,
         "level": {name: result.level for name, result in ladder.results.items()},
@@ -248,6 +256,33 @@ def _compared(
         "error_band": {name: list(band) for name, band in ladder.error_band.items()},
         "predicted": {name: cost._asdict() for name, cost in ladder.predicted.items()},
     }
+    return compared | _of_estimate(housing.radiation, sound, at, compared)
+
+
+def _of_estimate(
+    radiation: HousingRadiation, sound: RadiatedSound, at: tuple[int, int], compared: Json
+) -> Json:
+    """Return what is compared with the estimate as a further model, nothing where there is none."""
+    if not isinstance(radiation, EstimatedRadiation):
+        return {}
+    hertz = float(sound.frequency[at])
+    off = radiation.error_band(hertz, sound.mode_alone[:, at[0], at[1]])
+    estimate = {
+        "level": float(sound_power_level(sound.power[at])),
+        "error_band": list(off),
+        "predicted": compared["predicted"][MONOPOLES.model_name],
+    }
+    of_all = {key: _before_finest(compared[key], value) for key, value in estimate.items()}
+    finest = list(of_all["level"].values())[-1]
+    errors = {name: own - finest for name, own in of_all["level"].items()}
+    return {**of_all, "error": errors, "replaced": radiation.replaced(sound.natural_frequency).tolist()}
+
+
+def _before_finest(by_model: Json, value: object) -> Json:
+    """Return a mapping by model with that of the estimate behind the cheap ones."""
+    finest = {name: own for name, own in by_model.items() if name == "boundary_elements"}
+    cheap = {name: own for name, own in by_model.items() if name not in finest}
+    return {**cheap, ESTIMATE: value, **finest}
 
 
 RUN = _NoiseStudy()

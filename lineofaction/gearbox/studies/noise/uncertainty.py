@@ -50,11 +50,13 @@ def uncertainty(
     with boundary_errors():
         if inputs.band:
             band = _band_of(model, sound.speed, inputs.orders, inputs, means)
-            levels = [
-                about["level"].values() for about in sound.facts["models"].values() if about.get("level")
+            stated = [
+                about["error_band"][inputs.radiation] for about in sound.facts["models"].values() if about
             ]
-            missed = max((max(of) - min(of) for of in levels), default=0.0)
-            band = band.with_error("radiation_model", missed, missed)
+            below, above = (
+                max((sign * of[end] for of in stated), default=0.0) for end, sign in ((1, 1.0), (0, -1.0))
+            )
+            band = band.with_error("radiation_model", below, above)
             facts["band"] = figures_of(SoundBandFigures, band)
         if inputs.sensitivities:
             rows, left_out = _sensitivities_of(subject, model, sound.speed, inputs.orders, means)

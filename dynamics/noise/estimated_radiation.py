@@ -1,0 +1,125 @@
+"""The level that monopoles and equivalent radiated power both allow, mode by mode of a housing.
+
+Monopoles neglect scattering and are mostly too quiet, equivalent radiated power neglects interference and is
+mostly too loud. Each states from where to where its level is off (`RadiationModel.error_band`), so each
+allows a range of levels for a mode that moves alone. The band is the range that both allow, the estimate a
+level in it (`SHARE`). Where they exclude each other, near the interior resonances of the
+monopoles' surface, as of a pulsating sphere near ka = pi, monopoles say nothing: the range is that of the
+velocity.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from dynamics.acoustics import Air, ElementalRadiators, EquivalentRadiatedPower, outer_hull
+from dynamics.housings.reduced_housing import ReducedHousing
+from dynamics.noise.housing_radiation import HousingRadiation
+from dynamics.types import BoolArray, ComplexArray, FloatArray
+
+NAME = "estimate"
+INTERIOR = 2.0
+"""ka below which a body has no interior resonance; a sphere has its first at pi."""
+SHARE_AT, SHARE = (1.0, 2.0), (0.5, 0.7)
+"""ka, and where in the range the estimate lies: the middle, and higher where walls shadow each other.
+
+Fitted to resonances of five gear cases by boundary elements, ka of 1.3 to 5.4 (docs/theory/sound-power.md).
+"""
+LEAST = 1e-30
+"""kg/s, of a motion without sound."""
+
+
+def allowed_levels(
+    monopoles: FloatArray, plane: FloatArray, ka: FloatArray, resolved: BoolArray
+) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Return from where to where levels lie by what both models state, and where by the velocity alone.
+
+    Parameters
+    ----------
+    monopoles, plane : (F, m) arrays
+        Levels of the same motions by monopoles and by equivalent radiated power, dB.
+    ka : (F,) array
+        Wavenumber times `Hull.equivalent_radius`.
+    resolved : (F,) bool array
+        Where there are monopoles.
+    """
+    monopoles_off, plane_off = (
+        np.array([model.error_band(float(each)) for each in ka]).T[:, :, None]
+        for model in (ElementalRadiators(), EquivalentRadiatedPower())
+    )
+    low, high = (plane - plane_off[1 - end] for end in (0, 1))
+    first, last = (monopoles - monopoles_off[1 - end] for end in (0, 1))
+    disjoint = (first > high) | (last < low)
+    by_velocity = (disjoint & (ka > INTERIOR)[:, None]) | ~resolved[:, None]
+    by_monopoles = disjoint & ~by_velocity
+    low = np.where(by_velocity, low, np.where(by_monopoles, first, np.maximum(low, first)))
+    high = np.where(by_velocity, high, np.where(by_monopoles, last, np.minimum(high, last)))
+    return low, high, by_velocity
+
+
+@dataclass(frozen=True)
+class EstimatedRadiation(HousingRadiation):
+    """Radiation resistance whose power of every mode alone is corrected; it stays positive semidefinite.
+
+    Attributes
+    ----------
+    correction : (F, r, r) array
+        What the velocity of the coordinates is multiplied with before monopoles radiate it.
+    mode_error : (2, F, m) array
+        From and to where the level of each mode of `ReducedHousing.modes` is off, dB; below 0: too quiet.
+    by_velocity : (F, m) bool array
+        Where monopoles say nothing of a mode.
+    """
+
+    correction: FloatArray
+    mode_error: FloatArray
+    by_velocity: BoolArray
+
+    def radiating(self, velocity: ComplexArray, knot: float) -> ComplexArray:
+        """Return the velocity (r,) that the model radiates at a computed frequency, Hz."""
+        return np.asarray(self.correction[int(np.searchsorted(self.frequency, knot))] @ velocity)
+
+    def error_band(self, frequency: float, mode_power: FloatArray) -> tuple[float, float]:
+        """Return by how much the level at a frequency, Hz, is off, as `RadiationModel.error_band` does.
+
+        The mean of the bands of the first modes, weighted with what they radiate alone, (m,) W.
+        """
+        count, whole = len(mode_power), max(float(mode_power.sum()), LEAST)
+        knot = int(np.abs(self.frequency - frequency).argmin())
+        off: FloatArray = self.mode_error[:, knot, :count] @ mode_power / whole
+        return float(off[0]), float(off[1])
+
+    def replaced(self, natural: FloatArray) -> FloatArray:
+        """Return those of the first natural frequencies, Hz, at which monopoles say nothing of the mode."""
+        knot = np.minimum(np.searchsorted(self.frequency, natural), self.frequency.size - 1)
+        inside = (natural >= self.frequency[0]) & (natural <= self.facts.resolved_frequency)
+        return np.asarray(natural[inside & self.by_velocity[knot, np.arange(natural.size)]])
+
+
+def estimated_radiation(
+    housing: ReducedHousing, monopoles: HousingRadiation, air: Air | None = None
+) -> EstimatedRadiation:
+    """Return the estimate for a housing from its resistance by monopoles; the air is theirs."""
+    air, shape = air or Air(), housing.modes[1]
+    ka = 2.0 * np.pi / air.sound_speed * monopoles.frequency * outer_hull(housing).hull.equivalent_radius
+    own = _levels(np.einsum("mk,fmn,nk->fk", shape, monopoles.matrix, shape, optimize=True).real)
+    plane = _levels(monopoles.impedance * np.einsum("mk,mn,nk->k", shape, monopoles.surface, shape))
+    resolved = monopoles.frequency <= monopoles.facts.resolved_frequency
+    low, high, by_velocity = allowed_levels(own, plane[None], ka, resolved)
+    level = low + np.interp(ka, SHARE_AT, SHARE)[:, None] * (high - low)
+    factor = 10.0 ** ((level - own) / 20.0) - 1.0
+    correction = np.eye(len(shape)) + (shape * factor[:, None]) @ (shape.T @ housing.mass)
+    kept = {each.name: getattr(monopoles, each.name) for each in fields(HousingRadiation)}
+    kept["matrix"] = np.swapaxes(correction, 1, 2) @ monopoles.matrix @ correction
+    return EstimatedRadiation(
+        **(kept | {"model_name": NAME}),
+        correction=correction,
+        mode_error=np.stack([level - high, level - low]),
+        by_velocity=by_velocity,
+    )
+
+
+def _levels(resistance: FloatArray) -> FloatArray:
+    return np.asarray(10.0 * np.log10(np.maximum(resistance, LEAST)))
