@@ -12,9 +12,9 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (39_117, 693),
-    ("dynamics",): (40_480, 758),
-    ("lineofaction.gearbox",): (21_718, 430),
-    ("lineofaction.report",): (10_503, 200),
+    ("dynamics",): (40_618, 761),
+    ("lineofaction.gearbox",): (21_756, 430),
+    ("lineofaction.report",): (10_509, 200),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_629, 67),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_331, 148),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 763
+MOST_FILES = 764
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
