@@ -84,7 +84,7 @@ def _with_axes(table: MeshTable) -> PlainTable:
     shape = (3, 3, *np.shape(table.deflection)[2:])
     names = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
     fields = {name: np.broadcast_to(getattr(table, name), shape).copy() for name in names}
-    levers = dict.fromkeys(("face_centroid", "sliding_share", "sliding_lever"), np.full(shape, 1e-3))
+    levers = dict.fromkeys(("load_arm", "sliding_share", "sliding_lever"), np.full(shape, 1e-3))
     return PlainTable(table.position, table.level, knots, knots, **fields, period=table.period, **levers)
 
 

@@ -1,3 +1,3 @@
 """The version of the contact solver, which is in the content hash of every table."""
 
-SOLVER_VERSION = "16"
+SOLVER_VERSION = "17"

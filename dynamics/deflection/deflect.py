@@ -295,7 +295,7 @@ def deflect(
 
     All effects of the scene that act at rest are on unless it switches them off: freedoms, elastic shafts,
     laws of bearings, and where tables have what it takes, the misalignment and the center distance at which
-    they are read and the centroid at which they press. Mesh and bodies are in balance at once.
+    they are read and the arm at which they press. Mesh and bodies are in balance at once.
 
     Parameters
     ----------

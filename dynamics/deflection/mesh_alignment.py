@@ -159,9 +159,8 @@ class Rest:
         Local coordinates of all force elements, m.
     mesh_force : (K, m) array
         Transverse, N.
-    centroid : (K, m) array
-        Face position of the load from mid-face of the driving gear, m, as in a table; NaN where the force
-        acts at mid-face.
+    load_arm : (K, m) array
+        Of the mesh force from mid-face of the driving gear, m, as in a table; NaN where it acts at mid-face.
     bearing_force : (K, b, 5) array
         Force and moment on what holds each bearing, N and N m.
     """
@@ -171,7 +170,7 @@ class Rest:
     motion: FloatArray
     element: FloatArray
     mesh_force: FloatArray
-    centroid: FloatArray
+    load_arm: FloatArray
     bearing_force: FloatArray
 
 
@@ -194,15 +193,15 @@ def rest_over(system: System, times: FloatArray) -> Rest:
         motion=q @ system.freedoms.motion.T,
         element=seen.coordinate.T,
         mesh_force=mesh_force,
-        centroid=_centroids(system, seen.force).T,
+        load_arm=_load_arms(system, seen.force).T,
         bearing_force=force,
     )
 
 
-def _centroids(system: System, force: FloatArray) -> FloatArray:
-    """Return where along the face the forces (R, K) of the driving flanks act, (m, K), m; NaN of none."""
+def _load_arms(system: System, force: FloatArray) -> FloatArray:
+    """Return the arms of the forces (R, K) of the driving flanks, (m, K), m; NaN of none."""
     elements, scene = system.arrays.elements, system.scene
-    centroid = np.full((len(scene.meshes), force.shape[1]), np.nan)
+    arm = np.full((len(scene.meshes), force.shape[1]), np.nan)
     for mesh in range(len(scene.meshes)):
         row, laws = elements.first[mesh], elements.laws.spatial_flank
         if elements.law[mesh] != Law.SPATIAL_FLANK or laws.per_face[elements.entry[mesh]] == 0.0:
@@ -211,8 +210,8 @@ def _centroids(system: System, force: FloatArray) -> FloatArray:
         line, sense = system.lines[mesh], system.kinematics.mesh_sense[mesh]
         middle = middle_from_driver(scene, mesh, line, sense)
         loaded = np.where(force[row] != 0.0, force[row], np.nan)
-        centroid[mesh] = middle - common_face_width(scene, mesh) * tilting / loaded
-    return centroid
+        arm[mesh] = middle - common_face_width(scene, mesh) * tilting / loaded
+    return arm
 
 
 # Tilts of shafts split by their causes: a linear functional of the displacements for each cause.
@@ -312,8 +311,8 @@ def _lead_torsion(system: System, index: int, motion: FloatArray) -> float:
 class MeshAlignment:
     """The alignment of a mesh under a load case, mean over the mesh cycle.
 
-    Misalignment is the growth of the gap over the common face width in the plane of action, towards positive
-    z of the table's driving gear: F_beta before running-in.
+    Misalignment is the tilt of the axes in the plane of action as growth of the gap over the common face
+    width, towards positive z of the table's driving gear: F_beta before running-in.
 
     Attributes
     ----------
@@ -330,8 +329,8 @@ class MeshAlignment:
     lead_torsion : float
         Growth of the gap over the common face width by the twist of both shafts along it, m; not part of the
         misalignment.
-    face_centroid : float
-        Of the load, from mid-face of the table's driving gear, m; NaN: the force acts at mid-face.
+    load_arm : float
+        Of the mesh force from mid-face of the table's driving gear, m; NaN: it acts at mid-face.
     in_table : bool
         Whether the table has the misalignments of the whole cycle, or no such axis.
     """
@@ -344,7 +343,7 @@ class MeshAlignment:
     causes: FloatArray = field(metadata=in_unit("m", "cause"))
     center_distance_change: float = field(metadata=in_unit("m"))
     lead_torsion: float = field(metadata=in_unit("m"))
-    face_centroid: float = field(metadata=in_unit("m"))
+    load_arm: float = field(metadata=in_unit("m"))
     in_table: bool = True
 
 
@@ -371,6 +370,6 @@ def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain
         causes=causes,
         center_distance_change=mesh.center_distance_change + apart,
         lead_torsion=_lead_torsion(system, index, motion),
-        face_centroid=float(rest.centroid[:, index].mean()),
+        load_arm=float(rest.load_arm[:, index].mean()),
         in_table=inside,
     )

@@ -1,4 +1,4 @@
-"""Moving point of application: the mesh force acts at the centroid of the load along the face."""
+"""Moving point of application: the moment of the mesh force in the plane of action."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.force_terms import MISALIGNMENT, FlankInSpace, FlankTerms
 from dynamics.effects.loaded_parts import LoadedMesh
-from dynamics.mechanism.additions import LOAD_CENTROID
+from dynamics.mechanism.additions import LOAD_ARM
 from dynamics.mechanism.line_of_action import common_face_width, misalignment_gradient
 
 CENTERED = 1e-9  # of the face width
@@ -20,31 +20,31 @@ class MovingApplicationPoint(MeshEffect):
 
     name = "moving_application_point"
     at_rest = True
-    adds = (LOAD_CENTROID,)
+    adds = (LOAD_ARM,)
     cost = "one more row per flank and four more values per look-up"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it where the load's centroid leaves mid-face and a shaft can tilt.
+        """Call for it where the load has an arm about the pitch point in mid-face and a shaft can tilt.
 
-        Its influence is the displacement along the line of action at the centroid that its moment makes.
+        Its influence is the displacement along the line of action at the load that its moment makes.
         """
-        centroid = getattr(mesh.mesh.table, "face_centroid", None)
-        if centroid is None:
-            return Verdict(False, False, "the table has no load centroid", 0.0)
+        arm = getattr(mesh.mesh.table, "load_arm", None)
+        if arm is None:
+            return Verdict(False, False, "the table has no arm of the load", 0.0)
         if not mesh.moves(MISALIGNMENT):
             return Verdict(False, False, "no shaft can tilt in the plane of action", 0.0)
-        lever = float(np.max(np.abs(np.asarray(centroid)[..., mesh.level])))
+        lever = float(np.max(np.abs(np.asarray(arm)[..., mesh.level])))
         lever = lever / common_face_width(mesh.train.mechanism.scene, mesh.index)
         if lever <= CENTERED:
             return Verdict(False, True, "the load stays centered on the face", 0.0)
-        reason = f"the load's centroid leaves mid-face by up to {100.0 * lever:.3g} % of the face"
+        reason = f"the load's arm about mid-face is up to {100.0 * lever:.3g} % of the face"
         tilts = mesh.axes[MISALIGNMENT]
         return Verdict(
             True, True, reason, mesh.force * lever**2 * float(tilts @ mesh.train.compliance @ tilts)
         )
 
     def contribute(self, terms: FlankTerms, flank: FlankInSpace) -> FlankTerms:
-        """Let the force act at the centroid."""
+        """Let the force have its arm."""
         scene, rotors = flank.mechanism.scene, flank.mechanism.rotors
         tilts = misalignment_gradient(scene, rotors, flank.index, flank.line, flank.sense)
         per_face = 1.0 / common_face_width(scene, flank.index)

@@ -12,7 +12,7 @@ from dynamics.identity_cache import identity_cached
 from dynamics.types import FloatArray
 
 DERIVATIVES = ("deflection_derivative", "stiffness_derivative")
-LEVERS = ("face_centroid", "sliding_share", "sliding_lever")
+LEVERS = ("load_arm", "sliding_share", "sliding_lever")
 FIELDS = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
 LARGEST_PERIOD = 1_000_000
 
@@ -42,9 +42,10 @@ class MeshTable(Protocol):
 
     deflection_derivative, stiffness_derivative : (2, 2, 2, M, D, P, L) arrays
         Differentiated once (1) or not (0) in misalignment, center-distance change and position.
-    face_centroid : (M, D, P, L) array
-        Centroid of the load from mid-face of the driving gear, m, towards positive z of a driving gear that
-        turns clockwise seen from there.
+    load_arm : (M, D, P, L) array
+        Arm of the load about the axis of a misalignment, m: distance from mid-face of the driving gear, towards
+        positive z of one that turns clockwise seen from there, less tan(beta_b) times that from the pitch
+        point along the line of action; mean over the load.
     sliding_share, sliding_lever : (M, D, P, L) arrays
         Sums over the pairs of load share times the sign of y, and times `abs(y)` (m), y the position of a
         pair's contact from the pitch point, > 0 in recess.

@@ -2,9 +2,9 @@
 
 Local coordinates, in meters: the deflection d; the misalignment m (growth of the gap over the common face,
 towards positive z of the table's driving gear) if the element has a row for it; the center-distance change a
-likewise; sliding at the pitch point and rolling on it, if there is friction. With lambda = (face centroid)/
-(face width), the force f along the line of action has the moment -lambda f on m, and the flanks approach
-each other at the centroid by d - lambda m.
+likewise; sliding at the pitch point and rolling on it, if there is friction. With lambda = (load arm)/(face
+width), the force f along the line of action has the moment -lambda f on m, and the flanks approach each other
+at the load by d - lambda m.
 """
 
 from __future__ import annotations
@@ -188,7 +188,7 @@ def _area_slope(w: float, start: float, top: float, ends: Weights, slopes: Weigh
     return float(span_slope * area + span * (force * w_slope + w * w * change))
 
 
-CENTROID, SLIDING_SHARE, SLIDING_LEVER = 2, 4, 6  # channels
+LOAD_ARM, SLIDING_SHARE, SLIDING_LEVER = 2, 4, 6  # channels
 
 
 class SpatialFlankLaws(NamedTuple):
@@ -197,7 +197,7 @@ class SpatialFlankLaws(NamedTuple):
     Attributes
     ----------
     grid : GridTables
-        Their elastic forces and centroids.
+        Their elastic forces and load arms.
     damping : (k,) array
         N s/m in full contact.
     reach : (k,) array
@@ -280,11 +280,11 @@ def _lever(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce, cha
 
 
 @inner
-def _centroid(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce) -> _Lever:
-    """Return lambda, the face centroid over the face width from the middle of the common face."""
+def _load_arm(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce) -> _Lever:
+    """Return lambda, the load arm over the face width from the middle of the common face."""
     if laws.per_face[entry] == 0.0:
         return _Lever(0.0, 0.0, 0.0, 0.0)
-    lever, per_face = _lever(laws, entry, cell, force, CENTROID), laws.per_face[entry]
+    lever, per_face = _lever(laws, entry, cell, force, LOAD_ARM), laws.per_face[entry]
     moved = lever.value - laws.mid_face[entry]
     return _Lever(moved * per_face, lever.d * per_face, lever.m * per_face, lever.a * per_face)
 
@@ -301,7 +301,7 @@ def _along_axis(laws: SpatialFlankLaws, entry: int, axis: int, coordinate: Float
 def spatial_flank(laws: SpatialFlankLaws, entry: int, local: LocalState, row: int, e: int, mesh: int) -> None:
     """Write forces and derivatives of element `e` from `row` on, and its next hint.
 
-    f = max(0, F + c s(F/reach) (d' - lambda m')): the damping takes the approach at the centroid, so it only
+    f = max(0, F + c s(F/reach) (d' - lambda m')): the damping takes the approach at the load, so it only
     dissipates, and the sum never pulls.
     """
     coordinate, rate, force, elastic = local.coordinate, local.rate, local.force, local.elastic
@@ -311,7 +311,7 @@ def spatial_flank(laws: SpatialFlankLaws, entry: int, local: LocalState, row: in
     cell = find_cell(laws.grid, entry, local.position[mesh], m, a)
     contact = grid_force(laws.grid, entry, cell, coordinate[row], local.hint[e])
     local.hint[e] = contact.interval
-    arm = _centroid(laws, entry, cell, contact)
+    arm = _load_arm(laws, entry, cell, contact)
     to_m, to_a, to_s = laws.row[entry, 0], laws.row[entry, 1], laws.row[entry, 2]
     rows = 1 + (to_m > 0) + (to_a > 0) + 2 * (to_s > 0)
     for r in range(row, row + rows):

@@ -28,7 +28,7 @@ class PlainTable:
     stiffness: FloatArray
     stiffness_slope: FloatArray
     period: int = 1
-    face_centroid: FloatArray | None = None
+    load_arm: FloatArray | None = None
     sliding_share: FloatArray | None = None
     sliding_lever: FloatArray | None = None
     deflection_derivative: FloatArray | None = None

@@ -26,7 +26,7 @@ class EnergyAudit:
         Dissipated, >= 0.
     axes : float
         Work supplied by the change of the mesh tables with misalignment and center distance, less what the
-        moments of forces off mid-face take of it: none where the load's centroid belongs to the same table.
+        moments of forces off mid-face take of it: none where the load's arm belongs to the same table.
     friction : float
         Dissipated by sliding flanks.
     kinetic, stored_bushings, stored_meshes : float

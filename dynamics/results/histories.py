@@ -10,7 +10,7 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.bearings.seat import SEAT
 from dynamics.forces.elements import SPATIAL_FLANK
-from dynamics.mechanism.additions import CENTER_DISTANCE_CHANGE, LOAD_CENTROID, MISALIGNMENT
+from dynamics.mechanism.additions import CENTER_DISTANCE_CHANGE, LOAD_ARM, MISALIGNMENT
 from dynamics.mechanism.freedoms import ROTATION
 from dynamics.mechanism.line_of_action import common_face_width, table_sense
 from dynamics.motion.motion import ACCELERATION, FRACTION, QUANTA_PER_TURN, SPEED, WHOLE
@@ -23,7 +23,7 @@ FIELDS = (MISALIGNMENT, CENTER_DISTANCE_CHANGE)
 
 
 def _axis_series(system: System, coordinate: FloatArray, force: FloatArray) -> dict[str, FloatArray]:
-    """Return `misalignment`, `center_distance_change` and `load_centroid`, (m, T) in m.
+    """Return `misalignment`, `center_distance_change` and `load_arm`, (m, T) in m.
 
     `coordinate` and `force` (R, T) are those of all rows. A series is (0, T) if its effect is on in no mesh.
     """
@@ -35,14 +35,14 @@ def _axis_series(system: System, coordinate: FloatArray, force: FloatArray) -> d
         for mesh, row in axis_rows(system, axis, follows=True).items():
             values[mesh] = coordinate[row]
         series[field] = values if system.ledger.adds(field) else np.empty((0, samples))
-    centroid = np.zeros((meshes if system.ledger.adds(LOAD_CENTROID) else 0, samples))
-    if centroid.size:
+    arm = np.zeros((meshes if system.ledger.adds(LOAD_ARM) else 0, samples))
+    if arm.size:
         for mesh, row in axis_rows(system, 0, follows=False).items():
             pushed = force[system.driving_rows[mesh]]
             lever = -force[row] / np.where(pushed > 0.0, pushed, 1.0)
             sense = table_sense(system.scene, mesh, system.kinematics.mesh_sense[mesh])
-            centroid[mesh] = -sense * common_face_width(system.scene, mesh) * lever
-    return {**series, LOAD_CENTROID: centroid}
+            arm[mesh] = -sense * common_face_width(system.scene, mesh) * lever
+    return {**series, LOAD_ARM: arm}
 
 
 def axis_rows(system: System, axis: int, *, follows: bool) -> dict[int, int]:

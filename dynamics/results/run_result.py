@@ -87,8 +87,8 @@ class RunResult:
         Of the driving flank around each sample, >= 0.
     misalignment, center_distance_change : (m, T) arrays
         As bodies tilt and move; m = 0 here if the effect is off in all meshes.
-    load_centroid : (m, T) array
-        From the middle of the common face, 0 out of contact; m = 0 here if the moving application point is
+    load_arm : (m, T) array
+        Of the mesh force about the middle of the common face, 0 out of contact; m = 0 here if the moving application point is
         off in all meshes.
     speed : (s, T) array
         Of a flexible shaft the mean over its inertia, or where a rigid drive imposes it.
@@ -154,8 +154,8 @@ class RunResult:
     )
     misalignment: FloatArray = field(metadata=stored("m", "misalignment at which the table was read", *MESH))
     center_distance_change: FloatArray = field(metadata=stored("m", "center-distance change likewise", *MESH))
-    load_centroid: FloatArray = field(
-        metadata=stored("m", "place of the mesh force from mid-face towards +z", *MESH)
+    load_arm: FloatArray = field(
+        metadata=stored("m", "arm of the mesh force about mid-face towards +z", *MESH)
     )
     speed: FloatArray = field(metadata=stored("rad s-1", "speed about +z", "shaft", "time"))
     drive_torque: FloatArray = field(metadata=stored("N m", "drive torque about +z", "drive", "time"))

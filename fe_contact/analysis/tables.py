@@ -336,7 +336,10 @@ def table_fields(
     """Arrays of the database at the requested loads, (P, F, M, D, ...), and its pair axis."""
     seen = np.concatenate([problem.candidates.pair for problem, _ in solved])
     pairs = np.arange(seen.min(), seen.max() + 1)
-    fields = [_contact_fields(problem, solution, pairs) for problem, solution in solved]
+    fields = [
+        _contact_fields(point.contact.pair, *each, pairs)
+        for point, each in zip(points.places, solved, strict=True)
+    ]
     no_load = points.gathered([solution.no_load[:, None] for _, solution in solved])[:, 0]
     gathered = {name: points.gathered([field[name] for field in fields]) for name in fields[0]}
     return gathered | {"pair": pairs, "no_load_transmission_error": no_load}
@@ -353,7 +356,7 @@ def table_support(
 
 
 def _contact_fields(
-    problem: ContactProblem, solution: ContactSolution, pairs: IntArray
+    pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution, pairs: IntArray
 ) -> dict[str, NDArray[Any]]:
     """Arrays (P, F, ...) of one operating point by name in the database; `pairs` are those of the table."""
     candidates = problem.candidates
@@ -363,11 +366,14 @@ def _contact_fields(
     pressure = contact_pressure(problem, solution.force)
     edge = at_edges(problem, solution.force, pressure)
     of_pair = candidates.pair[:, None] == pairs
+    centroid = (loaded @ candidates.face_position) / total
+    along_path = pair.tilt_arm(candidates.touch.roll_1, 0.0)
     return {
         "static_transmission_error": solution.deflection,
         "tangent_compliance": solution.tangent,
         "load_share": (loaded @ of_pair) / total[..., None],
-        "face_centroid": (loaded @ candidates.face_position) / total,
+        "face_centroid": centroid,
+        "load_arm": centroid + np.einsum("pfm,pm->pf", loaded, along_path) / total,
         "max_pressure": np.where(good, np.where(edge, 0.0, pressure).max(axis=2), np.nan),
         "edge_pressure": np.where(good, np.where(edge, pressure, 0.0).max(axis=2), np.nan),
         "pairs_in_contact": _pairs_in_contact(solution.force, of_pair),

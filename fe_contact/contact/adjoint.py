@@ -218,6 +218,8 @@ class CarryingStrips:
         Flank coordinates of the touching points, m.
     face : ndarray, shape (k,)
         Distance from the pinion's mid-face, m.
+    roll_1 : ndarray, shape (k,)
+        Roll length of gear 1 on the line of action, m.
     middle, half : ndarray, shape (k,)
         Of the strip from the touching point on, m.
     rolled : ndarray, shape (k,)
@@ -238,6 +240,7 @@ class CarryingStrips:
     s_1: FloatArray
     s_2: FloatArray
     face: FloatArray
+    roll_1: FloatArray
     middle: FloatArray
     half: FloatArray
     rolled: FloatArray
@@ -280,6 +283,7 @@ class CarryingStrips:
             touch.s_1[p, m],
             touch.s_2[p, m],
             candidates.face_position[m],
+            touch.roll_1[p, m],
             middle,
             half,
             np.where(strips.slope == 0.0, -1.0 / strips.curvature, 0.0)[p, m] * tilt,
@@ -314,7 +318,8 @@ class CarryingStrips:
     def _removed(self, gap: GapTerm) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the gap at the touching points and its mean over the strips (k,), m, and the mean slope."""
         if not gap.along_profile:
-            steady = np.asarray(gap(self.pair, *rolls_at(self.pair, self.s_1, self.s_2), self.face))
+            mating = self.pair.mating_roll_length(self.roll_1)
+            steady = np.asarray(gap(self.pair, self.roll_1, mating, self.face))
             return steady, steady, np.zeros(steady.shape)
         x = self.middle + _NODE * self.half * np.array([[-1.0], [0.0], [1.0]])
         breaks = [(each, each.distance(self.s_1, self.s_2)) for each in gap.breaks(self.pair, self.face)]

@@ -50,12 +50,12 @@ class Break:
 class GapTerm(Protocol):
     """A rigid gap on the line of action, added to the conjugate (zero) or corner gap.
 
-    `along_profile` says whether it depends on the roll lengths: only then can it move the touching point.
+    `along_profile` says whether it varies along the flanks: only then can it move the touching point.
     """
 
     @property
     def along_profile(self) -> bool:
-        """Whether the gap depends on the roll lengths."""
+        """Whether the gap varies along the flanks, at the roll lengths where they touch."""
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """Return where the gap's slope or curvature along the profile jumps.
@@ -68,8 +68,9 @@ class GapTerm(Protocol):
     ) -> FloatArray:
         """Gap in m, > 0 where material is missing.
 
-        Taken at the touching roll lengths of the two flanks and at `face`, the distance from the pinion's
-        mid-face, in m; the three broadcast.
+        Taken at the touching roll lengths of the two flanks, of a gap that does not vary along them at those
+        on the line of action, and at `face`, the distance from the pinion's mid-face, in m; the three
+        broadcast.
         """
 
 

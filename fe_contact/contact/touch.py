@@ -274,8 +274,8 @@ def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tup
     moving = tuple(term for term in gaps if term.along_profile)
     steady = tuple(term for term in gaps if not term.along_profile)
     moved = _moved(pair, touch, face, moving) if moving else touch
-    roll_1, roll_2 = rolls_at(pair, moved.s_1, moved.s_2)
-    return replace(moved, gap=moved.gap + sum(term(pair, roll_1, roll_2, face) for term in steady))
+    roll_2 = pair.mating_roll_length(touch.roll_1)
+    return replace(moved, gap=moved.gap + sum(term(pair, touch.roll_1, roll_2, face) for term in steady))
 
 
 def _moved(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:

@@ -1,4 +1,4 @@
-"""Misalignment: flanks inclined to each other in the plane of action, a table axis."""
+"""Misalignment: axes tilted against each other in the plane of action, a table axis."""
 
 from __future__ import annotations
 
@@ -15,20 +15,32 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class MisalignmentGap:
-    """Gap that grows by `growth` (m) over the common face width, zero at its middle."""
+    """Gap of axes tilted about the pitch point in the middle of the common face.
+
+    Along a line parallel to the axes it grows by `growth` (m) over the common face width, and with the helix
+    along the line of action: `ParallelAxes.tilt_arm`.
+    """
 
     growth: float
     along_profile: ClassVar[bool] = False
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
-        """None: it is the same all along the profile."""
+        """None: it stays the same as a touching point moves along the profile, across the plane of action."""
         return ()
 
     def __call__(
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
     ) -> FloatArray:
         """Gap in m, negative on the side that comes closer."""
-        return np.asarray(self.growth * (face - pair.common_face_center) / pair.face_width + 0.0 * roll_1)
+        arm = pair.tilt_arm(roll_1, face) - pair.common_face_center
+        return np.asarray(self.growth * arm / pair.face_width)
+
+    def reach(self, pair: ParallelAxes) -> float:
+        """Largest gap in size on the path of contact, m."""
+        path = pair.path_of_contact
+        ends = pair.common_face_center + 0.5 * pair.face_width * np.array([[-1.0], [1.0]])
+        rolls = np.array([path.start, path.end])
+        return float(np.abs(self(pair, rolls, rolls, ends)).max())
 
 
 @dataclass(frozen=True)

@@ -194,6 +194,15 @@ class ParallelAxes:
         """epsilon_gamma = epsilon_alpha + epsilon_beta."""
         return self.transverse_contact_ratio + self.overlap_ratio
 
+    def tilt_arm(self, roll_1: ArrayLike, face: ArrayLike) -> FloatArray:
+        """Approach on the line of action per tilt of the axes in the plane of action about the pitch point, m.
+
+        At roll lengths of gear 1 on the line of action and face positions, m: the face position, less
+        tan(beta_b) times the distance from the pitch point. A force there has this arm about that axis.
+        """
+        beyond = np.asarray(roll_1) - self.path_of_contact.pitch_point
+        return np.asarray(face - math.tan(self.base_helix_angle) * beyond)
+
     def roll_lengths(self, position: ArrayLike, pair_index: ArrayLike = 0) -> tuple[FloatArray, FloatArray]:
         """Roll lengths at which tooth pair `pair_index` touches on the line of action.
 

@@ -188,7 +188,8 @@ def force_table(database: SteFields) -> ForceTable:
     unlimited = stiffness_grid((axis,), levels.stiffness, (monotone_slopes(axis, levels.stiffness),))
     stiffness = monotone_stiffness(unlimited, deflection, levels.force)
     flat = np.zeros_like(levels.deflection)  # the slopes of a table of one position
-    slides, arm = _sliding(database)
+    slides, sliding = _sliding(database)
+    arm = database.load_arm if database.load_arm.size else database.face_centroid
     return ForceTable(
         position=database.position,
         level=levels.force,
@@ -199,9 +200,9 @@ def force_table(database: SteFields) -> ForceTable:
         stiffness=_position_third(stiffness.nodal[(0,)]),
         stiffness_slope=_position_third(stiffness.nodal.get((1,), flat)),
         period=database.period,
-        face_centroid=_position_third(_at_levels(database, database.face_centroid, levels.force)),
+        load_arm=_position_third(_at_levels(database, arm, levels.force)),
         sliding_share=_position_third(_at_levels(database, slides, levels.force)),
-        sliding_lever=_position_third(_at_levels(database, arm, levels.force)),
+        sliding_lever=_position_third(_at_levels(database, sliding, levels.force)),
     )
 
 

@@ -42,7 +42,11 @@ DIMENSIONS: dict[str, tuple[str, ...]] = {
 }
 CURVE_ERROR = ("source", "quantity", "force", "misalignment", "center_distance_change")
 """Dimensions of the errors of mean, peak-to-peak and harmonics."""
-OPTIONAL: dict[str, tuple[str, ...]] = {"edge_pressure": GRID, "curve_error": CURVE_ERROR}
+OPTIONAL: dict[str, tuple[str, ...]] = {
+    "edge_pressure": GRID,
+    "load_arm": GRID,
+    "curve_error": CURVE_ERROR,
+}
 """Dimensions of the arrays that older tables do not have: they are empty there."""
 INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
     "pair": np.int64,
@@ -65,7 +69,8 @@ class SteFields:
     torque : (F,) array
         The same loads as torque on gear 1 in N m.
     misalignment : (M,) array
-        Gap growth over the common face width in the plane of action, m; zero at mid-face.
+        Tilt of the axes in the plane of action as growth of the gap over the common face width, m; zero at
+        the pitch point in mid-face. In tables without `load_arm` a helix slope, zero at mid-face.
     center_distance_change : (D,) array
         Deviation from the nominal center distance, m.
     pair : (N,) array
@@ -103,6 +108,10 @@ class SteFields:
     edge_pressure : (P, F, M, D) array
         Largest pressure of the contacts that reach an edge of a flank, Pa: Hertz's as if the flank went on,
         where the true one is singular; 0 where none does. Empty for tables without.
+    load_arm : (P, F, M, D) array
+        Arm of the load about the axis of a misalignment, m: over all points of the contact lines the mean of
+        the offset from mid-face less tan(beta_b) times the way from the pitch point along the line of action.
+        On spur gears `face_centroid`. Empty for tables without.
 
     Raises
     ------
@@ -135,6 +144,7 @@ class SteFields:
     period: int = 1
     curve_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(CURVE_ERROR)))
     edge_pressure: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
+    load_arm: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
 
     def __post_init__(self) -> None:
         if np.size(self.support_force) == 0:
@@ -224,11 +234,13 @@ def _check_shapes(table: SteFields) -> None:
         actual = getattr(table, name).shape
         if actual != expected:
             raise DatabaseError(f"{name} has shape {actual}; ({', '.join(dimensions)}) needs {expected}")
-    _refuse(
-        table.edge_pressure.size > 0 and table.edge_pressure.shape != table.max_pressure.shape,
-        "edge_pressure",
-        "have the dimensions of max_pressure",
-    )
+    for name in ("edge_pressure", "load_arm"):
+        values = getattr(table, name)
+        _refuse(
+            values.size > 0 and values.shape != table.max_pressure.shape,
+            name,
+            "have the dimensions of max_pressure",
+        )
     _refuse(
         table.curve_error.size > 0
         and table.curve_error.shape[2:] != table.static_transmission_error.shape[1:],

@@ -288,9 +288,10 @@ class ForceTable:
     deflection_derivative, stiffness_derivative : (2, 2, 2, M, D, P, L) arrays or None
         Differentiated once (1) or not (0) in misalignment, center-distance change and position: what the C1
         interpolant over all axes uses. None without a second knot of misalignment or center distance.
-    face_centroid : (M, D, P, L) array or None
-        Centroid of the load from mid-face at each level, m, towards positive z of the driving gear; at
-        lift-off that of the lowest load.
+    load_arm : (M, D, P, L) array or None
+        Arm of the load about the axis of a misalignment at each level, m: from mid-face of the driving gear
+        towards its positive z, less tan(beta_b) times the way along the line of action from the pitch point;
+        at lift-off that of the lowest load.
     sliding_share, sliding_lever : (M, D, P, L) arrays or None
         Sums over the pairs of load share times the sign of y, and times |y| (m): y is the place of a pair's
         contact from the pitch point, > 0 where it recedes.
@@ -307,7 +308,7 @@ class ForceTable:
     period: int = 1
     deflection_derivative: FloatArray | None = None
     stiffness_derivative: FloatArray | None = None
-    face_centroid: FloatArray | None = None
+    load_arm: FloatArray | None = None
     sliding_share: FloatArray | None = None
     sliding_lever: FloatArray | None = None
 

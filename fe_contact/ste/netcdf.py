@@ -125,7 +125,7 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
     ),
     "force": ("N", "total normal tooth force"),
     "torque": ("N m", "torque on the driving gear"),
-    "misalignment": ("m", "gap growth over the common face width in the plane of action"),
+    "misalignment": ("m", "tilt of the axes in the plane of action, as gap over the common face width"),
     "center_distance_change": ("m", "deviation from the nominal center distance"),
     "pair": ("1", "index of the tooth pair, counted anew at every whole pitch, 0 = reference pair"),
     "static_transmission_error": (
@@ -136,6 +136,7 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
     "no_load_transmission_error": ("m", "transmission error at first contact"),
     "load_share": ("1", "part of the load carried by the tooth pair"),
     "face_centroid": ("m", "offset of the centroid of the load from mid-face"),
+    "load_arm": ("m", "arm of the load about the axis of a misalignment"),
     "max_pressure": ("Pa", "largest contact pressure where no edge is reached"),
     "edge_pressure": ("Pa", "largest contact pressure at edges of flanks, as if they went on: indicative"),
     "pairs_in_contact": ("1", "number of tooth pairs that carry load"),

@@ -251,6 +251,7 @@ def _none(table: SteDatabase) -> int:
         "no_load_transmission_error",
         "load_share",
         "face_centroid",
+        "load_arm",
         "max_pressure",
     )
     return sum(int(np.count_nonzero(~np.isfinite(getattr(table, name)))) for name in names)

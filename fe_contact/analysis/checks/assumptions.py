@@ -235,10 +235,11 @@ def _printed_data(run: SolvedRun) -> Iterator[Assumption]:
 
 def _closing(point: OperatingPoint) -> float:
     """Distance by which deviations and misalignment close the coast side beyond the driving side, m."""
-    skew = sum(abs(term.growth) for term in point.model.gaps if isinstance(term, MisalignmentGap))
+    pair, gaps = point.contact.pair, point.model.gaps
+    skew = sum(term.reach(pair) for term in gaps if isinstance(term, MisalignmentGap))
     meeting = np.arange(point.model.period)
     teeth = sum(float(np.max(term(meeting))) for term in point.model.tooth_gaps)
-    return 0.5 * skew + teeth
+    return skew + teeth
 
 
 def _load_patches(run: SolvedRun) -> Assumption:

@@ -53,10 +53,12 @@ class Stations:
 class LoadedSection:
     """Points of one section: flank coordinates of both gears (q,), m, and hats times weights (q, i).
 
-    `integrals` (5, i) are those of the gap, of one, of both arms, and of one where pressure is cut off.
+    `integrals` (5, i) are those of the gap, of one, of both arms, and of one where pressure is cut off. A tilt
+    of the axes opens the gap by `tilt_arm`, m.
     """
 
     number: int
+    tilt_arm: float
     s: tuple[FloatArray, FloatArray]
     weighted: FloatArray
     integrals: FloatArray
@@ -79,7 +81,8 @@ def _loaded_sections(
         first, second = (0.5 * each**2 / gear.base_radius for each, gear in zip(rolls, gears, strict=True))
         integrals = np.stack([facing.gap, np.ones(len(facing.gap)), arms[1], arms[0]]) @ weighted
         integrals = np.vstack([integrals, own.cut * integrals[1]])
-        yield LoadedSection(number, (first, second), weighted, integrals)
+        tilt_arm = float(pair.tilt_arm(roll - lead * face, face))
+        yield LoadedSection(number, tilt_arm, (first, second), weighted, integrals)
 
 
 @dataclass(frozen=True)
@@ -91,12 +94,12 @@ class _Pair:
     sections: list[LoadedSection]
 
     def integrals(self, tilt: float) -> FloatArray:
-        """Return those of all its hats (5, i j); `tilt` opens the gap along the face."""
-        z, dz, over = self.stations.quadrature
+        """Return those of all its hats (5, i j); `tilt` is that of the axes in the plane of action, rad."""
+        _, dz, over = self.stations.quadrature
         total = np.zeros((5, self.stations.across, len(self.stations.face)))
         for one in self.sections:
             tilted = one.integrals.copy()
-            tilted[0] += tilt * z[one.number] * one.integrals[1]
+            tilted[0] += tilt * one.tilt_arm * one.integrals[1]
             total += dz[one.number] * tilted[:, :, None] * over[one.number]
         return total.reshape(5, -1)
 
@@ -138,7 +141,7 @@ def line_contact(
     half : float
         Of the strips, m.
     misalignment : float
-        Growth of the gap over the face, zero at mid-face, m.
+        Tilt of the axes in the plane of action as growth of the gap over the face, m.
     """
     pairs = list(_pairs(pair, gears, position, across, along, half))
     integrals = np.concatenate([each.integrals(misalignment / pair.face_width) for each in pairs], axis=1)

@@ -185,7 +185,8 @@ def solve_full_contact_helical(
     positions : sequence of float
         By the driving gear, base pitches.
     misalignments : sequence of float
-        Growth of the gap over the face in the plane of action, zero at mid-face, m.
+        Tilt of the axes in the plane of action as growth of the gap over the face, m; zero at the pitch point
+        in mid-face.
     estimate_error : bool
         Solve on a coarser mesh too and state the difference as error.
     report : callable, optional

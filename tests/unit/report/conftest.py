@@ -190,7 +190,7 @@ def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) 
         contact=np.ones((1, time.size)),
         misalignment=np.empty((0, time.size)),
         center_distance_change=np.empty((0, time.size)),
-        load_centroid=np.empty((0, time.size)),
+        load_arm=np.empty((0, time.size)),
         speed=np.stack([-0.5 * speed, speed]),
         drive=("drive",),
         coupling=(),

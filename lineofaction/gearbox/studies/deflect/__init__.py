@@ -94,7 +94,7 @@ class Flanks(Part):
     peak_to_peak_error_um: float | None
     harmonics_um: list[float]
     harmonics_error_um: list[float | None]
-    centroid_difference_mm: float | None
+    load_arm_difference_mm: float | None
 
 
 class DeflectFigures(Figures):
@@ -143,7 +143,7 @@ class DeflectFigures(Figures):
             causes_um: dict[str, float]
             center_distance_change_um: float
             lead_torsion_um: float
-            face_centroid_mm: float | None
+            load_arm_mm: float | None
             in_table: bool
             flanks: Flanks | None
 

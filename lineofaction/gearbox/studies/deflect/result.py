@@ -32,8 +32,8 @@ class MeshFlanks:
         Estimated errors of these, m; NaN: not estimated.
     face_load_factor : float
         K_Hbeta over the cycle; NaN in the plane.
-    centroid_difference : float
-        Face centroid on the flanks less that of the table by which the shafts were deflected, m; NaN in the
+    load_arm_difference : float
+        Arm of the load on the flanks less that of the table by which the shafts were deflected, m; NaN in the
         plane.
     largest_pressure : float
         Pa.
@@ -55,7 +55,7 @@ class MeshFlanks:
     harmonics: FloatArray = field(metadata=in_unit("m", "harmonic"))
     harmonics_error: FloatArray = field(metadata=in_unit("m", "harmonic"))
     face_load_factor: float
-    centroid_difference: float = field(metadata=in_unit("m"))
+    load_arm_difference: float = field(metadata=in_unit("m"))
     largest_pressure: float = field(metadata=in_unit("pa"))
     face_position: FloatArray = field(metadata=in_unit("m", "along_face"))
     face_load: FloatArray = field(metadata=in_unit("n_per_m", "along_face"))

@@ -179,7 +179,7 @@ def _on_flanks(contacts: Mapping[str, MeshContact], of: tuple[str, MeshAlignment
     mean, ripple = table.mean(**at), table.peak_to_peak(**at)
     harmonics = table.harmonics(**at)[:HARMONICS]
     roll, pressure = pressure_map(flanks, flanks.roll_length_1)
-    centroid = float(np.mean(table.face_centroid))
+    arm = float(np.mean(table.load_arm))
     return MeshFlanks(
         mesh.name,
         case,
@@ -191,7 +191,7 @@ def _on_flanks(contacts: Mapping[str, MeshContact], of: tuple[str, MeshAlignment
         np.array([harmonic.value for harmonic in harmonics]),
         np.array([harmonic.error for harmonic in harmonics]),
         flanks.mean_face_load_factor if across else float("nan"),
-        centroid - mesh.face_centroid if across else float("nan"),
+        arm - mesh.load_arm if across else float("nan"),
         float(flanks.clear_pressure.max()),
         *_along_face(flanks),
         *_pattern(flanks, roll, pressure),

@@ -136,7 +136,7 @@ def test_a_table_that_does_not_depend_on_its_axes_runs_like_one_without_them():
         numbers[0, 0, 0], numbers[0, 0, 1] = wide[name], wide[f"{name}_slope"]
         derivative[f"{name}_derivative"] = numbers
     knots = np.array([-1e-4, 0.0, 1e-4])
-    spread = replace(flat.force_table(), misalignment=knots, center_distance_change=knots, face_centroid=None,
+    spread = replace(flat.force_table(), misalignment=knots, center_distance_change=knots, load_arm=None,
                      sliding_share=None, sliding_lever=None,
                      **wide, **derivative)  # fmt: skip
     plain, spatial = (simulate(scene_on(t, EFFECTS[:2])) for t in (flat.force_table(), spread))
@@ -176,7 +176,7 @@ def test_the_audit_of_a_run_closes(table, method):
 
 
 def test_the_moment_belongs_to_the_same_potential():
-    """Where the force acts at its centroid, the axes supply little: F z_c = -b dV/dm, by reciprocity."""
+    """Where the force has its arm, the axes supply little: F arm = -b dV/dm, by reciprocity."""
     fine = sliced_database(np.linspace(-20e-6, 20e-6, 25), positions=8, forces=np.geomspace(50.0, 6000.0, 12))
     works = [simulate(jolted(fine.force_table(), on)).energy.axes for on in (EFFECTS[::2], EFFECTS[:1])]
     assert abs(works[0]) < 0.15 * abs(works[1])
@@ -201,15 +201,15 @@ def test_both_integrators_agree_and_smaller_steps_converge(table):
 
 @pytest.mark.parametrize("technique", ["variable_torque", "constant_torque"])
 def test_off_changes_no_bit(table, technique):
-    """Effects off: a table with axes and centroid runs as the same arrays without either."""
-    bare = replace(table, face_centroid=None, deflection_derivative=None, stiffness_derivative=None)
+    """Effects off: a table with axes and load arm runs as the same arrays without either."""
+    bare = replace(table, load_arm=None, deflection_derivative=None, stiffness_derivative=None)
     plain, off = (simulate(scene_on(t, (), technique=technique)) for t in (bare, table))
     for name in ("dynamic_transmission_error", "mesh_force", "drive_torque", "bearing_force"):
         np.testing.assert_array_equal(getattr(plain, name), getattr(off, name))
     assert plain.statistics == off.statistics
     assert plain.energy == off.energy
     assert off.energy.axes == 0.0
-    assert off.load_centroid.size == off.misalignment.size == off.center_distance_change.size == 0
+    assert off.load_arm.size == off.misalignment.size == off.center_distance_change.size == 0
 
 
 def test_a_run_beyond_the_axis_says_so_and_holds_the_last_value(database):
@@ -243,10 +243,10 @@ def test_auto_follows_the_table_and_the_freedoms(table):
     assert all(influence[name] > 1e-9 for name in EFFECTS)
 
 
-def test_secant_and_coast_flank_act_at_the_centroid_too(table):
+def test_secant_and_coast_flank_have_the_arm_too(table):
     secant = scene_on(table, EFFECTS[2:], technique="constant_torque")
     secant = with_mesh(secant, misalignment=30e-6)
-    assert np.abs(simulate(secant).load_centroid).min() > 1e-3
+    assert np.abs(simulate(secant).load_arm).min() > 1e-3
     back = scene_on(table, torque=-100.0)
     back = with_mesh(back, coast=CoastFlank(50e-6), misalignment=20e-6)
     result = simulate(replace(back, effects={**back.effects, "backlash": "on"}))
@@ -277,14 +277,14 @@ def test_modes_about_a_tilted_equilibrium(table):
 
 
 def test_levers_of_another_shape_are_refused_by_name(table):
-    for name in ("face_centroid", "deflection_derivative"):
+    for name in ("load_arm", "deflection_derivative"):
         with pytest.raises(InputError, match=name):
             scene_on(replace(table, **{name: np.zeros((2, 2))}))
 
 
 def test_the_driver_off_the_common_middle_keeps_the_position_of_the_load(table):
-    """The centroid counts from the driver's mid-face, the moment from the middle of the common face."""
+    """The load arm counts from the driver's mid-face, the moment from the middle of the common face."""
     scene = with_mesh(scene_on(table, EFFECTS[2:]), misalignment=30e-6)
     wide = with_gear(scene, 0, face_width=2 * FACE_WIDTH, position=0.06 + 2e-3)
-    centered, shifted = (simulate(s).load_centroid.mean() for s in (scene, wide))
+    centered, shifted = (simulate(s).load_arm.mean() for s in (scene, wide))
     assert shifted - centered == pytest.approx(2e-3, rel=0.05)

@@ -182,7 +182,7 @@ def test_a_gearbox_mirrored_end_for_end_has_the_opposite_misalignment(sliced):
     for first, second in zip(own.meshes, other.meshes, strict=True):
         assert abs(first.misalignment) > 1e-6
         assert second.causes == pytest.approx(-first.causes, rel=1e-6, abs=1e-13)
-        assert second.face_centroid == pytest.approx(-first.face_centroid, rel=1e-5)
+        assert second.load_arm == pytest.approx(-first.load_arm, rel=1e-5)
         assert second.lead_torsion == pytest.approx(-first.lead_torsion, rel=1e-6)
 
 
@@ -205,15 +205,15 @@ def test_the_coast_side_of_a_helical_gearbox_is_another_one(sliced):
     assert abs(coast.meshes[0].misalignment) != pytest.approx(abs(drive.meshes[0].misalignment), rel=0.05)
 
 
-def test_a_mesh_without_load_has_no_centroid(sliced):
+def test_a_mesh_without_load_has_no_arm(sliced):
     system = assemble(replace(rigid_pair(table=sliced), loads=()))
     rest = rest_over(system, np.zeros(1))
     assert rest.mesh_force.tolist() == [[0.0]]
-    assert np.isnan(rest.centroid).all()
+    assert np.isnan(rest.load_arm).all()
 
 
 def test_mesh_load_and_shaft_deflection_agree(sliced):
-    """The reactions put the load where the table has its centroid at the misalignment of the shafts."""
+    """The reactions put the load where the table has its arm at the misalignment of the shafts."""
     system = assemble(loaded_scene(rigid_pair(table=sliced), LoadCase("load")))
     rest = rest_over(system, _cycle_times(system, 7))
     line, sense = system.lines[0], system.kinematics.mesh_sense[0]
@@ -225,8 +225,8 @@ def test_mesh_load_and_shaft_deflection_agree(sliced):
     total = np.einsum("kd,kd->k", left + right, left + right)
     where = 0.2 * np.einsum("kd,kd->k", right, left + right) / total
     # positive face position is towards -z of a gear that turns in +z
-    assert 0.06 - where == pytest.approx(rest.centroid[:, 0], rel=1e-6)
-    assert np.min(np.abs(rest.centroid)) > 1e-4
+    assert 0.06 - where == pytest.approx(rest.load_arm[:, 0], rel=1e-6)
+    assert np.min(np.abs(rest.load_arm)) > 1e-4
 
 
 def test_every_mesh_takes_every_position_once():

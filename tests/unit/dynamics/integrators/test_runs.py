@@ -144,7 +144,7 @@ def with_axes(table):
     names = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
     shape = (3, 3, *table.deflection.shape[2:])
     fields = {name: np.broadcast_to(getattr(table, name), shape).copy() for name in names}
-    levers = dict.fromkeys(("face_centroid", "sliding_share", "sliding_lever"), np.full(shape, 1e-3))
+    levers = dict.fromkeys(("load_arm", "sliding_share", "sliding_lever"), np.full(shape, 1e-3))
     return PlainTable(table.position, table.level, knots, knots, **fields, **levers)
 
 

@@ -1,4 +1,4 @@
-"""Designs of a helical pair in three dimensions, misaligned: symmetries, loads of unlike misalignment."""
+"""Designs in three dimensions of a misaligned pair: symmetries, loads of unlike misalignment."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from model_studies.stage_clock import StageClock
 
 
 def helical(hand: int) -> GearPair:
-    """Overlap ratio 0.87, the pinion right-handed if `hand` is 1."""
+    """Overlap ratio 0.87, the pinion right-handed if `hand` is 1, straight teeth if it is 0."""
     sizes: dict[str, Any] = {"normal_module": 3e-3, "face_width": 24e-3, "bore_diameter": 30e-3}
     angle = hand * math.radians(20.0)
     pinion, wheel = (Gear(teeth=20, helix_angle=beta, **sizes) for beta in (angle, -angle))
@@ -43,7 +43,7 @@ def helical(hand: int) -> GearPair:
 
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
-HELICAL = helical(1)
+HELICAL, SPUR = helical(1), helical(0)
 CROWNING, SLOPE = "pinion.helix_crowning", "pinion.helix_slope"
 RELIEF, LENGTH = "pinion.tip_relief", "pinion.tip_relief_length"
 DESIGN = {CROWNING: 4e-6, SLOPE: 6e-6, RELIEF: 10e-6, LENGTH: 1e-3}
@@ -119,11 +119,11 @@ def test_mirrored_hand_and_misalignment_give_the_mirrored_design() -> None:
 
 
 @pytest.mark.law
-def test_the_helix_slope_takes_up_a_fixed_misalignment() -> None:
+def test_the_helix_slope_takes_up_a_fixed_misalignment_of_straight_teeth() -> None:
     """Both open the flanks linearly over the face, so the best slope moves by the misalignment."""
     straight, misaligned = (
         searched(
-            evaluator(HELICAL, skew, Scatter(5e-6, rule=GaussHermite(3))),
+            evaluator(SPUR, skew, Scatter(5e-6, rule=GaussHermite(3))),
             (DesignVariable(SLOPE, -20e-6 - skew, 20e-6 - skew), DesignVariable(CROWNING, 0.0, 20e-6)),
             (5e-6 - skew, 5e-6),
         )
@@ -224,10 +224,10 @@ def test_the_order_of_the_loads_is_that_of_the_figures() -> None:
     assert WeightedMean(WEIGHTS).of(other.expected(second)) != pytest.approx(objective, rel=1e-3)
 
 
-def test_helix_slope_and_misalignment_add_up_at_every_load() -> None:
+def test_helix_slope_and_misalignment_of_straight_teeth_add_up_at_every_load() -> None:
     """Both open the flanks linearly over the face: a slope of minus the misalignment levels that load."""
-    tilted = evaluator_of_loads(HELICAL, TORQUES, SKEWS).evaluate(OF_LEAD)
-    straight = evaluator_of_loads(HELICAL, [100.0, 200.0, 300.0], [0.0])
+    tilted = evaluator_of_loads(SPUR, TORQUES, SKEWS).evaluate(OF_LEAD)
+    straight = evaluator_of_loads(SPUR, [100.0, 200.0, 300.0], [0.0])
     for k, (level, skew) in enumerate(zip((0, 1, 1, 2), SKEWS, strict=True)):
         turned = straight.evaluate(OF_LEAD | {SLOPE: OF_LEAD[SLOPE] + skew})
         np.testing.assert_allclose(tilted.ste[..., k], turned.ste[..., level], rtol=1e-9)
@@ -284,9 +284,9 @@ def test_every_load_is_confirmed_by_an_analysis_at_its_misalignment(found: Optim
 
 @pytest.mark.parametrize("weights", [(1.0, 0.0), (3.0, 1.0), (1.0, 1.0), (1.0, 3.0)])
 def test_the_best_slope_is_the_compromise_of_the_loads_by_their_weights(weights: tuple[float, float]) -> None:
-    """Minus the misalignment of a load alone; of two, between theirs and on the side of the heavier one.
+    """About minus the misalignment of a load alone, less by what the tilt does along the line of action.
 
-    No slope of a scan by one load is better: the ripple at a misalignment is that of so much more slope.
+    Of two loads it is between theirs and on the side of the heavier one. No slope of a scan is better.
     """
     skews, level = np.array([-12e-6, 12e-6]), {CROWNING: 4e-6}
     free, objective = (DesignVariable(SLOPE, -24e-6, 24e-6),), WeightedMean(weights)
@@ -295,11 +295,11 @@ def test_the_best_slope_is_the_compromise_of_the_loads_by_their_weights(weights:
     problem = DesignProblem(assessed, free, objective, NO_LIMITS, 1e-6)
     search = Search(NelderMead(), evaluations=40, positions=POSITIONS)
     run = search_from(problem, search, np.array([0.4]), 0)
-    alone, slopes = evaluator_of_loads(HELICAL, [300.0], [0.0]), np.linspace(-36e-6, 36e-6, 37)
-    ripple = [float(alone.evaluate(level | {SLOPE: x}).peak_to_peak[0, 0]) for x in slopes]
-    scan = [objective.of(np.interp(x + skews, slopes, ripple)) for x in slopes[6:-6]]
+    slopes = np.linspace(-24e-6, 24e-6, 25)
+    scan = [objective.of(assessed.evaluate(level | {SLOPE: x}).peak_to_peak[0]) for x in slopes]
     assert 0.98 * min(scan) < run.assessed.objective < min(scan) * (1.0 + 1e-6)
     (slope,) = problem.values(run.place).values()
     assert np.sign(weights[0] - weights[1]) * slope >= 0.0 and abs(slope) < 12.2e-6
     if not all(weights):
-        assert slope == pytest.approx(12e-6, abs=0.2e-6)
+        assert slope == pytest.approx(slopes[int(np.argmin(scan))], abs=2e-6)
+        assert 9e-6 < slope < 12e-6

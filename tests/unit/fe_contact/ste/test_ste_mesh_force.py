@@ -211,7 +211,7 @@ def test_closed_form_table_of_two_levels():
 
 SLOPES = {"deflection", "deflection_slope", "stiffness", "stiffness_slope"}
 ATTRIBUTES = {"position", "level", "misalignment", "center_distance_change", "period"} | SLOPES
-OPTIONAL = {"sliding_share", "sliding_lever", "face_centroid"} | {
+OPTIONAL = {"sliding_share", "sliding_lever", "load_arm"} | {
     "deflection_derivative",
     "stiffness_derivative",
 }
@@ -227,7 +227,7 @@ def stored(made, database):
 def test_attributes_are_the_contract_and_read_only(spur):
     assert {entry.name for entry in fields(ForceTable)} == ATTRIBUTES | OPTIONAL
     made = spur.force_table()
-    assert made.face_centroid.shape == made.deflection.shape
+    assert made.load_arm.shape == made.deflection.shape
     assert made.deflection_derivative is None  # one place: the slopes say all
     assert made.stiffness_derivative is None
     shapes = {
@@ -251,10 +251,17 @@ def test_axes_come_in_the_order_of_the_contract(four_axes):
     assert np.array_equal(levels, four_axes.static_transmission_error[5, :, 2, 1])
     # At levels between two loads it is linear in the force; at lift-off that of the lowest load.
     moved = np.random.default_rng(3).normal(size=four_axes.face_centroid.shape)
-    made = replace(four_axes, face_centroid=moved).force_table()
-    at_loads = made.face_centroid[..., stored(made, four_axes)]
+    made = replace(four_axes, load_arm=moved).force_table()
+    at_loads = made.load_arm[..., stored(made, four_axes)]
     np.testing.assert_allclose(at_loads, np.moveaxis(moved, (0, 1), (2, 3)), rtol=1e-9, atol=1e-12)
-    assert np.array_equal(made.face_centroid[..., 0], at_loads[..., 0])
+    assert np.array_equal(made.load_arm[..., 0], at_loads[..., 0])
+
+
+def test_a_table_without_load_arms_has_the_centroid_that_belonged_to_its_helix_slope(four_axes):
+    made, bare = four_axes.force_table(), replace(four_axes, load_arm=np.empty((0, 0, 0, 0)))
+    by_centroid = replace(four_axes, load_arm=four_axes.face_centroid).force_table()
+    assert np.array_equal(bare.force_table().load_arm, by_centroid.load_arm)
+    assert made.load_arm.shape == by_centroid.load_arm.shape
 
 
 def test_levels_are_transverse_forces_from_lift_off(helical):
