@@ -31,8 +31,8 @@ class TableAxes:
     torques, normal_forces : sequence of float
         Torques on the driving gear in N m, or normal forces F_bn in N: exactly one, increasing, > 0.
     misalignments, center_distance_changes : sequence of float
-        m, increasing. Misalignment is the growth of the gap over the common face width in the plane of
-        action, zero at its middle.
+        m, increasing. Misalignment is the tilt of the axes in the plane of action as growth of the gap over
+        the common face width, zero at the pitch point in its middle.
     pitches : int, optional
         Base pitches that the table covers if gears have pitch deviations; default: the full period. A smaller
         number closes the table on itself: at its seam teeth are adjacent that never mesh.

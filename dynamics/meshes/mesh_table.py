@@ -43,9 +43,9 @@ class MeshTable(Protocol):
     deflection_derivative, stiffness_derivative : (2, 2, 2, M, D, P, L) arrays
         Differentiated once (1) or not (0) in misalignment, center-distance change and position.
     load_arm : (M, D, P, L) array
-        Arm of the load about the axis of a misalignment, m: distance from mid-face of the driving gear, towards
-        positive z of one that turns clockwise seen from there, less tan(beta_b) times that from the pitch
-        point along the line of action; mean over the load.
+        Arm of the load about the axis of a misalignment, m: mean distance from mid-face of the driving gear,
+        towards positive z of one that turns clockwise seen from there, less tan(beta_b) times that from the
+        pitch point along the line of action.
     sliding_share, sliding_lever : (M, D, P, L) arrays
         Sums over the pairs of load share times the sign of y, and times `abs(y)` (m), y the position of a
         pair's contact from the pitch point, > 0 in recess.

@@ -88,8 +88,8 @@ class RunResult:
     misalignment, center_distance_change : (m, T) arrays
         As bodies tilt and move; m = 0 here if the effect is off in all meshes.
     load_arm : (m, T) array
-        Of the mesh force about the middle of the common face, 0 out of contact; m = 0 here if the moving application point is
-        off in all meshes.
+        Of the mesh force about the middle of the common face, 0 out of contact; m = 0 here if the moving
+        application point is off in all meshes.
     speed : (s, T) array
         Of a flexible shaft the mean over its inertia, or where a rigid drive imposes it.
     drive_torque : (d, T) array

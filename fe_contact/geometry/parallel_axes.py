@@ -194,13 +194,14 @@ class ParallelAxes:
         """epsilon_gamma = epsilon_alpha + epsilon_beta."""
         return self.transverse_contact_ratio + self.overlap_ratio
 
-    def tilt_arm(self, roll_1: ArrayLike, face: ArrayLike) -> FloatArray:
-        """Approach on the line of action per tilt of the axes in the plane of action about the pitch point, m.
+    def tilt_arm(self, roll_1: FloatArray | float, face: FloatArray | float) -> FloatArray:
+        """Return what a tilt of the axes in the plane of action opens on the line of action, m per rad.
 
+        About the pitch point in the pinion's mid-face. It is also the arm of a force there about that axis.
         At roll lengths of gear 1 on the line of action and face positions, m: the face position, less
-        tan(beta_b) times the distance from the pitch point. A force there has this arm about that axis.
+        tan(beta_b) times the way from the pitch point.
         """
-        beyond = np.asarray(roll_1) - self.path_of_contact.pitch_point
+        beyond = roll_1 - self.path_of_contact.pitch_point
         return np.asarray(face - math.tan(self.base_helix_angle) * beyond)
 
     def roll_lengths(self, position: ArrayLike, pair_index: ArrayLike = 0) -> tuple[FloatArray, FloatArray]:

@@ -13,6 +13,7 @@ from fe_contact.types import FloatArray
 
 SAMPLES, REACH = 81, 0.6e-3
 """Points of the wheel's profile on both sides of the one that touches, and how far, m of its roll length."""
+UP = np.array([0.0, 0.0, 1.0])
 
 
 def _involute(radius: FloatArray, base: float) -> FloatArray:
@@ -21,70 +22,51 @@ def _involute(radius: FloatArray, base: float) -> FloatArray:
     return np.asarray(unwound - np.arctan(unwound))
 
 
-@dataclass(frozen=True)
-class RigidFlanks:
-    """Both flanks of a pair of teeth that touches at the roll length `roll` (m) of gear 1 at mid-face.
+def rigid_gap(pair: ParallelAxes, roll: FloatArray, face: FloatArray, tilt: float) -> FloatArray:
+    """Return the way of the pinion's flanks to sections of the wheel's, m on the line of action.
 
-    x points from the pinion's axis to the pitch point; seen from +z the pinion turns clockwise.
+    x points from the pinion's axis to the pitch point; seen from +z the pinion turns clockwise. The wheel is
+    rotated by `tilt` (rad) about the axis through the pitch point in mid-face that is normal to the plane of
+    action, such that it leaves the pinion at positive z. It ends at its tip circle, the pinion does not.
+
+    Parameters
+    ----------
+    roll, face : ndarray
+        Roll lengths of gear 1 at which parallel flanks touch on the line of action, and face positions, m.
     """
+    angle, twist, sign = pair.working_pressure_angle, np.tan(pair.base_helix_angle), pair.wheel.sign
+    bases = pair.pinion.base_radius, pair.wheel.base_radius
+    line = np.array([np.sin(angle), -np.cos(angle), 0.0])  # in which the pinion pushes
+    foot = bases[0] * np.array([np.cos(angle), np.sin(angle), 0.0])
+    center = np.array([sign * pair.center_distance, 0.0, 0.0])
+    roll, face = (each[..., None] for each in np.broadcast_arrays(roll, face))
+    touching = foot + (roll + face * twist) * line  # of the same pair of teeth at mid-face
+    rolls = pair.mating_roll_length(roll) + np.linspace(-REACH, REACH, SAMPLES)
+    tip = pair.wheel.tip_roll_length
+    radius = np.hypot(np.clip(rolls, *((0.0, tip) if sign > 0 else (tip, np.inf))), bases[1])
+    polar = _root(touching - center, bases[1]) + _involute(radius, bases[1]) - sign * twist / bases[1] * face
+    x, y, z = radius * np.cos(polar), radius * np.sin(polar), face + 0.0 * radius
+    points = np.stack([x, y, z], axis=-1) + center
+    moved = _rotated(points - line_pitch(pair), np.cross(UP, line), tilt) + line_pitch(pair)
+    flank = _root(touching, bases[0]) + _involute(np.hypot(moved[..., 0], moved[..., 1]), bases[0])
+    ahead = flank + twist / bases[0] * moved[..., 2] - np.arctan2(moved[..., 1], moved[..., 0])
+    return np.asarray(bases[0] * np.min((ahead + np.pi) % (2.0 * np.pi) - np.pi, axis=-1))
 
-    pair: ParallelAxes
-    roll: float
 
-    def opened(self, face: float, tilt: float) -> float:
-        """Return the way of the pinion's flank to the wheel's section `face`, m on the line of action.
+def line_pitch(pair: ParallelAxes) -> FloatArray:
+    """Return the pitch point in mid-face."""
+    return np.array([pair.operating_pitch_radii[0], 0.0, 0.0])
 
-        The wheel is rotated by `tilt` (rad) about the axis through the pitch point in mid-face that is normal
-        to the plane of action, such that it leaves the pinion at positive z. The wheel ends at its tip.
-        """
-        pair = self.pair
-        base_1, base_2, twist = pair.pinion.base_radius, pair.wheel.base_radius, np.tan(pair.base_helix_angle)
-        line, foot = self._line_of_action()
-        second = self._wheel_center()
-        start_1 = self._root(foot + self.roll * line, np.zeros(2), base_1)
-        start_2 = self._root(foot + self.roll * line, second, base_2)
-        by_height = twist / base_2 * (-1.0 if pair.wheel.sign > 0 else 1.0)
-        at = float(pair.mating_roll_length(self.roll - face * twist))
-        rolls = np.linspace(at - REACH, at + REACH, SAMPLES)
-        ends = pair.wheel.tip_roll_length
-        rolls = np.clip(rolls, *((0.0, ends) if pair.wheel.sign > 0 else (ends, np.inf)))
-        radius = np.hypot(rolls, base_2)
-        angle = start_2 + _involute(radius, base_2) + by_height * face
-        points = np.stack(
-            [
-                second[0] + radius * np.cos(angle),
-                second[1] + radius * np.sin(angle),
-                np.full(radius.shape, face),
-            ]
-        )
-        moved = self._rotated(points, line, tilt)
-        radius = np.hypot(moved[0], moved[1])
-        flank = start_1 + _involute(radius, base_1) + twist / base_1 * moved[2]
-        ahead = flank - np.arctan2(moved[1], moved[0])
-        return float(base_1 * np.min((ahead + np.pi) % (2.0 * np.pi) - np.pi))
 
-    def _line_of_action(self) -> tuple[FloatArray, FloatArray]:
-        """Return its direction, in which the pinion pushes, and the foot of the pinion's axis on it."""
-        angle = self.pair.working_pressure_angle
-        line = np.array([np.sin(angle), -np.cos(angle)])
-        return line, self.pair.pinion.base_radius * np.array([np.cos(angle), np.sin(angle)])
+def _root(point: FloatArray, base: float) -> FloatArray:
+    """Return the polar angle at which the involutes through points begin (..., 1)."""
+    angle = np.arctan2(point[..., 1], point[..., 0])
+    return np.asarray(angle - _involute(np.hypot(point[..., 0], point[..., 1]), base))[..., None]
 
-    def _wheel_center(self) -> FloatArray:
-        return np.array([self.pair.wheel.sign * self.pair.center_distance, 0.0])
 
-    def _root(self, point: FloatArray, center: FloatArray, base: float) -> float:
-        """Return the polar angle about `center` at which the involute through `point` begins."""
-        x, y = point - center
-        return float(np.arctan2(y, x) - _involute(np.hypot(x, y), base))
-
-    def _rotated(self, points: FloatArray, line: FloatArray, tilt: float) -> FloatArray:
-        pitch_point = np.array([self.pair.operating_pitch_radii[0], 0.0, 0.0])[:, None]
-        along, up = np.array([*line, 0.0]), np.array([0.0, 0.0, 1.0])
-        axis = np.cross(up, along)
-        own = points - pitch_point
-        across = np.outer(axis, axis @ own)
-        turned = np.cos(tilt) * (own - across) + np.sin(tilt) * np.cross(axis, own, axis=0) + across
-        return np.asarray(turned + pitch_point)
+def _rotated(points: FloatArray, axis: FloatArray, angle: float) -> FloatArray:
+    along = (points @ axis)[..., None] * axis
+    return np.asarray(along + np.cos(angle) * (points - along) + np.sin(angle) * np.cross(axis, points))
 
 
 @dataclass(frozen=True)
@@ -102,10 +84,4 @@ class TiltedGap:
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
     ) -> FloatArray:
         """Return it in m."""
-        rolls, faces = np.broadcast_arrays(roll_1, face)
-        twist = np.tan(pair.base_helix_angle)
-        gap = np.empty(rolls.shape)
-        for at in np.ndindex(rolls.shape):
-            flanks, z = RigidFlanks(pair, float(rolls[at] + faces[at] * twist)), float(faces[at])
-            gap[at] = flanks.opened(z, self.tilt) - flanks.opened(z, 0.0)
-        return gap
+        return rigid_gap(pair, roll_1, face, self.tilt) - rigid_gap(pair, roll_1, face, 0.0)

@@ -53,8 +53,8 @@ class Stations:
 class LoadedSection:
     """Points of one section: flank coordinates of both gears (q,), m, and hats times weights (q, i).
 
-    `integrals` (5, i) are those of the gap, of one, of both arms, and of one where pressure is cut off. A tilt
-    of the axes opens the gap by `tilt_arm`, m.
+    `integrals` (5, i) are those of the gap, of one, of both arms, and of one where pressure is cut off. Axes
+    that tilt open the gap by `tilt_arm`, m.
     """
 
     number: int

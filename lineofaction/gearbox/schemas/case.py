@@ -156,7 +156,7 @@ class ErrorsInput(BoundaryModel):
 
     misalignment_um: Misalignments = Field(
         default=(0.0,),
-        description="Gap growth in um over the common face width in the plane of action, zero at mid-face",
+        description="Tilt of the axes in the plane of action: gap growth in um over the common face width",
         examples=[[0.0, 30.0]],
     )
     center_distance_change_mm: CenterDistanceChanges = Field(

@@ -44,7 +44,7 @@ class LiveInput(BoundaryModel):
         default=0.0,
         ge=-10_000.0,
         le=10_000.0,
-        description="Gap growth in um over the common face width in the plane of action, zero at mid-face",
+        description="Tilt of the axes in the plane of action: gap growth in um over the common face width",
         examples=[0.0],
     )
     center_distance_change_mm: float = Field(

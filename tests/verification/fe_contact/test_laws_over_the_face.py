@@ -7,8 +7,10 @@ import math
 
 import numpy as np
 import pytest
+from tilted_gears import TiltedGap
 
 from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
+from fe_contact.effects.misalignment import MisalignmentGap
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 
@@ -36,7 +38,49 @@ def test_opposite_hand_is_the_mirror_image():
     assert second.static_transmission_error == pytest.approx(
         first.static_transmission_error[:, :, ::-1], rel=1e-9, abs=0.0
     )
-    assert second.face_centroid == pytest.approx(-first.face_centroid[:, :, ::-1], abs=1e-9)
+    for name in ("face_centroid", "load_arm"):
+        assert getattr(second, name) == pytest.approx(-getattr(first, name)[:, :, ::-1], abs=1e-9)
+
+
+@pytest.mark.parametrize("hand", [1, 0, -1], ids=["right hand", "spur", "left hand"])
+@pytest.mark.law
+def test_the_moment_of_the_load_is_what_a_misalignment_works_on(hand: int) -> None:
+    """d STE/dm at constant force is d(F arm)/dF / b; the face centroid is the arm of straight teeth alone."""
+    force, skew = np.array([1980.0, 2000.0, 2020.0]), np.array([14.5e-6, 15e-6, 15.5e-6])
+    table = analyze(helical(hand), normal_forces=force, misalignments=skew, level="draft", positions=12)
+    ste = table.static_transmission_error[:, 1, :, 0]
+    by_tilt = (ste[:, 2] - ste[:, 0]) / (skew[2] - skew[0])
+
+    def of_moment(arm: np.ndarray) -> np.ndarray:
+        moment = force[:, None] * arm[..., 0] / table.facts.face_width
+        return np.asarray((moment[:, 2, 1] - moment[:, 0, 1]) / (force[2] - force[0]))
+
+    assert np.ptp(by_tilt) > 0.05
+    assert of_moment(table.load_arm) == pytest.approx(by_tilt, abs=2e-3)
+    off = np.abs(of_moment(table.face_centroid) - by_tilt).max()
+    assert off > 0.01 if hand else np.array_equal(table.load_arm, table.face_centroid)
+
+
+def test_a_tilted_pair_has_the_ripple_of_gears_that_were_rotated_in_space(monkeypatch) -> None:
+    """At 60 um, 3 mrad: gaps of the rigid tilted helicoids between the same bodies. A helix slope has not."""
+
+    def ripples() -> np.ndarray:
+        table = draft(helical(), force=6000.0, misalignments=[-60e-6, 60e-6])
+        return np.ptp(table.static_transmission_error[:, 0, :, 0], axis=0)
+
+    ours = ripples()
+    monkeypatch.setattr(
+        MisalignmentGap, "__call__",
+        lambda gap, pair, *at: TiltedGap(gap.growth / pair.face_width)(pair, *at),
+    )  # fmt: skip
+    exact = ripples()
+    monkeypatch.setattr(
+        MisalignmentGap, "__call__",
+        lambda gap, pair, roll_1, roll_2, face: gap.growth * face / pair.face_width + 0.0 * roll_1,
+    )  # fmt: skip
+    slope = ripples()
+    assert ours == pytest.approx(exact, rel=5e-3)
+    assert np.all(np.abs(slope / exact - 1.0) > 0.05)
 
 
 @pytest.mark.law

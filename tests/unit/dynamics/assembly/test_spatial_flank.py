@@ -175,11 +175,26 @@ def test_the_audit_of_a_run_closes(table, method):
     assert energy.relative < 1e-3
 
 
-def test_the_moment_belongs_to_the_same_potential():
-    """Where the force has its arm, the axes supply little: F arm = -b dV/dm, by reciprocity."""
+@pytest.mark.parametrize("lead", [0.0, 0.3, -0.3], ids=["spur", "one hand", "other hand"])
+def test_the_moment_belongs_to_the_same_potential(lead):
+    """Where the force has its arm, the axes supply little: F arm = -b dV/dm, by reciprocity.
+
+    Lines of contact whose middle lies off the pitch point are opened by `lead` of the tilt more.
+    """
     fine = sliced_database(np.linspace(-20e-6, 20e-6, 25), positions=8, forces=np.geomspace(50.0, 6000.0, 12))
-    works = [simulate(jolted(fine.force_table(), on)).energy.axes for on in (EFFECTS[::2], EFFECTS[:1])]
+    opened = lead * fine.misalignment[:, None]
+    helical = replace(
+        fine,
+        static_transmission_error=fine.static_transmission_error + opened,
+        no_load_transmission_error=fine.no_load_transmission_error + opened,
+        support_transmission_error=fine.support_transmission_error + opened,
+        load_arm=fine.face_centroid + lead * FACE_WIDTH,
+    )
+    works = [simulate(jolted(helical.force_table(), on)).energy.axes for on in (EFFECTS[::2], EFFECTS[:1])]
     assert abs(works[0]) < 0.15 * abs(works[1])
+    if lead:
+        centered = replace(helical, load_arm=fine.face_centroid).force_table()
+        assert abs(simulate(jolted(centered, EFFECTS[::2])).energy.axes) > 0.3 * abs(works[1])
 
 
 def test_both_integrators_agree_and_smaller_steps_converge(table):

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from tilted_gears import RigidFlanks, TiltedGap
+from tilted_gears import TiltedGap, rigid_gap
 
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, ParallelAxes, RingGear
@@ -56,13 +56,11 @@ def test_the_gap_is_that_of_rigid_gears_rotated_in_space(pair: ParallelAxes) -> 
 def test_before_the_path_the_tip_edge_opens_as_its_place_along_the_line_of_action(name: str) -> None:
     """There the wheel's edge touches beside the line of action: to the first order of the way beyond it."""
     pair, face, beyond = PAIRS[name], 5e-3, 0.2e-3
-    roll = pair.path_of_contact.start - beyond
-    flanks = RigidFlanks(pair, roll + face * math.tan(pair.base_helix_angle))
+    roll, face = np.array(pair.path_of_contact.start - beyond), np.array(face)
     tilt = GROWTH / pair.face_width
-    assert flanks.opened(face, 0.0) > 1e-6  # the corner gap of aligned gears
-    opened = flanks.opened(face, tilt) - flanks.opened(face, 0.0)
-    ours = MisalignmentGap(GROWTH)(pair, np.array(roll), np.array(0.0), np.array(face))
-    held = MisalignmentGap(GROWTH)(pair, np.array(roll + beyond), np.array(0.0), np.array(face))
+    assert rigid_gap(pair, roll, face, 0.0) > 1e-6  # the corner gap of aligned gears
+    opened = TiltedGap(tilt)(pair, roll, roll, face)
+    ours, held = (MisalignmentGap(GROWTH)(pair, at, at, face) for at in (roll, roll + beyond))
     assert abs(ours - opened) < 0.1 * abs(held - opened)
 
 
@@ -72,6 +70,18 @@ def test_the_largest_gap_is_at_a_corner_of_the_plane_of_action() -> None:
         reach = max(path.pitch_point - path.start, path.end - path.pitch_point)
         expected = GROWTH * (0.5 + tangent * reach / pair.face_width)
         assert MisalignmentGap(-GROWTH).reach(pair) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_along_a_line_of_contact_the_arm_grows_with_the_face_over_the_squared_cosine(name: str) -> None:
+    """And pairs one base pitch apart are offset by tan(beta_b) times it."""
+    pair, face = PAIRS[name], np.array([-8e-3, 0.0, 5e-3])
+    angle = pair.base_helix_angle
+    arms = [
+        pair.tilt_arm(pair.roll_lengths(0.3, index)[0] - face * math.tan(angle), face) for index in (0, 1)
+    ]
+    assert np.diff(arms[0]) == pytest.approx(np.diff(face) / math.cos(angle) ** 2, rel=1e-12)
+    assert arms[1] - arms[0] == pytest.approx(-math.tan(angle) * pair.base_pitch, rel=1e-9, abs=1e-15)
 
 
 def test_the_middle_of_the_common_face_stays() -> None:
