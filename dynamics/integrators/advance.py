@@ -8,7 +8,7 @@ from typing import NamedTuple
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.integrators.explicit_step import accelerate, add_drive_work, explicit_step, write_powers
 from dynamics.integrators.implicit_step import implicit_step, solve_stage
-from dynamics.integrators.sampler import Sampler, SampleRing, move_sampled_trains, sample_start, sample_step
+from dynamics.integrators.sampler import Sampler, SampleRing, move_sampled_trains, sample_step, store_if_due
 from dynamics.integrators.tableaus import EXPLICIT_WEIGHTS, IMPLICIT_WEIGHTS
 from dynamics.integrators.workspace import LEVELS_PER_OCTAVE, LOSSES, Count, Workspace
 from dynamics.kernels.compiled import compiled, inner
@@ -167,8 +167,8 @@ def prepare_samples(
     system: SystemArrays, work: Workspace, sampler: Sampler, ring: SampleRing, out: States
 ) -> None:
     """Compile what samples the steps."""
-    for part in (sample_start, sample_step):
-        part.prepare(system, work, sampler, ring, out)
+    store_if_due.prepare(work, sampler, ring, out)
+    sample_step.prepare(system, work, sampler, ring, out)
 
 
 @compiled
@@ -188,7 +188,7 @@ def advance(
     """
     if work.counts[Count.ACCEPTED] == 0:
         _enter(system, work, control)
-        sample_start(system, work, sampler, ring, out)
+        sample_step(system, work, sampler, ring, 1.0, work.time[0], out)
     while work.time[0] < stop:
         count = work.counts
         if count[Count.ACCEPTED] + count[Count.REJECTED] >= control.step_limit:

@@ -18,7 +18,7 @@ from dynamics.integrators.sampler import (
     Sampler,
     SampleRing,
     continue_past_the_end,
-    sample_start,
+    sample_step,
 )
 from dynamics.integrators.state_sink import BLOCK, StateSink
 from dynamics.integrators.static import StaticSolution
@@ -282,7 +282,7 @@ def sample_rest(march: March, sink: StateSink) -> None:
     """Sample the start of a march that goes nowhere."""
     passed = march.compiled
     room = by_address(sink.room(0, 1))
-    sample_start(passed.arrays, passed.work, passed.sampler, passed.ring, room)
+    sample_step(passed.arrays, passed.work, passed.sampler, passed.ring, 1.0, 0.0, room)
 
 
 def march_on(

@@ -35,6 +35,9 @@ from dynamics.motion.motion import (
 from dynamics.motion.sampled_states import States
 from dynamics.types import FloatArray, IntArray
 
+HIGH_PASS = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0]) / 64.0
+"""Sixth difference: 1 at half the rate, sin^6 below."""
+
 
 class Sampler(NamedTuple):
     """The filter and the series that sample the steps.
@@ -43,6 +46,8 @@ class Sampler(NamedTuple):
     ----------
     taps : (L,) array
         Weights of the anti-alias filter.
+    high_pass : (7,) array
+        Weights that pass what lies near half the inner rate.
     factor : int
         Points of the inner grid per output sample.
     rate : float
@@ -60,6 +65,7 @@ class Sampler(NamedTuple):
     """
 
     taps: FloatArray
+    high_pass: FloatArray
     factor: int
     rate: float
     static: PackedTables
@@ -82,7 +88,8 @@ class Sampler(NamedTuple):
         amplitudes = n - bodies if outputs.displacements or outputs.accelerations else 0
         filtered = rows + 2 * (bodies + amplitudes) + nominal.size
         rest = (bearings, bodies, filtered)
-        return cls(sampling.filter_taps(), sampling.factor, sampling.inner_rate, static, nominal, *rest)
+        taps, rate = sampling.filter_taps(), sampling.inner_rate
+        return cls(taps, HIGH_PASS, sampling.factor, rate, static, nominal, *rest)
 
 
 class _Peaks(NamedTuple):
@@ -160,23 +167,6 @@ class SampleRing(NamedTuple):
         )
 
 
-HIGH_PASS = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0]) / 64.0
-"""Sixth difference: 1 at half the rate, sin^6 below."""
-
-
-@routine
-def sample_start(
-    system: SystemArrays, work: Workspace, sampler: Sampler, ring: SampleRing, out: States
-) -> None:
-    """Put the state at t = 0 into the ring."""
-    for i in range(ring.q.size):
-        ring.q[i], ring.v[i], ring.a[i] = work.q[i], work.v[i], work.a[i]
-    _look(system, work, sampler, ring, work.time[0], 0)
-    _see_peaks(ring, sampler, 0)
-    work.counts[Count.POINT] = 1
-    _store_if_due(work, sampler, ring, 0, out)
-
-
 @routine
 def sample_step(
     system: SystemArrays,
@@ -187,7 +177,7 @@ def sample_step(
     end: float,
     out: States,
 ) -> None:
-    """Take the inner points of the step from ``work.time`` to `end`."""
+    """Take the inner points of the step from ``work.time`` to `end`; a step that ends at 0 has that point."""
     counts = work.counts
     while counts[Count.POINT] / sampler.rate <= end:
         point = counts[Count.POINT]
@@ -199,7 +189,7 @@ def sample_step(
             _mirror(ring, 0, point, -point)
         _see_peaks(ring, sampler, row)
         counts[Count.POINT] = point + 1
-        _store_if_due(work, sampler, ring, point, out)
+        store_if_due(work, sampler, ring, point, out)
 
 
 @compiled
@@ -214,7 +204,7 @@ def continue_past_the_end(
         if last + ahead <= points:
             _mirror(ring, 0, last + ahead, -last - ahead)
         counts[Count.POINT] += 1
-        _store_if_due(work, sampler, ring, last + ahead, out)
+        store_if_due(work, sampler, ring, last + ahead, out)
 
 
 @inner
@@ -324,8 +314,8 @@ def _between(far: float, left: float, right: float, now: float) -> float:
     return abs(left + u * (a + u * (b + u * c)))
 
 
-@inner
-def _store_if_due(work: Workspace, sampler: Sampler, ring: SampleRing, point: int, out: States) -> None:
+@routine
+def store_if_due(work: Workspace, sampler: Sampler, ring: SampleRing, point: int, out: States) -> None:
     """Store the output sample in the middle of the ring if there is one."""
     counts = work.counts
     middle = point - sampler.taps.size // 2
@@ -345,7 +335,7 @@ def _store_if_due(work: Workspace, sampler: Sampler, ring: SampleRing, point: in
     for k in range(work.moved.size):
         out.moved[row, k] = work.moved[k]
     _see_extremes(ring, sampler.factor, center, out, row)
-    _see_removed(ring, center, point, out, row)
+    _see_removed(ring, sampler.high_pass, center, point, out, row)
     counts[Count.OUTPUT] += 1
 
 
@@ -364,7 +354,9 @@ def _see_extremes(ring: SampleRing, factor: int, center: int, out: States, row: 
 
 
 @inner
-def _see_removed(ring: SampleRing, center: int, point: int, out: States, row: int) -> None:
+def _see_removed(
+    ring: SampleRing, high_pass: FloatArray, center: int, point: int, out: States, row: int
+) -> None:
     """Add up the squares of what the filter took away and of what lies near half the inner rate."""
     taps, high = ring.point.shape[0], ring.high
     for r in range(high.size):
@@ -372,7 +364,7 @@ def _see_removed(ring: SampleRing, center: int, point: int, out: States, row: in
         ring.removed[r] += removed * removed
     if point < taps:
         return
-    _filter(ring, HIGH_PASS, (point - HIGH_PASS.size // 2) % taps, high)
+    _filter(ring, high_pass, (point - high_pass.size // 2) % taps, high)
     for r in range(high.size):
         ring.folded[r] += high[r] * high[r]
 

@@ -95,7 +95,9 @@ def _typing(called: Routine) -> type:
 def _lowering(called: Routine) -> Callable[..., Any]:
     def call(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         convention = context.call_conv
-        address = builder.load(cgutils.add_global_variable(builder.module, WORD, called.symbol))
+        slot = builder.module.globals.get(called.symbol)  # there once it has been called in this module
+        slot = slot or cgutils.add_global_variable(builder.module, WORD, called.symbol)
+        address = builder.load(slot)
         with cgutils.if_unlikely(builder, builder.icmp_unsigned("==", address, WORD(0))):
             convention.return_user_exc(builder, RuntimeError, (NOT_PREPARED,))
         pointer = convention.get_function_type(sig.return_type, sig.args).as_pointer()

@@ -64,6 +64,7 @@ def doubled(whole_tuple: Whole, factor: float, count: int) -> tuple[float, float
 @compiled
 def call(whole_tuple: Whole, found: np.ndarray) -> None:
     found[0], found[1] = doubled(whole_tuple, 3, 4)
+    found[2], found[3] = doubled(whole_tuple, 5, 6)
 
 
 @pytest.mark.parametrize("on", [True, False])
@@ -105,13 +106,14 @@ def test_layouts_that_compiled_functions_would_misread_are_refused():
         by_address(whole()._replace(location=np.zeros(5)))
 
 
-def test_a_routine_runs_once_it_is_prepared():
-    whole_tuple, found = by_address(whole()), np.zeros(2)
+def test_a_routine_runs_once_it_is_prepared_as_often_as_it_is_called():
+    whole_tuple, found = by_address(whole()), np.zeros(4)
     with pytest.raises(RuntimeError, match="prepared"):
         call(whole_tuple, found)
     doubled.prepare(whole_tuple)
     call(whole_tuple, found)
-    assert found.tolist() == [6.0 * whole_tuple.rate, 4.0] == list(doubled(whole_tuple, 3, 4))
+    assert found[:2].tolist() == [6.0 * whole_tuple.rate, 4.0] == list(doubled(whole_tuple, 3, 4))
+    assert found[2:].tolist() == [10.0 * whole_tuple.rate, 6.0]
 
 
 def test_a_scene_prepares_the_laws_it_has_and_no_others(monkeypatch):
