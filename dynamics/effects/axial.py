@@ -36,27 +36,37 @@ class Axial(RotorEffect):
         return Verdict(True, True, "a helical mesh pushes along the axis", influence)
 
     def check(self, mechanism: Mechanism) -> None:
-        """Refuse a shaft that helical meshes push along its axis and that nothing holds there.
+        """Refuse a shaft that is pushed along its axis and that nothing holds there.
 
-        Idlers, planets between sun and ring and double helical gears balance themselves. Three choices hold a
-        shaft rigidly: the effect "off", a drive at rest, and no bearing on the shaft at all.
+        Idlers and planets between sun and ring balance themselves. So do double helical gears: their meshes
+        alone hold them, and between these the shaft floats; without axial stiffness it would not. Three
+        choices hold a shaft rigidly: the effect "off", a drive at rest, and no bearing on the shaft at all.
 
         Raises `InputError`.
         """
-        gears = mechanism.scene.gears
+        scene = mechanism.scene
         for rotor, sense in zip(mechanism.rotors, mechanism.kinematics.sense, strict=True):
-            floats = rotor.radial_stiffness > 0.0 and rotor.axial_stiffness == 0.0
-            pushes = _thrusts(mechanism, rotor)
-            if sense and floats and abs(sum(pushes)) > BALANCED * sum(map(abs, pushes)):
-                index, gear = next(
-                    (i, gear)
-                    for i, gear in enumerate(gears)
-                    if gear.shaft == rotor.shaft.name and gear.base_helix_angle != 0.0
-                )
-                bound = f'on a shaft with axial support, which "{rotor.shaft.name}" lacks'
-                switch = f'set the effect "{self.name}" to "off".'
-                advice = f"Give one of its bearings axial stiffness, or {switch}"
-                raise InputError(f"gears[{index}]", gear.name, bound, advice)
+            name, pushes = rotor.shaft.name, _thrusts(mechanism, rotor)
+            if not sense or rotor.radial_stiffness == 0.0 or rotor.axial_stiffness > 0.0:
+                continue
+            hold = f'hold it rigidly by setting the effect "{self.name}" to "off".'
+            for index, force in enumerate(scene.forces):
+                if force.shaft == name and force.force[2] != 0.0:
+                    bound = f'0 on "{name}", which nothing holds along its axis'
+                    advice = f"Give one of its bearings axial stiffness, or {hold}"
+                    raise InputError(f"forces[{index}].force.z", force.force[2], bound, advice)
+            own = [(k, gear) for k, gear in enumerate(scene.gears) if gear.shaft == name]
+            helical = [(k, gear) for k, gear in own if gear.base_helix_angle != 0.0]
+            hands = {gear.base_helix_angle > 0.0 for _, gear in helical}
+            if abs(sum(pushes)) > BALANCED * sum(map(abs, pushes)):
+                bound = f'on a shaft with axial support, which "{name}" lacks'
+                advice = f"Give one of its bearings axial stiffness, or {hold}"
+            elif len(hands) == 2 and any(pushes):
+                bound = f'on a shaft free to float: "{name}" is double helical, without axial support'
+                advice = f"Give one of its bearings an axial stiffness, however small, or {hold}"
+            else:
+                continue
+            raise InputError(f"gears[{helical[0][0]}]", helical[0][1].name, bound, advice)
 
 
 def _thrusts(mechanism: Mechanism, rotor: Rotor) -> list[float]:

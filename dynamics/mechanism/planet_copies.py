@@ -143,10 +143,12 @@ def _offsets(
     """Lead of the meshes of each planet over the first one's, base pitches, by name of the mesh.
 
     The teeth of a central gear that turns against the carrier in the sense s come to a planet at the angle
-    psi s z psi / (2 pi) pitches later. All central gears of a planet gear must require the same tooth.
+    psi s z psi / (2 pi) pitches later. All central gears of a planet gear must require the same tooth, and
+    the gears of a stepped planet, which are fixed on one shaft, the same angle of that shaft.
     """
     offsets: dict[str, list[Turn]] = {}
     first: dict[str, list[Turn]] = {}
+    teeth: dict[str, int] = {}
     for index, mesh in enumerate(scene.meshes):
         gears = scene.gear(mesh.driver), scene.gear(mesh.driven)
         if shaft not in (gears[0].shaft, gears[1].shaft):
@@ -157,7 +159,26 @@ def _offsets(
             sense = -sense
         offsets[mesh.name] = [-sense * central.teeth * turn for turn in turns]
         _check_fit(offsets[mesh.name], first.setdefault(planet.name, offsets[mesh.name]))
+        teeth[planet.name] = planet.teeth
+    _check_steps(first, teeth)
     return offsets
+
+
+def _check_steps(offsets: Mapping[str, Sequence[Turn]], teeth: Mapping[str, int]) -> None:
+    """Refuse a stepped planet whose copies would need another angle between their gears than the first one.
+
+    A gear of z teeth that must be o teeth ahead lets the shaft stand at (o + k)/z turns, k = 0 to z - 1.
+    """
+    names = list(offsets)
+    for own, name in zip(names[:1] * len(names), names[1:], strict=False):
+        for index, (ahead, wanted) in enumerate(zip(offsets[own], offsets[name], strict=True)):
+            angles = ((ahead + k) * Fraction(teeth[name], teeth[own]) - wanted for k in range(teeth[own]))
+            off = min((float(angle - round(angle)) for angle in angles), key=abs)
+            if abs(off) > TOOTH_FIT:
+                value = f'planet {index + 1}, off by {off:.6g} teeth of "{name}"'
+                bound = f'where "{own}" and "{name}" of a stepped planet fit at once, fixed as on the first'
+                suggestion = "Change tooth numbers, the number of planets or their angles."
+                raise InputError("number", value, bound, suggestion)
 
 
 def _check_fit(mine: Sequence[Turn], other: Sequence[Turn]) -> None:

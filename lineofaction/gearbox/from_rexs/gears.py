@@ -200,9 +200,16 @@ def _offset(layout: Layout, stage: GearStage) -> dict[str, float]:
     """Return the position of planet and ring at the start: half a pitch if the planet's teeth are even.
 
     A planet's flanks at sun and ring are opposite: half a turn apart, and an even number of teeth is then a
-    whole number of pitches, of which tooth meets space.
+    whole number of pitches, of which tooth meets space. No file says how the gears of a stepped planet stand.
     """
-    if layout.carrier(stage) is None or not stage.internal or min(stage.teeth) % 2:
+    if layout.carrier(stage) is None or not stage.internal:
+        return {}
+    planet = stage.shafts[stage.teeth.index(min(stage.teeth))]
+    if len({gear.teeth for gear in planet.children("cylindrical_gear")}) > 1:
+        words = "0: a stepped planet, and no file says at which angle its gears stand; state it in the scene"
+        stage.stage.say("position_offset", "defaulted", words)
+        return {}
+    if min(stage.teeth) % 2:
         return {}
     stage.stage.say("position_offset", "derived", "0.5: the planet's number of teeth is even")
     return {"position_offset": 0.5}

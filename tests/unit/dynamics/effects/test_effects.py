@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import pytest
-from geared_scenes import gear_pair_scene, with_bushings, with_gear
+from geared_scenes import gear_pair_scene, spring_table, with_bushings, with_gear
 from planetary_scenes import BEARING_STIFFNESS, PRESSURE_ANGLE, driven_scene, published_set
 
 from dynamics.assembly.assemble import assemble
 from dynamics.effects import EFFECTS, LEFT_OUT, RotorEffect
 from dynamics.errors import InputError
+from dynamics.integrators import static_equilibrium
 from dynamics.loads import AppliedForce
 from dynamics.shafts import Inertia
 
@@ -19,6 +21,62 @@ from dynamics.shafts import Inertia
 def kinds(scene, shaft="output"):
     names = assemble(scene).freedoms.name
     return [name.split(".")[1] for name in names if name.startswith(f"{shaft}.")]
+
+
+def pushed(**changes):
+    """A pair whose bearings hold across alone, and a force along the output."""
+    force = AppliedForce("push", "output", 0.1, (0.0, 0.0, 50.0))
+    return replace(with_bushings(gear_pair_scene(), axial_stiffness=0.0), forces=(force,), **changes)
+
+
+def double_helical(stiffness, **changes):
+    """Two halves of opposite hand on each shaft; the input's bearings hold it by that stiffness along it."""
+    scene = gear_pair_scene()
+    gears = tuple(
+        replace(gear, name=gear.name + half, position=z, base_helix_angle=hand * own)
+        for gear, own in zip(scene.gears, (0.4, -0.4), strict=True)
+        for half, z, hand in ((" left", 0.07, 1.0), (" right", 0.13, -1.0))
+    )
+    meshes = tuple(
+        replace(
+            scene.meshes[0], name=half, driver="pinion" + half, driven="wheel" + half, nominal_force=1300.0
+        )
+        for half in (" left", " right")
+    )
+    bushings = tuple(
+        replace(part, axial_stiffness=stiffness if part.shaft == "input" else 1e8) for part in scene.bushings
+    )
+    return replace(scene, gears=gears, meshes=meshes, bushings=bushings, **changes)
+
+
+@pytest.mark.parametrize(
+    ("scene", "field", "words"),
+    [
+        (pushed, "forces[0].force.z", "nothing holds along its axis"),
+        (partial(double_helical, 0.0), "gears[0]", "double helical, without axial support"),
+    ],
+)
+def test_what_moves_along_an_axis_is_not_held_in_silence(scene, field, words):
+    with pytest.raises(InputError) as caught:
+        assemble(scene())
+    assert caught.value.field == field and words in str(caught.value)
+    assert "axial stiffness" in str(caught.value) and '"off"' in str(caught.value)
+    assemble(scene(effects={"axial": "off"}))
+
+
+def test_a_double_helical_shaft_that_may_float_shares_the_load_of_unlike_halves():
+    """A mesh that is early on the left: the shaft moves along until both halves carry as much."""
+
+    def share(stiffness):
+        scene = double_helical(stiffness, effects={"axial": "on"})
+        early = replace(scene.meshes[0], table=spring_table(4e8, level=1.0))
+        late = replace(scene.meshes[1], table=spring_table(2e8, level=1.0))
+        system = assemble(replace(scene, meshes=(early, late)))
+        force = static_equilibrium(system).mesh_force
+        return float(force[0] / force[1])
+
+    assert share(1.0) == pytest.approx(1.0, abs=1e-6)
+    assert share(1e9) > 1.02
 
 
 def test_a_centered_spur_pair_moves_across_and_turns():

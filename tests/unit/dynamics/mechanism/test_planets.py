@@ -231,6 +231,52 @@ def test_copies_have_the_phases_and_positions_of_the_set(driver, sense):
         assert (twin.position_offset - mesh.position_offset) % 1.0 == pytest.approx(0.0, abs=1e-9)
 
 
+def stepped(scene):
+    """The planets with a second gear of 26 teeth, which meshes with a ring gear of 89."""
+    steps = tuple(
+        replace(gear, name=f"{gear.name} step", teeth=26, base_radius=gear.base_radius * 26 / gear.teeth)
+        for gear in scene.gears
+        if gear.name.startswith("planet")
+    )
+    gears = tuple(
+        replace(gear, teeth=89, base_radius=gear.base_radius * 89 / gear.teeth)
+        if gear.name == "ring"
+        else gear
+        for gear in scene.gears
+    )
+    meshes = tuple(
+        replace(mesh, driver=f"{mesh.driver} step") if mesh.driver.startswith("planet") else mesh
+        for mesh in scene.meshes
+    )
+    return replace(scene, gears=(*gears, *steps), meshes=meshes)
+
+
+def test_a_stepped_planet_turns_by_both_of_its_gears():
+    """i = 1 + z_ring z_1 / (z_2 z_sun)."""
+    run = simulate(stepped(planetary_scene(published_set(3, teeth=(27, 36, 99)), duration=0.002)))
+    speed = dict(zip(run.shaft, run.speed[:, 0], strict=True))
+    assert speed["sun"] / speed["carrier"] == pytest.approx(1.0 + 89 * 36 / (26 * 27), rel=1e-6)
+
+
+@pytest.mark.parametrize(("number", "fits"), [(1, True), (2, False), (3, True), (4, False), (5, False)])
+def test_copies_of_a_stepped_planet_fit_with_both_gears_or_are_refused(number, fits):
+    """36 and 26 teeth between 27 and 89: three copies of one part can be put in, two, four or five cannot."""
+    whole = stepped(planetary_scene(published_set(3, teeth=(27, 36, 99))))
+    kept = {"planet 1", "sun", "ring", "carrier"}
+    one = replace(
+        whole,
+        shafts=tuple(s for s in whole.shafts if s.name in kept),
+        gears=tuple(g for g in whole.gears if g.shaft in kept),
+        planet_bearings=tuple(b for b in whole.planet_bearings if b.shaft in kept),
+        meshes=tuple(m for m in whole.meshes if m.name.endswith(" 1")),
+    )
+    if fits:
+        assert len(with_planets(one, "planet 1", number).meshes) == 2 * number
+        return
+    with pytest.raises(InputError, match=r"number = .*planet 2, off by .* a stepped planet .* Change tooth"):
+        with_planets(one, "planet 1", number)
+
+
 def test_discs_of_a_planet_are_on_all_planets():
     first = only_first(driven_scene(published_set(3)))
     disc = DiscBody("disc", "planet 1", 0.01, Inertia(0.5, 1e-3, 1e-3))
