@@ -191,8 +191,11 @@ SUN, RING, CARRIER, PLANETS, SET = 3, 4, 5, (6, 7, 8), 20
 PLANET_TEETH, SUN_TEETH, RING_TEETH = 22, 20, 64
 
 
-def planetary(turned: float = 0.0) -> Document:
-    """Return a planetary set: sun 20, three planets 22, ring 64 held by a coupling; turned about u (deg)."""
+def planetary(turned: float = 0.0, step: int = 0) -> Document:
+    """Return a planetary set: sun 20, three planets 22, ring 64 held by a coupling; turned about u (deg).
+
+    With a `step` the planets have a second gear of so many teeth, which meshes with a ring of 42 more.
+    """
     built: dict[int, tuple[str, dict[str, Any]]] = {
         ROOT: ("gear_unit", place(0.0, 0.0, 0.0)),
         CASING: ("gear_casing", {}),
@@ -228,7 +231,7 @@ def planetary(turned: float = 0.0) -> Document:
         rows.append(("flank", {"gear": number, "left": 200 + number, "right": 300 + number}))
 
     gear(11, SUN, "cylindrical_gear", SUN_TEETH)
-    gear(12, RING, "ring_gear", RING_TEETH)
+    gear(12, RING, "ring_gear", step + 42 if step else RING_TEETH)
     for number, planet in enumerate(PLANETS):
         built[planet] = ("shaft", place(*_across(42.0, turned + 120.0 * number)))
         gear(13 + number, planet, "cylindrical_gear", PLANET_TEETH)
@@ -236,7 +239,10 @@ def planetary(turned: float = 0.0) -> Document:
         built[21 + number] = ("cylindrical_stage", {"center_distance": 42.0})
         built[24 + number] = ("cylindrical_stage", {"center_distance": 42.0})
         rows.append(("stage", {"stage": 21 + number, "gear_1": 11, "gear_2": 13 + number}))
-        rows.append(("stage", {"stage": 24 + number, "gear_1": 13 + number, "gear_2": 12}))
+        if step:
+            gear(16 + number, planet, "cylindrical_gear", step)
+        own = 16 + number if step else 13 + number
+        rows.append(("stage", {"stage": 24 + number, "gear_1": own, "gear_2": 12}))
         at = {"u_coordinate_on_shaft_outer_side": 20.0, "radial_stiffness": 1e20}
         built[31 + number] = ("concept_bearing", at)
         rows.append(("side", {"assembly": 31 + number, "inner_part": CARRIER, "outer_part": planet}))

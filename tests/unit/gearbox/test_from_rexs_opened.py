@@ -226,6 +226,15 @@ def test_a_planetary_set_turns_and_carries_by_willis() -> None:
     assert cases[0].case.load.torque_n_m == (pytest.approx(30.0, rel=1e-8),)
 
 
+def test_no_angle_between_the_gears_of_a_stepped_planet_is_made_up() -> None:
+    """One gear of 22 teeth is half a pitch ahead at the ring; of two gears no file says how they stand."""
+    assert said(OpenedUnit.of(planetary()), 24, "position_offset")[0] == "derived"
+    how, words = said(OpenedUnit.of(planetary(step=18)), 24, "position_offset")
+    assert how == "defaulted" and "stepped planet" in words
+    offset = [mesh.position_offset for mesh in scene_of(planetary(step=18)).meshes]
+    assert offset == [0.0, 0.0]
+
+
 def test_planets_may_begin_at_any_angle() -> None:
     for turned in (0.0, 25.0):
         (planet,) = [s for s in scene_of(planetary(turned)).shafts if s.name == f"shaft {PLANETS[0]}"]
