@@ -12,8 +12,8 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (39_171, 693),
-    ("dynamics",): (40_613, 761),
-    ("lineofaction.gearbox",): (21_756, 430),
+    ("dynamics",): (40_644, 761),
+    ("lineofaction.gearbox",): (21_763, 430),
     ("lineofaction.report",): (10_509, 200),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
