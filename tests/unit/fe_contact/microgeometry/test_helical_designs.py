@@ -271,10 +271,10 @@ def test_every_load_is_confirmed_by_an_analysis_at_its_misalignment(found: Optim
     assert harris.torque.tolist() == [150.0, 200.0, 300.0, 300.0]
     skews = [4e-6, 4e-6 - 10e-6 / 3.0, -6e-6, 12e-6]  # between its neighbors, that which only the map shows
     np.testing.assert_allclose(found.map_misalignment, skews, rtol=1e-12)
-    made = modified(HELICAL, found.optimum.values)
+    made, positions = modified(HELICAL, found.optimum.values), found.optimum.table.position.size
     for k, skew in enumerate(skews):
         torque = float(harris.torque[k])
-        table = analyze(made, torques=[torque], misalignments=[skew], level="draft")
+        table = analyze(made, torques=[torque], misalignments=[skew], level="draft", positions=positions)
         assessed = table.peak_to_peak(torque=torque)
         assert abs(harris.nominal[k] - assessed.value) <= assessed.error
         assert harris.nominal_error[k] == pytest.approx(assessed.error, rel=0.1, abs=0.0)
