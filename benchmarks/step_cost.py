@@ -10,7 +10,7 @@ from benchmarks.fresh_process import measure
 _CODE = (
     "from benchmarks.step_cost_cases import measured as cost\nmeasured = cost({stem!r}, {whole}, {part})\n"
 )
-DEFAULT_OVER_BARE = 1.4
+DEFAULT_OVER_BARE = 1.25
 
 
 def figures() -> list[Figure]:

@@ -82,7 +82,7 @@ _RECEIPT = Declared(
     Kind.CHOICE,
     "",
     one_of(("full", "minimal")),
-    "full: measure the errors of time steps and tables in windows of the run (6 to 21 % more time); minimal: "
+    "full: measure the errors of time steps and tables in windows of the run (3 to 40 % more time); minimal: "
     "state the tolerance only",
     "full",
 )
@@ -107,8 +107,8 @@ _FILTER = Declared(
 class Outputs:
     """The outputs that a run stores.
 
-    With `energy_audit` the run integrates the powers and balances them at the end, which takes a third to
-    three quarters more time, more with more levels in the tables.
+    With `energy_audit` the run integrates the powers and balances them at the end, which takes up to a sixth
+    more time, more with tables over misalignment and center distance.
     """
 
     sample_rate: float | None = declared(None, _RATE)
