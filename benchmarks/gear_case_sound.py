@@ -1,0 +1,91 @@
+"""Levels of five gear cases by radiation models, less those of boundary elements, at their loudest modes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchmarks.figures import Figure
+from benchmarks.gear_case_solids import CASES
+from dynamics.acoustics import (
+    Air,
+    BoundaryElements,
+    ElementalRadiators,
+    EquivalentRadiatedPower,
+    a_weighting,
+    outer_hull,
+    resistance,
+)
+from dynamics.housings import ReducedHousing
+from dynamics.noise import estimated_radiation, housing_radiation, radiating_hull
+from dynamics.types import ComplexArray, FloatArray
+from dynamics.vibration.housing_motion import modal_amplitudes
+
+MODES, LINES = 40, 3
+RANGE = 300.0, 1300.0
+"""Hz; a hull of 1600 panels, 20 CPU s for boundary elements, resolves the highest."""
+MODELS = (EquivalentRadiatedPower(), ElementalRadiators())
+LIMIT = 1.5
+"""dB, of the estimate."""
+
+
+def figures() -> list[Figure]:
+    """Return what the models are off on each case, at its loudest line and over all lines."""
+    return [figure for name in CASES for figure in _figures_of(name)]
+
+
+def _figures_of(name: str) -> list[Figure]:
+    errors = case_errors(CASES[name].reduced(MODES))
+    made = [
+        Figure(f"{name}, {LINES} lines", f"{model}, mean error", float(np.mean(values)), "dB")
+        for model, values in errors.items()
+        if model != "band"
+    ]
+    loudest = Figure(f"{name}, loudest line", "estimate, error", abs(errors["estimate"][0]), "dB", LIMIT)
+    return [*made, loudest, Figure(name, "band of the estimate", float(np.mean(errors["band"])), "dB", 8.0)]
+
+
+def case_errors(housing: ReducedHousing) -> dict[str, list[float]]:
+    """Return the errors of each model at the loudest lines, dB, and the widths of the band."""
+    air, outer = Air(), outer_hull(housing)
+    estimate = estimated_radiation(housing, housing_radiation(housing, MODELS[1], RANGE, air), air)
+    names = [*(model.model_name for model in MODELS), "estimate", "band"]
+    errors: dict[str, list[float]] = {name: [] for name in names}
+    for hertz in loudest_lines(housing):
+        modal = _modal_velocity(housing, np.array([hertz]))[0]
+        velocity = housing.modes[1] @ modal
+        panels = radiating_hull(outer, hertz, air.sound_speed)
+        finest, *others = (
+            _power(resistance(model, panels.hull, hertz, panels.shapes.astype(complex), air), velocity)
+            for model in (BoundaryElements(), *MODELS)
+        )
+        others.append(float(estimate.power(np.array([hertz]), velocity[None])[0]))
+        for name, power in zip(names, others, strict=False):
+            errors[name].append(10.0 * float(np.log10(power / finest)))
+        alone = estimate.alone(np.array([hertz]), housing.modes[1])[0] * np.abs(modal) ** 2
+        low, high = estimate.error_band(hertz, alone)
+        errors["band"].append(high - low)
+    return errors
+
+
+def loudest_lines(housing: ReducedHousing) -> list[float]:
+    """Return the loudest resonances by A-weighted velocity under unit forces on the seats, Hz."""
+    hertz = np.geomspace(*RANGE, 3000)
+    surface = outer_hull(housing).surface
+    velocity = _modal_velocity(housing, hertz) @ housing.modes[1].T
+    moving = np.sum(velocity.conj() * (velocity @ surface), axis=1).real
+    level = 10.0 * np.log10(moving) + a_weighting(hertz)
+    peaks = np.flatnonzero((level[1:-1] > level[:-2]) & (level[1:-1] >= level[2:])) + 1
+    return [float(hertz[at]) for at in peaks[np.argsort(-level[peaks])][:LINES]]
+
+
+def _modal_velocity(housing: ReducedHousing, hertz: FloatArray) -> ComplexArray:
+    """Return velocities of the modes under forces of random phase and direction on the seats, (F, m)."""
+    motions = sum(len(seat.motions) for seat in housing.seats)
+    real, imaginary = np.random.default_rng(3).normal(size=(2, motions))
+    along = [number % len(seat.motions) < 3 for seat in housing.seats for number in range(len(seat.motions))]
+    force = np.where(along, real + 1j * imaginary, 0.0)
+    return np.asarray(2j * np.pi * hertz[:, None] * modal_amplitudes(housing, hertz, force[None, None])[:, 0])
+
+
+def _power(matrix: ComplexArray, velocity: ComplexArray) -> float:
+    return 0.5 * float(np.real(velocity.conj() @ matrix @ velocity))
