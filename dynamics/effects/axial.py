@@ -49,21 +49,18 @@ class Axial(RotorEffect):
             name, pushes = rotor.shaft.name, _thrusts(mechanism, rotor)
             if not sense or rotor.radial_stiffness == 0.0 or rotor.axial_stiffness > 0.0:
                 continue
-            hold = f'hold it rigidly by setting the effect "{self.name}" to "off".'
+            advice = f'Give one of its bearings axial stiffness, or set the effect "{self.name}" to "off".'
             for index, force in enumerate(scene.forces):
                 if force.shaft == name and force.force[2] != 0.0:
                     bound = f'0 on "{name}", which nothing holds along its axis'
-                    advice = f"Give one of its bearings axial stiffness, or {hold}"
                     raise InputError(f"forces[{index}].force.z", force.force[2], bound, advice)
             own = [(k, gear) for k, gear in enumerate(scene.gears) if gear.shaft == name]
             helical = [(k, gear) for k, gear in own if gear.base_helix_angle != 0.0]
-            hands = {gear.base_helix_angle > 0.0 for _, gear in helical}
             if abs(sum(pushes)) > BALANCED * sum(map(abs, pushes)):
                 bound = f'on a shaft with axial support, which "{name}" lacks'
-                advice = f"Give one of its bearings axial stiffness, or {hold}"
-            elif len(hands) == 2 and any(pushes):
+            elif any(pushes) and len({gear.base_helix_angle > 0.0 for _, gear in helical}) == 2:
                 bound = f'on a shaft free to float: "{name}" is double helical, without axial support'
-                advice = f"Give one of its bearings an axial stiffness, however small, or {hold}"
+                advice = advice.replace("axial stiffness", "axial stiffness, however small")
             else:
                 continue
             raise InputError(f"gears[{helical[0][0]}]", helical[0][1].name, bound, advice)

@@ -175,9 +175,7 @@ def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: Comp
     unheld = ~(np.abs(dynamic) > UNDAMPED * (natural**2 + omega[:, None] ** 2))
     if np.any(unheld):
         at, mode = np.argwhere(unheld)[0]
-        advice = (
-            "Give the housing damping, by loss_factor, damping_ratio or its mounts, or leave that speed out."
-        )
+        advice = "Give the housing damping (loss_factor, damping_ratio, mounts), or leave that speed out."
         where = Quantity(float(natural[mode] / (2.0 * math.pi)), "Hz")
         off = Text.of("off the natural frequency of a mode of the housing without damping, ", where)
         raise InputError("frequency", float(omega[at] / (2.0 * math.pi)), off, advice)
