@@ -7,6 +7,7 @@ from fe_contact.contact.assembly import (
     face_contact_problem,
     in_pitches,
     with_compliances,
+    with_face_tilt,
     with_flanks,
 )
 from fe_contact.contact.candidates import (
@@ -46,6 +47,7 @@ __all__ = [
     "solve_contact",
     "teeth_in_reach",
     "with_compliances",
+    "with_face_tilt",
     "with_flanks",
     "with_gaps",
 ]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.contact.model import GapTerm
+from fe_contact.contact.model import Break, GapTerm
 from fe_contact.contact.newton import NewtonSystem, empty_system, newton_system
 from fe_contact.contact.point_problem import (
     PointProblem,
@@ -46,22 +47,19 @@ class _Adjoint:
         contact is not solved. Their sum over the candidates, times `Candidates.motion_arm`, is 1.
     middle, half : ndarray, shape (P, L, m)
         Middle of each contact strip from the touching point on, towards tip 1, and half its length, m.
-    tilt : ndarray, shape (P, L, m)
-        Of the flanks, and as much again of what else moves: how the weighed motions grow along the flank, 1.
     """
 
     weight: FloatArray
     middle: FloatArray
     half: FloatArray
-    tilt: FloatArray
 
 
 def adjoint(problem: ContactProblem, solution: ContactSolution) -> _Adjoint:
     """Find the weights of all candidates, and the strips, of a solved problem."""
-    weight, middle, half, tilt = np.zeros((4, *solution.force.shape))
-    _weigh(point_problems(problem), solution.force, weight, middle, half, tilt)
+    weight, middle, half = np.zeros((3, *solution.force.shape))
+    _weigh(point_problems(problem), solution.force, weight, middle, half)
     weight[solution.status != Status.CONVERGED] = np.nan
-    return _Adjoint(weight, middle, half, tilt)
+    return _Adjoint(weight, middle, half)
 
 
 @njit(cache=True, error_model="numpy")
@@ -71,14 +69,12 @@ def _weigh(
     weight: FloatArray,
     middle: FloatArray,
     half: FloatArray,
-    tilt: FloatArray,
 ) -> None:
     """Fill in the weights and strips of all positions and loads."""
     for p in range(force.shape[0]):
         problem, here = problem_at(every, p)
         for k in range(force.shape[1]):
             weights = _weights(problem, force[p, k][here])
-            tilts = _tilts(problem, force[p, k][here], weights)
             for q in range(here.size):
                 if force[p, k, here[q]] > 0.0:
                     at = here[q]
@@ -86,24 +82,6 @@ def _weigh(
                     middle[p, k, at], half[p, k, at] = carrying_strip(
                         problem.law, problem.place[q], force[p, k, at]
                     )
-                    tilt[p, k, at] = motion_at(problem, q, tilts)
-
-
-@njit(cache=True, error_model="numpy")
-def _tilts(problem: PointProblem, force: FloatArray, weights: FloatArray) -> FloatArray:
-    """Return how fast the weighed motions grow as the place where slices (n,) press moves, per weight there.
-
-    What moves the place itself grows by the tilt of the bodies; what it moves elsewhere by theirs under the
-    weights.
-    """
-    n = problem.bodies.shape[0]
-    held, weighed, tilts = np.zeros(n), np.zeros(n), np.zeros(n)
-    press(problem, force, held)
-    press(problem, weights, weighed)
-    for j in range(n if problem.tilt.size else 0):
-        if held[j] > 0.0 and weighed[j] > 0.0:
-            tilts[j] = dot(problem.tilt[j], held + held[j] / weighed[j] * weighed, n)
-    return tilts
 
 
 @njit(cache=True, error_model="numpy")
@@ -205,6 +183,144 @@ _POINTS = 8
 
 
 @dataclass(frozen=True)
+class _Strips:
+    """Strips of k contacts, about their touching points.
+
+    Attributes
+    ----------
+    s_1, s_2 : ndarray, shape (k,)
+        Flank coordinates of the touching points, m.
+    roll_1 : ndarray, shape (k,)
+        Roll length of gear 1 on the line of action, m.
+    face : ndarray, shape (k,)
+        Distance from the pinion's mid-face, m.
+    middle, half : ndarray, shape (k,)
+        Of the strip from the touching point on, m.
+    """
+
+    pair: ParallelAxes
+    s_1: FloatArray
+    s_2: FloatArray
+    roll_1: FloatArray
+    face: FloatArray
+    middle: FloatArray
+    half: FloatArray
+
+    def removed(self, gap: GapTerm) -> tuple[FloatArray, FloatArray]:
+        """Return the gap at the touching points and its mean over the strips (k,), m."""
+        if not gap.along_profile:
+            mating = self.pair.mating_roll_length(self.roll_1)
+            steady = np.asarray(gap(self.pair, self.roll_1, mating, self.face))
+            return steady, steady
+        smooth, breaks = self._parted(gap, (-_NODE, 0.0, _NODE))
+        slope = (smooth[2] - smooth[0]) / (2.0 * _NODE)
+        bend = (smooth[2] - 2.0 * smooth[1] + smooth[0]) / _NODE**2
+        back = -self.middle / self.half
+        there, mean = smooth[1] + back * (slope + 0.5 * back * bend), smooth[1] + 0.25 * bend
+        for each, distance in breaks:
+            there = there + each.height(-distance)
+            mean = mean + self._past(each, distance)[0]
+        return there, mean
+
+    def slopes(self, gap: GapTerm) -> FloatArray:
+        """Return the mean slope of a gap over the strips (k,)."""
+        smooth, breaks = self._parted(gap, (-_NODE, _NODE))
+        slope = (smooth[1] - smooth[0]) / (2.0 * _NODE * self.half)
+        return np.asarray(slope + sum(each.side * self._past(each, distance)[1] for each, distance in breaks))
+
+    def _parted(
+        self, gap: GapTerm, places: tuple[float, ...]
+    ) -> tuple[FloatArray, list[tuple[Break, FloatArray]]]:
+        """Return a gap without its breaks at places of each strip, in half strips; breaks and distances."""
+        x = self.middle + self.half * np.array(places)[:, None]
+        breaks = [(each, each.distance(self.s_1, self.s_2)) for each in gap.breaks(self.pair, self.face)]
+        whole = gap(self.pair, *rolls_at(self.pair, self.s_1 + x, self.s_2 - x), self.face)
+        return whole - sum(each.height(x - distance) for each, distance in breaks), breaks
+
+    def _past(self, start: Break, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the means over the strips of what a break removes, m, and of its slope."""
+        beyond = start.side * (distance - self.middle)  # from the middle to the break
+        jump, bend = (np.broadcast_to(value, beyond.shape) for value in (start.jump, start.bend))
+        return _means_past_break(beyond, self.half, jump, bend)
+
+    def nodes(
+        self, gear: int, roll_length: FloatArray, face_position: FloatArray, x: FloatArray
+    ) -> Iterator[tuple[IntArray, FloatArray]]:
+        """Yield the four nodes of a grid about places x (X, k) along the flank, and their parts there."""
+        roll = rolls_at(self.pair, self.s_1 + x, self.s_2 - x)[gear]
+        along = np.broadcast_to(self.face - gear * self.pair.axial_offset, x.shape)
+        (i, part), (j, other) = _between(roll_length, roll), _between(face_position, along)
+        for a, in_roll in ((0, 1.0 - part), (1, part)):
+            for b, in_face in ((0, 1.0 - other), (1, other)):
+                yield (i + a) * face_position.size + j + b, in_roll * in_face
+
+
+@dataclass(frozen=True)
+class _FollowingPatches:
+    """How patches follow the slope of small gaps, and what motions of the bodies that adds.
+
+    Attributes
+    ----------
+    problem : ContactProblem
+    held : ndarray, shape (P, L, n)
+        Forces on the slices, N.
+    at_rest : _Strips
+        Strips under a small load of all candidates, by which patches follow; k = P m.
+    index : ndarray of int, shape (k,)
+        Of each among all positions and candidates, flattened.
+    way : ndarray, shape (k,)
+        Motion of its patch towards tip 1 per slope of the gap, m; patches of a slice move by their mean.
+    """
+
+    problem: ContactProblem
+    held: FloatArray
+    at_rest: _Strips
+    index: IntArray
+    way: FloatArray
+
+    @classmethod
+    def of(cls, pair: ParallelAxes, problem: ContactProblem, force: FloatArray) -> _FollowingPatches:
+        """Take those of a solved problem."""
+        c, held = problem.candidates, problem.candidates.on_slices(force)
+        touch, rest = c.touch, c.strips
+        free = (rest.slope == 0.0) & (np.abs(touch.moved) < c.slices.law_length) & np.isfinite(c.gap)
+        loaded = np.repeat(held.any(axis=1), c.pair.size // held.shape[2], axis=1)
+        at = np.nonzero(free & loaded)
+        places = touch.s_1[at], touch.s_2[at], touch.roll_1[at], c.face_position[at[1]]
+        at_rest = _Strips(pair, *places, rest.middle[at], rest.half[at])
+        way = -math.cos(c.base_helix_angle) / rest.curvature[at]
+        return cls(problem, held, at_rest, np.ravel_multi_index(at, c.gap.shape), way)
+
+    def opened(self, gap: GapTerm) -> FloatArray:
+        """Return what normal approach a small gap takes away from the candidates (P, L, m) thereby, m."""
+        c, moved = self.problem.candidates, np.zeros(self.problem.candidates.gap.shape)
+        moved.flat[self.index] = self.way * self.at_rest.slopes(gap)
+        by_slice = c.on_mean(moved)[:, None]
+        rolled = by_slice * self._times(self.held) + self._times(by_slice * self.held, back=True)
+        return c.at_points(rolled)
+
+    def by_slope(self, weight: FloatArray, rows: FloatArray) -> FloatArray:
+        """Return what the slope of a gap at each strip adds (Q, k) to sums `rows` (Q, P, L), m.
+
+        Of the transmission error, to which motions at the candidates add by their `weight` (P, L, m).
+        """
+        c = self.problem.candidates
+        pressed = c.on_slices(weight)
+        by_slice = pressed * self._times(self.held) + self.held * self._times(pressed)
+        on_slice = np.isfinite(c.gap).reshape(len(c.gap), by_slice.shape[2], -1).sum(axis=2)
+        mean = np.einsum("apl,pln->apn", rows, by_slice) / np.maximum(on_slice, 1)
+        by_point = np.repeat(mean, c.pair.size // by_slice.shape[2], axis=2)
+        return np.asarray(by_point.reshape(len(rows), -1)[:, self.index] * self.way)
+
+    def _times(self, values: FloatArray, *, back: bool = False) -> FloatArray:
+        """Return the tilts by forces (P, L, n); `back`: the motions of the others by what is displaced."""
+        tilt = self.problem.tilt
+        by_pitch = values.reshape(-1, len(tilt), *values.shape[1:])
+        how = "qij,tqli->tqlj" if back else "qij,tqlj->tqli"
+        return np.asarray(np.einsum(how, tilt, by_pitch, optimize=True)).reshape(values.shape)
+
+
+@dataclass(frozen=True)
 class CarryingStrips:
     """The k strips that carry, of all positions, loads and candidates.
 
@@ -214,19 +330,9 @@ class CarryingStrips:
         Numbers of positions, loads and candidates.
     index : ndarray of int, shape (k,)
         Of each among all of these, flattened.
-    s_1, s_2 : ndarray, shape (k,)
-        Flank coordinates of the touching points, m.
-    face : ndarray, shape (k,)
-        Distance from the pinion's mid-face, m.
-    roll_1 : ndarray, shape (k,)
-        Roll length of gear 1 on the line of action, m.
-    middle, half : ndarray, shape (k,)
-        Of the strip from the touching point on, m.
-    rolled : ndarray, shape (k,)
-        Normal approach taken away per slope of the gap over the strip under a small load, m: the slope
-        moves the place where the bodies are pressed.
-    rest_middle, rest_half : ndarray, shape (k,)
-        Of that strip (`Candidates.strips`), m.
+    strips : _Strips
+    following : _FollowingPatches or None
+        Of all candidates; None where patches stay.
     arm, normal : ndarray, shape (k,), and float
         Normal approach taken away per gap opened on the line of action: at the touching point, and by what
         is removed over the strip beyond that.
@@ -234,61 +340,49 @@ class CarryingStrips:
         dSTE per normal approach taken away.
     """
 
-    pair: ParallelAxes
     shape: tuple[int, int, int]
     index: IntArray
-    s_1: FloatArray
-    s_2: FloatArray
-    face: FloatArray
-    roll_1: FloatArray
-    middle: FloatArray
-    half: FloatArray
-    rolled: FloatArray
-    rest_middle: FloatArray
-    rest_half: FloatArray
+    strips: _Strips
+    following: _FollowingPatches | None
     arm: FloatArray
     normal: float
     weight: FloatArray
 
     @classmethod
-    def of(cls, pair: ParallelAxes, candidates: Candidates, adjoint: _Adjoint) -> CarryingStrips:
-        """Gather them from a solution of these candidates."""
-        at = np.nonzero(adjoint.weight)
-        strips = adjoint.middle[at], adjoint.half[at], adjoint.tilt[at], adjoint.weight[at]
-        return cls.at(pair, candidates, adjoint.weight.shape[1], at, *strips)
+    def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> CarryingStrips:
+        """Gather them from a solution of a problem."""
+        found = adjoint(problem, solution)
+        at = np.nonzero(found.weight)
+        following = _FollowingPatches.of(pair, problem, solution.force) if problem.tilt.size else None
+        strips = found.middle[at], found.half[at], found.weight[at]
+        return cls._at(pair, problem.candidates, found.weight.shape[1], at, following, *strips)
+
+    def at_edges(self, candidates: Candidates, at: tuple[IntArray, ...], half: float) -> CarryingStrips:
+        """Return strips without weight, `half` m long, at positions, loads and candidates of the same."""
+        zero = np.zeros(at[0].size)
+        pair, loads = self.strips.pair, self.shape[1]
+        return self._at(pair, candidates, loads, at, self.following, zero, zero + half, zero)
 
     @classmethod
-    def at(
+    def _at(
         cls,
         pair: ParallelAxes,
         candidates: Candidates,
         loads: int,
         at: tuple[IntArray, ...],
+        following: _FollowingPatches | None,
         middle: FloatArray,
         half: FloatArray,
-        tilt: FloatArray,
         weight: FloatArray,
     ) -> CarryingStrips:
-        """Take k strips at the positions, loads and candidates `at`, of so many loads."""
         p, _, m = at
-        touch, strips, shape = (
-            candidates.touch,
-            candidates.strips,
-            (candidates.position.size, loads, candidates.pair.size),
-        )
+        touch, shape = candidates.touch, (candidates.position.size, loads, candidates.pair.size)
+        places = touch.s_1[p, m], touch.s_2[p, m], touch.roll_1[p, m], candidates.face_position[m]
         return cls(
-            pair,
             shape,
             np.ravel_multi_index(at, shape),
-            touch.s_1[p, m],
-            touch.s_2[p, m],
-            candidates.face_position[m],
-            touch.roll_1[p, m],
-            middle,
-            half,
-            np.where(strips.slope == 0.0, -1.0 / strips.curvature, 0.0)[p, m] * tilt,
-            strips.middle[p, m],
-            strips.half[p, m],
+            _Strips(pair, *places, middle, half),
+            following,
             candidates.motion_arm[p, m],
             math.cos(candidates.base_helix_angle),
             weight,
@@ -304,39 +398,16 @@ class CarryingStrips:
 
         Linear in the gap. Between its breaks the gap counts as a parabola over each strip.
         """
-        there, mean, _ = self._removed(gap)
-        if gap.along_profile and self.rolled.any():
-            at_rest = replace(self, middle=self.rest_middle, half=self.rest_half)
-            mean = mean + self.rolled * at_rest._removed(gap)[2]
-        return np.asarray(self.arm * there + self.normal * (mean - there))
+        there, mean = self.strips.removed(gap)
+        opened = self.arm * there + self.normal * (mean - there)
+        if gap.along_profile and self.following is not None:
+            opened = opened + self.following.opened(gap).ravel()[self.index]
+        return np.asarray(opened)
 
     def change(self, opened: FloatArray) -> FloatArray:
         """Return what normal approach taken away (k,) in m adds to the transmission error, (P, L) in m."""
         rows = self.shape[:2]
         return np.asarray(np.bincount(self.row, self.weight * opened, math.prod(rows)).reshape(rows))
-
-    def _removed(self, gap: GapTerm) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the gap at the touching points and its mean over the strips (k,), m, and the mean slope."""
-        if not gap.along_profile:
-            mating = self.pair.mating_roll_length(self.roll_1)
-            steady = np.asarray(gap(self.pair, self.roll_1, mating, self.face))
-            return steady, steady, np.zeros(steady.shape)
-        x = self.middle + _NODE * self.half * np.array([[-1.0], [0.0], [1.0]])
-        breaks = [(each, each.distance(self.s_1, self.s_2)) for each in gap.breaks(self.pair, self.face)]
-        smooth = gap(self.pair, *rolls_at(self.pair, self.s_1 + x, self.s_2 - x), self.face)
-        smooth = smooth - sum(each.height(x - distance) for each, distance in breaks)
-        slope = (smooth[2] - smooth[0]) / (2.0 * _NODE)
-        bend = (smooth[2] - 2.0 * smooth[1] + smooth[0]) / _NODE**2
-        back = -self.middle / self.half
-        there = smooth[1] + back * (slope + 0.5 * back * bend)
-        mean, slope = smooth[1] + 0.25 * bend, slope / self.half
-        for each, distance in breaks:
-            there = there + each.height(-distance)
-            beyond = each.side * (distance - self.middle)  # from the middle to the break
-            jump, curved = (np.broadcast_to(value, beyond.shape) for value in (each.jump, each.bend))
-            height, rise = _means_past_break(beyond, self.half, jump, curved)
-            mean, slope = mean + height, slope + each.side * rise
-        return there, mean, slope
 
     def on_flank(
         self, gear: int, roll_length: FloatArray, face_position: FloatArray, rows: FloatArray
@@ -357,23 +428,27 @@ class CarryingStrips:
         -------
         ndarray, shape (Q, R, Z)
             Change of each quantity per m removed at a node.
+
+        Notes
+        -----
+        Material removed at a place opens the gap there, and tilts it to either side. Patches follow the
+        tilt: this part is a dipole, of either sign.
         """
         angle = np.pi * ((np.arange(_POINTS) + 0.5) / _POINTS - 0.5)
-        x = self.middle + self.rolled + self.half * np.sin(angle)[:, None]
-        value = np.broadcast_to(self.weight * self.arm / _POINTS, x.shape)
-        by_node = np.zeros((len(rows), roll_length.size, face_position.size))
-        roll = rolls_at(self.pair, self.s_1 + x, self.s_2 - x)[gear]
-        along = np.broadcast_to(self.face - gear * self.pair.axial_offset, x.shape)
-        (i, part), (j, other) = _between(roll_length, roll), _between(face_position, along)
-        weight = rows.reshape(len(rows), -1)[:, self.row]
-        for a, in_roll in ((0, 1.0 - part), (1, part)):
-            for b, in_face in ((0, 1.0 - other), (1, other)):
-                node = (i + a) * face_position.size + j + b
-                part_of_node = value * in_roll * in_face
-                for k, each in enumerate(weight):
-                    spread = np.bincount(node.ravel(), (each * part_of_node).ravel(), by_node[k].size)
-                    by_node[k] += spread.reshape(by_node[k].shape)
-        return by_node
+        x = self.strips.middle + self.strips.half * np.sin(angle)[:, None]
+        by_node = np.zeros((len(rows), roll_length.size * face_position.size))
+        weight = rows.reshape(len(rows), -1)[:, self.row] * (self.weight * self.arm / _POINTS)
+        for node, part in self.strips.nodes(gear, roll_length, face_position, x):
+            _spread(weight, node, part, by_node)
+        if self.following is not None:
+            by_point, rest = np.zeros(self.shape), self.following.at_rest
+            by_point.flat[self.index] = self.weight
+            dipole = self.following.by_slope(by_point, rows) / (2.0 * rest.half)
+            for side in (1.0, -1.0):
+                x = rest.middle + side * rest.half
+                for node, part in rest.nodes(gear, roll_length, face_position, x):
+                    _spread(side * dipole, node, part, by_node)
+        return by_node.reshape(len(rows), roll_length.size, face_position.size)
 
 
 @njit(cache=True, error_model="numpy")
@@ -388,6 +463,12 @@ def _means_past_break(
             height[i] = (jump[i] * ramp + 0.5 * bend[i] * square) / math.pi
             slope[i] = (jump[i] * angle + bend[i] * ramp) / math.pi
     return height, slope
+
+
+def _spread(values: FloatArray, node: IntArray, part: FloatArray, by_node: FloatArray) -> None:
+    """Add `part` (..., k) of values (Q, k) to nodes (..., k) of Q grids, flattened."""
+    for k, value in enumerate(values):
+        by_node[k] += np.bincount(node.ravel(), (value * part).ravel(), by_node.shape[1])
 
 
 def _between(nodes: FloatArray, at: FloatArray) -> tuple[IntArray, FloatArray]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from fe_contact.contact.candidates import with_gaps
 from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, load_vector
-from fe_contact.contact.problem import Candidates, ContactProblem
+from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.contact.touch import Touch, rolls_at
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -68,11 +69,9 @@ def with_flanks(pair: ParallelAxes, problem: ContactProblem, model: ContactModel
 
     Where patches follow the flanks, the touch says how far the middles of the strips have moved.
     """
-    plain = problem.candidates
-    modified = with_gaps(pair, plain, model)
-    if problem.tilt.size:
-        moved = modified.touch.moved + modified.strips.middle - plain.strips.middle
-        modified = modified.touching(replace(modified.touch, moved=moved))
+    modified = with_gaps(pair, problem.candidates, model)
+    if problem.tilt.size and model.sloped:
+        modified = problem.candidates.following(modified.touch)
     return problem.touching(modified)
 
 
@@ -116,22 +115,26 @@ def face_contact_problem(
     couple_teeth : bool
         False drops what the load on one tooth moves on another.
     """
-    slices = candidates.slices
-    compliance = np.zeros((*slices.present.shape, slices.pair.size))
-    touch, face = slices.touch, slices.face_position
-    sides = (
-        (slices.patch_1, touch.lever_1, -slices.pair, face),
-        (slices.patch_2, touch.lever_2, slices.pair, face - axial_offset),
-    )
-    for flank, (patches, lever, teeth, along) in zip(compliances, sides, strict=True):
-        reach = flank.blocks if couple_teeth else flank.blocks[:1]
-        grid = FaceGrid(flank.s, flank.z, flank.index)
-        low, high = along - 0.5 * slices.slice_width, along + 0.5 * slices.slice_width
-        bounds = (np.maximum(low, flank.z[0]), np.minimum(high, flank.z[-1]))
-        key = _KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
-        _face_assembly_add_gear(grid, reach, key, patches, lever, teeth, bounds, slices.present, compliance)
+    compliance = np.zeros((*candidates.slices.present.shape, candidates.slices.pair.size))
+    for gear in _face_gears(candidates.slices, compliances, axial_offset, couple_teeth):
+        for rows, added in gear.compliances():
+            compliance[rows] += added
     planes, modulus = _half_planes(compliances)
     return ContactProblem(candidates, compliance, modulus, *planes)
+
+
+def with_face_tilt(
+    problem: ContactProblem,
+    compliances: tuple[FlankCompliance3D, FlankCompliance3D],
+    axial_offset: float = 0.0,
+    couple_teeth: bool = True,
+) -> ContactProblem:
+    """Add how the compliance changes along the flanks; parameters as of `face_contact_problem`."""
+    tilt = np.zeros(problem.compliance.shape)
+    for gear in _face_gears(problem.candidates.slices, compliances, axial_offset, couple_teeth):
+        for rows, added in gear.displaced().compliances():
+            tilt[rows] += added[:, 1::2, ::2]
+    return replace(problem, tilt=tilt)
 
 
 TOGETHER = 8
@@ -157,32 +160,90 @@ class _KeyedFlanks(NamedTuple):
         return added if self.couple_teeth else np.where(tooth[:, None] == tooth, added, 0.0)
 
 
-def _face_assembly_add_gear(
-    grid: FaceGrid,
-    blocks: FloatArray,
-    key: _KeyedFlanks,
-    patches: Patches,
-    lever: FloatArray,
-    teeth: IntArray,
-    bounds: tuple[FloatArray, FloatArray],
-    present: BoolArray,
-    out: FloatArray,
-) -> None:
-    """Add the compliance of one gear at every position."""
-    low, high = bounds
-    planes = grid.freedom.ravel()
-    order = planes[planes >= 0]
-    for rows in together(len(present)):
-        at = np.array(np.nonzero(present[rows]))
-        on = at[1]
-        loads = face_loads(grid, *patches.by_slice(rows[at[0]], on), low[on], high[on])
-        local, arms = np.zeros((rows.size, teeth.size, teeth.size)), np.ascontiguousarray(lever[rows])
-        add_compliance(blocks, order, teeth, loads, at, arms, local)
-        for p in range(rows.size if len(key.rows) else 0):
-            here = at[0] == p
-            added = key.compliance(teeth[on[here]], FaceLoads(*(each[here] for each in loads)))
-            local[p][np.ix_(on[here], on[here])] += added * np.outer(arms[p, on[here]], arms[p, on[here]])
-        out[rows] += local
+@dataclass(frozen=True)
+class _FaceGear:
+    """One gear over the face; `tip` is +1 on gear 1 and -1 on gear 2, other names as of `add_compliance`."""
+
+    grid: FaceGrid
+    blocks: FloatArray
+    key: _KeyedFlanks
+    patches: Patches
+    lever: FloatArray
+    teeth: IntArray
+    low: FloatArray
+    high: FloatArray
+    tip: float
+    present: BoolArray
+
+    def compliances(self) -> Iterator[tuple[IntArray, FloatArray]]:
+        """Yield positions and its compliance there (P, n, n)."""
+        planes = self.grid.freedom.ravel()
+        order = planes[planes >= 0]
+        for rows in together(len(self.present)):
+            at = np.array(np.nonzero(self.present[rows]))
+            loads, arms = self._loads(rows[at[0]], at[1]), np.ascontiguousarray(self.lever[rows])
+            added = np.zeros((rows.size, self.teeth.size, self.teeth.size))
+            add_compliance(self.blocks, order, self.teeth, loads, at, arms, added)
+            for p in range(rows.size if len(self.key.rows) else 0):
+                here = at[0] == p
+                on = at[1, here]
+                by_key = self.key.compliance(self.teeth[on], loads.rows(here))
+                added[p][np.ix_(on, on)] += by_key * np.outer(arms[p, on], arms[p, on])
+            yield rows, added
+
+    def displaced(self) -> _DisplacedGear:
+        """Return it with two loads on each slice: the patches, and how they change."""
+        doubled = {name: np.repeat(getattr(self, name), 2, axis=-1) for name in _DOUBLED}
+        return _DisplacedGear(**(vars(self) | doubled))
+
+    def _loads(self, position: IntArray, on: IntArray) -> FaceLoads:
+        return face_loads(self.grid, *self.patches.by_slice(position, on), self.low[on], self.high[on])
+
+
+_DOUBLED = ("lever", "teeth", "low", "high", "present")
+_NEAR = 1e-3
+"""Way over half a patch by which patches are displaced to see how their forces change."""
+
+
+class _DisplacedGear(_FaceGear):
+    """The same with loads in turn: of the patches as plain ones, and their change per m towards tip 1.
+
+    Beside an edge patches give way more than a strip there does: here they count as if they were plain.
+    """
+
+    def _loads(self, position: IntArray, on: IntArray) -> FaceLoads:
+        at = position[::2], on[::2] // 2
+        widest = self.patches.half_width.max()
+        near, center = _NEAR * widest, self.patches.by_slice(*at)[0]
+        center = np.minimum(center, self.grid.s[-1] - widest - near)
+        alike = np.full(center.shape, widest), np.zeros(center.shape), self.low[on[::2]], self.high[on[::2]]
+        above, below = (face_loads(self.grid, center + way, *alike) for way in (near, -near))
+        steep = 0.5 * self.tip / near
+        plain, change = above.plus(0.5, below, 0.5), above.plus(steep, below, -steep)
+        in_turn = (np.stack(each, axis=1) for each in zip(plain, change, strict=True))
+        nodes, forces, used = (each.reshape(on.size, *each.shape[2:]) for each in in_turn)
+        return FaceLoads(nodes, forces, used)
+
+
+def _face_gears(
+    slices: LoadedSlices,
+    compliances: tuple[FlankCompliance3D, FlankCompliance3D],
+    axial_offset: float,
+    couple_teeth: bool,
+) -> Iterator[_FaceGear]:
+    """Yield both gears."""
+    touch, face = slices.touch, slices.face_position
+    sides = (
+        (slices.patch_1, touch.lever_1, -slices.pair, face, 1.0),
+        (slices.patch_2, touch.lever_2, slices.pair, face - axial_offset, -1.0),
+    )
+    for flank, (patches, lever, teeth, along, tip) in zip(compliances, sides, strict=True):
+        blocks = flank.blocks if couple_teeth else flank.blocks[:1]
+        grid = FaceGrid(flank.s, flank.z, flank.index)
+        low = np.maximum(along - 0.5 * slices.slice_width, flank.z[0])
+        high = np.minimum(along + 0.5 * slices.slice_width, flank.z[-1])
+        key = _KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
+        yield _FaceGear(grid, blocks, key, patches, lever, teeth, low, high, tip, slices.present)
 
 
 def together(count: int) -> list[IntArray]:
@@ -249,10 +310,6 @@ def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> FloatArray:
         raise ValueError(f"teeth {teeth.tolist()} are not all condensed: {flank.teeth.tolist()}")
     blocks = flank.matrix.reshape(flank.teeth.size, k, flank.teeth.size, k)
     return np.ascontiguousarray(blocks[rows][:, :, rows].transpose(0, 2, 1, 3))
-
-
-_NEAR = 1e-3
-"""Way over half a patch by which patches are displaced to see how their forces change."""
 
 
 @njit(cache=True)

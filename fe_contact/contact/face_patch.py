@@ -14,7 +14,7 @@ import numpy as np
 
 from fe_contact.contact.patch import profile_moments
 from fe_contact.contact.point_problem import dot
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
 
@@ -42,6 +42,18 @@ class FaceLoads(NamedTuple):
     nodes: IntArray
     forces: FloatArray
     used: IntArray
+
+    def rows(self, keep: BoolArray) -> FaceLoads:
+        """Keep some loads."""
+        return FaceLoads(self.nodes[keep], self.forces[keep], self.used[keep])
+
+    def plus(self, part: float, other: FaceLoads, times: float) -> FaceLoads:
+        """Return `part` of these loads and `times` others, as many, behind each other."""
+        most, others = self.used.max(), other.used.max()
+        nodes = np.concatenate([self.nodes[:, :most], other.nodes[:, :others]], axis=1)
+        nodes = np.where(nodes < 0, nodes[:, :1], nodes)
+        forces = np.concatenate([part * self.forces[:, :most], times * other.forces[:, :others]], axis=1)
+        return FaceLoads(nodes, forces, np.full(len(nodes), nodes.shape[1]))
 
 
 @njit(cache=True)
@@ -264,7 +276,7 @@ def _slice_forces(
         p, i = at[0, r], at[1, r]
         begin = start[i] * count + p * width[i] - low[i]
         for k in range(loads.used[r]):
-            force[begin + place[i, loads.nodes[r, k]]] = loads.forces[r, k]
+            force[begin + place[i, loads.nodes[r, k]]] += loads.forces[r, k]
     return _SliceForces(low, width, start, force, lever)
 
 

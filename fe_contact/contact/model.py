@@ -135,6 +135,11 @@ class ContactModel:
     compliances: tuple[ComplianceTerm, ...] = ()
 
     @property
+    def sloped(self) -> bool:
+        """Whether flanks slope along their profiles, so that they press off the place of plain involutes."""
+        return any(term.along_profile for term in self.gaps)
+
+    @property
     def period(self) -> int:
         """Whole base pitches after which the contact repeats."""
         return math.lcm(1, *(term.period for term in self.tooth_gaps))

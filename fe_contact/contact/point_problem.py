@@ -256,7 +256,7 @@ class PointProblems(NamedTuple):
     Attributes
     ----------
     bodies, tilt : ndarray, shape (Q, n, n)
-        The tilt is empty where patches stay.
+        The tilt is empty where flanks do not roll.
     radius : ndarray, shape (Q, n)
     present : ndarray of bool, shape (Q, n)
     curves, heights : ndarray, shapes (points of a pair, K), (K, K)
@@ -291,7 +291,7 @@ def point_problems(problem: ContactProblem) -> PointProblems:
     first, second = problem.half_planes
     return PointProblems(
         rows(problem.bodies),
-        rows(problem.tilt),
+        rows(problem.rolling),
         rows(problem.radius),
         rows(c.slices.present),
         rows(c.curves),

@@ -210,40 +210,48 @@ class StripMiddles(NamedTuple):
         From the touching point, and half the length, m.
     slope, curvature : ndarray
         Means of g' and g'' over the strip; 1 and 1/m. The slope is zero but where an edge holds the strip.
-    radius : ndarray
-        How far the middle moves back as the gap tilts by 1, m: on the mean of tilts that move it by
-        `_TILTED` of the half length on plain flanks. None where an edge holds it.
     """
 
     middle: FloatArray
     half: FloatArray
     slope: FloatArray
     curvature: FloatArray
-    radius: FloatArray
 
 
 @njit(cache=True, error_model="numpy")
 def strip_middles(gap: Gap, half: FloatArray) -> StripMiddles:
     """Return the middles of strips of half lengths (n,) in m, at most from edge to edge."""
     zero, half = np.zeros(half.size), np.minimum(half, 0.5 * (gap.high - gap.low))
-    found = StripMiddles(zero, half, zero.copy(), gap.curvature.copy(), 1.0 / gap.curvature)
-    tilt = _TILTED * half * gap.curvature
-    back = Gap(gap.slope + tilt, gap.curvature, gap.low, gap.high, gap.place, gap.jump, gap.bend)
-    forth = Gap(gap.slope - tilt, gap.curvature, gap.low, gap.high, gap.place, gap.jump, gap.bend)
+    found = StripMiddles(zero, half, zero.copy(), gap.curvature.copy())
     for i in range(half.size):
-        if (1.0 + _TILTED) * half[i] > free_strip(gap, i):
-            h = half[i]
+        h = half[i]
+        if h > free_strip(gap, i):
             center = strip_middle(gap, i, h)
-            slope = _means(gap, i, center, h)[0]
             inside = gap.low[i] + h < center < gap.high[i] - h
-            found.middle[i], found.slope[i] = center, 0.0 if inside else slope
+            found.middle[i], found.slope[i] = center, 0.0 if inside else _means(gap, i, center, h)[0]
             if h > 0.0:
-                way = strip_middle(forth, i, h) - strip_middle(back, i, h)
-                found.radius[i] = 0.5 * way / tilt[i]
                 near = _NEAR * h
                 rise = _means(gap, i, center + near, h)[0] - _means(gap, i, center - near, h)[0]
                 found.curvature[i] = 0.5 * rise / near
     return found
+
+
+@njit(cache=True, error_model="numpy")
+def rolling_radii(gap: Gap, half: FloatArray) -> FloatArray:
+    """Return how far the middles of such strips move back as the gap tilts by 1 (n,), m.
+
+    On the mean of tilts that move it by `_TILTED` of the half length on plain flanks; none where an edge
+    holds it.
+    """
+    half, radius = np.minimum(half, 0.5 * (gap.high - gap.low)), 1.0 / gap.curvature
+    tilt = _TILTED * half * gap.curvature
+    back = Gap(gap.slope + tilt, gap.curvature, gap.low, gap.high, gap.place, gap.jump, gap.bend)
+    forth = Gap(gap.slope - tilt, gap.curvature, gap.low, gap.high, gap.place, gap.jump, gap.bend)
+    for i in range(half.size):
+        h = half[i]
+        if (1.0 + _TILTED) * h > free_strip(gap, i) and h > 0.0:
+            radius[i] = 0.5 * (strip_middle(forth, i, h) - strip_middle(back, i, h)) / tilt[i]
+    return radius
 
 
 @njit(cache=True, error_model="numpy")

@@ -227,7 +227,8 @@ def design_study(
     position, nodes = np.arange(space.positions) / space.positions, space.scatter.nodes()
     level = np.searchsorted(np.unique(loads.torque), loads.torque)  # the table has every torque once
     force = decided.checked.request.load[level]
-    evaluator = Evaluator(contact, decided.checked.decided, position, force[counted], own.misalignment, nodes)
+    varied, choices = replace(contact, varied=True), decided.checked.decided
+    evaluator = Evaluator(varied, choices, position, force[counted], own.misalignment, nodes)
     return DesignStudy(decided, loads, force, counted, evaluator)
 
 

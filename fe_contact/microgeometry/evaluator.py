@@ -172,7 +172,8 @@ class Evaluator:
         key = tuple(self.nodes.modification(node).values())
         face = bodies.candidates.face_position
         if key not in touches:
-            touches[key] = modified_touch(pair, bodies.candidates.touch, face, moving)
+            moved = modified_touch(pair, bodies.candidates.touch, face, moving)
+            touches[key] = bodies.candidates.following(moved).touch if bodies.tilt.size else moved
         touch = modified_touch(pair, touches[key], face, steady) if steady else touches[key]
         problem = _in_all_pitches(bodies.touching(bodies.candidates.touching(touch)), model)
         return pair, problem, solve_contact(problem, load)

@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.request.request import Checked
-from fe_contact.contact import CarryingStrips, ContactProblem, ContactSolution, adjoint, force_changes
+from fe_contact.contact import CarryingStrips, ContactProblem, ContactSolution, force_changes
 from fe_contact.contact.model import GapTerm
 from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.effects.misalignment import MisalignmentGap
@@ -114,7 +114,7 @@ class CurveDerivatives:
 
         The grid spans the involute and the face width; in the plane the whole face is one.
         """
-        pair = self._strips.pair
+        pair = self._strips.strips.pair
         toothing = getattr(pair, gear)
         ends = toothing.form_roll_length, toothing.tip_roll_length
         roll = np.linspace(min(ends), max(ends), profile)
@@ -167,7 +167,7 @@ def curve_derivatives(
     names = _all_names(pair, checked) if by is None else tuple(by)
     for name in names:
         _check_name(name, pair, checked)
-    strips = CarryingStrips.of(solved.pair, problem.candidates, adjoint(problem, solution))
+    strips = CarryingStrips.of(solved.pair, problem, solution)
 
     def derivative(name: str) -> FloatArray:
         if name == TORQUE:
@@ -352,7 +352,7 @@ def linearized(
 def _differentiated(
     pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution, names: Sequence[str]
 ) -> _Solved:
-    strips = CarryingStrips.of(pair, problem.candidates, adjoint(problem, solution))
+    strips = CarryingStrips.of(pair, problem, solution)
     steps = tuple(_Difference.of(pair, name) for name in names)
     opened = np.stack([step.opened(strips) for step in steps])
     return _Solved(pair, problem, solution, LoadFigures.of(problem, solution), steps, strips, opened)
@@ -401,8 +401,7 @@ def _edge_load(solved: _Solved, limit: float) -> Rows:
     m = nearest[p, k]
     per_gap = 1.0 / (c.motion_arm[p, m] * solution.tangent[p, k] * load[p, k])
     share[p, k] = -clear[p, k, m] * per_gap
-    zero = np.zeros(p.size)
-    points = CarryingStrips.at(solved.pair, c, load.shape[1], (p, k, m), zero, zero + _POINT, zero, zero)
+    points = solved.strips.at_edges(c, (p, k, m), _POINT)
     for a, step in enumerate(solved.steps):
         moved = problem.moved(solved.force[a])[p, k, m] - c.motion_arm[p, m] * solved.ste[a, p, k]
         by[a][p, k] = -(step.opened(points) + moved) * per_gap

@@ -34,6 +34,8 @@ _PLANE_POSITION, _PLANE_POINT, _PLANE_CANDIDATE = 4e-5, 3e-6, 0.55e-6
 _FACE_POSITION, _FACE_SLICE = 0.4e-6, 2.2e-5
 """Per slice of a tooth pair and square of the elements of a module along the profile, and per slice."""
 _FACE_CANDIDATE = 4.6e-6
+_FACE_TILT = 2.7
+"""Assembly with the change of the compliance along sloping flanks, over that without."""
 _PLANE_EXPECTED, _FACE_EXPECTED = 118, 76
 """Positions that the search ends with; of 10 helical pairs 64 to 145, with a tolerance 64 to 66."""
 _TRIED_PER_NODE, _TRIED_PER_START = 9, 4
@@ -116,7 +118,14 @@ def _contact_bytes(pair: ParallelAxes, plan: Plan) -> float:
     held = _HELD_POSITIONS if plan.positions is None else _HELD_PART * plan.positions
     count = _candidates(pair, plan.discretization.slices)
     points = count * (POINTS if plan.discretization.slices > 1 else 1)
-    return 8.0 * held * (count**2 + _POINT_NUMBERS * points)
+    blocks = 2 if _with_tilt(pair, plan) else 1
+    return 8.0 * held * (blocks * count**2 + _POINT_NUMBERS * points)
+
+
+def _with_tilt(pair: ParallelAxes, plan: Plan) -> bool:
+    """Whether beside the compliance its change along the flanks is assembled: where patches follow them."""
+    sloped = any(gear.modification.varies_along_profile for gear in (pair.pinion, pair.wheel))
+    return sloped or not isinstance(plan.discretization, FaceDiscretization)
 
 
 def _candidates(pair: ParallelAxes, slices: int) -> float:
@@ -131,7 +140,8 @@ def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> _Work:
     if not isinstance(made, FaceDiscretization):
         return _Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
-    return _Work((_FACE_POSITION * elements**2 + _FACE_SLICE) * count, _FACE_CANDIDATE * count)
+    position = (_FACE_POSITION * elements**2 + _FACE_SLICE) * count
+    return _Work(_FACE_TILT * position if _with_tilt(pair, plan) else position, _FACE_CANDIDATE * count)
 
 
 def expected_tries(plan: Plan) -> int:

@@ -43,7 +43,7 @@ class CondensedContacts:
         """Take the rougher discretizations that need no other bodies from the pair itself."""
         made = own.plan.discretization
         return cls(
-            own,
+            replace(own, varied=True),
             own.in_plane_strain if made.corrected else None,
             own.in_slices(made.coarse_slices) if made.slices > 1 else None,
             coarse,

@@ -218,9 +218,11 @@ def _alike(part: Any, whole: Any) -> Any:
 def _joined(line: _Line, blocks: list[_SolvedBlock]) -> _SolvedBlock:
     """Put the blocks of a line together; all models share one compliance."""
     compliance = np.concatenate([block.problems[0].compliance for block in blocks])
-    tilt = np.concatenate([block.problems[0].tilt for block in blocks])
+    models = range(len(line.whole.models))
+    tilts = [np.concatenate([block.problems[k].tilt for block in blocks]) for k in models]
+    tilt = max(tilts, key=np.size)  # that of flanks that slope, if any does
     problems, solutions = [], []
-    for k in range(len(line.whole.models)):
+    for k in models:
         parts = [block.problems[k] for block in blocks]
         candidates = _joined_candidates([part.candidates for part in parts], line.pitches)
         problems.append(replace(parts[0], candidates=candidates, compliance=compliance, tilt=tilt))

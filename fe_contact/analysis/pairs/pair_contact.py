@@ -33,6 +33,7 @@ from fe_contact.contact import (
     in_pitches,
     solve_contact,
     with_compliances,
+    with_face_tilt,
     with_flanks,
 )
 from fe_contact.effects import ContactScene, compose
@@ -62,6 +63,8 @@ class PairContact:
         Of both gears, in the plane or over the face width; exactly one of the two.
     uncorrected : pair of compliances or None
         Those in the plane before they were corrected for the finite width, if they were.
+    varied : bool
+        Whether its flanks are to vary: problems then tell how compliance changes along them, sloped or not.
     """
 
     pair: ParallelAxes
@@ -69,6 +72,7 @@ class PairContact:
     plane: PlaneFlanks | None = None
     face: FaceFlanks | None = None
     uncorrected: PlaneFlanks | None = None
+    varied: bool = False
     _problems: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -165,7 +169,11 @@ class PairContact:
         key = self.key(model, position)
         if key not in self._problems:
             self._keep(model, self._located(model, position))
-        return self._problems[key]
+        problem = self._problems[key]
+        if self.face is not None and not problem.tilt.size and (self.varied or model.sloped):
+            problem = with_face_tilt(problem, self.face, self.pair.axial_offset, model.couple_teeth)
+            self._problems[key] = problem
+        return problem
 
     def _located(self, model: ContactModel, position: FloatArray) -> Candidates:
         slices = Slices.of_pair(self.pair, self.plan.discretization.slices)
