@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.arrays.sparse_rows import ModalFreedoms
 from dynamics.assembly.assemble import System
 from dynamics.errors import SolveError
@@ -390,7 +391,7 @@ def unbounded(linear: LinearSystem, omega: FloatArray | ComplexArray) -> SolveEr
         at, mode = np.unravel_index(np.argmin(off), off.shape)
         part = modes.freedom[int(np.argmax(modes.kinetic_energy[held[mode]]))]
         words = f"{excited[at]:.6g} Hz excite the mode at {own[mode]:.6g} Hz, in which {part} moves most and "
-        words += f"whose damping ratio is {modes.damping_ratio[held[mode]]:.1g}"
+        words += f"whose damping ratio is {engineering(modes.damping_ratio[held[mode]], 1)}"
     advice = "Give the meshes, shafts or supports damping, or leave that speed out"
     return SolveError(f"the vibration is unbounded: {words}. {advice}")
 

@@ -5,6 +5,8 @@ from types import SimpleNamespace
 import pytest
 
 import lineofaction.cli.simulate as verb
+import lineofaction.client.client as clients
+from lineofaction import client as public
 from lineofaction.client import JobState
 
 
@@ -26,8 +28,8 @@ def test_the_loops_of_a_run_are_compiled_once_while_it_waits(
 
         return nullcontext(SimpleNamespace(driver=SimpleNamespace(run=run)))
 
-    monkeypatch.setattr(verb, "LineOfActionClient", client)
-    monkeypatch.setattr(verb, "ServiceTables", lambda _: None)
+    monkeypatch.setattr(public, "LineOfActionClient", client)
+    monkeypatch.setattr(clients, "ServiceTables", lambda _: None)
     monkeypatch.setattr(verb, "MeshTables", lambda *_: SimpleNamespace(of=lambda *_: None))
     monkeypatch.setattr(verb, "scene_by_tables", lambda scene, folder, table_of, *_: table_of(0, scene))
     monkeypatch.setattr(verb, "compile_ahead", lambda: compiled.append(1))
