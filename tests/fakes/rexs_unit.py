@@ -241,8 +241,7 @@ def planetary(turned: float = 0.0, step: int = 0) -> Document:
         rows.append(("stage", {"stage": 21 + number, "gear_1": 11, "gear_2": 13 + number}))
         if step:
             gear(16 + number, planet, "cylindrical_gear", step)
-        own = 16 + number if step else 13 + number
-        rows.append(("stage", {"stage": 24 + number, "gear_1": own, "gear_2": 12}))
+        rows.append(("stage", {"stage": 24 + number, "gear_1": (16 if step else 13) + number, "gear_2": 12}))
         at = {"u_coordinate_on_shaft_outer_side": 20.0, "radial_stiffness": 1e20}
         built[31 + number] = ("concept_bearing", at)
         rows.append(("side", {"assembly": 31 + number, "inner_part": CARRIER, "outer_part": planet}))
