@@ -321,6 +321,7 @@ def test_an_interrupted_table_goes_on_where_it_was(cache: Path, tmp_path: Path) 
 
 def test_another_question_takes_nothing(cache: Path, tmp_path: Path) -> None:
     asked = {**ASKED, "positions": 24, "cache": cache, "receipt": "minimal"}
+    analyze(full_pair(), **asked)  # condenses the gears, which is a task, too
     counts = []
     for crowning, version in ((4e-6, "1"), (4e-6, "1"), (4.0000001e-6, "1"), (4e-6, "2")):
         workers = Here()
