@@ -157,17 +157,20 @@ class Hull:
             )
         positive("volume", self.volume, "Turn the triangles: their normals point inwards.")
 
-    def require_resolved(self, wavenumber: float, sound_speed: float) -> None:
+    def require_resolved(
+        self, wavenumber: float, sound_speed: float, edges: float = PANELS_PER_WAVELENGTH
+    ) -> None:
         """Refuse a frequency whose waves the panels do not resolve.
 
         Raises
         ------
         InputError
-            If fewer than six of the longest edges fit in a wavelength.
+            If fewer of the longest edges than `edges` fit in a wavelength.
         """
-        if wavenumber > self.highest_wavenumber:
+        highest = self.highest_wavenumber * PANELS_PER_WAVELENGTH / edges
+        if wavenumber > highest:
             frequency = sound_speed / (2.0 * np.pi)
-            bound = at_most(self.highest_wavenumber * frequency, "Hz", note=", six edges in a wavelength")
+            bound = at_most(highest * frequency, "Hz", note=f", {edges:g} edges in a wavelength")
             raise InputError("frequency", wavenumber * frequency, bound, "Use smaller triangles.")
 
 

@@ -117,13 +117,13 @@ class LevelBand:
     ----------
     nominal : float
         dB.
-    below, above : mapping of str to float
+    below, above : dict of str to float
         Deviations by parameter, dB, at least 0.
     """
 
     nominal: float
-    below: Mapping[str, float]
-    above: Mapping[str, float]
+    below: dict[str, float]
+    above: dict[str, float]
 
     @property
     def low(self) -> float:
@@ -134,6 +134,20 @@ class LevelBand:
     def high(self) -> float:
         """Return the upper end, dB."""
         return self.nominal + float(np.sqrt(sum(value**2 for value in self.above.values())))
+
+    @property
+    def width(self) -> float:
+        """Return how far the ends lie apart, dB."""
+        return self.high - self.low
+
+    @property
+    def widths_without(self) -> dict[str, float]:
+        """Return the width that is left once a contribution is known, by its name, the least first, dB."""
+        left = {
+            name: LevelBand(self.nominal, self.below | {name: 0.0}, self.above | {name: 0.0}).width
+            for name in self.below
+        }
+        return dict(sorted(left.items(), key=lambda item: item[1]))
 
     def with_error(self, name: str, below: float, above: float) -> LevelBand:
         """Return the band with one more contribution, e.g. the error of the radiation model, dB.

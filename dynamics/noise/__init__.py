@@ -2,6 +2,7 @@
 
 from dynamics.noise.coarse_hull import radiating_hull
 from dynamics.noise.estimated_radiation import EstimatedRadiation, estimated_radiation
+from dynamics.noise.exact_lines import CorrectedRadiation, ExactLine, corrected_radiation, with_exact_lines
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation, kept_radiation
 from dynamics.noise.housing_recordings import (
     pressure_recording,
@@ -19,8 +20,10 @@ from dynamics.noise.sound_over_time import SoundOverTime, sound_over_time
 
 __all__ = [
     "GUESSES",
+    "CorrectedRadiation",
     "DesignFigure",
     "EstimatedRadiation",
+    "ExactLine",
     "HousingRadiation",
     "LoudPoint",
     "PanelSound",
@@ -30,6 +33,7 @@ __all__ = [
     "SoundBand",
     "SoundModel",
     "SoundOverTime",
+    "corrected_radiation",
     "estimated_radiation",
     "forced_power",
     "housing_radiation",
@@ -49,4 +53,5 @@ __all__ = [
     "sound_over_time",
     "sound_sensitivities",
     "velocity_recording",
+    "with_exact_lines",
 ]

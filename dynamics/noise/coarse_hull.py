@@ -155,8 +155,18 @@ ATTEMPTS = 16
 """To split cells; walls of gear cases took up to six."""
 FEWER = 0.5
 """Nodes of a coarse hull over those of the fine one, at most: otherwise the fine one is taken."""
-FEWEST = 800
-"""Cells for the shape of a body: a sphere loses 1 % of its volume, 0.1 dB of what it radiates as a dipole."""
+
+
+@dataclass(frozen=True)
+class Coarseness:
+    """How coarse a hull may be: least longest edges in a wavelength, least cells for the shape of a body."""
+
+    edges: float = PANELS_PER_WAVELENGTH
+    cells: int = 800
+
+
+OF_PANELS = Coarseness()
+"""Of models by panels: with 800 cells a sphere loses 1 % of its volume, 0.1 dB as a dipole."""
 
 
 @dataclass(frozen=True)
@@ -168,14 +178,18 @@ class RadiatingHull:
 
 
 @identity_cached
-def radiating_hull(outer: OuterHull, highest_frequency: float, sound_speed: float) -> RadiatingHull:
+def radiating_hull(
+    outer: OuterHull, highest_frequency: float, sound_speed: float, coarseness: Coarseness = OF_PANELS
+) -> RadiatingHull:
     """Return a coarse closed hull that resolves a frequency in Hz; the fine one if that is hardly finer.
 
     Cells are split where edges come out too long, or where the hull meets itself around a thin part.
     """
     fine, most = RadiatingHull(outer.hull, outer.shapes), FEWER * len(outer.hull.nodes)
-    longest = sound_speed / highest_frequency / PANELS_PER_WAVELENGTH * ROUNDED_DOWN
-    count = max(int(np.ceil(outer.hull.area / (0.5 * np.sqrt(3.0) * (longest / LONGEST) ** 2))), FEWEST)
+    longest = sound_speed / highest_frequency / coarseness.edges * ROUNDED_DOWN
+    count = max(
+        int(np.ceil(outer.hull.area / (0.5 * np.sqrt(3.0) * (longest / LONGEST) ** 2))), coarseness.cells
+    )
     if count >= most:
         return fine
     cell = _surface_cells(outer.hull, count)

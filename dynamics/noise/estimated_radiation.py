@@ -91,6 +91,11 @@ class EstimatedRadiation(HousingRadiation):
         off: FloatArray = self.mode_error[:, knot, :count] @ mode_power / whole
         return float(off[0]), float(off[1])
 
+    def off(self, frequency: FloatArray, mode_power: FloatArray) -> FloatArray:
+        """Return `error_band` of powers (m, S, H) at frequencies (S, H), (2, S, H), dB."""
+        rows = zip(frequency.ravel().tolist(), mode_power.reshape(len(mode_power), -1).T, strict=True)
+        return np.array([self.error_band(*row) for row in rows]).T.reshape(2, *frequency.shape)
+
     def replaced(self, natural: FloatArray) -> FloatArray:
         """Return those of the first natural frequencies, Hz, at which monopoles say nothing of the mode."""
         knot = np.minimum(np.searchsorted(self.frequency, natural), self.frequency.size - 1)

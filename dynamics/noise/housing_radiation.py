@@ -184,7 +184,7 @@ WORK = "radiation resistance by {}"
 
 
 @dataclass(frozen=True)
-class _RadiationFacts:
+class RadiationFacts:
     """How a radiation resistance was computed.
 
     Attributes
@@ -228,7 +228,7 @@ class HousingRadiation(ModalResistance, ArrayFile):
 
     SCHEMA = "lineofaction housing radiation"
     RECORDS = MappingProxyType(
-        {"facts": lambda data: _RadiationFacts(**{**data, "cost": WorkCost(**data["cost"])})}
+        {"facts": lambda data: RadiationFacts(**{**data, "cost": WorkCost(**data["cost"])})}
     )
 
     surface: FloatArray = field(
@@ -237,7 +237,7 @@ class HousingRadiation(ModalResistance, ArrayFile):
     area: float
     impedance: float
     model_name: str
-    facts: _RadiationFacts
+    facts: RadiationFacts
 
     def hull_at(self, outer: OuterHull, frequency: float, sound_speed: float) -> RadiatingHull | None:
         """Return the panels at a computed frequency, Hz; None above those that the mesh resolves."""
@@ -315,7 +315,7 @@ def housing_radiation(
         outer.hull.area,
         air.impedance,
         model.model_name,
-        _RadiationFacts(panels, cost, resolved, error, outer.inner_area, outer.cap_area),
+        RadiationFacts(panels, cost, resolved, error, outer.inner_area, outer.cap_area),
     )
 
 
@@ -388,7 +388,9 @@ def kept_radiation(
         As `housing_radiation` does.
     """
     ends = float(np.min(frequencies)), float(np.max(frequencies))
-    file = None if cache is None else cache / f"radiation-{_content_key(housing, model, ends, air)}.nc"
+    file = (
+        None if cache is None else cache / f"radiation-{content_key(housing, model, ends, air or Air())}.nc"
+    )
 
     def computed() -> HousingRadiation:
         return housing_radiation(
@@ -409,10 +411,9 @@ def kept_radiation(
     return kept_in(file, read, computed, write, ResultError, costly)
 
 
-def _content_key(
-    housing: ReducedHousing, model: RadiationModel, ends: tuple[float, float], air: Air | None
-) -> str:
-    digest = hashlib.sha256(repr((RADIATION_VERSION, model, ends, air or Air())).encode())
+def content_key(housing: ReducedHousing, *settings: object) -> str:
+    """Return the hash of a housing and of settings whose `repr` says all of them."""
+    digest = hashlib.sha256(repr((RADIATION_VERSION, *settings)).encode())
     surface = housing.surface
     arrays = () if surface is None else (surface.points, surface.triangles, surface.motion)
     for array in (*arrays, housing.mass, housing.stiffness):

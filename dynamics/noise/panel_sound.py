@@ -116,7 +116,8 @@ def panel_sound(
     """Return the sound power of the panels at one speed and order.
 
     Between the frequencies of the radiation resistance powers of panels are interpolated as it is: their sum
-    is the power that `radiated_sound` has there.
+    is the power that `radiated_sound` has there. At lines that boundary elements correct, shares of panels
+    are those of the model.
 
     Parameters
     ----------
@@ -133,14 +134,16 @@ def panel_sound(
         As `radiated_sound` does.
     """
     air, outer = air or Air(), outer_hull(housing)
-    velocity = _coordinate_velocity(response, housing, bearings, at)
-    weights = radiation.weights(float(response.frequency[at]))
+    velocity, hertz = _coordinate_velocity(response, housing, bearings, at), float(response.frequency[at])
+    weights = radiation.weights(hertz)
     panels = radiation.hull_at(outer, weights[0][0], air.sound_speed)
     if panels is None:
         panels, model = RadiatingHull(outer.hull, outer.shapes), EquivalentRadiatedPower()
     moving = {knot: np.asarray(panels.shapes @ radiation.radiating(velocity, knot)) for knot, _ in weights}
     parts = [weight * panel_power(model, panels.hull, knot, moving[knot], air) for knot, weight in weights]
-    return PanelSound(panels.hull, np.asarray(np.sum(parts, axis=0)))
+    power = np.sum(parts, axis=0)
+    whole = float(radiation.power(np.array([hertz]), velocity[None])[0])
+    return PanelSound(panels.hull, np.asarray(power * (whole / power.sum() if whole > 0.0 else 1.0)))
 
 
 SMALL = 0.02

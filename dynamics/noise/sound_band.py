@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TypeVar
@@ -227,20 +227,40 @@ class SoundBand:
     there: tuple[LevelBand, ...]
     total: tuple[LevelBand, ...]
 
-    def with_error(self, name: str, below: float, above: float) -> SoundBand:
-        """Return all bands with one more contribution, e.g. the error of the radiation model, dB.
+    @property
+    def _bands(self) -> list[LevelBand]:
+        return [self.largest_total, *self.largest, *self.there, *self.total]
 
-        Raises
-        ------
-        InputError
-            A deviation is negative.
-        """
-        largest, there, total = (
-            tuple(band.with_error(name, below, above) for band in bands)
-            for bands in (self.largest, self.there, self.total)
+    def _of_bands(self, bands: Sequence[LevelBand]) -> SoundBand:
+        ends = np.cumsum([1, self.order.size, self.order.size])
+        (whole,), largest, there, total = (
+            tuple(bands[first:end]) for first, end in zip([0, *ends], [*ends, len(bands)], strict=True)
         )
-        whole = self.largest_total.with_error(name, below, above)
         return replace(self, largest_total=whole, largest=largest, there=there, total=total)
+
+    def with_power_error(
+        self, name: str, power: OrderPower, below: FloatArray, above: FloatArray
+    ) -> SoundBand:
+        """Return all bands with one more contribution: the error of every power, e.g. by its radiation model.
+
+        All powers may be off at once, so that a quieter line may be the loudest.
+
+        Parameters
+        ----------
+        power : OrderPower
+            Of the nominal response, (H, S).
+        below, above : (H, S) arrays
+            By how much a level may lie below and above, dB, at least 0.
+        """
+        loudest = np.searchsorted(self.speed, self.loudest_speed)
+
+        def levels(off: FloatArray) -> FloatArray:
+            shifted = OrderPower(power.frequency, power.power * 10.0 ** (off / 10.0))
+            return _levels(self.order, loudest, self.order, shifted)
+
+        own = levels(np.zeros(power.power.shape))
+        ends = zip(self._bands, own - levels(-below), levels(above) - own, strict=True)
+        return self._of_bands([band.with_error(name, float(low), float(high)) for band, low, high in ends])
 
 
 def sound_band(
@@ -328,11 +348,7 @@ def _band(
     peaks = np.array([nominal.weighted_power.sum(axis=0), *nominal.weighted_power])
     for index, row in enumerate(peaks):
         bands[index] = bands[index].with_error("speed_steps", 0.0, _missed_between(speed, row))
-    parts = np.cumsum([1, order.size, order.size])
-    total, largest, there, each = (
-        tuple(bands[first:end]) for first, end in zip([0, *parts], [*parts, len(bands)], strict=True)
-    )
-    return SoundBand(speed, order, total[0], largest, speed[loudest], there, each)
+    return SoundBand(speed, order, bands[0], (), speed[loudest], (), ())._of_bands(bands)
 
 
 def _missed_between(speed: FloatArray, power: FloatArray) -> float:

@@ -152,7 +152,7 @@ def _placed(housing: HousingInput, mesh: TetrahedralMesh) -> TetrahedralMesh:
 
 
 def _meshed(housing: HousingInput, scene: SceneInput, mesh: TetrahedralMesh) -> MeshedHousing:
-    loss, ratio = housing.loss_factor, housing.damping_ratio
+    loss, ratios = housing.loss_factor, housing.modal_damping or (housing.damping_ratio,)
     assert housing.material is not None  # the schema comes first
     return MeshedHousing(
         mesh,
@@ -161,7 +161,7 @@ def _meshed(housing: HousingInput, scene: SceneInput, mesh: TetrahedralMesh) -> 
         tuple(_foot(foot) for foot in housing.feet),
         {point.name: _si(point.position_mm) for point in housing.points},
         housing.modes,
-        ModalDamping((ratio,)) if loss is None else MaterialDamping(loss),
+        ModalDamping(ratios) if loss is None else MaterialDamping(loss),
     )
 
 

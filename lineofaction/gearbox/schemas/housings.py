@@ -187,7 +187,7 @@ class _MatrixHousing(BoundaryModel):
 _MATRICES = ("stiffness_matrix", "damping_matrix", "mass_matrix", "seat_positions_mm", "modal_coordinates")
 _SOLID = ("material", "seats", "feet")
 _SETTINGS = (figure.field for figure in figures(ReductionSettings))
-_OF_SOLID = (*_SOLID, "points", "mesh_unit", "origin_mm", "x_axis", "z_axis", *_SETTINGS)
+_OF_SOLID = (*_SOLID, "points", "modal_damping", "mesh_unit", "origin_mm", "x_axis", "z_axis", *_SETTINGS)
 
 
 @with_fields(declared_in(ReductionSettings))
@@ -207,6 +207,14 @@ class HousingInput(_MatrixHousing):
     modes: int
     element_size_mm: float | None
     loss_factor: float | None
+    modal_damping: Listed[Annotated[float, Field(ge=0.0, le=1.0)]] = Field(
+        default=(),
+        max_length=2000,
+        description="Measured damping ratios of the modes of the solid in rising order, in place of "
+        "loss_factor and damping_ratio; the last holds for all that follow",
+        examples=[[0.006, 0.004, 0.008]],
+        exclude_if=_left_out,
+    )
     modes_file: str | None = Field(
         default=None,
         max_length=1000,
@@ -324,6 +332,10 @@ class HousingInput(_MatrixHousing):
         for name in _SOLID:
             if not getattr(self, name):
                 refuse(name, None, "given with step_file or mesh_file", advice[name])
+        if self.modal_damping and self.loss_factor is not None:
+            refuse(
+                "modal_damping", list(self.modal_damping), "left out with loss_factor", "State one of them."
+            )
         if self.bushings != tuple(seat.bearing for seat in self.seats):
             refuse("bushings", list(self.bushings), "left out with seats", "Seats name their bearings.")
         if (self.mesh_unit is None) == (self.mesh_file is not None):

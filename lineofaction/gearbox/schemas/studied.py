@@ -119,7 +119,15 @@ class NoiseRanges(BoundaryModel):
         "tip relief and crowning of meshes with a case, whose contact is solved again three times each",
         examples=[True],
     )
-    housing_damping: Factors = _range(0.4, 2.0, "Damping of the housings")
+    housing_damping: Factors | None = Field(
+        default=None,
+        min_length=2,
+        max_length=2,
+        description="Damping of the housings: lowest and highest factor on what the scene states; left out: "
+        "0.4, 2 of the usual one, a guess; 0.7, 1.4 where the scene states another; 0.85, 1.2 where it has "
+        "measured modal_damping",
+        examples=[[0.4, 2.0]],
+    )
     housing_frequency: Factors = _range(0.97, 1.01, "Natural frequencies of the housings (mesh, walls)")
     mount_stiffness: Factors = _range(0.5, 2.0, "Stiffness and damping of the mounts at the feet")
     bearing_stiffness: Factors = _range(0.7, 1.4, "Stiffness of the bearings, but of rows by their geometry")
@@ -129,7 +137,7 @@ class NoiseRanges(BoundaryModel):
     def _about_one(self) -> Self:
         """Refuse ranges without what the scene states."""
         for name in RANGES:
-            low, high = getattr(self, name)
+            low, high = getattr(self, name) or (1.0, 1.0)
             if not low <= 1.0 <= high:
                 advice = "1 is what the scene states; 1, 1 varies nothing."
                 refuse(name, [low, high], "two factors, the first at most 1, the second at least 1", advice)

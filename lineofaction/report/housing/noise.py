@@ -244,6 +244,33 @@ def _causes(level: Json) -> Iterator[str]:
             yield f"{name.replace('_', ' ')} -{below[name]:.1f} +{above[name]:.1f}"
 
 
+NARROWER = {
+    "housing_damping": "state the damping of the housing (loss_factor, or measured modal_damping)",
+    "housing_frequency": "measure natural frequencies of the housing",
+    "mount_stiffness": "measure the stiffness of the mounts",
+    "bearing_stiffness": "narrow the stiffness of the bearings",
+    "mesh_damping": "narrow the damping of the meshes",
+    "mode_number": "keep more modes of the housing",
+    "speed_steps": "refine the speeds about the loudest",
+    "radiation_model": "correct more lines by boundary elements",
+}
+"""What a user does about a contribution to a band."""
+
+
+def _narrowest(facts: Json) -> Iterator[str]:
+    """Say what would narrow the band of the largest level most."""
+    level = (facts["band"] or {}).get("largest_total", {})
+    for name, left in level.get("widths_without_db", {}).items():
+        if name in NARROWER and level["width_db"] - left >= LEAST_NARROWED:
+            width = level["width_db"]
+            yield f"{NARROWER[name]}: of {width:.1f} dB of the band {left:.1f} are left"
+            return
+
+
+LEAST_NARROWED = 0.1
+"""dB."""
+
+
 def _cost_table(rows: list[Json]) -> Table:
     """List what steps change of the largest level, the largest change first."""
     caption = "What 1 dB costs: largest level of all orders; factors are on what the scene states"
@@ -310,6 +337,7 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
     if (band := sound.facts["band"]) is not None:
         total_band = band["largest_total"]
         where += f"; {total_band['low_db_a']:.1f} to {total_band['high_db_a']:.1f} over the ranges of guesses"
+        where += "".join(f"; {words}" for words in _narrowest(sound.facts))
     shown = [Headline("sound power level", f"{total[at]:.1f} dB(A)", where)]
     shown += [
         Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", words)
@@ -416,6 +444,12 @@ def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str,
     if highest > valid:
         words = "0.7 of the highest mode kept, modes are missing: keep more"
         yield f"above {number(valid, 3)} Hz", words
+    if lines := compared.get("lines"):
+        words = (
+            f"{number(line['frequency'], 4)} Hz ({line['level'] - line['estimate']:+.1f} dB)"
+            for line in lines
+        )
+        yield "boundary elements", f"at {', '.join(words)} in the place of the estimate"
     if replaced := compared.get("replaced"):
         modes = ", ".join(number(hertz, 4) for hertz in replaced)
         yield (
@@ -433,6 +467,7 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield from (f"{what}: {words}" for what, words in _limits(sound))
     yield from _model_tables(sound)
     yield from _uncertainty_tables(sound.facts)
+    yield from _narrowest(sound.facts)
     left_out = sound.facts["sensitivities_left_out"]
     yield from (f"no sensitivity to {name}: {why}" for name, why in left_out.items())
     yield from model_text(sound.facts)

@@ -33,12 +33,22 @@ class Inputs(NoiseRanges, OverSpeedsOrRun):
         examples=["estimate"],
     )
     boundary_elements: bool = Field(
-        default=False,
-        description="Whether boundary elements check the model where each housing is loudest: 20 CPU s and "
-        "0.4 GB for 1600 panels, 10 CPU min and 6 GB for 7000, six edges in a wavelength; every result says "
-        "what they would take for its housings; with the extra boundary-elements",
-        examples=[True],
+        default=True,
+        description="Whether boundary elements correct the estimate at the loudest lines of each housing, at "
+        "most four, and in 60 CPU s, kept; a line is then within 0.5 dB. Needs the extra boundary-elements; "
+        "without it the result says so, and the estimate stands with its wider band",
+        examples=[False],
     )
+
+
+class ExactLineFigures(Part):
+    """A line that boundary elements correct: its level by the estimate and by them, and what it cost."""
+
+    frequency_hz: float
+    estimate_db: Annotated[float, Source("estimate")]
+    level_db: Annotated[float, Source("level")]
+    panels: int
+    cpu_seconds: Annotated[float, Source("seconds")]
 
 
 class HousingSound(Part):
@@ -61,6 +71,7 @@ class HousingSound(Part):
     models_cpu_seconds: dict[str, float]
     models_error_band_db: dict[str, tuple[float, float]]
     models_predicted: dict[str, PredictedCost]
+    exact_lines: list[ExactLineFigures]
     radiation_cost: HousingCost | None
 
 
@@ -78,13 +89,15 @@ class RegionSound(Part):
 
 
 class LevelBandFigures(Part):
-    """A level, its band, and the deviations that make it by what is guessed."""
+    """A level, its band, the deviations that make it, and the width that is left without each of them."""
 
     level_db_a: Annotated[float, Source("nominal")]
     low_db_a: float
     high_db_a: float
     below_db: dict[str, float]
     above_db: dict[str, float]
+    width_db: float
+    widths_without_db: dict[str, float]
 
 
 def _by_order(band: Any) -> list[dict[str, Any]]:
@@ -103,6 +116,8 @@ class SoundBandFigures(Part):
         speed_rpm: float
         there: LevelBandFigures
 
+    damping_source: str
+    damping_range: tuple[float, float]
     largest_total: LevelBandFigures
     orders: Annotated[list[OrderBand], Source(_by_order)]
     total_low_db_a: Annotated[list[float], Source(lambda band: [level.low for level in band.total])]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 
@@ -16,20 +16,22 @@ from dynamics.acoustics import (
     ElementalRadiators,
     EquivalentRadiatedPower,
     PanelModel,
-    RadiationModel,
     a_weighting,
     outer_hull,
     sound_power_level,
 )
+from dynamics.acoustics.model_comparison import WORK
 from dynamics.acoustics.recording import LOWEST
 from dynamics.housings import ReducedHousing, write_surface
 from dynamics.noise import (
+    CorrectedRadiation,
     EstimatedRadiation,
     HousingRadiation,
     PanelSound,
     RadiatedSound,
     Region,
     SoundOverTime,
+    corrected_radiation,
     estimated_radiation,
     kept_radiation,
     loudest,
@@ -39,11 +41,15 @@ from dynamics.noise import (
     regions,
     sound_over_time,
 )
+from dynamics.noise.estimated_radiation import LEAST
 from dynamics.noise.estimated_radiation import NAME as ESTIMATE
+from dynamics.noise.exact_lines import BUDGET, EXACT, FLAT, line_cost
 from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.noise.sound_over_time import BLOCK
 from dynamics.results import RunResult
+from dynamics.types import FloatArray
 from dynamics.vibration import BearingHarmonics
+from dynamics.work_cost import on_this_host
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.housings import FOLDER
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -90,13 +96,7 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         response = bearing_forces(subject, inputs, means)
         with boundary_errors():
             began = spent(means.workers)
-            housings = [
-                _SoundingHousing(part.name, body, part.bushings, _radiation(response, body, inputs, means))
-                for part in subject.scene.housings
-                if (body := subject.housings.get(part.name)) is not None and body.surface is not None
-            ]
-            if not housings:
-                raise no_surface([part.name for part in subject.inputs.housings])
+            housings = _sounding_housings(subject, response, inputs, means)
             sounds = [
                 radiated_sound(response, own.body, own.bearings, own.radiation, own.name) for own in housings
             ]
@@ -105,6 +105,7 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
                 for housing, sound in zip(housings, sounds, strict=True)
             }
             whole = _with_regions(RadiatedSound.of_all(sounds), response, housings, MODELS[inputs.radiation])
+            off = _joined_error(housings, sounds, compared)
             radiation = {housing.name: housing.radiation for housing in housings}
             heard = None if means.run is None else _over_time(subject, means.run, radiation)
         about = response.facts
@@ -116,7 +117,7 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         own["reduction_cost"] = reduction_costs(subject)
         known = {**whole.facts, **own, "models": compared, "seconds": seconds}
         whole = replace(whole, facts=known)
-        return replace(whole, facts={**known, **uncertainty(subject, whole, radiation, inputs, means)})
+        return replace(whole, facts={**known, **uncertainty(subject, whole, radiation, off, inputs, means)})
 
     def _derived(self, sound: RadiatedSound) -> Json:
         about = sound.facts
@@ -153,18 +154,50 @@ def _housing(about: Json, name: str) -> tuple[Json, Json]:
         "models_cpu_seconds": compared.get("seconds", {}),
         "models_error_band": compared.get("error_band", {}),
         "models_predicted": compared.get("predicted", {}),
+        "exact_lines": compared.get("lines", []),
         "radiation_cost": radiation.get("cost"),
     }
 
 
 @dataclass(frozen=True)
 class _SoundingHousing:
-    """A housing that radiates: its name, its reduction, the bearings in its seats, its radiation."""
+    """A housing that radiates: its name, its reduction, the bearings in its seats, its radiation.
+
+    `cheap` is the radiation without the lines that boundary elements correct.
+    """
 
     name: str
     body: ReducedHousing
     bearings: tuple[str, ...]
-    radiation: HousingRadiation
+    cheap: HousingRadiation
+    corrected: CorrectedRadiation | None
+
+    @property
+    def radiation(self) -> HousingRadiation:
+        """Return the most exact radiation."""
+        return self.cheap if self.corrected is None else self.corrected.radiation
+
+
+def _sounding_housings(
+    subject: TabledScene, response: BearingHarmonics, inputs: Inputs, means: Means
+) -> list[_SoundingHousing]:
+    """Return the housings with a surface; lines that boundary elements correct are divided among them."""
+    bodies = [
+        (part, body)
+        for part in subject.scene.housings
+        if (body := subject.housings.get(part.name)) is not None and body.surface is not None
+    ]
+    if not bodies:
+        raise no_surface([part.name for part in subject.inputs.housings])
+    model = BoundaryElements(progress=means.report, workers=means.workers)
+    housings = []
+    for part, body in bodies:
+        cheap, corrected = _radiation(response, body, inputs, means), None
+        if isinstance(cheap, EstimatedRadiation) and inputs.boundary_elements:
+            home, budget = means.home / FOLDER, BUDGET / len(bodies)
+            corrected = corrected_radiation(response, body, part.bushings, cheap, model, home, budget)
+        housings.append(_SoundingHousing(part.name, body, part.bushings, cheap, corrected))
+    return housings
 
 
 def _with_regions(
@@ -232,57 +265,74 @@ def _compared(
     points = [point for point in loudest(sound) if point.frequency <= resolved] or loudest(sound, 1)
     if not points:
         return {}
-    ladder_of = (PLANE, MONOPOLES, BoundaryElements(progress=means.report, workers=means.workers))
-    models: tuple[RadiationModel, ...] = ladder_of if inputs.boundary_elements else ladder_of[:-1]
     at, cache = (points[0].speed_index, points[0].order_index), means.home / FOLDER
     ladder = models_at(
-        response,
-        housing.body,
-        housing.bearings,
-        at,
-        models,
-        progress=means.report,
-        offered=ladder_of,
-        cache=cache,
+        response, housing.body, housing.bearings, at, (PLANE, MONOPOLES), means.report, cache=cache
     )
     compared = {
         "order": points[0].order,
         "speed": points[0].speed,
         "level": {name: result.level for name, result in ladder.results.items()},
-        "error": ladder.errors,
         "efficiency": {name: result.efficiency for name, result in ladder.results.items()},
         "seconds": {name: result.cost.seconds for name, result in ladder.results.items()},
         "left_out": dict(ladder.left_out),
         "error_band": {name: list(band) for name, band in ladder.error_band.items()},
         "predicted": {name: cost._asdict() for name, cost in ladder.predicted.items()},
     }
-    return compared | _of_estimate(housing.radiation, sound, at, compared)
+    _add_estimate(compared, response, housing, at)
+    _add_boundary_elements(compared, housing, sound, at, cache)
+    finest = list(compared["level"].values())[-1]
+    return compared | {"error": {name: level - finest for name, level in compared["level"].items()}}
 
 
-def _of_estimate(
-    radiation: HousingRadiation, sound: RadiatedSound, at: tuple[int, int], compared: Json
-) -> Json:
-    """Return what is compared with the estimate as a further model, nothing where there is none."""
-    if not isinstance(radiation, EstimatedRadiation):
-        return {}
-    hertz = float(sound.frequency[at])
-    off = radiation.error_band(hertz, sound.mode_alone[:, at[0], at[1]])
-    estimate = {
-        "level": float(sound_power_level(sound.power[at])),
-        "error_band": list(off),
-        "predicted": compared["predicted"][MONOPOLES.model_name],
-    }
-    of_all = {key: _before_finest(compared[key], value) for key, value in estimate.items()}
-    finest = list(of_all["level"].values())[-1]
-    errors = {name: own - finest for name, own in of_all["level"].items()}
-    return {**of_all, "error": errors, "replaced": radiation.replaced(sound.natural_frequency).tolist()}
+def _add_estimate(
+    compared: Json, response: BearingHarmonics, housing: _SoundingHousing, at: tuple[int, int]
+) -> None:
+    """Add what the estimate is without boundary elements to the models, where there is one."""
+    if not isinstance(housing.cheap, EstimatedRadiation):
+        return
+    sound = radiated_sound(response, housing.body, housing.bearings, housing.cheap, housing.name)
+    off = housing.cheap.error_band(float(sound.frequency[at]), sound.mode_alone[:, at[0], at[1]])
+    compared["level"][ESTIMATE] = float(sound_power_level(sound.power[at]))
+    compared["error_band"][ESTIMATE] = list(off)
+    compared["predicted"][ESTIMATE] = compared["predicted"][MONOPOLES.model_name]
+    compared["replaced"] = housing.cheap.replaced(sound.natural_frequency).tolist()
 
 
-def _before_finest(by_model: Json, value: object) -> Json:
-    """Return a mapping by model with that of the estimate behind the cheap ones."""
-    finest = {name: own for name, own in by_model.items() if name == "boundary_elements"}
-    cheap = {name: own for name, own in by_model.items() if name not in finest}
-    return {**cheap, ESTIMATE: value, **finest}
+def _add_boundary_elements(
+    compared: Json, housing: _SoundingHousing, sound: RadiatedSound, at: tuple[int, int], cache: Path
+) -> None:
+    """Add the lines that boundary elements correct, their level at the point, and why there are no more."""
+    hertz, name = float(sound.frequency[at]), BoundaryElements().model_name
+    corrected = housing.corrected
+    compared["error_band"][name] = [-EXACT, EXACT]
+    cost = on_this_host(WORK.format(name), line_cost(housing.body, hertz), cache)
+    compared["predicted"][name] = cost._asdict()
+    if corrected is None:
+        return
+    compared["lines"] = [asdict(line) for line in corrected.lines]
+    if corrected.left_out:
+        compared["left_out"][name] = "; ".join(corrected.left_out)
+    here = [line for line in corrected.lines if max(line.frequency / hertz, hertz / line.frequency) <= FLAT]
+    if here:
+        compared["level"][name] = float(sound_power_level(sound.power[at]))
+        compared["seconds"][name] = here[0].seconds
+
+
+def _joined_error(
+    housings: Sequence[_SoundingHousing], sounds: Sequence[RadiatedSound], compared: Mapping[str, Json]
+) -> FloatArray:
+    """Return from and to where the levels of all housings together are off, (2, S, H), dB; < 0: too quiet."""
+    power, true = np.zeros(sounds[0].power.shape), np.zeros((2, *sounds[0].power.shape))
+    for housing, sound in zip(housings, sounds, strict=True):
+        radiation, about = housing.radiation, compared[housing.name]
+        if isinstance(radiation, EstimatedRadiation):
+            off = radiation.off(sound.frequency, sound.mode_alone)
+        else:
+            stated = about.get("error_band", {}).get(radiation.model_name, (0.0, 0.0))
+            off = np.broadcast_to(np.reshape(stated, (2, 1, 1)), true.shape)
+        power, true = power + sound.power, true + sound.power * 10.0 ** (-off / 10.0)
+    return np.asarray(-10.0 * np.log10(np.maximum(true, LEAST) / np.maximum(power, LEAST)))
 
 
 RUN = _NoiseStudy()

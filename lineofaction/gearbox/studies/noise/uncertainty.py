@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
 
 from bounds.types import Json
 from dynamics.acoustics import Range
@@ -22,6 +25,7 @@ from dynamics.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import RANGES, NoiseRanges
 from lineofaction.gearbox.studies.computation import Means
@@ -35,29 +39,63 @@ STEP = 2.0
 """um; a tolerance of class 5 is about as much."""
 
 
+class KnownDamping(NamedTuple):
+    """Where the damping of housings comes from, and the factors between which it then lies."""
+
+    source: str
+    factors: tuple[float, float]
+
+
+GUESSED = KnownDamping("guessed", (0.4, 2.0))
+"""About ratios of 0.005: cast iron with bolted joints has 0.002 to 0.01."""
+STATED = KnownDamping("stated", (0.7, 1.4))
+"""One figure for all modes, which differ."""
+MEASURED = KnownDamping("measured by mode", (0.85, 1.2))
+"""What one assembly differs from the next."""
+
+
+def damping_of(scene: SceneInput, housings: Collection[str]) -> KnownDamping:
+    """Return the least known damping of some housings of a scene; the usual one is a guess, stated or not."""
+    known = [_known_damping(housing) for housing in scene.housings if housing.name in housings]
+    return max(known, key=lambda damping: damping.factors[1])
+
+
+def _known_damping(housing: HousingInput) -> KnownDamping:
+    if housing.modal_damping:
+        return MEASURED
+    usual = HousingInput.model_fields["damping_ratio"].default
+    if housing.loss_factor is not None or housing.damping_ratio != usual:
+        return STATED
+    return GUESSED
+
+
 def uncertainty(
     subject: TabledScene,
     sound: RadiatedSound,
     radiation: Mapping[str, HousingRadiation],
+    off: FloatArray,
     inputs: Inputs,
     means: Means,
 ) -> Json:
-    """Return the facts `band`, `sensitivities`, `sensitivities_left_out` and the CPU time, as requested."""
+    """Return the facts `band`, `sensitivities`, `sensitivities_left_out` and the CPU time, as requested.
+
+    `off` (2, S, H): from and to where the radiation model is off, dB, below 0: too quiet.
+    """
+    damping = damping_of(subject.inputs, radiation)
     housings = {name: subject.housings[name] for name in radiation}
     model = SoundModel(subject.scene, housings, radiation)
     facts: Json = {"band": None, "sensitivities": [], "sensitivities_left_out": {}}
     began = cpu_seconds()
     with boundary_errors():
         if inputs.band:
-            band = _band_of(model, sound.speed, inputs.orders, inputs, means)
-            stated = [
-                about["error_band"][inputs.radiation] for about in sound.facts["models"].values() if about
-            ]
-            below, above = (
-                max((sign * of[end] for of in stated), default=0.0) for end, sign in ((1, 1.0), (0, -1.0))
+            own = inputs.model_copy(update={"housing_damping": inputs.housing_damping or damping.factors})
+            band = _band_of(model, sound.speed, inputs.orders, own, means)
+            below, above = np.maximum(off[1].T, 0.0), np.maximum(-off[0].T, 0.0)
+            band = band.with_power_error("radiation_model", sound.orders, below, above)
+            source = damping.source if inputs.housing_damping is None else "range stated"
+            facts["band"] = figures_of(
+                SoundBandFigures, band, damping_source=source, damping_range=own.housing_damping
             )
-            band = band.with_error("radiation_model", below, above)
-            facts["band"] = figures_of(SoundBandFigures, band)
         if inputs.sensitivities:
             rows, left_out = _sensitivities_of(subject, model, sound.speed, inputs.orders, means)
             facts["sensitivities"] = [figures_of(SensitivityFigures, row) for row in rows]
@@ -71,7 +109,7 @@ def _band_of(
     model: SoundModel, speed: FloatArray, orders: int, ranges: NoiseRanges, means: Means
 ) -> SoundBand:
     """Return the bands over the ranges."""
-    factors = {name: getattr(ranges, name) for name in RANGES}
+    factors = {name: span for name in RANGES if (span := getattr(ranges, name)) is not None}
     spans = {name: Range(low, 1.0, high) for name, (low, high) in factors.items()}
     return sound_band(model, speed, orders, spans, progress=means.report)
 

@@ -1,0 +1,255 @@
+"""Boundary elements at the loudest lines of a housing, which take the place of the estimate there alone.
+
+The resistance of a line holds for any motion of the housing at its frequency, and with the square of the
+frequency `FLAT` to both sides; from there to `BLEND` it becomes the estimate again. What a line is off says
+nothing of lines farther away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from bounds import engineering
+from dynamics.acoustics import Air, BoundaryElements, outer_hull, resistance, sound_power_level
+from dynamics.acoustics.boundary_elements import EDGES
+from dynamics.acoustics.model_comparison import WORK
+from dynamics.errors import ResultError
+from dynamics.housings.reduced_housing import ReducedHousing
+from dynamics.noise.coarse_hull import Coarseness, RadiatingHull, radiating_hull
+from dynamics.noise.estimated_radiation import EstimatedRadiation
+from dynamics.noise.housing_radiation import HousingRadiation, RadiationFacts, content_key
+from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest, radiated_sound
+from dynamics.types import BoolArray, ComplexArray, FloatArray
+from dynamics.vibration import BearingHarmonics
+from dynamics.work_cost import Cost, announce, measured, on_this_host
+from host import MissingExtra
+from model_studies.kept_file import kept_in
+
+LINES, BUDGET = 4, 60.0
+"""Lines of a housing at most, and CPU seconds on the reference host that they may take together."""
+COARSE = Coarseness(EDGES, 450)
+"""Hull of a line: within EXACT of six edges in a wavelength at 15 lines of five gear cases."""
+EXACT = 0.5
+"""dB, that a line is off by its hull."""
+FLAT, BLEND = 1.03, 1.06
+"""Ratios of frequencies: natural frequencies are guessed within the first."""
+QUIETER = 6.0
+"""dB below the loudest point, where a line that may be as loud is left as it is: it adds 1 dB at most."""
+CANDIDATES = 200
+"""Loudest points among which they are looked for."""
+AIR, NAME = Air(), BoundaryElements().model_name
+
+
+@dataclass(frozen=True)
+class ExactLine:
+    """A line that boundary elements correct.
+
+    Attributes
+    ----------
+    frequency : float
+        Hz.
+    estimate, level : float
+        Sound power level by the estimate and by boundary elements at its loudest point, dB.
+    panels : int
+    seconds : float
+        CPU time when it was computed; a later result takes it from the cache.
+    """
+
+    frequency: float
+    estimate: float
+    level: float
+    panels: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class CorrectedRadiation:
+    """The estimate with boundary elements at its loudest lines.
+
+    Attributes
+    ----------
+    radiation : EstimatedRadiation
+    lines : tuple of ExactLine
+        In the order in which they were corrected.
+    left_out : tuple of str
+        Why further lines were not; none: no other line may be as loud.
+    """
+
+    radiation: EstimatedRadiation
+    lines: tuple[ExactLine, ...]
+    left_out: tuple[str, ...]
+
+
+def corrected_radiation(
+    response: BearingHarmonics,
+    housing: ReducedHousing,
+    bearings: Sequence[str] | None,
+    estimate: EstimatedRadiation,
+    model: BoundaryElements = BoundaryElements(),  # noqa: B008 (frozen)
+    cache: Path | None = None,
+    budget: float = BUDGET,
+) -> CorrectedRadiation:
+    """Return the estimate, in usual air, corrected line by line, each time at that which may be the loudest.
+
+    Parameters
+    ----------
+    response, housing, bearings
+        As of `radiated_sound`.
+    model : BoundaryElements
+        With progress and workers.
+    cache : Path, optional
+        As of `kept_radiation`.
+    budget : float
+        Predicted CPU seconds on the reference host: the lines are the same on every host.
+
+    Raises
+    ------
+    InputError, SolveError
+        As `radiated_sound` and `surface_pressure` do.
+    """
+    exact: list[HousingRadiation] = []
+    lines: list[ExactLine] = []
+    left_out: dict[float, str] = {}
+    radiation = estimate
+    sound = radiated_sound(response, housing, bearings, radiation)
+    while point := _next_point(sound, radiation, (*left_out, *(line.frequency for line in lines))):
+        hertz, at = point.frequency, (point.speed_index, point.order_index)
+        if len(lines) == LINES:
+            left_out[hertz] = f"from {engineering(hertz, 4)} Hz on: {LINES} lines at most"
+            break
+        seconds = line_cost(housing, hertz).seconds
+        if seconds > budget:
+            left_out[hertz] = f"{engineering(hertz, 4)} Hz: {seconds:.0f} of {budget:.0f} CPU s that are left"
+            continue
+        try:
+            exact.append(_exact_line(housing, hertz, model, cache))
+        except MissingExtra as error:
+            left_out[hertz] = str(error)
+            break
+        budget -= seconds
+        before, radiation = float(sound.power[at]), with_exact_lines(estimate, exact)
+        sound = radiated_sound(response, housing, bearings, radiation)
+        own, level = sound_power_level([before, sound.power[at]]).tolist()
+        facts = exact[-1].facts
+        lines.append(ExactLine(hertz, own, level, facts.panels, facts.cost.seconds))
+    return CorrectedRadiation(radiation, tuple(lines), tuple(left_out.values()))
+
+
+def _next_point(
+    sound: RadiatedSound, radiation: EstimatedRadiation, known: Sequence[float]
+) -> LoudPoint | None:
+    """Return the point that may be the loudest away from frequencies in Hz; None where none counts."""
+    points = loudest(sound, CANDIDATES)
+    highest = {
+        point: _highest_level(sound, radiation, point)
+        for point in points
+        if point.frequency <= radiation.facts.resolved_frequency
+        and all(max(point.frequency / hertz, hertz / point.frequency) > FLAT for hertz in known)
+    }
+    first = max(highest, key=highest.__getitem__, default=None)
+    if first is None or highest[first] < points[0].weighted_level - QUIETER:
+        return None
+    return first
+
+
+def _highest_level(sound: RadiatedSound, radiation: EstimatedRadiation, point: LoudPoint) -> float:
+    """Return the highest level that a point may have, dB(A)."""
+    alone = sound.mode_alone[:, point.speed_index, point.order_index]
+    return point.weighted_level - radiation.error_band(point.frequency, alone)[0]
+
+
+def _line_hull(housing: ReducedHousing, hertz: float) -> RadiatingHull:
+    return radiating_hull(outer_hull(housing), hertz, AIR.sound_speed, COARSE)
+
+
+def line_cost(housing: ReducedHousing, hertz: float) -> Cost:
+    """Predict the cost of a line of a housing on the reference host."""
+    return BoundaryElements().cost(len(_line_hull(housing, hertz).shapes), 0.0, 0)
+
+
+def _exact_line(
+    housing: ReducedHousing, hertz: float, model: BoundaryElements, cache: Path | None
+) -> HousingRadiation:
+    """Return the resistance at one frequency, from the cache if it is there."""
+    outer, hull = outer_hull(housing), _line_hull(housing, hertz)
+    panels, shapes = len(hull.shapes), hull.shapes.astype(complex)
+    kind, reference = WORK.format(NAME), line_cost(housing, hertz)
+
+    def computed() -> HousingRadiation:
+        words = f"{panels} panels at {engineering(hertz, 4)} Hz"
+        announce(model.progress, "boundary elements", words, on_this_host(kind, reference, cache))
+        matrix, cost = measured(
+            kind, reference, cache, lambda: resistance(model, hull.hull, hertz, shapes, AIR), model.workers
+        )
+        facts = RadiationFacts(panels, cost, hertz, 0.0, outer.inner_area, outer.cap_area)
+        hermitian = 0.5 * (matrix + matrix.conj().T)
+        return HousingRadiation(
+            np.array([hertz]), hermitian[None], outer.surface, outer.hull.area, AIR.impedance, NAME, facts
+        )
+
+    file = None if cache is None else cache / f"line-{content_key(housing, model, hertz, COARSE, AIR)}.nc"
+    return kept_in(file, HousingRadiation.from_netcdf, computed, HousingRadiation.to_netcdf, ResultError)
+
+
+class _Knot(NamedTuple):
+    """What an estimate has at a frequency, Hz."""
+
+    frequency: float
+    matrix: ComplexArray
+    correction: FloatArray
+    mode_error: FloatArray
+    by_velocity: BoolArray
+
+
+def with_exact_lines(estimate: EstimatedRadiation, lines: Sequence[HousingRadiation]) -> EstimatedRadiation:
+    """Return the estimate with resistances of single frequencies in the place of its own near them.
+
+    Between two lines closer than `BLEND` squared it goes from one to the other.
+    """
+    rising = sorted(lines, key=lambda line: float(line.frequency[0]))
+    hertz = np.array([line.frequency[0] for line in rising])
+    ratios = estimate.frequency[:, None] / hertz
+    away = np.all((ratios < 1.0 / BLEND) | (ratios > BLEND), axis=1)
+    knots = [_knot(estimate, at) for at in estimate.frequency[away].tolist()]
+    closer = np.diff(np.log(hertz)) < 2.0 * np.log(BLEND)
+    for line, below, above in zip(rising, [False, *closer], [*closer, False], strict=True):
+        knots += _knots_of_line(estimate, line, [side for side, met in ((-1, below), (1, above)) if not met])
+    knots.sort(key=lambda knot: knot.frequency)
+    frequency, matrix, correction, mode_error, by_velocity = zip(*knots, strict=True)
+    return replace(
+        estimate,
+        frequency=np.array(frequency),
+        matrix=np.stack(matrix),
+        correction=np.stack(correction),
+        mode_error=np.stack(mode_error, axis=1),
+        by_velocity=np.stack(by_velocity),
+    )
+
+
+def _knots_of_line(
+    estimate: EstimatedRadiation, line: HousingRadiation, sides: Sequence[int]
+) -> Iterator[_Knot]:
+    """Yield the knots of a line, and those at which it ends at its sides, -1 below and 1 above it."""
+    hertz, lowest, highest = (float(at) for at in (line.frequency[0], *estimate.frequency[[0, -1]]))
+    for at in (hertz, *(hertz * FLAT**side for side in sides)):
+        own = _knot(estimate, at)
+        error = np.broadcast_to([[-EXACT], [EXACT]], own.mode_error.shape)
+        matrix = line.matrix[0] * (at / hertz) ** 2
+        yield own._replace(matrix=matrix, mode_error=error, by_velocity=np.zeros_like(own.by_velocity))
+    for side in sides:
+        yield _knot(estimate, float(np.clip(hertz * BLEND**side, lowest, highest)))
+
+
+def _knot(estimate: EstimatedRadiation, hertz: float) -> _Knot:
+    """Return the resistance of an estimate at a frequency, and the rest at its next computed frequency."""
+    row = int(np.abs(estimate.frequency - hertz).argmin())
+    knots = np.searchsorted(estimate.frequency, [knot for knot, _ in estimate.weights(hertz)])
+    shares = [share for _, share in estimate.weights(hertz)]
+    matrix = np.tensordot(shares, estimate.matrix[knots], 1)
+    rest = estimate.correction[row], estimate.mode_error[:, row], estimate.by_velocity[row]
+    return _Knot(hertz, matrix, *rest)
