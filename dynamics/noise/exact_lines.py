@@ -39,7 +39,7 @@ EXACT = 0.5
 FLAT, BLEND = 1.03, 1.06
 """Ratios of frequencies: natural frequencies are guessed within the first."""
 QUIETER = 6.0
-"""dB below the loudest point, where a line that may be as loud is left as it is: it adds 1 dB at most."""
+"""dB below the loudest point that the mesh resolves; a line that cannot be louder adds 1 dB at most."""
 CANDIDATES = 200
 """Loudest points among which they are looked for."""
 AIR, NAME = Air(), BoundaryElements().model_name
@@ -144,12 +144,12 @@ def _next_point(
     sound: RadiatedSound, radiation: EstimatedRadiation, known: Sequence[float]
 ) -> LoudPoint | None:
     """Return the point that may be the loudest away from frequencies in Hz; None where none counts."""
-    points = loudest(sound, CANDIDATES)
+    resolved = radiation.facts.resolved_frequency
+    points = [point for point in loudest(sound, CANDIDATES) if point.frequency <= resolved]
     highest = {
         point: _highest_level(sound, radiation, point)
         for point in points
-        if point.frequency <= radiation.facts.resolved_frequency
-        and all(max(point.frequency / hertz, hertz / point.frequency) > FLAT for hertz in known)
+        if all(max(point.frequency / hertz, hertz / point.frequency) > FLAT for hertz in known)
     }
     first = max(highest, key=highest.__getitem__, default=None)
     if first is None or highest[first] < points[0].weighted_level - QUIETER:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -15,6 +14,7 @@ from bounds import SiNote
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import InputError, SolveError, integer, positive, within
 from fe_contact.geometry import ParallelAxes, Toothing
+from fe_contact.geometry.flank_tolerances import check_scope, helix_slope_tolerance, profile_slope_tolerance
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study, full_table, ripple_errors
 from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
 from fe_contact.microgeometry.linearized_design import linearized
@@ -88,14 +88,6 @@ class Tolerances:
         }
 
 
-# Tolerances of profile and helix slope by ISO 1328-1:2013: formulas, range and rounding of clause 5.
-#
-# ANSI/AGMA ISO 1328-1-B14 and DIN ISO 1328-1:2018 are the same text. The edition of 1995 has other formulas,
-# in grades 0 to 12: its figures are not those of a class of equal number.
-
-_ADVICE = "ISO 1328-1:2013, 5.2.1 has no tolerances beyond: give your own as Tolerances."
-
-
 def iso1328_tolerances(
     pair: ParallelAxes,
     tolerance_class: int,
@@ -124,47 +116,11 @@ def iso1328_tolerances(
     widths = {}
     for name in GEARS:
         gear: Toothing = getattr(pair, name)
-        _check_scope(name, gear)
-        widths[f"{name}.profile_slope"] = _profile_slope_tolerance(gear, tolerance_class)
+        check_scope(name, gear)
+        widths[f"{name}.profile_slope"] = profile_slope_tolerance(gear, tolerance_class)
         if across_face:
-            widths[f"{name}.helix_slope"] = _helix_slope_tolerance(gear, tolerance_class)
+            widths[f"{name}.helix_slope"] = helix_slope_tolerance(gear, tolerance_class)
     return Tolerances(misalignment, widths, distribution)
-
-
-def _profile_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
-    """f_HalphaT in m: formula (7) of 5.3.3.1, 0.4 m_n + 0.001 d + 4 um of class 5, m_n and d in mm."""
-    module, diameter = 1e3 * gear.normal_module, 2e3 * gear.reference_radius
-    return 1e-6 * _rounded((0.4 * module + 0.001 * diameter + 4.0) * _step(tolerance_class))
-
-
-def _helix_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
-    """f_HbetaT in m: formula (10) of 5.3.4.1, 0.05 sqrt d + 0.35 sqrt b + 4 um of class 5, d and b in mm."""
-    diameter, width = 2e3 * gear.reference_radius, 1e3 * gear.face_width
-    own = 0.05 * math.sqrt(diameter) + 0.35 * math.sqrt(width) + 4.0
-    return 1e-6 * _rounded(own * _step(tolerance_class))
-
-
-def _rounded(tolerance: float) -> float:
-    """Round a tolerance in um: above 10 to whole ones, from 5 to halves, below to tenths (5.2.3)."""
-    parts = 1 if tolerance > 10.0 else 2 if tolerance >= 5.0 else 10
-    return math.floor(tolerance * parts + 0.5) / parts
-
-
-def _step(tolerance_class: int) -> float:
-    """Tolerance of a class over that of class 5, which is not rounded before (5.2.2)."""
-    return math.sqrt(2.0) ** (tolerance_class - 5)
-
-
-def _check_scope(name: str, gear: Toothing) -> None:
-    """Refuse a gear for which the formulas are not made (clause 1)."""
-    for field_name, value, low, high in (
-        ("teeth", gear.teeth, 5, 1000),
-        ("normal_module", gear.normal_module, 0.5e-3, 70e-3),
-        ("reference_diameter", 2.0 * gear.reference_radius, 5e-3, 15.0),
-        ("face_width", gear.face_width, 4e-3, 1.2),
-        ("helix_angle", abs(gear.helix_angle), 0.0, math.radians(45.0)),
-    ):
-        within(f"{name}.{field_name}", value, low, high, _ADVICE)
 
 
 # Quantiles of a sample with confidence bounds that assume no shape of the distribution.

@@ -211,6 +211,8 @@ def _cost(receipt: dict[str, Any]) -> str:
     held_out = _held_out(receipt.get("held_out", {}))
     if held_out:
         text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
+    if allowed := receipt.get("misalignment_range"):
+        text += f"\n{allowed}"
     for line in _tolerance_lines(receipt):
         text += f"\n{line}"
     outgrown = receipt.get("patch_outgrown_points", 0)

@@ -13,7 +13,13 @@ from fe_contact.options import Run
 from fe_contact.ste import PairFacts, SteDatabase
 from host import cpu_seconds
 from host.extras import MissingExtra
-from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, boundary_errors, case_json
+from lineofaction.gearbox.convert.case import (
+    CheckedCase,
+    CheckedCases,
+    allowed_misalignment,
+    boundary_errors,
+    case_json,
+)
 from lineofaction.gearbox.convert.housings import housings_in
 from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_for, scene_warnings, within
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene, dynamic_scene
@@ -50,8 +56,11 @@ def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = Non
     request = checked.checked
     with boundary_errors():
         database = ste_database(request, run=run, case=case_json(checked.case), on_draft=on_draft)
-    warnings = phrased_for(checked.case, database.metadata.warnings)
-    return replace(database, metadata=replace(database.metadata, warnings=warnings))
+    made = database.metadata
+    if (allowed := allowed_misalignment(checked.case)) is not None:
+        made = replace(made, receipt=made.receipt | {"misalignment_range": allowed.words})
+    warnings = phrased_for(checked.case, made.warnings)
+    return replace(database, metadata=replace(made, warnings=warnings))
 
 
 class ComputedTables:

@@ -26,6 +26,7 @@ from fe_contact.geometry import (
     Shaft,
     Toothing,
 )
+from fe_contact.geometry.flank_tolerances import NO_CLEARANCE, MisalignmentRange, misalignment_range
 from fe_contact.material import Material
 from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
 from fe_contact.plausibility import pair_findings
@@ -90,15 +91,29 @@ def _gear(kind: type[Toothed], name: str, case: Case) -> Toothed:
 
 def table_axes(case: Case) -> TableAxes:
     """Return what the table of a case is computed over, in SI."""
-    load, errors = case.load, case.errors
+    load, errors, allowed = case.load, case.errors, allowed_misalignment(case)
     with boundary_errors():
         return TableAxes(
             load.torque_n_m,
             load.normal_force_n,
-            tuple(value * UM for value in errors.misalignment_um),
+            tuple(value * UM for value in errors.misalignment_um) if allowed is None else allowed.axis,
             tuple(value * MM for value in errors.center_distance_change_mm),
             case.accuracy.pitches,
         )
+
+
+def allowed_misalignment(case: Case) -> MisalignmentRange | None:
+    """Return the range that a class allows; None where the case states its misalignments.
+
+    Raises `BadInput`: no such pair exists, or it is beyond the standards.
+    """
+    errors = case.errors
+    if errors.misalignment_class is None:
+        return None
+    first, second = errors.bearing_clearance_um or NO_CLEARANCE
+    pair = gear_pair(case)
+    with boundary_errors():
+        return misalignment_range(pair, errors.misalignment_class, (first * UM, second * UM))
 
 
 def analysis_options(case: Case) -> AnalysisOptions:

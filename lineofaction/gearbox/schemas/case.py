@@ -95,6 +95,7 @@ class WheelInput(ToothingInput):
 
 Load = Annotated[float, Field(ge=1e-9, le=1e9)]  # smaller ones underflow where they are squared
 Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
+Clearance = Annotated[float, Field(ge=0.0, le=10_000.0)]
 CenterDistanceChange = Annotated[float, Field(ge=-10.0, le=10.0)]
 Loads = Annotated[Listed[Load], Field(min_length=1, max_length=256)]
 Misalignments = Annotated[Listed[Misalignment], Field(min_length=1, max_length=64)]
@@ -151,6 +152,11 @@ class LoadInput(BoundaryModel):
         return self
 
 
+def _left_out(value: object) -> bool:
+    """Whether a field that came after results had been stored is not there."""
+    return value is None
+
+
 class ErrorsInput(BoundaryModel):
     """Errors of assembly: axes of the table when they hold more than one value."""
 
@@ -158,6 +164,24 @@ class ErrorsInput(BoundaryModel):
         default=(0.0,),
         description="Tilt of the axes in the plane of action: gap growth in um over the common face width",
         examples=[[0.0, 30.0]],
+    )
+    misalignment_class: int | None = Field(
+        default=None,
+        ge=1,
+        le=11,
+        description="In place of misalignment_um: five misalignments over what gears and axes of this class "
+        "allow (ISO 1328-1:2013, ISO/TR 10064-3), to both sides",
+        examples=[7],
+        exclude_if=_left_out,
+    )
+    bearing_clearance_um: Listed[Clearance] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=2,
+        description="With misalignment_class: radial internal clearance of the bearings of both shafts in "
+        "um, by which they tilt",
+        examples=[[20.0, 25.0]],
+        exclude_if=_left_out,
     )
     center_distance_change_mm: CenterDistanceChanges = Field(
         default=(0.0,), description="Changes of the center distance in mm", examples=[[0.0]]
@@ -167,6 +191,11 @@ class ErrorsInput(BoundaryModel):
     def _axes_increase(self) -> Self:
         refuse_unsorted("misalignment_um", self.misalignment_um)
         refuse_unsorted("center_distance_change_mm", self.center_distance_change_mm)
+        if self.misalignment_class is not None and self.misalignment_um != (0.0,):
+            advice = "The class makes the range."
+            refuse("misalignment_um", list(self.misalignment_um), "left out with misalignment_class", advice)
+        if self.misalignment_class is None and self.bearing_clearance_um is not None:
+            refuse("bearing_clearance_um", list(self.bearing_clearance_um), "given with misalignment_class")
         return self
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
@@ -29,7 +30,8 @@ from lineofaction.report.drawing.figure import HeatMap
 from lineofaction.report.housing import noise as page
 from lineofaction.report.housing.noise import DEPTH, _cells, _limits, _model_tables, row_axis
 
-BANDS = ("--speed-rpm", "300:6000:600", "--orders", 4)
+SWEEP = ("--speed-rpm", "300:6000:600", "--orders", 4)
+BANDS = (*SWEEP, "--no-boundary-elements")
 SPEEDS = (*BANDS, "--no-band")
 
 
@@ -149,7 +151,7 @@ def test_boundary_elements_check_the_loudest_point_that_the_mesh_resolves(
 ) -> None:
     """It is louder at 1900 Hz, above the 1618 Hz that the mesh resolves."""
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
-    speeds = ("--speed-rpm", "1600,1750,1900,5700", "--orders", 4, "--no-band", "--boundary-elements")
+    speeds = ("--speed-rpm", "1600,1750,1900,5700", "--orders", 4, "--no-band")
     report = tmp_path / "noise.html"
     result = loa("noise", scene, *speeds, "-o", report)
     assert result.exit_code == 0, result.stderr
@@ -184,11 +186,38 @@ def test_levels_have_a_band_unless_it_is_left_out(scene: Path) -> None:
     assert total["level_db_a"] == pytest.approx(max(answer["total_level_db_a"]), abs=1e-6)
     assert total["low_db_a"] < total["level_db_a"] < total["high_db_a"]
     assert [row["order"] for row in orders] == answer["order"]
-    low, high = answer["housings"]["case"]["models_error_band_db"]["estimate"]
-    assert total["below_db"]["radiation_model"] == pytest.approx(high)
-    assert total["above_db"]["radiation_model"] == pytest.approx(-low)
+    assert (answer["band"]["damping_source"], answer["band"]["damping_range"]) == ("range stated", [0.5, 1.5])
+    assert total["width_db"] == pytest.approx(total["high_db_a"] - total["low_db_a"])
+    assert all(left <= total["width_db"] for left in total["widths_without_db"].values())
     assert answer["sensitivities"] == []
     assert printed("noise", scene, *SPEEDS)["band"] is None
+
+
+@pytest.mark.law
+def test_boundary_elements_narrow_the_band_and_the_largest_rest_is_named(scene: Path) -> None:
+    """The loudest lines are within 0.5 dB; the guess of the damping is what is left, or that of the bearings."""
+    pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
+    exact, estimate = (printed("noise", scene, *speeds)["band"] for speeds in (SWEEP, BANDS))
+    assert exact["damping_source"] == "guessed" and exact["damping_range"] == [0.4, 2.0]
+    for end in ("below_db", "above_db"):
+        assert (
+            exact["largest_total"][end]["radiation_model"] < estimate["largest_total"][end]["radiation_model"]
+        )
+    assert exact["largest_total"]["below_db"]["radiation_model"] < 1.5
+    widths = exact["largest_total"]["widths_without_db"]
+    words = loa("noise", scene, *SWEEP).stdout
+    first = next(name for name in widths if name in page.NARROWER)
+    assert f"{page.NARROWER[first]}: of {exact['largest_total']['width_db']:.1f} dB" in words
+
+
+def test_without_the_library_the_estimate_stands_and_the_result_says_so(
+    scene: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "ngsolve", None)
+    speeds = ("--speed-rpm", "300:6000:700", "--orders", 4, "--no-band")
+    own = printed("noise", scene, *speeds)["housings"]["case"]
+    assert "lineofaction[boundary-elements]" in own["models_left_out"]["boundary_elements"]
+    assert own["exact_lines"] == [] and list(own["models_db"])[-1] == "estimate"
 
 
 def test_what_one_decibel_costs_is_ranked(scene: Path, tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from dynamics.acoustics import EquivalentRadiatedPower
 from dynamics.noise import GUESSES, SoundModel, forced_power, housing_radiation
 from dynamics.noise.sound_band import largest_level
 from lineofaction.cli.simulate import tabled_scene
+from lineofaction.gearbox.convert.housings import housings_in
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
@@ -23,9 +24,13 @@ from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.noise import SensitivityFigures, SoundBandFigures
 from lineofaction.gearbox.studies.noise.uncertainty import (
+    GUESSED,
+    MEASURED,
+    STATED,
     _band_of,
     _flank_scenes,
     _sensitivities_of,
+    damping_of,
 )
 from lineofaction.gearbox.subjects import scene_of
 
@@ -109,8 +114,9 @@ def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(
 
 
 def test_bands_go_to_json(subject: TabledScene, model: SoundModel, tmp_path: Path) -> None:
-    band = _band_of(model, SPEED, 2, NoiseRanges(), Means(tmp_path, quiet))
-    told = json.loads(json.dumps(figures_of(SoundBandFigures, band), allow_nan=False))
+    band = _band_of(model, SPEED, 2, NoiseRanges(housing_damping=(0.4, 2.0)), Means(tmp_path, quiet))
+    known = {"damping_source": GUESSED.source, "damping_range": GUESSED.factors}
+    told = json.loads(json.dumps(figures_of(SoundBandFigures, band, **known), allow_nan=False))
     assert len(told["total_low_db_a"]) == SPEED.size
     for level in (told["largest_total"], *(row["largest"] for row in told["orders"])):
         assert level["low_db_a"] <= level["level_db_a"] <= level["high_db_a"]
@@ -118,10 +124,45 @@ def test_bands_go_to_json(subject: TabledScene, model: SoundModel, tmp_path: Pat
         assert "mount_stiffness" not in level["above_db"]
 
 
+def test_a_stated_and_a_measured_damping_narrow_its_range(subject: TabledScene) -> None:
+    (housing,) = subject.inputs.housings
+    known = {
+        damping: damping_of(
+            subject.inputs.model_copy(update={"housings": (housing.model_copy(update=stated),)}), ["case"]
+        )
+        for damping, stated in (
+            ("usual", {"loss_factor": None}),
+            ("loss", {"loss_factor": 0.02}),
+            ("ratio", {"loss_factor": None, "damping_ratio": 0.008}),
+            ("modes", {"loss_factor": None, "modal_damping": (0.006, 0.004)}),
+        )
+    }
+    assert known == {"usual": GUESSED, "loss": STATED, "ratio": STATED, "modes": MEASURED}
+    spans = [np.log(high / low) for low, high in (GUESSED.factors, STATED.factors, MEASURED.factors)]
+    assert spans == sorted(spans, reverse=True)
+
+
+def test_measured_ratios_of_modes_are_those_of_the_reduced_housing(tmp_path: Path) -> None:
+    write_block(tmp_path / "block.step")
+    scene = housed_scene(tmp_path)
+    scene["housings"][0].pop("loss_factor", None)
+    scene["housings"][0] |= {"modal_damping": [0.006, 0.004]}
+    file = tmp_path / "scene.json"
+    file.write_text(json.dumps(scene))
+    subject, folder = scene_of(file)
+    (body,) = housings_in(subject, tmp_path / "cache", folder, quiet).values()
+    assert body.damping_ratio[:3] == pytest.approx([0.006, 0.004, 0.004], rel=1e-6)
+    scene["housings"][0] |= {"loss_factor": 0.01}
+    file.write_text(json.dumps(scene))
+    with pytest.raises(BadInput, match="left out with loss_factor"):
+        scene_of(file)
+
+
 def test_ranges_are_those_of_the_library_and_hold_what_the_scene_states() -> None:
     assert tuple(GUESSES) == RANGES
     for name, guess in GUESSES.items():
-        assert getattr(NoiseRanges(), name) == (guess.usual.low, guess.usual.high)
+        stated = GUESSED.factors if name == "housing_damping" else getattr(NoiseRanges(), name)
+        assert stated == (guess.usual.low, guess.usual.high)
     with pytest.raises(BadInput, match="the first at most 1") as caught:
         validated(NoiseRanges, {"mesh_damping": [1.1, 2.0]})
     assert caught.value.faults[0].field == "mesh_damping"

@@ -12,6 +12,7 @@ from spur_gears import PAIR
 
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.errors import InputError
+from fe_contact.geometry.flank_tolerances import helix_slope_tolerance, profile_slope_tolerance, rounded
 from fe_contact.microgeometry.confirmation import (
     DesignLoads,
     DesignSpace,
@@ -22,9 +23,6 @@ from fe_contact.microgeometry.confirmation import (
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
 from fe_contact.microgeometry.tolerance_study import (
-    _helix_slope_tolerance,
-    _profile_slope_tolerance,
-    _rounded,
     iso1328_tolerances,
 )
 from fe_contact.microgeometry.variables import modified
@@ -132,8 +130,8 @@ def gear_of(module_mm: float, teeth: int, width_mm: float, helix_deg: float = 0.
 def test_tolerances_are_those_of_the_formulas(
     gear: Gear, tolerance_class: int, profile_um: float, helix_um: float
 ) -> None:
-    assert 1e6 * _profile_slope_tolerance(gear, tolerance_class) == pytest.approx(profile_um, rel=1e-12)
-    assert 1e6 * _helix_slope_tolerance(gear, tolerance_class) == pytest.approx(helix_um, rel=1e-12)
+    assert 1e6 * profile_slope_tolerance(gear, tolerance_class) == pytest.approx(profile_um, rel=1e-12)
+    assert 1e6 * helix_slope_tolerance(gear, tolerance_class) == pytest.approx(helix_um, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -150,21 +148,21 @@ def test_tolerances_are_those_of_the_formulas(
     ],
 )
 def test_rounding_is_to_tenths_halves_and_whole_micrometers(exact: float, told: float) -> None:
-    assert _rounded(exact) == told
+    assert rounded(exact) == told
 
 
 def test_a_tolerance_grows_with_every_class_and_what_it_is_of() -> None:
     gear = gear_of(4, 20, 25)
-    for tolerance in (_profile_slope_tolerance, _helix_slope_tolerance):
+    for tolerance in (profile_slope_tolerance, helix_slope_tolerance):
         widths = [tolerance(gear, grade) for grade in range(1, 12)]
         assert all(1.3 < b / a < 1.55 for a, b in pairwise(widths))
-    assert _profile_slope_tolerance(replace(gear, face_width=0.4), 7) == _profile_slope_tolerance(gear, 7)
-    assert _helix_slope_tolerance(replace(gear, face_width=0.4), 7) > _helix_slope_tolerance(gear, 7)
+    assert profile_slope_tolerance(replace(gear, face_width=0.4), 7) == profile_slope_tolerance(gear, 7)
+    assert helix_slope_tolerance(replace(gear, face_width=0.4), 7) > helix_slope_tolerance(gear, 7)
     pair = GearPair(gear_of(4, 20, 25), gear_of(4, 60, 25), 160e-3)
     all_of = iso1328_tolerances(pair, 7, misalignment=20e-6)
     assert all_of.misalignment == 20e-6
-    assert all_of.modification["wheel.helix_slope"] == _helix_slope_tolerance(pair.wheel, 7)
-    assert all_of.modification["pinion.profile_slope"] == _profile_slope_tolerance(pair.pinion, 7)
+    assert all_of.modification["wheel.helix_slope"] == helix_slope_tolerance(pair.wheel, 7)
+    assert all_of.modification["pinion.profile_slope"] == profile_slope_tolerance(pair.pinion, 7)
     flat = iso1328_tolerances(pair, 7, across_face=False).modification
     assert set(flat) == {"pinion.profile_slope", "wheel.profile_slope"}
 
@@ -180,7 +178,7 @@ def test_a_tolerance_grows_with_every_class_and_what_it_is_of() -> None:
 def test_beyond_its_range_the_standard_has_no_tolerance(gear: Gear, field: str) -> None:
     mate = replace(gear, helix_angle=-gear.helix_angle)
     pair = GearPair(gear, mate, 2.0 * gear.reference_radius)
-    with pytest.raises(InputError, match="give your own as Tolerances") as caught:
+    with pytest.raises(InputError, match="give your own figures") as caught:
         iso1328_tolerances(pair, 6)
     assert caught.value.field == field
     with pytest.raises(InputError):
