@@ -195,7 +195,7 @@ def test_levels_have_a_band_unless_it_is_left_out(scene: Path) -> None:
 
 @pytest.mark.law
 def test_boundary_elements_narrow_the_band_and_the_largest_rest_is_named(scene: Path) -> None:
-    """The loudest lines are within 0.5 dB; the guess of the damping is what is left, or that of the bearings."""
+    """The loudest lines are within 0.5 dB; what is left are guesses."""
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
     exact, estimate = (printed("noise", scene, *speeds)["band"] for speeds in (SWEEP, BANDS))
     assert exact["damping_source"] == "guessed" and exact["damping_range"] == [0.4, 2.0]
