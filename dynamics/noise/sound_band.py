@@ -27,7 +27,7 @@ from dynamics.housings.reduced_housing import ReducedHousing, scene_housing
 from dynamics.linearize import harmonic_response
 from dynamics.meshes import GearMesh
 from dynamics.scene import Scene
-from dynamics.types import FloatArray
+from dynamics.types import FloatArray, IntArray
 from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
 from model_studies.progress import Progress, silent
 
@@ -377,7 +377,7 @@ def largest_level(speed: FloatArray, power: OrderPower) -> float:
     return float(sound_power_level(total.max())) + _missed_between(speed, total)
 
 
-def _levels(order: FloatArray, loudest: FloatArray, own: FloatArray, power: OrderPower) -> FloatArray:
+def _levels(order: FloatArray, loudest: IntArray, own: FloatArray, power: OrderPower) -> FloatArray:
     """Return the levels that have bands, dB(A): largest total, orders' largest, orders there, totals."""
     weighted = np.zeros((order.size, power.power.shape[1]))
     kept = np.isin(own, order)

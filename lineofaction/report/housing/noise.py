@@ -445,11 +445,11 @@ def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str,
         words = "0.7 of the highest mode kept, modes are missing: keep more"
         yield f"above {number(valid, 3)} Hz", words
     if lines := compared.get("lines"):
-        words = (
+        where = (
             f"{number(line['frequency'], 4)} Hz ({line['level'] - line['estimate']:+.1f} dB)"
             for line in lines
         )
-        yield "boundary elements", f"at {', '.join(words)} in the place of the estimate"
+        yield "boundary elements", f"at {', '.join(where)} in the place of the estimate"
     if replaced := compared.get("replaced"):
         modes = ", ".join(number(hertz, 4) for hertz in replaced)
         yield (

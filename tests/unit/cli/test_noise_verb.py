@@ -23,7 +23,9 @@ from sounding_housings import smooth_motion, with_surface
 from sounding_scene import sound
 
 from dynamics.acoustics import Hull, a_weighting
-from dynamics.noise import RadiatedSound, loudest
+from dynamics.acoustics.boundary_elements import EDGES
+from dynamics.noise import RadiatedSound, exact_lines, loudest
+from dynamics.noise.coarse_hull import Coarseness
 from lineofaction.gearbox.studies.noise import run
 from lineofaction.report.drawing import surface_view
 from lineofaction.report.drawing.figure import HeatMap
@@ -44,8 +46,9 @@ def housing():
 
 @pytest.fixture(scope="module", autouse=True)
 def _once() -> Iterator[None]:
-    """Compute what equal calls ask for once; pictures of surfaces are coarse."""
+    """Compute what equal calls ask for once; pictures of surfaces and hulls of lines are coarse."""
     with computed_once(run), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(exact_lines, "COARSE", Coarseness(EDGES, 100))
         patch.setattr(surface_view, "ACROSS", 90)
         yield
 

@@ -10,17 +10,20 @@ import pytest
 from sounding_scene import AIR, housing, oscillating, radiation, response
 
 from dynamics.acoustics import ElementalRadiators, LevelBand, OrderPower, sphere_efficiency
+from dynamics.acoustics.boundary_elements import EDGES
 from dynamics.noise import (
     EstimatedRadiation,
     HousingRadiation,
     SoundBand,
     corrected_radiation,
     estimated_radiation,
+    exact_lines,
     housing_radiation,
     panel_sound,
     radiated_sound,
     with_exact_lines,
 )
+from dynamics.noise.coarse_hull import Coarseness
 from dynamics.noise.exact_lines import BLEND, EXACT, FLAT
 
 HERTZ = 700.0
@@ -80,9 +83,12 @@ def test_panels_add_up_to_the_power_of_a_line(estimate: EstimatedRadiation) -> N
 
 
 @pytest.mark.law
-def test_a_sphere_that_oscillates_has_the_power_of_theory_at_its_line() -> None:
-    """Within 0.2 dB, at ka of 0.27 to 1.5, where monopoles are 3.5 dB off."""
+def test_a_sphere_that_oscillates_has_the_power_of_theory_at_its_line(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Within 0.3 dB by 400 panels, at ka of 0.27 to 1.5, where monopoles are 3.5 dB off."""
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
+    monkeypatch.setattr(exact_lines, "COARSE", Coarseness(EDGES, 200))
     body, driven, plane, ka = oscillating(4.0, 1e7)
     monopoles = housing_radiation(body, ElementalRadiators(), driven.frequency, AIR)
     made = corrected_radiation(driven, body, None, estimated_radiation(body, monopoles, AIR))
@@ -91,7 +97,7 @@ def test_a_sphere_that_oscillates_has_the_power_of_theory_at_its_line() -> None:
     assert made.lines and not made.left_out
     for each, point in zip(made.lines, points, strict=True):
         exact = plane[point] * sphere_efficiency(1, float(ka[point]))
-        assert 10.0 * np.log10(sound.power[point] / exact) == pytest.approx(0.0, abs=0.2)
+        assert 10.0 * np.log10(sound.power[point] / exact) == pytest.approx(0.0, abs=0.3)
         assert each.level == pytest.approx(10.0 * np.log10(sound.power[point] / 1e-12), abs=1e-6)
         low, high = made.radiation.error_band(each.frequency, sound.mode_alone[(slice(None), *point)])
         assert (low, high) == pytest.approx((-EXACT, EXACT))
