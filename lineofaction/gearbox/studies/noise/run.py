@@ -269,7 +269,7 @@ def _compared(
     ladder = models_at(
         response, housing.body, housing.bearings, at, (PLANE, MONOPOLES), means.report, cache=cache
     )
-    compared = {
+    compared: Json = {
         "order": points[0].order,
         "speed": points[0].speed,
         "level": {name: result.level for name, result in ladder.results.items()},
