@@ -119,8 +119,8 @@ def corrected_radiation(
     sound = radiated_sound(response, housing, bearings, radiation)
     while point := _next_point(sound, radiation, (*left_out, *(line.frequency for line in lines))):
         hertz, at = point.frequency, (point.speed_index, point.order_index)
-        if len(lines) == LINES:
-            left_out[hertz] = f"from {engineering(hertz, 4)} Hz on: {LINES} lines at most"
+        if LINES in (len(lines), len(left_out)):
+            left_out[hertz] = f"further lines, at {engineering(hertz, 4)} Hz first: {LINES} at most"
             break
         seconds = line_cost(housing, hertz).seconds
         if seconds > budget:

@@ -71,10 +71,15 @@ def moved(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Moved]:
         yield Moved(client, folder / "scene.json", folder / "here.json", job.wait().key, job.file())
 
 
-@pytest.mark.parametrize("name", ["noise", "vibration"])
-def test_levels_and_velocities_of_a_run_are_those_of_the_command_line(moved: Moved, name: str) -> None:
-    figures = getattr(moved.client, name).submit(moved.scene, run=moved.key, orders=2).figures()
-    printed = moved.printed(name, "--run", moved.run, "--orders", 2)
+@pytest.mark.parametrize(
+    ("name", "inputs", "options"),
+    [("noise", {"boundary_elements": False}, ("--no-boundary-elements",)), ("vibration", {}, ())],
+)
+def test_levels_and_velocities_of_a_run_are_those_of_the_command_line(
+    moved: Moved, name: str, inputs: dict[str, bool], options: tuple[str, ...]
+) -> None:
+    figures = getattr(moved.client, name).submit(moved.scene, run=moved.key, orders=2, **inputs).figures()
+    printed = moved.printed(name, "--run", moved.run, "--orders", 2, *options)
     served = json.loads(figures.model_dump_json(by_alias=True, exclude_unset=True))
     assert printed["forces"]["source"] == "run"
     assert without(OWN, served) == without(OWN, printed)

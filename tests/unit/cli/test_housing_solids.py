@@ -311,7 +311,7 @@ STUDIES: dict[str, tuple[str, ...]] = {
     "modes": (),
     "response": ("--speed-rpm", "1500:3000:750", "--orders", "2"),
     "steady": ("--speed-rpm", "1500", "--no-branch"),
-    "noise": ("--speed-rpm", "1500:3000:750", "--orders", "2", "--no-band"),
+    "noise": ("--speed-rpm", "1500:3000:750", "--orders", "2", "--no-band", "--no-boundary-elements"),
 }
 COST = vars(WorkCost(24.6, 1.07e9, 25.1, None))
 
