@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (39_380, 695),
-    ("dynamics",): (40_640, 761),
-    ("lineofaction.gearbox",): (21_763, 430),
-    ("lineofaction.report",): (10_509, 200),
+    ("fe_contact",): (39_498, 702),
+    ("dynamics",): (40_958, 769),
+    ("lineofaction.gearbox",): (21_940, 434),
+    ("lineofaction.report",): (10_544, 200),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
-    ("lineofaction.cli",): (4_642, 67),
+    ("lineofaction.cli",): (4_644, 67),
     ("lineofaction.hardcases",): (3_844, 35),
     ("bounds", "host", "model_studies"): (4_331, 148),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 764
+MOST_FILES = 766
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
