@@ -78,8 +78,8 @@ def _usual_curves(pair: ParallelAxes, plan: Plan) -> ExpectedCurves:
 
 _PLANE = {"draft": (8e-4, 1.2e-3), "standard": (2.6e-4, 2.6e-4), "fine": (5.4e-5, 5e-5)}
 _SPUR = {"draft": (2.2e-3, 1.1e-3), "standard": (1.1e-3, 6e-4), "fine": (4.6e-4, 4.6e-4)}
-_HELICAL = {"draft": (5e-3, 3e-3), "standard": (1.8e-3, 1.2e-3), "fine": (8e-4, 5e-4)}
-_RELIEVED = {"draft": (4e-3, 1.8e-3), "standard": (1.6e-3, 6e-4), "fine": (6e-4, 3e-4)}
+_HELICAL = {"draft": (5e-3, 3e-3), "standard": (1.8e-3, 8.5e-4), "fine": (8e-4, 4e-4)}
+_RELIEVED = {"draft": (4e-3, 1.8e-3), "standard": (1.6e-3, 4.5e-4), "fine": (6e-4, 2.3e-4)}
 """Mesh: of mean and of peak-to-peak in parts of what the load adds to the mean. In the plane; over the face
 of spur pairs; of helical pairs with plain and with modified profiles, whose contact lines end under less
 load."""
