@@ -5,6 +5,8 @@ from dynamics.noise.estimated_radiation import EstimatedRadiation, estimated_rad
 from dynamics.noise.exact_lines import CorrectedRadiation, ExactLine, corrected_radiation, with_exact_lines
 from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation, kept_radiation
 from dynamics.noise.housing_recordings import (
+    check_microphone,
+    heard_estimate,
     pressure_recording,
     pressure_signal,
     pressure_transfer,
@@ -33,9 +35,11 @@ __all__ = [
     "SoundBand",
     "SoundModel",
     "SoundOverTime",
+    "check_microphone",
     "corrected_radiation",
     "estimated_radiation",
     "forced_power",
+    "heard_estimate",
     "housing_radiation",
     "kept_radiation",
     "loudest",

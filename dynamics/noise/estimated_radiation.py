@@ -91,6 +91,20 @@ class EstimatedRadiation(HousingRadiation):
         off: FloatArray = self.mode_error[:, knot, :count] @ mode_power / whole
         return float(off[0]), float(off[1])
 
+    def gains(self, housing: ReducedHousing, frequency: FloatArray) -> FloatArray:
+        """Return what the velocity of each mode is multiplied with before monopoles radiate it, (N, m).
+
+        At frequencies (N,) in Hz; beyond those that are computed and resolved as at the nearest of them.
+        """
+        inside = self.frequency <= self.facts.resolved_frequency
+        shape = housing.modes[1]
+        if not np.any(inside):
+            return np.ones((len(frequency), shape.shape[1]))
+        impulse = shape.T @ housing.mass
+        own = np.log(np.einsum("mr,frs,sm->fm", impulse, self.correction[inside], shape, optimize=True))
+        rows = [np.interp(frequency, self.frequency[inside], column) for column in own.T]
+        return np.asarray(np.exp(rows).T)
+
     def off(self, frequency: FloatArray, mode_power: FloatArray) -> FloatArray:
         """Return `error_band` of powers (m, S, H) at frequencies (S, H), (2, S, H), dB."""
         rows = zip(frequency.ravel().tolist(), mode_power.reshape(len(mode_power), -1).T, strict=True)

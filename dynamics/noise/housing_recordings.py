@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import cast
 
 import numpy as np
 from scipy import sparse
-from scipy.fft import irfft, next_fast_len, rfft
+from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
 from bounds import at_least
 from dynamics.acoustics import (
@@ -21,18 +22,20 @@ from dynamics.acoustics import (
     principal_direction,
     series_recording,
 )
-from dynamics.acoustics.recording import SAMPLE_RATE, unit_vector
+from dynamics.acoustics.recording import LOWEST, SAMPLE_RATE, unit_vector
 from dynamics.checks import positive
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import radiating_hull
-from dynamics.noise.housing_radiation import resolved_frequency
+from dynamics.noise.estimated_radiation import EstimatedRadiation, estimated_radiation
+from dynamics.noise.housing_radiation import kept_radiation, resolved_frequency
 from dynamics.orders.resampling import low_passed
 from dynamics.results import RunResult
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.vibration import MotionQuantity, finer_seat_forces, point_signal
 from dynamics.vibration.housing_motion import modal_amplitudes
 from dynamics.vibration.time_signal import PIECE, motion_pieces
+from model_studies.progress import Progress, silent
 
 NEAREST = 2.0
 """Least distance of a microphone over the longest edge of a panel: nearer it is no point source."""
@@ -65,6 +68,10 @@ class _SoundPaths:
             part = slice(first, first + step)
             pressure[part] = np.exp(-1j * np.outer(omega[part], self.delay)) @ self.gain
         return pressure
+
+    def of_modes(self, shape: FloatArray) -> _SoundPaths:
+        """Return the paths per acceleration of modes, the columns of `shape` (r, m)."""
+        return replace(self, gain=self.gain @ shape)
 
     def impulse_response(self, rate: float) -> tuple[FloatArray, int]:
         """Return the sound pressure after an acceleration of one sample, (L, r), and its first sample.
@@ -136,6 +143,7 @@ def pressure_transfer(
     frequency: FloatArray,
     model: ElementalRadiators = MONOPOLES,
     air: Air | None = None,
+    estimate: EstimatedRadiation | None = None,
 ) -> ComplexArray:
     """Return the sound pressure at a microphone per force on the seats.
 
@@ -149,6 +157,8 @@ def pressure_transfer(
         Hz; `sound_limit` says up to where the result is valid.
     model : ElementalRadiators
         Monopoles in free space, or in a rigid baffle.
+    estimate : EstimatedRadiation, optional
+        By which the modes are louder or quieter; the sound power through a far sphere is then its own.
 
     Returns
     -------
@@ -163,7 +173,9 @@ def pressure_transfer(
     hertz = np.asarray(frequency, dtype=float)
     paths = _paths(housing, microphone, model, air)
     amplitude = modal_amplitudes(housing, hertz, np.eye(housing.motions, dtype=complex)[None])
-    per_mode = paths.transfer(hertz) @ housing.modes[1]
+    per_mode = paths.transfer(hertz)
+    if estimate is not None:
+        per_mode = per_mode * estimate.gains(housing, hertz)
     return np.asarray(-((2.0 * np.pi * hertz[:, None]) ** 2) * np.einsum("nsm,nm->ns", amplitude, per_mode))
 
 
@@ -174,6 +186,7 @@ def pressure_signal(
     microphone: FloatArray,
     model: ElementalRadiators = MONOPOLES,
     air: Air | None = None,
+    estimate: EstimatedRadiation | None = None,
 ) -> FloatArray:
     """Return the sound pressure at a microphone under forces over time, (T,), Pa.
 
@@ -183,7 +196,7 @@ def pressure_signal(
 
     Parameters
     ----------
-    housing, microphone, model, air
+    housing, microphone, model, air, estimate
         As in `pressure_transfer`.
     time : (T,) array
         s, uniform. Delays are exact within 1e-4 up to a quarter of its rate.
@@ -196,11 +209,31 @@ def pressure_signal(
         As `outer_hull`, `sound_paths` and `motion_pieces` do.
     """
     paths = _paths(housing, microphone, model, air)
-    rows = np.eye(len(housing.mass))
+    rows = housing.modes[1].T @ housing.mass
     acceleration = motion_pieces(housing, time, force, rows, MotionQuantity.ACCELERATION)
     times = np.asarray(time, dtype=float)
-    response, first = paths.impulse_response((times.size - 1) / float(times[-1] - times[0]))
+    rate = (times.size - 1) / float(times[-1] - times[0])
+    response, first = paths.impulse_response(rate)
+    if estimate is not None:
+        taps = 2 ** int(np.ceil(np.log2(rate / RESOLUTION)))
+        gains = estimate.gains(housing, rfftfreq(taps, 1.0 / rate))
+        response, first = _amplified(response, gains, taps), first - taps // 2
     return _convolved(acceleration, response, first, times.size)
+
+
+RESOLUTION = 20.0
+"""Hz, of gains over frequency in time: they change by parts of an octave."""
+
+
+def _amplified(response: FloatArray, gains: FloatArray, taps: int) -> FloatArray:
+    """Return responses (L, m) with real gains (taps/2 + 1, m) over frequency, delayed by half of the taps."""
+    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(taps) / taps)
+    kernel = window[:, None] * np.roll(irfft(gains, taps, axis=0), taps // 2, axis=0)
+    length = len(response) + taps - 1
+    count = next_fast_len(length, real=True)
+    return np.asarray(
+        irfft(rfft(response, count, axis=0) * rfft(kernel, count, axis=0), count, axis=0)[:length]
+    )
 
 
 def sound_limit(housing: ReducedHousing, air: Air | None = None) -> float:
@@ -215,7 +248,7 @@ def _paths(
     housing: ReducedHousing, microphone: FloatArray, model: ElementalRadiators, air: Air | None
 ) -> _SoundPaths:
     outer = outer_hull(housing)
-    return sound_paths(outer.hull, outer.shapes, microphone, model, air or Air())
+    return sound_paths(outer.hull, outer.shapes, microphone, model, air or Air()).of_modes(housing.modes[1])
 
 
 def _convolved(pieces: Iterator[FloatArray], response: FloatArray, first: int, samples: int) -> FloatArray:
@@ -284,6 +317,7 @@ def pressure_recording(
     model: ElementalRadiators = MONOPOLES,
     air: Air | None = None,
     to_rate: int = SAMPLE_RATE,
+    estimate: EstimatedRadiation | None = None,
 ) -> Recording:
     """Return the sound pressure at a microphone in the free field over a run, in Pa.
 
@@ -298,6 +332,8 @@ def pressure_recording(
         With mass and a surface.
     microphone : (3,) array
         In the frame of the housing's mesh, m.
+    estimate : EstimatedRadiation, optional
+        As of `pressure_transfer`, by `heard_estimate`.
     bearings : sequence of str, optional
         In the order of the seats; by default those with the names of the seats.
 
@@ -309,11 +345,30 @@ def pressure_recording(
     rate, valid = FINER * run.sample_rate, positive("valid_frequency", sound_limit(housing, air))
     limit = min(valid, float(run.receipt["sampling"]["pass_frequency"]))
     time, force = finer_seat_forces(run, housing, bearings, FINER)
-    pressure = pressure_signal(housing, time, force, microphone, model, air)
+    pressure = pressure_signal(housing, time, force, microphone, model, air, estimate)
     x, y, z = np.asarray(microphone, dtype=float)
+    levels = "" if estimate is None else " with the levels of the estimate"
     where = f"({x:.3f}, {y:.3f}, {z:.3f}) m in the free field"
-    quantity = f"sound pressure at {where}, panels as {model.model_name}, up to {limit:.0f} Hz"
+    quantity = f"sound pressure at {where}, panels as {model.model_name}{levels}, up to {limit:.0f} Hz"
     return series_recording(low_passed(pressure, limit / rate), rate, quantity, "Pa", to_rate)
+
+
+def check_microphone(housing: ReducedHousing, microphone: FloatArray) -> None:
+    """Refuse a microphone that is no point of the air, as `pressure_transfer` does."""
+    _paths(housing, microphone, MONOPOLES, None)
+
+
+def heard_estimate(
+    housing: ReducedHousing, run: RunResult, cache: Path | None = None, progress: Progress = silent
+) -> EstimatedRadiation:
+    """Return the estimate of the radiation up to where `pressure_recording` of a run ends.
+
+    It takes what monopoles take, 10 to 60 CPU s; `cache` and `progress` as of `kept_radiation`, whose errors
+    it raises.
+    """
+    highest = min(sound_limit(housing), float(run.receipt["sampling"]["pass_frequency"]))
+    ends = [LOWEST, max(highest, LOWEST)]
+    return estimated_radiation(housing, kept_radiation(housing, MONOPOLES, ends, None, cache, progress))
 
 
 def scattered_pressure_transfer(

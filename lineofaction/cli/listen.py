@@ -17,10 +17,12 @@ from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.listen import SoundPressure
 from lineofaction.gearbox.studies.listen.run import (
     NO_LOUDNESS,
+    HeardRun,
     Receiver,
     SceneHousings,
     SoundFigures,
@@ -118,16 +120,13 @@ def _housing_sounds(
     receiver = replace(receiver, direction=view.direction)
     _require_no_view(view, receiver)
     scene, folder = assessed_scene(file)
-    with progress_bar() as report:
-        bodies = housings_in(scene, cache_home(), folder, report)
-    housings = SceneHousings.of(HousedScene(scene, bodies))
     sounds: list[_RunSound] = []
     remarks: list[str] = []
-    for name, run in runs.items():
-        try:
-            heard = heard_run(name, run, housings, receiver)
-        except BadInput as error:
-            raise error.within(name) from None
+    with progress_bar() as report:
+        bodies = housings_in(scene, cache_home(), folder, report)
+        housings = SceneHousings.of(HousedScene(scene, bodies), Means(cache_home(), report))
+        by_name = {name: _heard(name, run, housings, receiver) for name, run in runs.items()}
+    for name, heard in by_name.items():
         warn(heard.warnings)
         sound = _RunSound(name, heard.recording)
         if heard.figures is not None:  # of a sound pressure, not of a velocity
@@ -136,6 +135,13 @@ def _housing_sounds(
         sounds.append(sound)
         remarks += heard.remarks
     return sounds, "; ".join(dict.fromkeys(remarks))
+
+
+def _heard(name: str, run: RunResult, housings: SceneHousings, receiver: Receiver) -> HeardRun:
+    try:
+        return heard_run(name, run, housings, receiver)
+    except BadInput as error:
+        raise error.within(name) from None
 
 
 def _require_no_view(view: RunView, receiver: Receiver) -> None:

@@ -234,7 +234,7 @@ class Studies:
             ("band", 0.2),
             ("sensitivities", 0.2),
         ),
-        version="5",
+        version="6",
         further=(".vtu",),
         housed=True,
     )
@@ -259,8 +259,8 @@ class Studies:
         "loudness and tones, or velocity of a point.",
         "run.nc --scene scene.toml --microphone 40,60,1000 -o run.wav",
         kind="recording",
-        stages=(("sound", 1.0),),
-        version="1",
+        stages=(("radiation", 0.7), ("sound", 0.3)),
+        version="2",
         housed=True,
     )
     steady = StudyOf(
