@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -291,13 +292,18 @@ class _FollowingPatches:
         way = -math.cos(c.base_helix_angle) / rest.curvature[at]
         return cls(problem, held, at_rest, np.ravel_multi_index(at, c.gap.shape), way)
 
-    def opened(self, gap: GapTerm) -> FloatArray:
-        """Return what normal approach a small gap takes away from the candidates (P, L, m) thereby, m."""
+    def opened(self, slopes: FloatArray) -> FloatArray:
+        """Return what normal approach small slopes (k,) take away from the candidates (P, L, m), m."""
         c, moved = self.problem.candidates, np.zeros(self.problem.candidates.gap.shape)
-        moved.flat[self.index] = self.way * self.at_rest.slopes(gap)
+        moved.flat[self.index] = self.way * slopes
         by_slice = c.on_mean(moved)[:, None]
-        rolled = by_slice * self._times(self.held) + self._times(by_slice * self.held, back=True)
+        rolled = by_slice * self._tilts + self._times(by_slice * self.held, back=True)
         return c.at_points(rolled)
+
+    @cached_property
+    def _tilts(self) -> FloatArray:
+        """Under the forces, (P, L, n)."""
+        return self._times(self.held)
 
     def by_slope(self, weight: FloatArray, rows: FloatArray) -> FloatArray:
         """Return what the slope of a gap at each strip adds (Q, k) to sums `rows` (Q, P, L), m.
@@ -306,7 +312,7 @@ class _FollowingPatches:
         """
         c = self.problem.candidates
         pressed = c.on_slices(weight)
-        by_slice = pressed * self._times(self.held) + self.held * self._times(pressed)
+        by_slice = pressed * self._tilts + self.held * self._times(pressed)
         on_slice = np.isfinite(c.gap).reshape(len(c.gap), by_slice.shape[2], -1).sum(axis=2)
         mean = np.einsum("apl,pln->apn", rows, by_slice) / np.maximum(on_slice, 1)
         by_point = np.repeat(mean, c.pair.size // by_slice.shape[2], axis=2)
@@ -393,15 +399,18 @@ class CarryingStrips:
         """Position and load of each strip, flattened."""
         return self.index // self.shape[2]
 
-    def opened(self, gap: GapTerm) -> FloatArray:
-        """Return the normal approach (k,) in m that a small gap between the flanks takes away.
+    def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:
+        """Return the normal approach (k,) in m that a gap takes away over another near it.
 
-        Linear in the gap. Between its breaks the gap counts as a parabola over each strip.
+        Linear in their difference. Between its breaks a gap counts as a parabola over each strip.
         """
-        there, mean = self.strips.removed(gap)
+        (there, mean), (below, under) = self.strips.removed(gap), self.strips.removed(over)
+        there, mean = there - below, mean - under
         opened = self.arm * there + self.normal * (mean - there)
-        if gap.along_profile and self.following is not None:
-            opened = opened + self.following.opened(gap).ravel()[self.index]
+        if self.following is not None and (gap.along_profile or over.along_profile):
+            at_rest = self.following.at_rest
+            slopes = at_rest.slopes(gap) - at_rest.slopes(over)
+            opened = opened + self.following.opened(slopes).ravel()[self.index]
         return np.asarray(opened)
 
     def change(self, opened: FloatArray) -> FloatArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -66,6 +67,7 @@ def _least_tip_gap(pair: ParallelAxes) -> float:
     )
 
 
+@lru_cache(maxsize=16)
 def _gap_at_tip(gear: Toothing, radius: float) -> float:
     """Least of material removed and gap of plain flanks beside the tip edge of one gear, m."""
     if gear.modification.neutral:

@@ -57,7 +57,7 @@ class FlankModification(_Figures):
     @cached_property
     def parts(self) -> tuple[FlankPart, ...]:
         """The modifications one by one."""
-        return tuple(kind(**_own_fields(self, kind)) for kind in PARTS)
+        return tuple(_part(self, kind) for kind in PARTS)
 
     @cached_property
     def varies(self) -> Direction:
@@ -155,12 +155,22 @@ def fields_of(*kinds: Kind) -> tuple[str, ...]:
     return tuple(name for name, fact in FLANK_FIELDS.items() if fact.kind in kinds)
 
 
-def _own_fields(modification: FlankPart | FlankModification, kind: type[Any]) -> dict[str, Any]:
-    return {entry.name: getattr(modification, entry.name) for entry in fields(kind)}
+_DEFAULTS = {kind: (kind(), {entry.name: entry.default for entry in fields(kind)}) for kind in PARTS}
+"""Every part as it is by default, which most parts of most flanks are, and its fields."""
+
+
+def _part(modification: FlankModification, kind: type[FlankPart]) -> FlankPart:
+    plain, default = _DEFAULTS[kind]
+    own = {name: getattr(modification, name) for name in default}
+    return plain if own == default else kind(**own)
+
+
+def _own_fields(part: FlankPart) -> dict[str, Any]:
+    return {name: getattr(part, name) for name in _DEFAULTS[type(part)][1]}
 
 
 def _together(parts: Iterable[FlankPart]) -> FlankModification:
-    own = (_own_fields(part, type(part)) for part in parts)
+    own = (_own_fields(part) for part in parts)
     return FlankModification(**{name: value for facts in own for name, value in facts.items()})
 
 

@@ -244,7 +244,7 @@ class _Difference:
 
     def opened(self, strips: CarryingStrips) -> FloatArray:
         """Return the normal approach that it takes away from each of them, (k,), m/m."""
-        return (strips.opened(self.above) - strips.opened(self.below)) / self.over
+        return strips.opened(self.above, self.below) / self.over
 
 
 def _gap(pair: ParallelAxes, gear: str, figures: Mapping[str, Any]) -> ModificationGap:

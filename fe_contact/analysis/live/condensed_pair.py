@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -35,7 +35,7 @@ from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint, SolvedRun
 from fe_contact.analysis.tables import PositionNodes, assembled_table, unmeasured_nodes
 from fe_contact.errors import InputError
-from fe_contact.geometry import FlankModification, ParallelAxes
+from fe_contact.geometry import ParallelAxes
 from fe_contact.options import TableAxes
 from fe_contact.planning.cost_model import condensed_teeth
 from fe_contact.planning.plan import LARGEST_SUPPORT, Plan
@@ -377,7 +377,10 @@ def _refuse_more_teeth(contact: PairContact, change: float) -> None:
         raise InputError("center_distance_changes[0]", change, bound, advice)
 
 
-def _plain(pair: Any) -> Any:
-    none = FlankModification()
-    pinion, wheel = (replace(gear, modification=none) for gear in (pair.pinion, pair.wheel))
-    return replace(pair, pinion=pinion, wheel=wheel)
+def _plain(pair: Any) -> list[object]:
+    """Return what a pair is but for the modification of its flanks."""
+    gears = pair.pinion, pair.wheel
+    sizes = [getattr(pair, each.name) for each in fields(pair) if each.name not in ("pinion", "wheel")]
+    for gear in gears:
+        sizes += [getattr(gear, each.name) for each in fields(gear) if each.name != "modification"]
+    return [type(pair), *map(type, gears), *sizes]
