@@ -48,6 +48,8 @@ class GridTables(NamedTuple):
     def packed(cls, tables: Sequence[MeshTable]) -> GridTables:
         """Lay out `tables`; those with several operating points carry their derivatives along the axes."""
         numbers = [_numbers(table) for table in tables]
+        kept = {id(number): number for number in numbers}  # flanks of one table share it
+        begins = dict(zip(kept, np.cumsum([0, *(number.size for number in kept.values())]), strict=False))
         axes = [
             np.ravel(getattr(t, name)) for t in tables for name in ("misalignment", "center_distance_change")
         ]
@@ -61,15 +63,15 @@ class GridTables(NamedTuple):
             np.array([number.shape[4] for number in numbers], dtype=np.int64),
             np.ascontiguousarray(starts, dtype=np.int64),
             np.concatenate([*axes, np.empty(0)]).astype(float),
-            np.cumsum([0, *(number.size for number in numbers)], dtype=np.int64)[:-1],
-            np.concatenate([*(number.ravel() for number in numbers), np.empty(0)]),
+            np.array([begins[id(number)] for number in numbers], dtype=np.int64),
+            np.concatenate([*(number.ravel() for number in kept.values()), np.empty(0)]),
         )
 
     def decimated(self, every: int = 2) -> GridTables:
         """Return the tables on each `every`-th knot of position."""
         shape, first = self.shape.copy(), self.first.copy()
         numbers: list[FloatArray] = []
-        for flank in range(len(self.first)):
+        for begin, flank in zip(*np.unique(self.first, return_index=True), strict=True):
             m, a, knots = (int(size) for size in self.shape[flank])
             levels, channels = int(self.base.offset[flank, 5]), int(self.channels[flank])
             orders = 2 * min(m, 2) * min(a, 2)
@@ -77,8 +79,8 @@ class GridTables(NamedTuple):
             number = self.number[self.first[flank] : self.first[flank] + size]
             kept = kept_knots(knots, every)[:-1]
             number = number.reshape(m * a, knots, levels * channels * orders)[:, kept]
-            first[flank] = sum(part.size for part in numbers)
-            shape[flank, 2] = kept.size
+            same = self.first == begin
+            first[same], shape[same, 2] = sum(part.size for part in numbers), kept.size
             numbers.append(number.ravel())
         return self._replace(
             base=self.base.decimated(every),

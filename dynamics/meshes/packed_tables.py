@@ -54,7 +54,7 @@ LEAST = 4  # knots of a table that can be decimated
 
 
 class PackedTables(NamedTuple):
-    """Tables of several flanks, one after the other in flat arrays.
+    """Tables of several flanks, one after the other in flat arrays; flanks of one table share it.
 
     Attributes
     ----------
@@ -68,6 +68,8 @@ class PackedTables(NamedTuple):
         Buckets per base pitch.
     knot : flat array
         Knots less `shift`, from 0 to the period inclusive (P + 1 of them).
+    per_width : flat array
+        1 over the width of the interval that begins at each knot; 0 at the period.
     bucket : flat int array
         The interval in which each of the equal buckets of the period begins: finding it takes no search.
     row : (sum of P L, 8) array
@@ -84,6 +86,7 @@ class PackedTables(NamedTuple):
     period: FloatArray
     density: FloatArray
     knot: FloatArray
+    per_width: FloatArray
     bucket: IntArray
     row: FloatArray
     level: FloatArray
@@ -94,22 +97,9 @@ class PackedTables(NamedTuple):
 
         Tables of fewer than LEAST knots in what is left stay as they are.
         """
-        parts = [_decimated(self, flank, every) for flank in range(self.period.size)]
-        starts = [np.cumsum([0, *(len(part[k]) for part in parts)]) for k in range(3)]
-        offset = self.offset.copy()
-        for flank, part in enumerate(parts):
-            offset[flank, :4] = starts[0][flank], starts[1][flank], len(part[1]), starts[2][flank]
-        row = np.ascontiguousarray(np.concatenate([*(part[2] for part in parts), np.empty((0, 8))]))
-        levels = [self.level[first : first + count] for first, count in self.offset[:, 4:]]
-        energies = [_energy_below(part[2], level) for part, level in zip(parts, levels, strict=True)]
-        return self._replace(
-            offset=offset,
-            density=np.array([float(len(part[1])) for part in parts]) / self.period,
-            knot=np.concatenate([*(part[0] for part in parts), np.empty(0)]),
-            bucket=np.concatenate([*(part[1] for part in parts), np.empty(0, dtype=np.int64)]),
-            row=row,
-            energy=np.concatenate([*energies, np.empty((0, ORDER + 1))]),
-        )
+        _, flank, part_of = np.unique(self.offset[:, 0], return_index=True, return_inverse=True)
+        parts = [_decimated(_part(self, int(index)), every) for index in flank]
+        return _joined(parts, part_of.tolist(), self.shift, self.period)
 
 
 def kept_knots(knots: int, every: int) -> IntArray:
@@ -120,51 +110,6 @@ def kept_knots(knots: int, every: int) -> IntArray:
     return np.append(kept, knots)
 
 
-def _decimated(tables: PackedTables, flank: int, every: int) -> tuple[FloatArray, IntArray, FloatArray]:
-    """Return knots, buckets and rows of one table on each `every`-th knot."""
-    first, bucket, buckets, row, _, levels = (int(value) for value in tables.offset[flank])
-    intervals = (tables.offset[flank + 1, 3] if flank + 1 < len(tables.offset) else len(tables.row)) - row
-    intervals = int(intervals) // levels
-    knot = tables.knot[first : first + intervals + 1]
-    kept = kept_knots(intervals, every)
-    if kept.size == intervals + 1:
-        return knot, tables.bucket[bucket : bucket + buckets], tables.row[row : row + intervals * levels]
-    cubic = tables.row[row : row + intervals * levels].reshape(intervals, levels, 2, 4)
-    width = np.diff(knot)[:, None, None]
-    left, left_slope = cubic[..., 0], cubic[..., 1] / width
-    end, end_slope = cubic.sum(axis=-1), (cubic @ np.array([0.0, 1.0, 2.0, 3.0])) / width
-    span = np.diff(knot[kept])[:, None, None]
-    start, stop = kept[:-1], kept[1:] - 1
-    value, rise, fall = left[start], left_slope[start] * span, end_slope[stop] * span
-    step = end[stop] - value
-    rows = np.stack([value, rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step], axis=-1)
-    return knot[kept], _bucket_starts(knot[kept]), rows.reshape(-1, 8)
-
-
-def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
-    """Lay out `tables`, each with misalignment and center-distance axes of length 1."""
-    parts = [_laid_out(table) for table in tables]
-    sizes = [(part.knot.size, part.bucket.size, len(part.row), part.level.size) for part in parts]
-    starts = np.cumsum([(0, 0, 0, 0), *sizes], axis=0)
-    offset = [
-        [start[0], start[1], size[1], start[2], start[3], size[3]]
-        for start, size in zip(starts, sizes, strict=False)
-    ]
-    period = np.array([float(table.period) for table in tables])
-    packed = PackedTables(
-        offset=np.array(offset, dtype=np.int64).reshape(-1, 6),
-        shift=np.array([float(table.position[0]) for table in tables]),
-        period=period,
-        density=np.array([float(part.bucket.size) for part in parts]) / period,
-        knot=np.concatenate([*(part.knot for part in parts), np.empty(0)]),
-        bucket=np.concatenate([*(part.bucket for part in parts), np.empty(0, dtype=np.int64)]),
-        row=np.concatenate([*(part.row for part in parts), np.empty((0, 8))]),
-        level=np.concatenate([*(part.level for part in parts), np.empty(0)]),
-        energy=np.concatenate([*(part.energy for part in parts), np.empty((0, ORDER + 1))]),
-    )
-    return by_address(packed)
-
-
 class _Table(NamedTuple):
     """One table as `PackedTables` has it: knots from 0 to the period, buckets, rows, levels, energies."""
 
@@ -173,6 +118,72 @@ class _Table(NamedTuple):
     row: FloatArray
     level: FloatArray
     energy: FloatArray
+
+
+def _part(tables: PackedTables, flank: int) -> _Table:
+    """Return the table of one flank."""
+    knot, bucket, buckets, row, level, levels = (int(value) for value in tables.offset[flank])
+    intervals = buckets // BUCKETS_PER_KNOT
+    rows = slice(row, row + intervals * levels)
+    return _Table(
+        tables.knot[knot : knot + intervals + 1],
+        tables.bucket[bucket : bucket + buckets],
+        tables.row[rows],
+        tables.level[level : level + levels],
+        tables.energy[rows],
+    )
+
+
+def _decimated(table: _Table, every: int) -> _Table:
+    """Return a table on each `every`-th knot."""
+    knot, level = table.knot, table.level
+    kept = kept_knots(knot.size - 1, every)
+    if kept.size == knot.size:
+        return table
+    cubic = table.row.reshape(knot.size - 1, level.size, 2, 4)
+    width = np.diff(knot)[:, None, None]
+    left, left_slope = cubic[..., 0], cubic[..., 1] / width
+    end, end_slope = cubic.sum(axis=-1), (cubic @ np.array([0.0, 1.0, 2.0, 3.0])) / width
+    span = np.diff(knot[kept])[:, None, None]
+    start, stop = kept[:-1], kept[1:] - 1
+    value, rise, fall = left[start], left_slope[start] * span, end_slope[stop] * span
+    step = end[stop] - value
+    rows = np.stack([value, rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step], axis=-1)
+    rows = np.ascontiguousarray(rows.reshape(-1, 8))
+    return _Table(knot[kept], _bucket_starts(knot[kept]), rows, level, _energy_below(rows, level))
+
+
+def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
+    """Lay out `tables`, each with misalignment and center-distance axes of length 1."""
+    laid_out = [_laid_out(table) for table in tables]
+    parts = {id(part): part for part in laid_out}
+    index = {key: k for k, key in enumerate(parts)}
+    shift = np.array([float(table.position[0]) for table in tables])
+    period = np.array([float(table.period) for table in tables])
+    return by_address(_joined([*parts.values()], [index[id(part)] for part in laid_out], shift, period))
+
+
+def _joined(
+    parts: Sequence[_Table], part_of: Sequence[int], shift: FloatArray, period: FloatArray
+) -> PackedTables:
+    """Lay out different tables, and of each flank the one it uses: processors keep the rows of few tables."""
+    sizes = [(part.knot.size, part.bucket.size, len(part.row), part.level.size) for part in parts]
+    starts = np.cumsum([(0, 0, 0, 0), *sizes], axis=0)
+    offset = [(*starts[k][:2], sizes[k][1], *starts[k][2:], sizes[k][3]) for k in part_of]
+    return PackedTables(
+        offset=np.array(offset, dtype=np.int64).reshape(-1, 6),
+        shift=shift,
+        period=period,
+        density=np.array([float(sizes[k][1]) for k in part_of]) / period,
+        knot=np.concatenate([*(part.knot for part in parts), np.empty(0)]),
+        per_width=np.concatenate(
+            [*(np.append(1.0 / np.diff(part.knot), 0.0) for part in parts), np.empty(0)]
+        ),
+        bucket=np.concatenate([*(part.bucket for part in parts), np.empty(0, dtype=np.int64)]),
+        row=np.concatenate([*(part.row for part in parts), np.empty((0, 8))]),
+        level=np.concatenate([*(part.level for part in parts), np.empty(0)]),
+        energy=np.concatenate([*(part.energy for part in parts), np.empty((0, ORDER + 1))]),
+    )
 
 
 @identity_cached

@@ -28,6 +28,7 @@ from dynamics.linearize.linear_system import about_running, require_freedoms
 from dynamics.linearize.load_harmonics import load_cycles
 from dynamics.linearize.operating_speeds import CommonPeriod, common_period
 from dynamics.mechanism.additions import ELEMENT_PASSING
+from dynamics.meshes.packed_tables import BUCKETS_PER_KNOT
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 HALVINGS = 8
@@ -185,8 +186,8 @@ def _knots(system: System, period: CommonPeriod) -> FloatArray:
         if pitches == 0:
             continue
         first, span = table.offset[entry, 0], table.period[entry]
-        last = int(np.searchsorted(table.knot[first:], span))
-        knot = table.knot[first : first + last] + table.shift[entry] - reference.offset[mesh]
+        last = first + table.offset[entry, 2] // BUCKETS_PER_KNOT
+        knot = table.knot[first:last] + table.shift[entry] - reference.offset[mesh]
         cycles = abs(pitches) // round(span)
         passed = (knot[:, None] + span * np.arange(cycles)) / pitches
         phases.append(np.ravel(passed) % 1.0)

@@ -328,6 +328,20 @@ def test_decimating_packed_tables_is_packing_decimated_ones(every):
             assert one == pytest.approx(other, rel=1e-9, abs=1e-9)
 
 
+def test_flanks_of_one_table_share_its_rows_and_have_its_forces():
+    first, second = uneven(), square_wave_table(64)
+    for every in (1, 2):
+        alone = [pack_tables([table]).decimated(every) for table in (first, second)]
+        shared = pack_tables([first, second, first]).decimated(every)
+        assert len(shared.row) == len(shared.energy) == sum(len(packed.row) for packed in alone)
+        for flank, packed in enumerate([*alone, alone[0]]):
+            for x in np.linspace(-1.0, 2.0, 31):
+                assert table_force(shared, flank, x, 6e-6, 0) == table_force(packed, 0, x, 6e-6, 0)
+    grids = GridTables.packed([first, second, first]).decimated()
+    np.testing.assert_array_equal(grids.number, GridTables.packed([first, second]).decimated().number)
+    assert grids.first[2] == grids.first[0] != grids.first[1]
+
+
 def test_grids_keep_the_same_nodes():
     tables = [uneven(), square_wave_table(64)]
     found, expected = GridTables.packed(tables).decimated(), GridTables.packed([each(t, 2) for t in tables])
