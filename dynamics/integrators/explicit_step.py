@@ -64,20 +64,13 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
         for i in range(modal.first):
             rate += system.load.direction[load, i] * velocity[i]
         loads += value * rate
-    bushing, mesh, friction, supplied, kept, pressed = _in_elements(system, work)
+    bushing, mesh, friction, supplied, kept, position, axes = _in_elements(system, work)
     loads += supplied
     drives -= kept
     damping = system.sparse.damping
     for i in range(modal.first):
         bushing += velocity[i] * row_product(damping, damping.weight, i, velocity)
     bushing += modal_loss(modal, velocity)
-    axes, position = 0.0, -pressed
-    for e in range(system.elements.law.size):
-        given, stored = power_along_axes(system.elements, work.local, e)
-        axes += stored - given
-        position += (
-            power_by_frames(system.elements, work.local, e) + _by_frame_speed(system, work, e) - stored
-        )
     work.power[stage, Power.DRIVE] = drives
     work.power[stage, Power.LOAD] = loads
     work.power[stage, Power.POSITION] = position
@@ -89,12 +82,10 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
 
 @inner
 def _by_frame_speed(system: SystemArrays, work: Workspace, e: int) -> float:
-    """Return what changing speeds w of a shaft and W of its frame store in element `e`, W.
+    """Return what changing speeds w of a shaft and W of its frame store in rotating-frame element `e`, W.
 
     Of the term (c_3 w W + c_4 W^2) y^2/2 and of the load -W^2 l y.
     """
-    if system.elements.law[e] != ROTATING_FRAME:
-        return 0.0
     entry, row, spin_rate, frame_rate = system.elements.entry[e], system.elements.first[e], 0.0, 0.0
     for k in range(work.motion.shape[0]):
         spin_rate += system.elements.speed[k, e, 0] * work.motion[k, ACCELERATION]
@@ -108,17 +99,30 @@ def _by_frame_speed(system: SystemArrays, work: Workspace, e: int) -> float:
 
 
 @inner
-def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, float, float, float, float]:
+def _in_elements(
+    system: SystemArrays, work: Workspace
+) -> tuple[float, float, float, float, float, float, float]:
     """Return the powers lost in bearings, flanks and friction, and the one that loads supply.
 
     Then that which the kinematic motion exchanges with rotating frames: kinetic energy in the product of
-    displacements and speeds, which the balance does not hold. Last, that stored by pressing flanks.
+    displacements and speeds, which the balance does not hold. Last, what the position and the axes supply.
     """
-    bearing, mesh, friction, supplied, kept, pressed = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    bearing, mesh, friction, supplied, kept, position, axes = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     elements, force, elastic = system.elements, work.force, work.local.elastic
     rate, drift = work.local.rate, work.local.drift
     for e in range(elements.law.size):
         law, first, end, lost = elements.law[e], elements.first[e], elements.first[e + 1], 0.0
+        if law == FLANK:
+            mesh += (force[first] - elastic[first]) * rate[first]
+            position -= elastic[first] * rate[first]
+            continue
+        if law == ROTATING_FRAME:
+            for r in range(first, end):
+                bearing += (force[r] - elastic[r]) * rate[r]
+                kept += force[r] * drift[r]
+            position += _by_frame_speed(system, work, e)
+            continue
+        position += power_by_frames(elements, work.local, e)
         if law == UNBALANCE:
             continue  # its work is what it stores
         for r in range(first, end):
@@ -128,13 +132,14 @@ def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, f
                 friction += force[r] * (rate[r] + drift[r])
             else:
                 lost += (force[r] - elastic[r]) * rate[r]
-                kept += force[r] * drift[r] if law == ROTATING_FRAME else 0.0
-        if law in (FLANK, SPATIAL_FLANK):
+        if law == SPATIAL_FLANK:
             mesh += lost
-            pressed += elastic[first] * rate[first]
+            given, stored = power_along_axes(elements, work.local, e)
+            axes += stored - given
+            position -= elastic[first] * rate[first] + stored
         else:
             bearing += lost
-    return bearing, mesh, friction, supplied, kept, pressed
+    return bearing, mesh, friction, supplied, kept, position, axes
 
 
 @inner
