@@ -278,9 +278,10 @@ def _result(
 ) -> RunResult:
     checks = RunChecks(system, [NeglectedChecks(decided)])
     with clock.stage("outputs"):
-        parts = list(_checked_series(system, trajectory.states.rows, trajectory.samples, checks))
+        parts = _checked_series(system, trajectory.states.rows, trajectory.samples, checks)
+        series = _joined(parts, trajectory.samples)
     about = documents(system, trajectory, checks, clock, error, decided, before, choice)
-    return RunResult(**_joined(parts), **about)
+    return RunResult(**series, **about)
 
 
 def _checked_series(
@@ -294,12 +295,18 @@ def _checked_series(
         yield series
 
 
-def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
-    if len(parts) == 1:
-        return parts[0]
-    whole = dict(parts[0])
-    for name in SAMPLED:
-        whole[name] = np.concatenate([part.pop(name) for part in parts], axis=-1)
+def _joined(parts: Iterator[dict[str, Any]], samples: int) -> dict[str, Any]:
+    """Write blocks of series into those of the whole run; the memory of a block is used again."""
+    whole, first = next(parts), 0
+    if whole["time"].size == samples:
+        return whole
+    part = whole
+    whole = part | {name: np.empty((*part[name].shape[:-1], samples), part[name].dtype) for name in SAMPLED}
+    while part:
+        stop = first + part["time"].size
+        for name in SAMPLED:
+            whole[name][..., first:stop] = part[name]
+        part, first = next(parts, {}), stop
     return whole
 
 
