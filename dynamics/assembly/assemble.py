@@ -83,6 +83,11 @@ class BearingForce(NamedTuple):
         return signals
 
 
+_NO_INDEX = np.zeros(0, dtype=np.int64)
+NO_SIGNALS = BearingForce(np.zeros(1, dtype=np.int64), _NO_INDEX, np.zeros(0), np.zeros(0), 0)
+"""Of no support."""
+
+
 def _bearing_force_map(
     stiffness: FloatArray,
     damping: FloatArray,

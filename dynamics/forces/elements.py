@@ -72,6 +72,8 @@ class Elements(NamedTuple):
     drift : (k, R) array
         0 for flanks, whose coordinates the kinematic motion does not change.
     speed : (k, E, 2) array
+    carried, turned : int
+        The first row with drift, and the first element with speed; R and E: none.
     """
 
     law: IntArray
@@ -82,6 +84,8 @@ class Elements(NamedTuple):
     drift: FloatArray
     stiffness: FloatArray
     speed: FloatArray
+    carried: int
+    turned: int
     laws: ElementLaws
 
     @classmethod
@@ -100,6 +104,10 @@ class Elements(NamedTuple):
             for element, size in zip(elements, sizes, strict=True)
         ]
         speed = [np.zeros((2, motions)) if element.speed is None else element.speed for element in elements]
+        carried = np.append(
+            np.flatnonzero(np.any(np.concatenate([np.empty((0, motions)), *drift]), axis=1)), sum(sizes)
+        )
+        turned = np.append(np.flatnonzero([np.any(each) for each in speed]), len(sizes))
         packed = by_address(
             cls(
                 np.array([int(element.law) for element in elements], dtype=np.int64),
@@ -110,6 +118,8 @@ class Elements(NamedTuple):
                 np.ascontiguousarray(np.concatenate([np.empty((0, motions)), *drift]).T),
                 np.concatenate([np.empty(0), *stiffness]),
                 np.ascontiguousarray(np.moveaxis(np.array(speed).reshape(len(elements), 2, motions), 2, 0)),
+                int(carried[0]),
+                int(turned[0]),
                 laws,
             )
         )

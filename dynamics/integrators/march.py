@@ -91,7 +91,8 @@ class _SampleFigures:
 
 def _sample_figures(system: System, ring: SampleRing, points: int, samples: int) -> _SampleFigures:
     """Read the figures off a ring after `points` of the inner grid and `samples` of the output."""
-    rows, supports = ring.local.force.size, system.bearing_stiffness.shape[:2]
+    rows, stored = ring.local.force.size, system.scene.outputs.bearing_forces
+    supports = system.bearing_stiffness.shape[:2] if stored else (0, 3)
     largest, rms = ring.peaks.largest, np.sqrt(ring.peaks.square / max(points, 1))
     driving = system.driving_rows
     coast = np.zeros((2, driving.size))

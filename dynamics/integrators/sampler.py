@@ -14,14 +14,15 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.assembly.assemble import BearingForce, System
+from dynamics.assembly.assemble import NO_SIGNALS, BearingForce, System
 from dynamics.forces.elements import evaluate, has_unbalance, make_local
 from dynamics.integrators.workspace import Count, Workspace
+from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.meshes.packed_tables import PackedTables
-from dynamics.meshes.table_lookup import table_deflection
+from dynamics.meshes.table_lookup import deflection_from, level_below
 from dynamics.motion.motion import (
     MOTION_COLUMNS,
     QUANTUM,
@@ -37,6 +38,8 @@ from dynamics.types import FloatArray, IntArray
 
 HIGH_PASS = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0]) / 64.0
 """Sixth difference: 1 at half the rate, sin^6 below."""
+
+THIRD = 1.0 / 3.0
 
 
 class Sampler(NamedTuple):
@@ -56,8 +59,10 @@ class Sampler(NamedTuple):
         Tables of the static transmission error.
     nominal_force : (m,) array
         N.
+    level : (m,) int array
+        Level intervals of these forces in the tables.
     bearings : BearingForce
-        Of the channels of a point.
+        Of the channels of a point; without signals where no output has them.
     bodies : int
         Freedoms that are not modal.
     filtered : int
@@ -70,6 +75,7 @@ class Sampler(NamedTuple):
     rate: float
     static: PackedTables
     nominal_force: FloatArray
+    level: IntArray
     bearings: BearingForce
     bodies: int
     filtered: int
@@ -84,10 +90,12 @@ class Sampler(NamedTuple):
         own = np.arange(bodies)
         q, v = np.split(np.arange(rows + 2 * bodies + nominal.size, rows + 2 * n + nominal.size), 2)
         channels = np.concatenate([np.arange(rows), rows + own, q, rows + bodies + own, v])
-        bearings = system.bearing_map._replace(column=channels[system.bearing_map.column])
+        signals = system.bearing_map if outputs.bearing_forces else NO_SIGNALS
+        bearings = signals._replace(column=channels[signals.column])
         amplitudes = n - bodies if outputs.displacements or outputs.accelerations else 0
         filtered = rows + 2 * (bodies + amplitudes) + nominal.size
-        rest = (bearings, bodies, filtered)
+        level = [level_below(by_address(static), m, float(force)) for m, force in enumerate(nominal)]
+        rest = (np.array(level, dtype=np.int64), bearings, bodies, filtered)
         taps, rate = sampling.filter_taps(), sampling.inner_rate
         return cls(taps, HIGH_PASS, sampling.factor, rate, static, nominal, *rest)
 
@@ -273,8 +281,8 @@ def _look(
     for i in range(n):
         point[rows + i], point[rows + n + i] = q[i], v[i]
     for m in range(meshes):
-        static = table_deflection(sampler.static, m, local.position[m], sampler.nominal_force[m])
-        point[rows + 2 * n + m] = static
+        force, level = sampler.nominal_force[m], sampler.level[m]
+        point[rows + 2 * n + m] = deflection_from(sampler.static, m, local.position[m], force, level)
     first = rows + 2 * n + meshes
     for i in range(modes):
         point[first + i], point[first + modes + i] = q[n + i], v[n + i]
@@ -305,9 +313,9 @@ def _between(far: float, left: float, right: float, now: float) -> float:
     It is left + a u + b u^2 + c u^3, u from 0 to 1; one root of the slope lies there if the slope changes
     its sign. NaN has none.
     """
-    a = right - left / 2.0 - far / 3.0 - now / 6.0
-    b = (far + right) / 2.0 - left
-    c = (left - right) / 2.0 + (now - far) / 6.0
+    a = right - 0.5 * left - (far + 0.5 * now) * THIRD
+    b = 0.5 * (far + right) - left
+    c = 0.5 * (left - right + (now - far) * THIRD)
     if not a * (a + 2.0 * b + 3.0 * c) < 0.0:
         return 0.0
     u = abs(a) / (math.sqrt(b * b - 3.0 * a * c) - math.copysign(b, a * b))

@@ -36,9 +36,9 @@ def position_interval(table: PackedTables, flank: int, position: float) -> tuple
     interval = table.bucket[bucket + min(int(phase * table.density[flank]), buckets - 1)]
     while phase >= table.knot[first + interval + 1]:
         interval += 1
-    start = table.knot[first + interval]
-    per_width = 1.0 / (table.knot[first + interval + 1] - start)
-    return table.offset[flank, 3] + interval * table.offset[flank, 5], (phase - start) * per_width, per_width
+    per_width = table.per_width[first + interval]
+    u = (phase - table.knot[first + interval]) * per_width
+    return table.offset[flank, 3] + interval * table.offset[flank, 5], u, per_width
 
 
 @inner
@@ -98,18 +98,31 @@ def _force_cubic(
 @compiled
 def table_deflection(table: PackedTables, flank: int, position: float, force: float) -> float:
     """Return the deflection (m) at which the table's force is `force` (N); lift-off for 0 or less."""
-    row, u, _ = position_interval(table, flank, position)
-    first, levels = table.offset[flank, 4], table.offset[flank, 5]
-    k, end = 0, levels - 1
+    return deflection_from(table, flank, position, force, level_below(table, flank, force))
+
+
+@compiled
+def level_below(table: PackedTables, flank: int, force: float) -> int:
+    """Return the level interval that holds `force` (N): the same at all positions."""
+    first = table.offset[flank, 4]
+    k, end = 0, table.offset[flank, 5] - 1
     while end - k > 1:  # level k holds, level `end` is above or the last
         middle = (k + end) // 2
         if force >= table.level[first + middle]:
             k = middle
         else:
             end = middle
+    return k
+
+
+@inner
+def deflection_from(table: PackedTables, flank: int, position: float, force: float, k: int) -> float:
+    """Return what `table_deflection` does for a force in the level interval `k`."""
+    row, u, _ = position_interval(table, flank, position)
+    first = table.offset[flank, 4]
     low, wanted = _cubic(table.row, row + k, 0, u), force - table.level[first + k]
     if wanted <= 0.0:
-        return low
+        return float(low)
     high = _cubic(table.row, row + k + 1, 0, u)
     if force >= table.level[first + k + 1]:
         return float(high + (force - table.level[first + k + 1]) / _cubic(table.row, row + k + 1, 4, u))

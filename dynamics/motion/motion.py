@@ -81,15 +81,15 @@ def set_phases(
 def set_drift(elements: Elements, time: float, motion: FloatArray, local: LocalState) -> None:
     """Write the time, what the kinematic motion adds to local rates, and the speeds of rotation."""
     local.clock[0] = time
-    for r in range(local.drift.size):
+    for r in range(elements.carried, local.drift.size):
         local.drift[r] = 0.0
-    for e in range(elements.law.size):
+    for e in range(elements.turned, elements.law.size):
         local.speed[e, 0], local.speed[e, 1] = 0.0, 0.0
     for k in range(motion.shape[0]):
         speed = motion[k, SPEED]
-        for r in range(local.drift.size):
+        for r in range(elements.carried, local.drift.size):
             local.drift[r] += elements.drift[k, r] * speed
-        for e in range(elements.law.size):
+        for e in range(elements.turned, elements.law.size):
             local.speed[e, 0] += elements.speed[k, e, 0] * speed
             local.speed[e, 1] += elements.speed[k, e, 1] * speed
 

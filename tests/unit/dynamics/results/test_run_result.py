@@ -112,6 +112,16 @@ def test_empty_series_come_back_empty(tmp_path):
     assert back.displacement.shape == small.displacement.shape
 
 
+def test_what_no_output_has_takes_nothing_and_changes_nothing_else():
+    scene = gear_pair_scene(duration=0.02)
+    whole, part = (
+        simulate(replace(scene, outputs=Outputs(bearing_forces=stored))) for stored in (True, False)
+    )
+    assert part.receipt["peaks"]["bearing_force"] == {}
+    assert part.receipt["peaks"]["mesh_force"] == whole.receipt["peaks"]["mesh_force"]
+    np.testing.assert_array_equal(part.mesh_force, whole.mesh_force)
+
+
 def test_other_files_are_refused(tmp_path: Path):
     import xarray  # noqa: PLC0415
 
