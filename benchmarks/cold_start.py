@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import resource
 import subprocess
 import sys
@@ -10,6 +9,7 @@ import tempfile
 from pathlib import Path
 
 from benchmarks.figures import Figure
+from benchmarks.fresh_process import as_installed
 
 SUBJECT = "start of a verb"
 _EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -59,7 +59,7 @@ def _cost(program: list[str], folder: str) -> tuple[float, float]:
     done = subprocess.run(
         program,
         cwd=folder,
-        env=os.environ | {"OMP_NUM_THREADS": "1"},
+        env=as_installed() | {"OMP_NUM_THREADS": "1"},
         capture_output=True,
         text=True,
         check=True,

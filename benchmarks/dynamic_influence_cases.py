@@ -19,7 +19,7 @@ from dynamics.scene import Outputs, Scene, pair_scene
 from dynamics.shafts import BeamSection, GearBody, Inertia, hollow_cylinder
 from dynamics.types import FloatArray
 from fe_contact import GearPair, analyze
-from lineofaction.cli.simulate import tabled_scene
+from lineofaction.cli.subjects import tabled_scene
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

@@ -16,9 +16,14 @@ print(_json.dumps({"process_cpu_seconds": _cpu, **measured}))
 """
 
 
+def as_installed() -> dict[str, str]:
+    """Return the environment, with the bytecode of modules kept as that of installed ones is."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+
+
 def measure(code: str, **environment: str) -> dict[str, Any]:
     """Run `code`, which leaves its results in a dict called ``measured``; add the CPU seconds."""
-    settings = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+    settings = as_installed() | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
     done = subprocess.run(
         [sys.executable, "-c", code + _EPILOGUE],
         env=settings | environment,

@@ -12,7 +12,7 @@ from benchmarks.figures import Figure
 from dynamics.joints import Housing
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
-from lineofaction.cli.simulate import tabled_scene
+from lineofaction.cli.subjects import tabled_scene
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "palermo_scene.toml"

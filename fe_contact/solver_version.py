@@ -1,3 +1,21 @@
-"""The version of the contact solver, which is in the content hash of every table."""
+"""What a result is made with: the contact solver, whose version is in every content hash, and packages."""
+
+from __future__ import annotations
+
+import platform
+from functools import lru_cache
+from importlib.metadata import version
 
 SOLVER_VERSION = "17"
+PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
+
+
+def software_versions() -> dict[str, str]:
+    """Return what a result was made with."""
+    return dict(_software_versions())
+
+
+@lru_cache(maxsize=1)
+def _software_versions() -> tuple[tuple[str, str], ...]:
+    """Read them once: the files of the packages are long."""
+    return ("python", platform.python_version()), *((name, version(name)) for name in PACKAGES)

@@ -10,6 +10,9 @@ import numpy as np
 from bounds.types import FloatArray, Json
 from model_studies.record import in_unit
 
+TRIFLE = 1e-3
+"""Relative change below which an effect is too small for a line of its own."""
+
 
 @dataclass(frozen=True)
 class Figures:

@@ -253,13 +253,12 @@ class NetcdfContent:
         with h5py.File.in_memory(track_order=True) as file:
             scales = {}
             for number, (name, size) in enumerate(self.sizes.items()):
-                scales[name] = _scale(file, name, size, self.variables.get(name))
-                scales[name].attrs["_Netcdf4Dimid"] = np.int32(number)
+                scales[name] = _scale(file, name, size, self.variables.get(name), number)
             for name, variable in self.variables.items():
                 along_itself = variable.dimensions == (name,)
                 dataset = scales[name] if along_itself else self._added(file, name, scales)
-                _describe(dataset, {**variable.attributes, **self._auxiliary(name)})
-            _describe(file, self.attributes)
+                describe(dataset, {**variable.attributes, **self._auxiliary(name)})
+            describe(file, self.attributes)
             file.flush()
             image: bytes = file.id.get_file_image()
             return image
@@ -288,14 +287,14 @@ class NetcdfContent:
         return {"coordinates": " ".join(along)} if along and not is_coordinate else {}
 
 
-def _scale(file: Any, name: str, size: int, variable: Variable | None) -> Any:
+def _scale(file: Any, name: str, size: int, variable: Variable | None, number: int) -> Any:
     """Add a dimension: the coordinate along it, or a mark that there is none."""
     content: dict[str, Any] = {"dtype": ">f4"}
     called = f"{_NO_VARIABLE}{size:10}"
     if variable is not None and variable.dimensions == (name,):
         content, called = {"data": variable.values}, name
     scale = file.create_dataset(name, (size,), maxshape=_unlimited((size,)), track_order=True, **content)
-    scale.make_scale(called)
+    make_dimension(scale, number, called)
     return scale
 
 
@@ -304,7 +303,13 @@ def _unlimited(shape: tuple[int, ...]) -> tuple[int | None, ...] | None:
     return None if all(shape) else tuple(size or None for size in shape)
 
 
-def _describe(target: Any, attributes: Mapping[str, Any]) -> None:
-    """Write attributes; numbers are rows in netCDF."""
+def make_dimension(dataset: Any, number: int, called: str) -> None:
+    """Let a dataset of h5py be the `number`-th dimension of its file, called by its name if it has values."""
+    dataset.make_scale(called)
+    dataset.attrs["_Netcdf4Dimid"] = np.int32(number)
+
+
+def describe(target: Any, attributes: Mapping[str, Any]) -> None:
+    """Write attributes of a file or dataset of h5py; numbers are rows in netCDF."""
     for name, value in attributes.items():
         target.attrs[name] = value if isinstance(value, str) else np.atleast_1d(value)

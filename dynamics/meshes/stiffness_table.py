@@ -68,12 +68,17 @@ class PeriodicCurve:
 
     def __call__(self, position: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return values and slopes at `position`."""
-        from scipy.interpolate import CubicHermiteSpline  # noqa: PLC0415 (start-up time)
-
-        value, slope = (np.append(field, field[0]) for field in (self.value, self.slope))
-        cubic = CubicHermiteSpline(np.append(self.position, self.position[0] + 1.0), value, slope)
-        at = self.position[0] + (np.asarray(position, dtype=float) - self.position[0]) % 1.0
-        return np.asarray(cubic(at)), np.asarray(cubic.derivative()(at))
+        knots = np.append(self.position, self.position[0] + 1.0)
+        at = knots[0] + (np.asarray(position, dtype=float) - knots[0]) % 1.0
+        k = np.searchsorted(knots[1:-1], at, side="right")
+        after = (k + 1) % self.position.size
+        width = knots[k + 1] - knots[k]
+        secant = (self.value[after] - self.value[k]) / width
+        bend = (self.slope[k] + self.slope[after] - 2.0 * secant) / width**2
+        start = (secant - self.slope[k]) / width - bend * width
+        x = at - knots[k]
+        value = self.value[k] + x * (self.slope[k] + x * (start + x * bend))
+        return value, self.slope[k] + x * (2.0 * start + 3.0 * x * bend)
 
 
 def stiffness_table(stiffness: PeriodicCurve, error: PeriodicCurve | None = None) -> PlainTable:

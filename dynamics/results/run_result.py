@@ -19,7 +19,7 @@ from dynamics.results.array_file import stored
 from dynamics.results.energy_audit import EnergyAudit
 from dynamics.types import FloatArray, Json, RunStatus
 from model_studies.array_file import Stored
-from model_studies.netcdf import DAMAGE, UnreadableFile, read_dataset
+from model_studies.netcdf import DAMAGE, UnreadableFile, describe, make_dimension, read_dataset
 
 if TYPE_CHECKING:
     import xarray
@@ -293,14 +293,15 @@ class RunFile:
     """Writes beside the final name; `publish` moves the file there whole, leaving without it removes it."""
 
     def __init__(self, path: Path) -> None:
-        import h5netcdf  # noqa: PLC0415 - needed for files only
+        import h5py  # noqa: PLC0415 - needed for files only
 
         self._path = path
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
         os.close(handle)
         self._part = Path(name)
 
-        self._file: Any = h5netcdf.File(self._part, "w")
+        self._file: Any = h5py.File(self._part, "w", track_order=True)
+        self._growing: dict[str, Any] = {}
         self._samples = 0
 
     def __enter__(self) -> RunFile:
@@ -317,16 +318,13 @@ class RunFile:
         if not self._samples:
             self._lay_out(fields)
         first, self._samples = self._samples, self._samples + fields["time"].size
-        self._file.resize_dimension("time", self._samples)
-        self._file["time"][first : self._samples] = fields["time"]
-        for name in OVER_TIME:
-            if fields[name].size:
-                self._file[name][..., first : self._samples] = fields[name]
+        for name, variable in self._growing.items():
+            variable.resize(self._samples, axis=variable.ndim - 1)
+            variable[..., first:] = fields[name]
 
     def publish(self, attributes: Mapping[str, Any]) -> None:
         """Add the attributes, flush to disk and rename."""
-        for name, value in attributes.items():
-            self._file.attrs[name] = value
+        describe(self._file, attributes)
         self._file.close()
         mask = os.umask(0)
         os.umask(mask)
@@ -336,26 +334,32 @@ class RunFile:
         self._part.replace(self._path)
 
     def _lay_out(self, fields: Mapping[str, Any]) -> None:
+        """Make all variables; those along dimensions, which others refer to, come first."""
         import h5py  # noqa: PLC0415
 
-        labels = {name: fields[name] for name in NAMED if fields[name]}
-        labels["direction"] = DIRECTIONS
-        self._file.dimensions = {name: len(names) for name, names in labels.items()} | {"time": None}
-        for name, names in labels.items():
-            variable = self._file.create_variable(name, (name,), h5py.string_dtype())
-            variable[...] = np.array(names, dtype=object)
-        for name, series in ({"time": TIME} | SERIES).items():
+        names = {name: fields[name] for name in NAMED if fields[name]} | {"direction": DIRECTIONS}
+        for number, (name, texts) in enumerate(names.items()):
+            labels = np.array(texts, dtype=h5py.string_dtype())
+            make_dimension(self._file.create_dataset(name, data=labels, track_order=True), number, name)
+        make_dimension(self._variable("time", TIME, fields["time"]), len(names), "time")
+        for name, series in SERIES.items():
             if fields[name].size:
-                self._variable(name, series, fields[name])
+                variable = self._variable(name, series, fields[name])
+                for axis, dimension in enumerate(series.dimensions):
+                    variable.dims[axis].attach_scale(self._file[dimension])
 
-    def _variable(self, name: str, series: Stored, values: FloatArray) -> None:
+    def _variable(self, name: str, series: Stored, values: FloatArray) -> Any:
         """Make one variable; what has no time is written at once."""
-        growing = series.dimensions[-1] == "time"
-        packing = PACKING | {"chunks": (*values.shape[:-1], CHUNK)} if growing else PACKING
-        variable = self._file.create_variable(name, series.dimensions, float, **packing)
-        variable.attrs.update({"units": series.units, "long_name": series.long_name})
-        if not growing:
-            variable[...] = values
+        if series.dimensions[-1] == "time":
+            before, each = values.shape[:-1], {"shape": (*values.shape[:-1], 0), "dtype": float}
+            each |= {"maxshape": (*before, None), "chunks": (*before, CHUNK)}
+        else:
+            each = {"data": values}
+        variable = self._file.create_dataset(name, **each, **PACKING, track_order=True)
+        describe(variable, {"units": series.units, "long_name": series.long_name})
+        if series.dimensions[-1] == "time":
+            self._growing[name] = variable
+        return variable
 
 
 SCHEMA = "lineofaction dynamics run"

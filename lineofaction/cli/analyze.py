@@ -23,48 +23,17 @@ from lineofaction.cli.output import (
     progress_bar,
     table,
 )
+from lineofaction.cli.subjects import assessed_case
 from lineofaction.gearbox.convert.answers import draft_line, source_rows, summary_json
-from lineofaction.gearbox.convert.case import CheckedCase, case_at
+from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.effects import assumption_lines, ledger_lines
 from lineofaction.gearbox.convert.live import plan_json, plan_of
-from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import JobFailed
-from lineofaction.gearbox.schemas import Case, read_model
-from lineofaction.gearbox.schemas.gear import FlankPoint
-from lineofaction.gearbox.schemas.plan import left_out_warnings
-from lineofaction.gearbox.schemas.reading import located
-from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.subjects import scene_of
 from lineofaction.gearbox.tabled_scene import database_of, open_executor
 from lineofaction.gearbox.units import MM, NM, UM
 from lineofaction.report.ste.page import static_headlines
 from model_studies.workers import InProcess, Workers
-
-
-def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCase:
-    """Return the case in a file, at one load and alignment if requested; warn of what is implausible.
-
-    Raises `BadInput`: the file holds no case, or no such pair exists.
-    """
-    case = read_model(Case, file)
-    if point is not None:
-        case = case_at(case, point)
-    checked = CheckedCase(case)
-    with located(file):
-        warn(case_warnings(checked))
-    return checked
-
-
-def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
-    """Return the scene in a file and the folder its files are relative to; warn of what its import left out.
-
-    Raises `BadInput`: the file holds no scene.
-    """
-    scene, folder = scene_of(file)
-    warn(left_out_warnings(scene.left_out))
-    return scene, folder
-
 
 # Lines of `loa analyze` about a tolerance: drafts while it refines, its passes, and whether it is met.
 

@@ -19,6 +19,7 @@ KINDS = {
     "results": "results of services",
     "searches": "searches of optimizations",
     "studies": "tasks of studies",
+    "tables": "STE tables of the meshes of scenes",
 }
 """Folders of the cache, and what they hold."""
 _DAY = 86_400.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import warnings
 from typing import Annotated, Any
 
@@ -52,7 +53,10 @@ def main() -> None:
             foreign(message, category, *place, **stream)
 
     warnings.showwarning = show  # what our own say is for people, without a line of code
-    app()
+    try:
+        app()
+    finally:
+        gc.freeze()  # what is left ends with the process: its last collection need not look at it
 
 
 def _version(requested: bool) -> None:

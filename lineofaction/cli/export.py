@@ -20,10 +20,10 @@ from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from host.directories import cache_home
-from lineofaction.cli.analyze import assessed_case
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
 from lineofaction.cli.ste import open_ste, positions
+from lineofaction.cli.subjects import assessed_case
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.input_file import InputFile

@@ -12,9 +12,9 @@ from bounds.types import Json
 from dynamics.acoustics import Recording, wav_file
 from dynamics.results import RunResult
 from host.directories import cache_home
-from lineofaction.cli.analyze import assessed_scene
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
+from lineofaction.cli.subjects import assessed_scene
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.studies.computation import Means

@@ -14,9 +14,9 @@ from bounds import engineering
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
 from host.directories import cache_home
-from lineofaction.cli.analyze import assessed_case
 from lineofaction.cli.guard import messages, warn
 from lineofaction.cli.output import Report, check_writable, console, print_json, progress_bar, table
+from lineofaction.cli.subjects import assessed_case
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput

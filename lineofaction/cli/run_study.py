@@ -15,7 +15,6 @@ from bounds.types import Json
 from fe_contact.solver_version import SOLVER_VERSION
 from host import cpu_seconds
 from host.directories import cache_home
-from lineofaction.cli.analyze import assessed_scene
 from lineofaction.cli.guard import messages, until_interrupted, warn, warnings_so_far
 from lineofaction.cli.output import (
     Report,
@@ -27,7 +26,7 @@ from lineofaction.cli.output import (
     progress_bar,
     table,
 )
-from lineofaction.cli.simulate import tabled_scene
+from lineofaction.cli.subjects import assessed_scene, tabled_scene
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.input_file import InputFile, number_list

@@ -1,21 +1,15 @@
-"""``loa simulate``, and the tables of a scene's meshes, computed here or by a service."""
+"""``loa simulate``: a scene with its tables, run into a file."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
-from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
 from dynamics.scene import Scene
-from dynamics.simulation import compile_ahead, interrupted_run, simulate_to_file
+from dynamics.simulation import interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
-from fe_contact.ste import SteDatabase
-from host.directories import cache_home
-from lineofaction.cli.analyze import analyzed, assessed_scene
-from lineofaction.cli.guard import until_interrupted, warn, warnings_so_far
+from lineofaction.cli.guard import until_interrupted, warnings_so_far
 from lineofaction.cli.output import (
     Report,
     check_netcdf_output,
@@ -24,21 +18,15 @@ from lineofaction.cli.output import (
     print_result,
     progress_bar,
 )
-from lineofaction.gearbox.convert.case import CheckedCases
+from lineofaction.cli.subjects import assessed_scene, tabled_scene
 from lineofaction.gearbox.convert.effects import model_lines
-from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.result_files import run_json, stamp
-from lineofaction.gearbox.schemas.meshes import MeshInput
-from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.stages import staged
-from lineofaction.gearbox.subjects import MeshTables, finished
-from lineofaction.gearbox.tabled_scene import ComputedTables, open_executor
-from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
+from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.page import Headline
-from model_studies.workers import InProcess, Workers
 
 # The main figures of a run: how far its forces swing.
 
@@ -58,41 +46,6 @@ def _run_headlines(peaks: Mapping[str, Any]) -> tuple[Headline, ...]:
             value, remark = f"{number(peak, 4)} N", f"rms {number(rms, 4)} N"
             headlines.append(Headline(f"largest {what} {name}", value, remark))
     return tuple(headlines)
-
-
-def tabled_scene(
-    scene: SceneInput,
-    folder: Path,
-    service: str | None,
-    report: Report,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-) -> TabledScene:
-    """Return the scene with its tables and with its cases written out; its files are relative to `folder`."""
-    cases, source, run = CheckedCases(), None, finished
-
-    with ExitStack() as stack:
-        beside = stack.enter_context(ThreadPoolExecutor(1))
-        ahead = cache(partial(beside.submit, compile_ahead))
-
-        if service is not None:
-            from lineofaction.client import JobState, LineOfActionClient  # noqa: PLC0415 (start-up time)
-            from lineofaction.client.client import ServiceTables  # noqa: PLC0415 (start-up time)
-
-            def watch(state: JobState) -> None:
-                if state.stage:
-                    report(state.stage, state.stage_progress / 100.0)
-                if not state.ended:
-                    ahead()
-
-            client = stack.enter_context(LineOfActionClient(service, progress=watch))
-            source, run = ServiceTables(client), client.driver.run
-        here = ComputedTables(lambda case: analyzed(cases.of(case), report, workers))
-        tables = MeshTables(folder, source or here)
-
-        def table_of(index: int, mesh: MeshInput) -> SteDatabase:
-            return run(tables.of(index, mesh))
-
-        return scene_by_tables(scene, folder, table_of, cache_home(), report, warn, cases)
 
 
 # ``loa simulate``.

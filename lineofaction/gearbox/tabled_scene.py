@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from fe_contact.analysis.analyze import ste_database
 from fe_contact.options import Run
 from fe_contact.ste import PairFacts, SteDatabase
 from host import cpu_seconds
@@ -34,6 +33,7 @@ from model_studies.workers import InProcess, Workers, WorkersLost, dask_workers,
 Warn = Callable[[Iterable[dict[str, Any]]], object]
 OnDraft = Callable[[SteDatabase, str], None]
 TableOf = Callable[[int, MeshInput], SteDatabase]
+KeptTable = Callable[[Case], SteDatabase | None]
 
 
 def database_of(
@@ -53,6 +53,8 @@ def database_of(
 
 def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = None) -> SteDatabase:
     """Compute the STE database of a case, its warnings in the fields and units of the case."""
+    from fe_contact.analysis.analyze import ste_database  # noqa: PLC0415 (start-up time)
+
     request = checked.checked
     with boundary_errors():
         database = ste_database(request, run=run, case=case_json(checked.case), on_draft=on_draft)
@@ -95,6 +97,7 @@ def tabled_scene(
     progress: Progress,
     warn: Warn,
     cases: CheckedCases,
+    kept_table: KeptTable = lambda _case: None,
 ) -> TabledScene:
     """Return a scene with its tables, housings reduced; all is checked before anything is computed.
 
@@ -112,6 +115,8 @@ def tabled_scene(
         Takes what is implausible about cases and scene.
     cases : CheckedCases
         Of this scene: `table_of` goes on from what is checked here.
+    kept_table : callable
+        ``kept_table(case)``, the table of a case that was computed before, which needs no check, or None.
 
     Raises
     ------
@@ -124,7 +129,7 @@ def tabled_scene(
     meshes, facts = list(scene.meshes), {}
     for i, mesh in scene.with_database:
         meshes[i] = with_case(mesh, f"meshes[{i}]", folder)
-        facts[mesh.name] = _facts(i, meshes[i], table_of, cases, warn)
+        facts[mesh.name] = _facts(i, meshes[i], table_of, cases, warn, kept_table)
     warn(scene_warnings(scene, check_scene(scene, facts)))
     housings = housings_in(scene, home, folder, progress)
     databases = {mesh.name: table_of(i, meshes[i]) for i, mesh in scene.with_database}
@@ -134,9 +139,11 @@ def tabled_scene(
     return TabledScene(without_modes_files(own), databases, built, housings, cpu_seconds() - began)
 
 
-def _facts(index: int, mesh: MeshInput, table_of: TableOf, cases: CheckedCases, warn: Warn) -> PairFacts:
+def _facts(
+    index: int, mesh: MeshInput, table_of: TableOf, cases: CheckedCases, warn: Warn, kept_table: KeptTable
+) -> PairFacts:
     """Return the facts of a mesh's pair; of a case without computing anything."""
-    if mesh.case is None:
+    if mesh.case is None or kept_table(mesh.case) is not None:
         return table_of(index, mesh).facts
     field, checked = f"meshes[{index}]", cases.of(mesh.case)
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -115,6 +114,8 @@ class ByDask:
 
     def _results(self, futures: Sequence[Any], first: int) -> list[Any]:
         """Wait for a result as long as there is somebody to make it; return it with those ready after it."""
+        from asyncio import CancelledError as Cancelled  # noqa: PLC0415 (start-up time)
+
         from distributed import KilledWorker  # noqa: PLC0415 (an extra)
 
         so_far = f"{first} of {len(futures)} tasks were done"
@@ -129,7 +130,7 @@ class ByDask:
             except KilledWorker:
                 ended = "A task ended every worker that tried it; they may have run out of memory"
                 raise WorkersLost(f"{ended}: {so_far}.") from None
-            except (CancelledError, asyncio.CancelledError):
+            except (CancelledError, Cancelled):
                 raise WorkersLost(f"The scheduler {self._address} is gone: {so_far}.") from None
             alone_since = None if self._workers() else alone_since or time.monotonic()
             if alone_since is not None and time.monotonic() - alone_since > self.patience:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import platform
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
-from functools import lru_cache, partial
-from importlib.metadata import version
+from functools import partial
 
 import numpy as np
 
@@ -29,7 +27,7 @@ from fe_contact.contact.problem import condition_numbers
 from fe_contact.options import Run
 from fe_contact.planning.cost_model import log_name
 from fe_contact.plausibility import merged, table_findings
-from fe_contact.solver_version import SOLVER_VERSION
+from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, PLANE, all_sources
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
@@ -156,9 +154,6 @@ def _between_nodes(table: SteDatabase, shares: FloatArray) -> list[Json]:
             interval = [float(nodes[k]), float(nodes[k + 1])]
             beyond.append({"axis": name, "used": float(worst[k]), "between": interval})
     return beyond
-
-
-PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 
 @dataclass(frozen=True)
@@ -302,14 +297,3 @@ def _metadata(case: Json, made: SolvedTable, receipt: Json, ledger: list[Json]) 
         software_versions=software_versions(),
         warnings=[finding.to_json() for finding in findings],
     )
-
-
-def software_versions() -> dict[str, str]:
-    """Return what a result was made with."""
-    return dict(_software_versions())
-
-
-@lru_cache(maxsize=1)
-def _software_versions() -> tuple[tuple[str, str], ...]:
-    """Read them once: the files of the packages are long."""
-    return ("python", platform.python_version()), *((name, version(name)) for name in PACKAGES)

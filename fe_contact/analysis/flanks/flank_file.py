@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import Finding, warn_of
-from fe_contact.analysis.database.compute_database import software_versions
 from fe_contact.analysis.flanks.load_distribution import FlankScene, LoadDistribution, load_distribution
 from fe_contact.analysis.flanks.solved_operating_point import solved_point
 from fe_contact.analysis.request.request import Checked
@@ -19,7 +18,7 @@ from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.plausibility import flank_findings, merged, unexpected
-from fe_contact.solver_version import SOLVER_VERSION
+from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import Metadata
 from fe_contact.ste.facts import content_hash
 from fe_contact.ste.netcdf import FileFormat, digest, json_attribute

@@ -12,7 +12,7 @@ import numpy as np
 
 import model_studies
 from fe_contact.analysis.analyze import analyze
-from fe_contact.analysis.database.compute_database import compute_database, software_versions
+from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints, operating_points
 from fe_contact.analysis.pairs.slice_springs import (
     SliceLaw,
@@ -36,7 +36,7 @@ from fe_contact.errors import InputError, MeshError, SolveError, chosen, integer
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning.plan import PLANE_REFINEMENT, Plan
-from fe_contact.solver_version import SOLVER_VERSION
+from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray

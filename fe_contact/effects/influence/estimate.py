@@ -12,13 +12,12 @@ from fe_contact.effects.composer import compose, flipped
 from fe_contact.effects.effect import ContactScene, Effect, named
 from fe_contact.effects.influence.deflection_budget import EstimatedCurve, Springs
 from fe_contact.types import FloatArray, Json
+from model_studies.ablation import TRIFLE
 
 # The size of an effect: what leaving it out changes at the nominal load. Whatever shows one shows this.
 
 RIPPLE_FLOOR = 20e-9
 """m; per cent of a peak-to-peak below this are not given: it is what meshes and springs leave uncertain."""
-TRIFLE = 1e-3
-"""Relative change below which an effect is too small for a line of its own."""
 _UM = 1e6
 _NOTHING = 5e-5  # um and %, well below what two digits of any change that counts can show
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from bounds import engineering
-from fe_contact.effects.influence.estimate import TRIFLE
+from model_studies.ablation import TRIFLE
 
 # The influence of effects as a ledger tells it: which have a line, at which load, in which words.
 

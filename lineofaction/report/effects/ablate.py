@@ -12,7 +12,7 @@ from bounds import engineering
 from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import EffectAblation as SceneEffect
 from fe_contact.analysis.studies.ablation import Ablation, EffectAblation
-from fe_contact.effects.influence.estimate import TRIFLE, Influence, signed
+from fe_contact.effects.influence.estimate import Influence, signed
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -28,6 +28,7 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.drawing.placing import placed
 from lineofaction.report.presentation import Presentation
+from model_studies.ablation import TRIFLE
 
 
 @dataclass(frozen=True)

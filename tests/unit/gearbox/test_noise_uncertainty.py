@@ -14,7 +14,7 @@ from housing_solid import housed_scene, write_block
 from dynamics.acoustics import EquivalentRadiatedPower
 from dynamics.noise import GUESSES, SoundModel, forced_power, housing_radiation
 from dynamics.noise.sound_band import largest_level
-from lineofaction.cli.simulate import tabled_scene
+from lineofaction.cli.subjects import tabled_scene
 from lineofaction.gearbox.convert.housings import housings_in
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput

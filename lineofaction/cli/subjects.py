@@ -1,0 +1,134 @@
+"""Cases and scenes of files, assessed; the tables of a scene: kept, computed here or by a service."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+
+from fe_contact.errors import DatabaseError
+from fe_contact.solver_version import SOLVER_VERSION, software_versions
+from fe_contact.ste import SteDatabase
+from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
+from host.directories import cache_home
+from lineofaction.cli.guard import warn
+from lineofaction.cli.output import Report
+from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, case_at, case_json
+from lineofaction.gearbox.convert.plausibility import case_warnings
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.meshes import MeshInput
+from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.reading import located
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.subjects import MeshTables, finished, scene_of
+from lineofaction.gearbox.tabled_scene import ComputedTables
+from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
+from model_studies.kept_file import kept_in
+from model_studies.workers import InProcess, Workers
+from service.version import program_tag
+
+
+def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCase:
+    """Return the case in a file, at one load and alignment if requested; warn of what is implausible.
+
+    Raises `BadInput`: the file holds no case, or no such pair exists.
+    """
+    case = read_model(Case, file)
+    if point is not None:
+        case = case_at(case, point)
+    checked = CheckedCase(case)
+    with located(file):
+        warn(case_warnings(checked))
+    return checked
+
+
+def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
+    """Return the scene in a file and the folder its files are relative to; warn of what its import left out.
+
+    Raises `BadInput`: the file holds no scene.
+    """
+    scene, folder = scene_of(file)
+    warn(left_out_warnings(scene.left_out))
+    return scene, folder
+
+
+# Tables of cases are kept in the cache, under the name of all that decides them: this very program included.
+
+
+@dataclass(frozen=True)
+class _KeptTables:
+    """The tables of the cases of a scene: those of runs before, and those that are computed now."""
+
+    compute: Callable[[Case], SteDatabase]
+
+    def find(self, case: Case) -> SteDatabase | None:
+        """Return the table of a case, if it is here and undamaged."""
+        try:
+            return SteDatabase.from_netcdf(self._file(case))
+        except DatabaseError:
+            return None
+
+    def table(self, case: Case) -> SteDatabase:
+        """Return the table of a case; one that is computed is kept, unless points of it failed."""
+        return kept_in(
+            self._file(case),
+            SteDatabase.from_netcdf,
+            lambda: self.compute(case),
+            SteDatabase.to_netcdf,
+            DatabaseError,
+            keeps=lambda table: not table.n_failed,
+        )
+
+    def _file(self, case: Case) -> Path:
+        content = {"case": case_json(case), "program": program_tag(), "packages": software_versions()}
+        return cache_home() / "tables" / f"{content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)}.nc"
+
+
+def _analyzed(case: CheckedCase, report: Report, workers: Workers) -> SteDatabase:
+    """Compute a table, which needs what reading one does not."""
+    from lineofaction.cli.analyze import analyzed  # noqa: PLC0415 (start-up time)
+
+    return analyzed(case, report, workers)
+
+
+def tabled_scene(
+    scene: SceneInput,
+    folder: Path,
+    service: str | None,
+    report: Report,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+) -> TabledScene:
+    """Return the scene with its tables and with its cases written out; its files are relative to `folder`."""
+    cases, source, run = CheckedCases(), None, finished
+
+    with ExitStack() as stack:
+        if service is not None:
+            from dynamics.simulation import compile_ahead  # noqa: PLC0415 (start-up time)
+            from lineofaction.client import JobState, LineOfActionClient  # noqa: PLC0415 (start-up time)
+            from lineofaction.client.client import ServiceTables  # noqa: PLC0415 (start-up time)
+
+            beside = stack.enter_context(ThreadPoolExecutor(1))
+            ahead = cache(partial(beside.submit, compile_ahead))
+
+            def watch(state: JobState) -> None:
+                if state.stage:
+                    report(state.stage, state.stage_progress / 100.0)
+                if not state.ended:
+                    ahead()
+
+            client = stack.enter_context(LineOfActionClient(service, progress=watch))
+            source, run = ServiceTables(client), client.driver.run
+        here = _KeptTables(lambda case: _analyzed(cases.of(case), report, workers))
+        tables = MeshTables(folder, source or ComputedTables(here.table))
+
+        def table_of(index: int, mesh: MeshInput) -> SteDatabase:
+            return run(tables.of(index, mesh))
+
+        kept = here.find if source is None else lambda _: None
+        return scene_by_tables(scene, folder, table_of, cache_home(), report, warn, cases, kept)

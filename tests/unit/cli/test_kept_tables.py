@@ -1,0 +1,86 @@
+"""The table of a case is computed once: by this program, as long as its file is whole."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from small_table import small_table
+
+from fe_contact.ste import SteDatabase
+from host.directories import cache_home
+from lineofaction.cli import subjects
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.problems import JobFailed
+from lineofaction.gearbox.subjects import scene_of
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
+LOST = ("static_transmission_error", "tangent_compliance", "error_estimate", "max_pressure", "face_centroid")
+
+
+@pytest.fixture
+def computed(monkeypatch: pytest.MonkeyPatch) -> list[SteDatabase]:
+    """The tables that are computed."""
+    made: list[SteDatabase] = []
+
+    def analyzed(*_: object) -> SteDatabase:
+        made.append(small_table())
+        return made[-1]
+
+    monkeypatch.setattr("lineofaction.cli.analyze.analyzed", analyzed)
+    return made
+
+
+def tabled(**mesh: object) -> TabledScene:
+    scene, folder = scene_of(EXAMPLE)
+    meshes = tuple(each.model_copy(update=mesh) for each in scene.meshes)
+    scene = scene.model_copy(update={"meshes": meshes})
+    return subjects.tabled_scene(scene, folder, None, lambda *_: None)
+
+
+def files() -> list[Path]:
+    return list((cache_home() / "tables").glob("*"))
+
+
+def test_a_table_is_computed_once_and_read_to_the_last_bit(computed: list[SteDatabase]) -> None:
+    first, again = tabled(), tabled(damping_ratio=0.1)
+    assert len(computed) == len(files()) == 1
+    before, after = (scene.databases["mesh"] for scene in (first, again))
+    for name in before.stored:
+        np.testing.assert_array_equal(getattr(before, name), getattr(after, name), err_msg=name)
+    assert (before.facts, before.metadata) == (after.facts, after.metadata)
+
+
+def test_another_program_computes_its_own(computed: list[SteDatabase], monkeypatch) -> None:
+    tabled()
+    monkeypatch.setattr(subjects, "program_tag", lambda: "edited")
+    tabled()
+    monkeypatch.setattr(subjects, "software_versions", lambda: {"gmsh": "another"})
+    tabled()
+    assert len(computed) == len(files()) == 3
+
+
+@pytest.mark.parametrize("damage", [b"", b"not a table", None], ids=["empty", "foreign", "cut off"])
+def test_a_damaged_file_is_replaced(computed: list[SteDatabase], damage: bytes | None) -> None:
+    tabled()
+    (file,) = files()
+    whole = file.read_bytes()
+    file.write_bytes(whole[: len(whole) // 2] if damage is None else damage)
+    tabled()
+    tabled()
+    assert len(computed) == 2
+    assert SteDatabase.from_netcdf(file).n_failed == 0
+
+
+def test_a_table_with_failed_points_is_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    table = small_table()
+    failed = np.zeros(table.status.shape, dtype=bool)
+    failed[0] = True
+    lost = {name: np.where(failed, np.nan, getattr(table, name)) for name in LOST}
+    table = replace(table, status=np.where(failed, 1, 0), **lost)
+    monkeypatch.setattr("lineofaction.cli.analyze.analyzed", lambda *_: table)
+    with pytest.raises(JobFailed):
+        tabled()
+    assert not files()
