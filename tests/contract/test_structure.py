@@ -12,17 +12,17 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (39_522, 702),
-    ("dynamics",): (41_094, 773),
-    ("lineofaction.gearbox",): (21_943, 434),
-    ("lineofaction.report",): (10_544, 200),
+    ("dynamics",): (41_103, 773),
+    ("lineofaction.gearbox",): (21_950, 434),
+    ("lineofaction.report",): (10_545, 200),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
-    ("lineofaction.cli",): (4_650, 67),
+    ("lineofaction.cli",): (4_710, 67),
     ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_331, 148),
+    ("bounds", "host", "model_studies"): (4_340, 150),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 766
+MOST_FILES = 767
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
