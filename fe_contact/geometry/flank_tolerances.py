@@ -98,8 +98,8 @@ class MisalignmentRange:
 
     @property
     def axis(self) -> tuple[float, ...]:
-        """Return five values of a table from one end of the likely range to the other, m."""
-        end = 1e-6 * math.ceil(1e6 * self.likely - 1e-9)
+        """Return five values of a table over the likely range, rounded as a tolerance is, m."""
+        end = 1e-6 * rounded(1e6 * self.likely)
         return (-end, -0.5 * end, 0.0, 0.5 * end, end)
 
     @property
@@ -107,7 +107,7 @@ class MisalignmentRange:
         """Say how the range is made, in one sentence."""
         parts = ", ".join(f"{name} {1e6 * value:.1f}" for name, value in self.by_source.items())
         return (
-            f"misalignment to {1e6 * self.axis[-1]:.0f} um to either side by class {self.tolerance_class} of "
+            f"misalignment to {1e6 * self.axis[-1]:g} um to either side by class {self.tolerance_class} of "
             f"ISO 1328-1:2013 and ISO/TR 10064-3: {parts} um, {1e6 * self.likely:.1f} um by squares, "
             f"{1e6 * self.worst:.1f} um at worst"
         )

@@ -28,7 +28,7 @@ from dynamics.study import (
     study,
 )
 from fe_contact.microgeometry.tolerance_study import PROCESS_SPREAD, iso1328_tolerances
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
+from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, table_axes
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
@@ -253,7 +253,7 @@ def _check_case(scene: SceneInput, field: str, factor: FactorInput, place: Place
     if mesh.case is None and mesh.case_file is None:
         raise BadInput.of(field, factor.path, f"of a mesh with a case: {mesh.name} takes a database")
     case = mesh.case
-    if case and max(len(case.errors.misalignment_um), len(case.errors.center_distance_change_mm)) > 1:
+    if case and max(map(len, (table_axes(case).misalignments, case.errors.center_distance_change_mm))) > 1:
         bound = "of a case at one misalignment and one center distance"
         raise BadInput.of(field, factor.path, bound, "Vary the mesh's misalignment_um of another study.")
     if factor.iso1328_class is not None and place[-1] not in ("profile_slope_um", "helix_slope_um"):

@@ -9,7 +9,7 @@ import pytest
 
 from fe_contact.errors import InputError
 from fe_contact.geometry import Gear, GearPair, Shaft
-from fe_contact.geometry.flank_tolerances import helix_tolerance, misalignment_range
+from fe_contact.geometry.flank_tolerances import helix_tolerance, misalignment_range, rounded
 
 
 def pair(
@@ -41,6 +41,15 @@ def test_class_seven_of_a_spur_pair_is_that_of_the_formulas_by_hand() -> None:
     assert 1e6 * made.worst == pytest.approx(38.61, abs=0.01)
     assert [1e6 * value for value in made.axis] == pytest.approx([-20.0, -10.0, 0.0, 10.0, 20.0])
     assert "to 20 um" in made.words and "19.9 um by squares, 38.6 um at worst" in made.words
+
+
+def test_the_axis_ends_at_a_figure_of_the_standard() -> None:
+    for tolerance_class in (1, 3, 5, 9):
+        made = misalignment_range(pair(), tolerance_class)
+        assert 1e6 * made.axis[-1] == pytest.approx(rounded(1e6 * made.likely))
+        assert (
+            made.axis == tuple(sorted(made.axis)) and made.axis[0] == -made.axis[-1] and made.axis[2] == 0.0
+        )
 
 
 @pytest.mark.parametrize(("tolerance_class", "helix_um"), [(5, 9.0), (6, 13.0), (7, 18.0), (9, 36.0)])
