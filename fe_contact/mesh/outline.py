@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.distance import cdist
 
 from fe_contact.types import FloatArray, IntArray
 
@@ -70,8 +71,7 @@ def spread(
     """
 
     def size(at: FloatArray) -> FloatArray:
-        distance = np.linalg.norm(at[:, None, :] - points[None, :, :], axis=-1)
-        nearest: FloatArray = np.min(sizes + growth * distance, axis=1)
+        nearest: FloatArray = np.min(sizes + growth * cdist(at, points), axis=1)
         return np.minimum(nearest, largest)
 
     return size

@@ -31,6 +31,12 @@ from fe_contact.types import FloatArray, IntArray
 FLANK, FILLET, LAND, IDLE, BODY = 0.15, 0.1, 0.2, 0.35, 1.0
 """Largest sizes in modules: flanks, fillets, tip and root lands, teeth that do not touch, the body."""
 HALF = 0.4  # largest element of the plain ring, in parts of its depth
+RAISED = 0.2
+"""Modules by which the plain ring stands above the root circle, for the teeth that it lacks.
+
+Ten pairs in plane strain, external and internal, 17 to 90 teeth, rims of 0.8 modules to solid: STE at two
+positions is within 0.013 % of that with all teeth; a ring at the root circle leaves it up to 0.18 % above.
+"""
 SAMPLES = 1201
 TURNED = 0.5
 """Largest turn of the normal over an element, rad: more leaves elements behind a fillet folded."""
@@ -152,19 +158,25 @@ def _tip_land(right: FloatArray, left: FloatArray, fraction: FloatArray) -> Floa
 
 
 def _plain_ring(gear: Toothing, pieces: Sequence[Piece], missing: int, resolution: Resolution) -> Piece:
-    """Return the root circle from the last tooth counter-clockwise to the first."""
+    """Return what stands for the missing teeth, from the last tooth counter-clockwise to the first."""
     x, y = pieces[-1].nodes[-1]
     start, length = float(np.arctan2(x, y)), missing * tooth_profile(gear).pitch_angle
-    radius = gear.root_radius
+    radius, module = gear.root_radius, gear.normal_module
     last = float(pieces[-1].edge_lengths[-1])
-    largest = min(HALF * gear.body_depth, resolution.part(BODY, gear.normal_module), LARGEST_ARC * radius)
+    largest = min(HALF * gear.body_depth, resolution.part(BODY, module), LARGEST_ARC * radius)
+    circle = arc(radius)
+
+    def distance(turned: FloatArray) -> FloatArray:
+        return radius * np.minimum(turned, length - turned)
 
     def size(turned: FloatArray) -> FloatArray:
-        distance = radius * np.minimum(turned, length - turned)
-        return np.minimum(last + resolution.growth * distance, largest) / radius
+        return np.minimum(last + resolution.growth * distance(turned), largest) / radius
 
-    circle = arc(radius)
-    ring = piece("plain ring", lambda turned: circle(start - turned), divide(0.0, length, size))
+    def raised(turned: FloatArray) -> FloatArray:
+        height = -gear.sign * RAISED * module * np.expm1(-distance(turned) / module)
+        return (1.0 + height / radius)[:, None] * circle(start - turned)
+
+    ring = piece("plain ring", raised, divide(0.0, length, size))
     ring.nodes[0], ring.nodes[-1] = pieces[-1].nodes[-1], pieces[0].nodes[0]
     return ring
 

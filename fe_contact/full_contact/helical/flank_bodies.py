@@ -102,7 +102,7 @@ def meshed_section(
     """Mesh a gear; elements on the loaded flanks have a `size`, at the tip edge `at_tip`, m."""
     profile = tooth_profile(gear)
     low = max(profile.s_form - BELOW * gear.normal_module, profile.s_root)
-    at = np.linspace(low, profile.s_tip, 401)
+    at = np.linspace(low, profile.s_tip, 201)
     sizes = np.minimum(size, at_tip + 0.15 * (profile.s_tip - at))
     wanted = {tooth: SizedStrip(low, profile.s_tip, at, sizes) for tooth in loaded}
     teeth = real_teeth(gear.teeth, max(TEETH, len(loaded) + 2))

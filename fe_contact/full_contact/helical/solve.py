@@ -42,8 +42,8 @@ class HelicalMesh:
 
     flank: float = 0.15
     layers: int = 8
-    across: int = 25
-    along: int = 25
+    across: int = 15
+    along: int = 49
     per_half_width: float = 5.0
     spread: float = 1.5
 

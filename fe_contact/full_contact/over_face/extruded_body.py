@@ -106,7 +106,7 @@ def _assembled(
     dense[row[columns.indices], column] = columns.data
     for theirs, block in children:
         at = row[theirs]
-        dense[np.ix_(at, at)] += block
+        dense.T[np.ix_(at, at)] += block.T  # both run along columns
     return dense, rows, len(own)
 
 
