@@ -98,7 +98,7 @@ def _few_unknown(data: Any, names: frozenset[str]) -> Any:
 class BoundaryModel(BaseModel):
     """A table of the case or scene file, or a JSON body: unknown fields and NaN are refused."""
 
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
 
     @classmethod
     def __get_pydantic_core_schema__(
