@@ -26,7 +26,7 @@ from dynamics.noise.housing_radiation import HousingRadiation, RadiationFacts, c
 from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest, radiated_sound
 from dynamics.types import BoolArray, ComplexArray, FloatArray
 from dynamics.vibration import BearingHarmonics
-from dynamics.work_cost import Cost, announce, measured, on_this_host
+from dynamics.work_cost import Cost, measured
 from host import MissingExtra
 from model_studies.kept_file import kept_in
 
@@ -181,8 +181,6 @@ def _exact_line(
     kind, reference = WORK.format(NAME), line_cost(housing, hertz)
 
     def computed() -> HousingRadiation:
-        words = f"{panels} panels at {engineering(hertz, 4)} Hz"
-        announce(model.progress, "boundary elements", words, on_this_host(kind, reference, cache))
         matrix, cost = measured(
             kind, reference, cache, lambda: resistance(model, hull.hull, hertz, shapes, AIR), model.workers
         )
