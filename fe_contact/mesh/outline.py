@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.distance import cdist
 
 from fe_contact.types import FloatArray, IntArray
 
@@ -69,6 +68,7 @@ def spread(
     callable
         Maps (k, 2) points to (k,) sizes.
     """
+    from scipy.spatial.distance import cdist  # noqa: PLC0415 (start-up time)
 
     def size(at: FloatArray) -> FloatArray:
         nearest: FloatArray = np.min(sizes + growth * cdist(at, points), axis=1)
