@@ -156,7 +156,7 @@ def misalignment_range(
             continue
         if shaft is None:
             advice = "It tilts over the span of its bearings."
-            raise InputError("bearing_clearance", clearance, f"0 without the shaft of the {name}", advice)
-        within("bearing_clearance", clearance, 0.0, 1e-2)
+            raise InputError("clearances", clearance, f"0 without the shaft of the {name}", advice)
+        within("clearances", clearance, 0.0, 1e-2)
         by_source[f"bearing clearance of the {name}"] = clearance * face / shaft.length
     return MisalignmentRange(tolerance_class, MappingProxyType(by_source))

@@ -50,7 +50,7 @@ _CASE = {figure.name: f"pair.{figure.field}" for figure in (*SHARED, *figures(Ge
     "torques": "load.torque_n_m",
     "normal_forces": "load.normal_force_n",
     "misalignments": "errors.misalignment_um",
-    "bearing_clearance": "errors.bearing_clearance_um",
+    "clearances": "errors.bearing_clearance_um",
     "center_distance_changes": "errors.center_distance_change_mm",
     "tolerance": "accuracy.tolerance",
     "tolerance_floor": "accuracy.tolerance_floor_nm",
