@@ -121,8 +121,6 @@ def _moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
     return least, Gap(slope, curvature, gap.low - shift, gap.high - shift, position, gap.jump, bend)
 
 
-_FURTHEST = 0.25
-"""Gap of a tip edge off the line of action in modules beyond which it never touches."""
 _FLATTEST = 100.0
 _SAMPLES = 17
 _PASSES, _CUT_TIP_PASSES = 2, 4
@@ -206,7 +204,7 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
     roll_1, roll_2 : ndarray, shape (P, n)
         Nominal roll lengths, m; beyond A and E too.
     corners : bool
-        Whether tip edges may touch before A and after E, from a gap of `_FURTHEST` on.
+        Whether tip edges may touch before A and after E.
     """
     tip_1, tip_2 = pair.pinion.tip_roll_length, pair.wheel.tip_roll_length
     beyond_1, beyond_2 = roll_1 - tip_1, pair.wheel.sign * (roll_2 - tip_2)
@@ -225,7 +223,6 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
         corner = corner_contact(pair, side, overshoot[at])
         valid = tuple(index[corner.valid] for index in at)
         gap[valid], touched[valid] = corner.gap[corner.valid], corner.flank_roll_length[corner.valid]
-        gap[gap > _FURTHEST * pair.pinion.normal_module] = np.inf
         opening[valid] = corner.slope_angle[corner.valid]
         lever_1[valid] = corner.lever_arm_ratio_pinion[corner.valid]
         lever_2[valid] = corner.lever_arm_ratio_wheel[corner.valid]

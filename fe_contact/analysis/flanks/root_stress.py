@@ -353,7 +353,7 @@ def _pair_histories(
     """Return the stress of both gears under the solved contact; `units` may be of any mesh."""
     pair, candidates = solved.contact.pair, solved.problem.candidates
     carrying = np.unique(candidates.pair)
-    stressed = np.arange(carrying[0] - 2, carrying[-1] + 3)  # the stress of its ends is zero
+    stressed = np.arange(carrying[0] - 1, carrying[-1] + 2)
     forces = _forces(solved, units, carrying)
     first, second = (
         RootStressHistory(

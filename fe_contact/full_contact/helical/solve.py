@@ -180,10 +180,8 @@ def solve_full_contact_helical(
     ----------
     pair : GearPair
         External, helical or spur, clamped, solid, of equal faces, with sharp tips (`refusal_helical`).
-    torques : sequence of float
-        On gear 1, N m, > 0.
-    positions : sequence of float
-        By the driving gear, base pitches.
+    torques, positions : sequence of float
+        On gear 1, N m, > 0; by the driving gear, base pitches.
     misalignments : sequence of float
         Tilt of the axes in the plane of action as growth of the gap over the face, m; zero at the pitch point
         in mid-face.

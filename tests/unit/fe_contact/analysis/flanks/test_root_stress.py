@@ -77,7 +77,7 @@ def test_one_pair_alone_gives_stress_in_proportion_to_the_load(cache: Path) -> N
     assert np.abs(five.stress - 5.0 * one.stress).max() < 1e-9 * np.abs(five.stress).max()
     own = np.abs(one.stress).max(axis=(0, 2, 3, 4, 5))
     assert own[one.pair == 0] > 2.0 * own[one.pair != 0].max()  # neighbors share the tooth spaces
-    assert own[1:-1].min() > 0.0 == own[0] == own[-1]
+    assert own.min() > 0.0
 
 
 def test_gears_alike_are_mirror_images_in_position(cache: Path) -> None:
