@@ -25,7 +25,7 @@ from service.routes.context import Context, Ctx, key_of
 from service.routes.media_types import JSON
 from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.answers import ExampleBody, RequestBody, UnitBody, UnitFile
+from service.schemas.answers import ExampleBody, UnitBody, UnitFile
 from service.worker.process import ANALYZE
 
 _READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
@@ -43,13 +43,13 @@ class CaseInputs(BoundaryModel):
     case: Case = Field(description="The case, as in a case file")
 
 
-class CaseRequest(RequestBody):
+class CaseRequest(BoundaryModel):
     """A case, where an execution of analyze has it."""
 
     inputs: CaseInputs = Field(description="The case, as in an execution of analyze")
 
 
-class TomlBody(RequestBody):
+class TomlBody(BoundaryModel):
     """The text of a case file."""
 
     toml: str = Field(max_length=4_000_000, description="TOML", examples=["[pair]\nnormal_module_mm = 4.0\n"])
@@ -125,7 +125,7 @@ class SceneInputs(BoundaryModel):
     scene: SceneInput = Field(description="The scene, as in a scene file")
 
 
-class SceneRequest(RequestBody):
+class SceneRequest(BoundaryModel):
     """A scene, where an execution of simulate has it."""
 
     inputs: SceneInputs = Field(description="The scene, as in an execution of simulate")

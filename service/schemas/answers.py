@@ -11,12 +11,6 @@ from lineofaction.gearbox.schemas.model import BoundaryModel, Named
 Uri = Annotated[str, Field(max_length=2000, examples=["https://hooks.example.com/loa?case=12"])]
 
 
-class RequestBody(BoundaryModel):
-    """A body that requests carry; built with the application, which checks all of them against it."""
-
-    model_config = ConfigDict(defer_build=False)
-
-
 class Subscriber(BoundaryModel):
     """Addresses that are called about a job; the service lists the origins that it calls."""
 
@@ -364,7 +358,7 @@ class ReportBody(BaseModel):
     sections: list[Annotated[dict[str, Any], Named("ReportSection")]]
 
 
-class UnitFile(RequestBody):
+class UnitFile(BoundaryModel):
     """A file of REXS, the exchange format of gear-unit tools."""
 
     rexs_base64: str = Field(

@@ -13,21 +13,14 @@ from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import CaseOrScene
 from lineofaction.gearbox.study import Study
-from service.schemas.answers import (
-    JobStatus,
-    ProblemBody,
-    RequestBody,
-    ResultReference,
-    Subscriber,
-    class_name,
-)
+from service.schemas.answers import JobStatus, ProblemBody, ResultReference, Subscriber, class_name
 
 Title = Annotated[str, Field(max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")]
 Tag = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._:/+-]{0,39}$")]
 Tags = Annotated[list[Tag], Field(max_length=16)]
 
 
-class LabelChange(RequestBody):
+class LabelChange(BoundaryModel):
     """A change of a job's label; what is left out stays."""
 
     title: Title | None = Field(None, description="Name of the job", examples=["Tip relief 20 um"])
@@ -66,7 +59,7 @@ Cost = Annotated[float, Field(gt=0.0, le=1e9)]
 _LINK = {"href", "rel", "type", "hreflang", "title"}
 
 
-class _ExecuteBody(RequestBody):
+class _ExecuteBody(BoundaryModel):
     """The base of the bodies of all executions: inputs may be qualified values."""
 
     @model_validator(mode="before")
@@ -152,7 +145,7 @@ MOST_JOBS = 200
 _DEEPEST = 32
 
 
-class BatchRequest(RequestBody):
+class BatchRequest(BoundaryModel):
     """Many inputs of one process, written as differences from what they share."""
 
     process: str = Field(max_length=64, description="Identifier of the process", examples=["analyze"])

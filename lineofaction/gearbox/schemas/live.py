@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, Optional
 
-from pydantic import ConfigDict, Field, create_model
+from pydantic import Field, create_model
 
 from fe_contact.flank.modification import FlankModification
 from lineofaction.gearbox.schemas.case import Case, Load
@@ -35,8 +35,6 @@ Caller = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
 
 class LiveInput(BoundaryModel):
     """The differences from the case of the database."""
-
-    model_config = ConfigDict(defer_build=False)  # a body of requests
 
     torque_n_m: Torques = Field(
         description="Torques on the driving gear in N m, increasing, at most twice the highest of the case",
@@ -93,8 +91,6 @@ class LiveInput(BoundaryModel):
 
 class PlanRequest(BoundaryModel):
     """The body of an execution of analyze, planned instead of run."""
-
-    model_config = ConfigDict(defer_build=False)  # a body of requests
 
     class PlanInputs(BoundaryModel):
         """The case to plan."""
