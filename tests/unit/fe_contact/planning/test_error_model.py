@@ -149,6 +149,20 @@ def test_what_costs_much_less_is_tried_first():
     assert decide(loose, tried=True).mesh == decide(loose).mesh
 
 
+def test_a_mesh_of_a_fifth_of_the_work_is_measured_before_a_fine_one():
+    relieved = FlankModification(tip_relief=50e-6, tip_relief_length=7e-3)
+    gears = [
+        Gear(z, 14e-3, 0.3, 6.3e-3 * z, helix_angle=hand * 0.1745, modification=relieved)
+        for z, hand in ((24, 1), (97, -1))
+    ]
+    wide = GearPair(*gears, 0.5 * 121 * 14e-3 / math.cos(0.1745))
+    asked = check_request(wide, TableAxes(torques=[6e4]), AnalysisOptions(tolerance=AllowedError(0.01)))
+    promised, tried = decide(asked).mesh.option, decide(asked, tried=True).mesh.option
+    assert (promised.level, tried.level) == ("fine", "standard")
+    assert tried.error.bought < 0.01 * TRIED[-1].error
+    assert tried.effort < TRIED[-1].work * promised.effort
+
+
 def test_a_mesh_of_a_tenth_of_the_work_is_measured_before_a_fine_one():
     first, second = (
         Gear(z, 14e-3, 0.3, 6.3e-3 * z, helix_angle=hand * 0.17) for z, hand in ((23, 1), (75, -1))
