@@ -167,7 +167,7 @@ def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicRespo
         static_transmission_error=steady.static,
         dynamic_transmission_error=np.ascontiguousarray(dte),
         mesh_force=mesh_force,
-        bearing_force=_bearing_force(at, steady.omega, steady.displacement),
+        bearing_force=bearing_forces(at, steady.omega, steady.displacement),
         displacement=np.ascontiguousarray(np.moveaxis(steady.displacement, 2, 0)),
         mean_force=mean,
         mean_stiffness=np.array([cycle.tangent[0, 0] for cycle in at.cycles]),
@@ -189,8 +189,11 @@ def _mesh_force(at: Excited, steady: Steady) -> ComplexArray:
     return force
 
 
-def _bearing_force(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexArray:
-    """Bearing forces (b, 3, S, H): those of a motion less those of none, real and imaginary parts apart."""
+def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexArray:
+    """Return what motions (S, H, n) at omega (S, H) add to the forces of bearings, (b, 3 or 6, S, H).
+
+    Those of a motion less those of none, real and imaginary parts apart.
+    """
     system = at.system
     q = u.reshape(-1, u.shape[2])
     rate = 1j * omega.reshape(-1, 1) * q

@@ -184,8 +184,9 @@ class Steady:
         m and rad.
     residual : float
         Largest force left by the linear solves, of the largest exciting force.
-    receptance : (S, H, n, m) complex array
-        Displacements per force along each mesh's line of action; empty where not requested.
+    receptance : (S, H, n, f) complex array
+        Displacements per force on f rows, those of `swept_vibration` along each mesh's line of action; empty
+        where not requested.
     """
 
     harmonics: IntArray
@@ -222,7 +223,7 @@ def steady_vibration(
     progress: Callable[[float], None] | None = None,
 ) -> Steady:
     """Return the vibration at `speed` (S,), of `harmonics` (H,) those that are excited."""
-    static, force = _excitation(at, harmonics, excitation)
+    static, force = flank_forces(at, harmonics, excitation)
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     kept = np.flatnonzero(_heard(force) | _heard(np.moveaxis(loads / at.linear.scale, 1, 2)))
     harmonics, static, force = harmonics[kept], static[:, kept], force[:, kept]
@@ -251,7 +252,7 @@ def swept_vibration(
     Where the speed changes at a `rate` (S,), rad/s^2, resonances are as high as they can grow while they are
     passed. With `gyroscopic`, gyroscopic and frame terms are in.
     """
-    static, force = _excitation(at, harmonics, "static_error")
+    static, force = flank_forces(at, harmonics, "static_error")
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     pushed = _pushed(at, force) + loads if np.any(loads) else _pushed(at, force)
     omega = _omega(at, speed, harmonics)
@@ -259,6 +260,16 @@ def swept_vibration(
     rows = at.system.arrays.direction[at.system.driving_rows]
     terms = gyroscopic_terms(at.system, speed) if gyroscopic else []
     u, residual = _solve(at, pushed, omega - 1j * decay, terms, rows)
+    return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
+
+
+def with_receptances(at: Excited, speed: FloatArray, harmonics: IntArray, rows: FloatArray) -> Steady:
+    """Return the vibration at `speed` (S,) in all `harmonics` (H,), with the receptances of `rows` (f, n)."""
+    static, force = flank_forces(at, harmonics)
+    loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
+    omega = _omega(at, speed, harmonics)
+    terms = gyroscopic_terms(at.system, speed) if at.turning else []
+    u, residual = _solve(at, _pushed(at, force) + loads, omega, terms, rows)
     return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
 
 
@@ -280,8 +291,10 @@ def gyroscopic_terms(system: System, speed: FloatArray) -> list[Terms]:
     return [(w * gyroscopic, w * swept + w * w * centripetal) for w in part]
 
 
-def _excitation(at: Excited, harmonics: IntArray, kind: str) -> tuple[ComplexArray, ComplexArray]:
-    """STE (m, H) and exciting force on the driving flanks' rows (R', H): it pushes d up with the STE.
+def flank_forces(
+    at: Excited, harmonics: IntArray, kind: str = "static_error"
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the STE (m, H) and the force on the driving flanks' rows (R', H): it pushes d up with the STE.
 
     Where the other forces of a flank (a moment as its load moves along the face, friction) vary while the
     mesh force is held, they excite too.

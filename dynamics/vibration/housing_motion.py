@@ -18,16 +18,24 @@ from dynamics.results import RunResult
 from dynamics.types import BoolArray, ComplexArray, FloatArray, Json
 
 
-class BearingHarmonics(Protocol):
+class BearingForces(Protocol):
+    """Forces of b bearings."""
+
+    @property
+    def bearing(self) -> tuple[str, ...]:
+        """Names."""
+
+    @property
+    def bearing_force(self) -> ComplexArray:
+        """Peak amplitudes on the ground, (b, 3, ...) in N or (b, 6, ...) with moments in N m."""
+
+
+class BearingHarmonics(BearingForces, Protocol):
     """Forces of b bearings at S speeds in H orders, each as in a steady state.
 
     A linear response (`dynamics.linearize.HarmonicResponse`) is one, the orders of a run
     (`dynamics.orders.BearingOrders`) are another.
     """
-
-    @property
-    def bearing(self) -> tuple[str, ...]:
-        """Names."""
 
     @property
     def speed(self) -> FloatArray:
@@ -66,20 +74,21 @@ HALF_LENGTH = 24
 
 
 def seat_forces(
-    response: BearingHarmonics, housing: ReducedHousing, bearings: Sequence[str] | None = None
+    response: BearingForces, housing: ReducedHousing, bearings: Sequence[str] | None = None
 ) -> ComplexArray:
     """Return the forces on the seats of a housing by speed and order.
 
     Parameters
     ----------
-    response : BearingHarmonics
-        S speeds, H orders of a linear response or a run; in the frame of the housing's mesh.
+    response : BearingForces
+        S speeds, H orders of a linear response or a run; in the frame of the housing's mesh. Further
+        dimensions are kept, such as those of the inputs of a transfer function.
     bearings : sequence of str, optional
         Bearings in the order of the seats; by default those with the names of the seats.
 
     Returns
     -------
-    (S, H, s) array
+    (S, H, ..., s) array
         Complex peak amplitudes by the seats' motions, along their own axes, N and N m.
 
     Raises

@@ -1,0 +1,368 @@
+"""Transfer functions of the rows on which flanks act: solved once for a scene, a product for other flanks.
+
+With the dynamic stiffness D of the scene, the gradients G of the rows of its flanks and of the bearings that
+are not linear, their tangents T and viscous damping V, other flanks exert e' instead of e, and move the
+equilibrium and with it the tangents: an update of the rank of the rows,
+
+    (D + G^T X G) u = G^T e' + loads,  X = T' - T + i w (V' - V),
+    u = u_0 + D^-1 G^T v,  (1 + X A) v = e' - e - X G u_0,  A = G D^-1 G^T.
+
+Every linear quantity is a product of its transfer functions and the inputs (1, v), and every power or mean
+square their Hermitian form. As in every linear response, how the stiffness varies along the pitch and flanks
+that part are left out; couplings across frames keep the tangents of the first equilibrium.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.assembly.assemble import System
+from dynamics.checks import integer
+from dynamics.errors import InputError, ResultError, SolveError
+from dynamics.linearize.flank_cycles import SAMPLES
+from dynamics.linearize.harmonic_response import bearing_forces, extremes
+from dynamics.linearize.load_harmonics import load_harmonics, load_multiples
+from dynamics.linearize.operating_speeds import checked_speeds
+from dynamics.linearize.steady_vibration import (
+    Excited,
+    excited,
+    flank_forces,
+    gyroscopic_terms,
+    solved,
+    with_receptances,
+)
+from dynamics.motion.force_balance import block_diagonal
+from dynamics.motion.observation import local_state
+from dynamics.results.array_file import ArrayFile, stored
+from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
+from model_studies.kept_file import kept_in
+
+BLOCK = 4_000_000  # complex displacements held at once
+SAME = 1e-9  # of the gradients of rows that are the same
+VERSION = 1
+"""Raised with every change of the numbers of a transfer function, or of what is kept with them."""
+
+
+class FlankExcitation(NamedTuple):
+    """What flanks do at their equilibrium, and the tangents there; m meshes, R rows, H harmonics.
+
+    Attributes
+    ----------
+    static : (m, H) complex array
+        Static transmission errors, m.
+    force : (R, H) complex array
+        What excites the rows, N: it pushes a deflection up with the transmission error; on the further rows
+        of a mesh the moment of the load as it travels along the face, over a length, and friction.
+    tangent, viscous : (R, R) arrays
+        N/m and N s/m; those of flanks are means over the positions.
+    mean_force : (m,) array
+        Static mesh forces, N.
+    """
+
+    static: ComplexArray
+    force: ComplexArray
+    tangent: FloatArray
+    viscous: FloatArray
+    mean_force: FloatArray
+
+
+@dataclass(frozen=True)
+class TransferredResponse:
+    """Linear response of other flanks: `dynamics.vibration.BearingHarmonics`; b bearings, m meshes.
+
+    Attributes
+    ----------
+    bearing_force : (b, 3 or 6, S, H) complex array
+        As that of `HarmonicResponse`.
+    mesh_force : (m, S, H) complex array
+        N, transverse.
+    least_mesh_force : (m, S) array
+        Where it is negative flanks part, and no linear answer holds.
+    """
+
+    bearing: tuple[str, ...]
+    speed: FloatArray
+    order: FloatArray
+    frequency: FloatArray
+    bearing_force: ComplexArray
+    mesh_force: ComplexArray
+    least_mesh_force: FloatArray
+
+    @property
+    def in_contact(self) -> BoolArray:
+        """Whether all driving flanks stay in contact at each speed, (S,) bool."""
+        return np.asarray(np.all(self.least_mesh_force > 0.0, axis=0))
+
+
+@dataclass(frozen=True)
+class FlankTransfer(ArrayFile):
+    """Transfer functions at S speeds in H harmonics from the inputs (1, v) of R rows.
+
+    The first of the 1 + R columns is the vibration under the flanks of the scene and its loads, each further
+    one that per N on a row. Complex peak amplitudes as those of `HarmonicResponse`.
+
+    Attributes
+    ----------
+    first : (k + 1,) int array
+        Where the rows begin of each mesh, then of each bearing that is not linear, and their number. Those of
+        a mesh are of its deflection, then of misalignment, center distance, sliding and rolling as far as it
+        has them.
+    gradient : (R, n) array
+        Of the rows in the freedoms.
+    force, tangent, viscous
+        Those of the scene's flanks, as of `FlankExcitation`.
+    motion : (R, S, H, 1 + R) complex array
+        Of the rows: m, and m/N.
+    bearing_force : (b, 3 or 6, S, H, 1 + R) complex array
+        N or N m, and per N.
+    orders, time
+        As requested: harmonics of the first mesh, and when loads are taken, s.
+    """
+
+    SCHEMA = "lineofaction flank transfer"
+
+    bearing: tuple[str, ...]
+    freedom: tuple[str, ...]
+    orders: int
+    time: float
+    harmonics: IntArray = field(metadata=stored("1", "multiple of the common period's frequency", "order"))
+    speed: FloatArray = field(metadata=stored("rad s-1", "speed of the leading shaft", "speed"))
+    order: FloatArray = field(
+        metadata=stored("1", "multiple of the frequency of the first mesh that turns", "order")
+    )
+    frequency: FloatArray = field(metadata=stored("Hz", "frequency of the harmonic", "speed", "order"))
+    first: IntArray = field(metadata=stored("1", "first row of each part, and their number", "bound"))
+    gradient: FloatArray = field(metadata=stored("1", "gradient of the rows", "row", "freedom"))
+    force: ComplexArray = field(metadata=stored("N", "what excites the rows", "row", "order"))
+    tangent: FloatArray = field(metadata=stored("N m-1", "tangents of the rows", "row", "row"))
+    viscous: FloatArray = field(metadata=stored("N s m-1", "damping of the rows", "row", "row"))
+    motion: ComplexArray = field(
+        metadata=stored("m or m N-1", "motion of the rows", "row", "speed", "order", "input")
+    )
+    bearing_force: ComplexArray = field(
+        metadata=stored("N or 1", "forces of bearings", "bearing", "direction", "speed", "order", "input")
+    )
+    residual: float = 0.0
+
+    def excitation(self, system: System) -> FlankExcitation:
+        """Return what the flanks of a design excite: the assembled scene with other tables of its meshes.
+
+        Raises
+        ------
+        InputError
+            More than tables differ, or the tables have no common period.
+        SolveError
+            There is no static equilibrium.
+        """
+        at = excited(system, self.time, self.orders)
+        own = at.system.arrays.direction[_rows(at)]
+        same = own.shape == self.gradient.shape and at.linear.freedom == self.freedom
+        if not same or np.max(np.abs(own - self.gradient), initial=0.0) > SAME * np.max(np.abs(own)):
+            raise InputError("system", "another scene", "the scene of the transfer with other tables")
+        return _flanks_of(at, self.harmonics)
+
+    def inputs(self, flanks: FlankExcitation) -> ComplexArray:
+        """Return the inputs (1, v) that stand for other flanks, (S, H, 1 + R); (1, 0) for the scene's own.
+
+        Raises `SolveError`: nothing bounds the vibration at one of the frequencies.
+        """
+        omega = 2j * math.pi * self.frequency[..., None]
+        taken = np.zeros_like(self.motion)
+        for start, end in pairwise(self.first.tolist()):
+            own = slice(start, end)
+            stiffer = flanks.tangent[own, own] - self.tangent[own, own]
+            damped = flanks.viscous[own, own] - self.viscous[own, own]
+            if np.any(stiffer) or np.any(damped):
+                moved = self.motion[own]
+                taken[own] = np.tensordot(stiffer, moved, 1) + omega * np.tensordot(damped, moved, 1)
+        taken = np.moveaxis(taken, 0, 2)
+        right = (flanks.force - self.force).T[None] - taken[..., 0]
+        v = solved(np.eye(len(self.force)) + taken[..., 1:], right[..., None])[..., 0]
+        if not np.all(np.isfinite(v)):
+            raise SolveError("the vibration is unbounded with these flanks at one of the frequencies")
+        return np.concatenate([np.ones((*v.shape[:2], 1)), v], axis=2)
+
+    def response(self, flanks: FlankExcitation) -> TransferredResponse:
+        """Return the linear response with other flanks; raises `SolveError` as `inputs` does."""
+        inputs = self.inputs(flanks)
+        local = np.einsum("rshc,shc->shr", self.motion, inputs)
+        rate = 2j * math.pi * self.frequency[..., None] * local
+        rows = self.first[: len(flanks.mean_force)]
+        force = local @ flanks.tangent[rows].T + rate @ flanks.viscous[rows].T - flanks.force[rows].T
+        mesh_force = np.ascontiguousarray(np.moveaxis(force, 2, 0))
+        return TransferredResponse(
+            self.bearing,
+            self.speed,
+            self.order,
+            self.frequency,
+            np.einsum("bdshc,shc->bdsh", self.bearing_force, inputs),
+            mesh_force,
+            flanks.mean_force[:, None] + extremes(mesh_force, self.order)[0],
+        )
+
+
+def flank_transfer(
+    system: System,
+    speed: FloatArray,
+    orders: int = 10,
+    time: float = 0.0,
+    cache: Path | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> FlankTransfer:
+    """Return the transfer functions of a scene about its loaded equilibrium.
+
+    Parameters
+    ----------
+    system : System
+    speed : (S,) array
+        Of the first drive that turns, rad/s, increasing, > 0.
+    orders : int
+        Harmonics of the mesh frequency of the first mesh that turns.
+    time : float
+        When loads are taken, s.
+    cache : Path, optional
+        Directory in which they are kept by their content; None: neither read nor written.
+    progress : callable, optional
+        Called with the fraction of the speeds done.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or the meshes have no common period.
+    SolveError
+        If there is no static equilibrium, or a vibration is unbounded.
+    """
+    speed = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
+    if not speed.size:
+        raise InputError("speed", [], "at least one speed")
+    integer("orders", orders, 1, SAMPLES // 4)
+    at = excited(system, time, orders)
+    harmonics = _harmonics(at, orders, float(speed[-1]))
+    file = None if cache is None else cache / f"transfer-{_content_key(at, speed, harmonics, orders)}.nc"
+    return kept_in(
+        file,
+        FlankTransfer.from_netcdf,
+        lambda: _computed(at, speed, harmonics, orders, progress),
+        FlankTransfer.to_netcdf,
+        ResultError,
+    )
+
+
+def _harmonics(at: Excited, orders: int, speed: float) -> IntArray:
+    """Return the multiples of the common period's frequency that any tables or the loads may excite."""
+    highest = orders * at.period.counted
+    pitches = zip(at.period.pitches, at.system.scene.meshes, strict=True)
+    steps = {abs(passed) // mesh.table.period for passed, mesh in pitches} - {0}
+    loads = load_multiples(at.system, at.period, speed, at.time).tolist()
+    multiples = {k for step in steps for k in range(step, highest + 1, step)}
+    return np.array(sorted(multiples | {k for k in loads if k <= highest}), dtype=np.int64)
+
+
+def _parts(at: Excited) -> list[slice]:
+    """Return the local coordinates of each driving flank and of each bearing that is not linear."""
+    first = at.system.arrays.elements.first.tolist()
+    bearings = list(pairwise(first))[len(first) - 1 - len(at.system.bearings) :]
+    return [*(cycle.rows for cycle in at.cycles), *(slice(*ends) for ends in bearings)]
+
+
+def _rows(at: Excited) -> IntArray:
+    return np.concatenate([np.arange(own.start, own.stop) for own in _parts(at)]).astype(np.int64)
+
+
+def _flanks_of(at: Excited, harmonics: IntArray) -> FlankExcitation:
+    arrays, start = at.system.arrays, at.linear.equilibrium
+    static, excited_rows = flank_forces(at, harmonics)
+    local, rows = local_state(arrays, at.time, start.displacement, np.zeros(at.linear.scale.size)), _rows(at)
+    tangent, viscous = (
+        block_diagonal(arrays.elements, part)[np.ix_(rows, rows)] for part in (local.tangent, local.viscous)
+    )
+    for cycle in at.cycles:  # driving flanks come first
+        tangent[cycle.rows, cycle.rows] = cycle.tangent
+    force = np.zeros((rows.size, harmonics.size), dtype=complex)
+    force[: len(excited_rows)] = excited_rows
+    return FlankExcitation(static, force, tangent, viscous, start.mesh_force)
+
+
+def _computed(
+    at: Excited,
+    speed: FloatArray,
+    harmonics: IntArray,
+    orders: int,
+    progress: Callable[[float], None] | None,
+) -> FlankTransfer:
+    """Solve a block of speeds at a time."""
+    flanks, rows, parts = _flanks_of(at, harmonics), _rows(at), _parts(at)
+    gradient, inputs = at.system.arrays.direction[rows], 1 + rows.size
+    block = max(BLOCK // max(harmonics.size * gradient.shape[1] * inputs, 1), 1)
+    motion, force, omega, residual = [], [], [], 0.0
+    for start in range(0, speed.size, block):
+        steady = with_receptances(at, speed[start : start + block], harmonics, gradient)
+        u = np.concatenate([steady.displacement[..., None], steady.receptance], axis=-1)
+        motion.append(np.moveaxis(gradient @ u, 2, 0))
+        force.append(_bearing_columns(at, steady.omega, u, rows))
+        omega.append(steady.omega)
+        residual = max(residual, steady.residual)
+        if progress is not None:
+            progress(min(start + block, speed.size) / speed.size)
+    return FlankTransfer(
+        bearing=at.system.supports.name,
+        freedom=at.linear.freedom,
+        orders=orders,
+        time=at.time,
+        harmonics=harmonics,
+        speed=speed,
+        order=harmonics / at.period.counted,
+        frequency=np.concatenate(omega) / (2.0 * math.pi),
+        first=np.cumsum([0, *(own.stop - own.start for own in parts)]),
+        gradient=gradient,
+        force=flanks.force,
+        tangent=flanks.tangent,
+        viscous=flanks.viscous,
+        motion=np.concatenate(motion, axis=1),
+        bearing_force=np.concatenate(force, axis=2),
+        residual=residual,
+    )
+
+
+def _bearing_columns(at: Excited, omega: FloatArray, u: ComplexArray, rows: IntArray) -> ComplexArray:
+    """Return the forces of bearings per input (b, 3 or 6, S, H, 1 + R) by motions u (S, H, n, 1 + R).
+
+    An input on a row of a bearing is what its changed tangents exert on the body, so the ground feels it too.
+    """
+    speeds, harmonics, freedoms, inputs = u.shape
+    by_input = np.moveaxis(u, 3, 2).reshape(speeds, harmonics * inputs, freedoms)
+    force = bearing_forces(at, np.repeat(omega, inputs, axis=1), by_input)
+    force = force.reshape(*force.shape[:2], speeds, harmonics, inputs)
+    total, none = at.system.arrays.elements.offset.size, np.zeros((rows.size, freedoms))
+    unit = np.zeros((total, rows.size))
+    unit[rows, np.arange(rows.size)] = 1.0
+    of_none = at.system.bearing_force(np.zeros((total, 1)), none[:1], none[:1])
+    direct = at.system.bearing_force(unit, none, none) - of_none  # (b, 3 or 6, R)
+    force[..., 1:] -= direct[:, :, None, None]
+    return np.asarray(force)
+
+
+def _content_key(at: Excited, speed: FloatArray, harmonics: IntArray, orders: int) -> str:
+    """Return the hash of everything that decides the transfer functions."""
+    system, linear, flanks = at.system, at.linear, _flanks_of(at, harmonics)
+    local = local_state(system.arrays, at.time, linear.equilibrium.displacement, np.zeros(linear.scale.size))
+    terms = gyroscopic_terms(system, speed) if at.turning else []
+    loads = load_harmonics(system, at.period, speed, harmonics, at.time)
+    matrices = linear.mass, linear.damping, linear.stiffness, linear.scale, system.arrays.direction
+    bearings = local.tangent, local.viscous, *system.bearing_map[:4]
+    own = speed, harmonics, loads, flanks.force, flanks.tangent, flanks.viscous
+    names = VERSION, orders, at.time, at.period, linear.freedom, system.supports.name
+    digest = hashlib.sha256(repr(names).encode())
+    for array in (*matrices, *bearings, *own, *(part for term in terms for part in term)):
+        values = np.ascontiguousarray(array)
+        digest.update(f"{values.dtype.str} {values.shape}".encode())
+        digest.update(values.tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,206 @@
+"""What is heard or measured of a scene as Hermitian forms of the inputs of its flanks (`flank_transfer`)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from dynamics.acoustics.levels import FLOOR, REFERENCE_POWER, a_weighting
+from dynamics.checks import one_of
+from dynamics.errors import InputError
+from dynamics.housings.reduced_housing import ReducedHousing
+from dynamics.linearize.flank_transfer import FlankTransfer
+from dynamics.noise.housing_recordings import pressure_transfer
+from dynamics.noise.sound_band import SoundModel
+from dynamics.types import ComplexArray, FloatArray
+from dynamics.vibration import seat_forces, surface_weight
+from dynamics.vibration.housing_motion import modal_amplitudes
+from dynamics.vibration.housing_vibration import REFERENCE, MotionQuantity, named_points
+
+VELOCITY = REFERENCE[MotionQuantity.VELOCITY] ** 2
+PRESSURE = 4e-10
+"""Mean square of 0 dB, Pa^2: 20 uPa."""
+AXES = ("x", "y", "z")
+
+
+@dataclass(frozen=True)
+class QuantityForm:
+    """A power or mean square at S speeds in H orders by the inputs y of flanks: y^H `matrix` y.
+
+    Attributes
+    ----------
+    unit : str
+        Of the matrix.
+    reference : float
+        Of 0 dB, in it.
+    frequency : (S, H) array
+        Hz.
+    weighting : (S, H) array
+        A-weighting of sound as a factor, else 1.
+    matrix : (S, H, 1 + R, 1 + R) complex array
+        Hermitian, positive semidefinite.
+    """
+
+    unit: str
+    reference: float
+    frequency: FloatArray
+    weighting: FloatArray
+    matrix: ComplexArray
+
+    def of(self, inputs: ComplexArray) -> FloatArray:
+        """Return the power or mean square of inputs (S, H, 1 + R), (S, H), not weighted."""
+        moved = (self.matrix @ inputs[..., None])[..., 0]
+        return np.asarray(np.maximum(np.sum(inputs.conj() * moved, axis=-1).real, 0.0))
+
+    def weighted(self, inputs: ComplexArray) -> FloatArray:
+        """Return `of` with the weighting, (S, H)."""
+        return self.weighting * self.of(inputs)
+
+    def decibels(self, weighted: FloatArray) -> FloatArray:
+        """Return the level of weighted powers or mean squares, or of sums of them, dB, at least `FLOOR`."""
+        least = self.reference * 10.0 ** (FLOOR / 10.0)
+        return np.asarray(10.0 * np.log10(np.maximum(weighted, least) / self.reference))
+
+
+class Quantity(Protocol):
+    """A quantity of a scene by name."""
+
+    def form(self, transfer: FlankTransfer, model: SoundModel) -> QuantityForm:
+        """Return it by the inputs of the transfer functions of the model's scene.
+
+        Raises `InputError`: the scene has no such part, or its housing cannot tell it.
+        """
+
+
+@dataclass(frozen=True)
+class BearingForce:
+    """Force on the ground of a bearing along "x", "y" or "z" of its own frame; None: its size. dB re 1 N."""
+
+    bearing: str
+    direction: str | None = None
+
+    def form(self, transfer: FlankTransfer, model: SoundModel) -> QuantityForm:
+        """Return its mean square, N^2."""
+        index = transfer.bearing.index(one_of("bearing", self.bearing, transfer.bearing))
+        force = transfer.bearing_force[index][_axes(self.direction)]
+        return _mean_square(transfer, "N2", 1.0, np.moveaxis(force, 0, 2))
+
+
+@dataclass(frozen=True)
+class PointVelocity:
+    """Velocity of a named point of a housing along "x", "y" or "z"; None: its size. dB re 1 nm/s."""
+
+    housing: str
+    point: str
+    direction: str | None = None
+
+    def form(self, transfer: FlankTransfer, model: SoundModel) -> QuantityForm:
+        """Return its mean square, m^2/s^2."""
+        housing = _housing(model, self.housing)
+        (point,) = named_points(housing, (self.point,))
+        velocity = _velocities(transfer, model, self.housing)
+        moved = np.moveaxis(velocity @ point.motion[_axes(self.direction)].T, 2, 3)
+        return _mean_square(transfer, "m2 s-2", VELOCITY, moved)
+
+
+@dataclass(frozen=True)
+class SurfaceVelocity:
+    """Normal velocity of the outer hull of a housing, root of its mean square. dB re 1 nm/s."""
+
+    housing: str
+
+    def form(self, transfer: FlankTransfer, model: SoundModel) -> QuantityForm:
+        """Return its mean square over surface and time, m^2/s^2."""
+        weight = surface_weight(_housing(model, self.housing))
+        velocity = _velocities(transfer, model, self.housing)
+        matrix = 0.5 * velocity.conj() @ weight @ np.swapaxes(velocity, 2, 3)
+        return _form(transfer, "m2 s-2", VELOCITY, matrix)
+
+
+@dataclass(frozen=True)
+class SoundPower:
+    """Sound power of all housings that radiate, dB(A) re 1e-12 W."""
+
+    def form(self, transfer: FlankTransfer, model: SoundModel) -> QuantityForm:
+        """Return it, W."""
+        inputs = transfer.motion.shape[-1]
+        matrix = np.zeros((*transfer.frequency.shape, inputs, inputs), dtype=complex)
+        for name in _sounding(model):
+            velocity = _velocities(transfer, model, name)
+            flat = velocity.reshape(-1, velocity.shape[-1])
+            hertz = np.repeat(transfer.frequency.ravel(), inputs)
+            force = model.resistance[name].reaction(hertz, flat).reshape(velocity.shape)
+            matrix += 0.5 * velocity.conj() @ np.swapaxes(force, 2, 3)
+        return _form(transfer, "W", REFERENCE_POWER, matrix, sounds=True)
+
+
+@dataclass(frozen=True)
+class SoundPressure:
+    """Sound pressure at a place in the frame of a housing's mesh, m, in free space. dB(A) re 20 uPa."""
+
+    housing: str
+    microphone: tuple[float, float, float]
+
+    def form(self, transfer: FlankTransfer, model: SoundModel) -> QuantityForm:
+        """Return its mean square, Pa^2."""
+        hertz = transfer.frequency
+        path = pressure_transfer(
+            _housing(model, self.housing), np.array(self.microphone), hertz.ravel()
+        ).reshape(*hertz.shape, -1, 1)
+        force = _seats(transfer, model, self.housing)
+        return _mean_square(transfer, "Pa2", PRESSURE, np.swapaxes(force @ path, 2, 3), sounds=True)
+
+
+def _axes(direction: str | None) -> slice:
+    if direction is None:
+        return slice(0, 3)
+    axis = AXES.index(one_of("direction", direction, AXES))
+    return slice(axis, axis + 1)
+
+
+def _housing(model: SoundModel, name: str) -> ReducedHousing:
+    return model.housings[one_of("housing", name, tuple(model.housings))]
+
+
+def _sounding(model: SoundModel) -> Iterator[str]:
+    """Yield the housings that radiate; raises `InputError` where none does."""
+    names = [part.name for part in model.scene.housings if part.name in model.resistance]
+    if not names:
+        raise InputError("housings", [], "at least one that radiates")
+    yield from names
+
+
+def _seats(transfer: FlankTransfer, model: SoundModel, name: str) -> ComplexArray:
+    """Return the forces on the seats of a housing per input, (S, H, 1 + R, s)."""
+    part = next(part for part in model.scene.housings if part.name == name)
+    return seat_forces(transfer, _housing(model, name), part.bushings)
+
+
+def _velocities(transfer: FlankTransfer, model: SoundModel, name: str) -> ComplexArray:
+    """Return the velocities of the r coordinates of a housing per input, (S, H, 1 + R, r)."""
+    housing, force = _housing(model, name), _seats(transfer, model, name)
+    hertz = transfer.frequency.ravel()
+    amplitude = modal_amplitudes(housing, hertz, force.reshape(hertz.size, *force.shape[2:]))
+    velocity = 2j * math.pi * hertz[:, None, None] * (amplitude @ housing.modes[1].T)
+    return np.asarray(velocity.reshape(*force.shape[:3], -1))
+
+
+def _mean_square(
+    transfer: FlankTransfer, unit: str, reference: float, amplitude: ComplexArray, sounds: bool = False
+) -> QuantityForm:
+    """Return the mean square of d components together, of peak amplitudes (S, H, d, 1 + R)."""
+    matrix = 0.5 * np.swapaxes(amplitude, 2, 3).conj() @ amplitude
+    return _form(transfer, unit, reference, matrix, sounds)
+
+
+def _form(
+    transfer: FlankTransfer, unit: str, reference: float, matrix: ComplexArray, sounds: bool = False
+) -> QuantityForm:
+    hertz = transfer.frequency
+    weighting = 10.0 ** (a_weighting(hertz) / 10.0) if sounds else np.ones(hertz.shape)
+    hermitian = 0.5 * (matrix + np.swapaxes(matrix, 2, 3).conj())
+    return QuantityForm(unit, reference, hertz, weighting, hermitian)
