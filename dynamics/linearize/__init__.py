@@ -6,13 +6,16 @@ from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_resp
 from dynamics.linearize.linear_system import Modes, linearize, natural_modes
 from dynamics.linearize.modal_analysis import ModalAnalysis, modal_analysis
 from dynamics.linearize.operating_speeds import common_period
+from dynamics.linearize.transfer import FlankTransfer, flank_transfer
 
 __all__ = [
+    "FlankTransfer",
     "ForcedResponse",
     "HarmonicResponse",
     "ModalAnalysis",
     "Modes",
     "common_period",
+    "flank_transfer",
     "forced_response",
     "harmonic_response",
     "linearize",

@@ -19,9 +19,19 @@ from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest, rad
 from dynamics.noise.sensitivities import DesignFigure, Sensitivity, sound_sensitivities
 from dynamics.noise.sound_band import GUESSES, SoundBand, SoundModel, forced_power, sound_band
 from dynamics.noise.sound_over_time import SoundOverTime, sound_over_time
+from dynamics.noise.transferred_quantities import (
+    BearingForce,
+    PointVelocity,
+    Quantity,
+    QuantityForm,
+    SoundPower,
+    SoundPressure,
+    SurfaceVelocity,
+)
 
 __all__ = [
     "GUESSES",
+    "BearingForce",
     "CorrectedRadiation",
     "DesignFigure",
     "EstimatedRadiation",
@@ -29,12 +39,18 @@ __all__ = [
     "HousingRadiation",
     "LoudPoint",
     "PanelSound",
+    "PointVelocity",
+    "Quantity",
+    "QuantityForm",
     "RadiatedSound",
     "Region",
     "Sensitivity",
     "SoundBand",
     "SoundModel",
     "SoundOverTime",
+    "SoundPower",
+    "SoundPressure",
+    "SurfaceVelocity",
     "check_microphone",
     "corrected_radiation",
     "estimated_radiation",

@@ -1,4 +1,4 @@
-"""What is heard or measured of a scene as Hermitian forms of the inputs of its flanks (`flank_transfer`)."""
+"""What is heard or measured of a scene: Hermitian forms of the inputs of its flanks (`flank_transfer`)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from dynamics.acoustics.levels import FLOOR, REFERENCE_POWER, a_weighting
 from dynamics.checks import one_of
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import ReducedHousing
-from dynamics.linearize.flank_transfer import FlankTransfer
+from dynamics.linearize.transfer import FlankTransfer
 from dynamics.noise.housing_recordings import pressure_transfer
 from dynamics.noise.sound_band import SoundModel
 from dynamics.types import ComplexArray, FloatArray

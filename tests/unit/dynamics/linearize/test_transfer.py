@@ -1,0 +1,92 @@
+"""Transfer functions of flanks: the response of other flanks, linearity, reciprocity, their file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from transferred_scenes import SPEEDS, far_table, table, unit
+from two_stage_scenes import two_stages
+
+from dynamics.assembly.assemble import assemble
+from dynamics.errors import InputError
+from dynamics.linearize import harmonic_response
+from dynamics.linearize.transfer import FlankTransfer, flank_transfer
+
+ORDERS = 4
+
+
+@cache
+def transfer(rolling: bool = True) -> FlankTransfer:
+    return flank_transfer(assemble(unit(rolling=rolling)), SPEEDS, ORDERS)
+
+
+def assert_response(own: FlankTransfer, scene, tolerance: float) -> None:
+    direct, system = harmonic_response(assemble(scene), SPEEDS, ORDERS), assemble(scene)
+    moved = own.response(own.excitation(system))
+    kept = np.isin(moved.order, direct.order)
+    for name in ("bearing_force", "mesh_force"):
+        expected = getattr(direct, name)
+        found = getattr(moved, name)
+        np.testing.assert_allclose(
+            found[..., kept], expected, rtol=0.0, atol=tolerance * np.abs(expected).max()
+        )
+        assert np.all(np.abs(found[..., ~kept]) <= 1e-9 * np.abs(expected).max())
+    np.testing.assert_allclose(moved.least_mesh_force, direct.least_mesh_force, rtol=1e-6)
+
+
+@pytest.mark.parametrize("rolling", [True, False])
+def test_the_flanks_of_the_scene_respond_as_it_does(rolling: bool) -> None:
+    assert_response(transfer(rolling), unit(rolling=rolling), 1e-9)
+
+
+@pytest.mark.parametrize("rolling", [True, False])
+def test_far_flanks_respond_as_a_scene_with_them(rolling: bool) -> None:
+    """Of one stage and of both; they move the equilibrium and so the tangents of rolling bearings."""
+    for tables in ((far_table(), table()), (far_table(), far_table())):
+        scene = unit(*tables, rolling=rolling)
+        assert_response(transfer(rolling), scene, 1e-9)
+    own = transfer(rolling)
+    flanks = own.excitation(assemble(unit(far_table(), table(), rolling)))
+    bearings = slice(own.first[2], None)
+    moved = np.abs(flanks.tangent - own.tangent)[bearings, bearings].max(initial=0.0)
+    assert bool(moved > 1e-3 * np.abs(own.tangent).max()) is rolling
+
+
+def test_the_response_is_linear_in_what_excites() -> None:
+    own = transfer()
+    flanks = own.excitation(assemble(unit(far_table())))
+    half = flanks._replace(force=0.5 * (flanks.force + own.force), tangent=own.tangent, viscous=own.viscous)
+    whole = half._replace(force=flanks.force)
+    nominal = own.bearing_force[..., 0]
+    forces = [own.response(each).bearing_force - nominal for each in (half, whole)]
+    np.testing.assert_allclose(2.0 * forces[0], forces[1], rtol=0.0, atol=1e-12 * np.abs(forces[1]).max())
+
+
+def test_a_stage_moves_the_other_as_that_one_moves_it() -> None:
+    """Reciprocity of the receptances, where the tangents of the flanks are symmetric."""
+    receptance = flank_transfer(assemble(two_stages()), SPEEDS, 1).motion[..., 1:]
+    crossed = np.swapaxes(receptance, 0, 3)
+    assert np.abs(receptance[0, ..., 1]).max() > 1e-4 * np.abs(receptance).max()
+    np.testing.assert_allclose(receptance, crossed, rtol=0.0, atol=1e-9 * np.abs(receptance).max())
+
+
+def test_they_are_kept_by_their_content(tmp_path, monkeypatch) -> None:
+    scene = two_stages(table())
+    first = flank_transfer(assemble(scene), SPEEDS, 1, cache=tmp_path)
+    monkeypatch.setattr("dynamics.linearize.transfer._computed", lambda *_: pytest.fail("computed"))
+    kept = flank_transfer(assemble(scene), SPEEDS, 1, cache=tmp_path)
+    assert np.array_equal(kept.motion, first.motion)
+    assert np.array_equal(kept.bearing_force, first.bearing_force)
+    monkeypatch.undo()
+    stiffer = replace(scene, bushings=tuple(replace(b, radial_stiffness=3e8) for b in scene.bushings))
+    for other, orders in ((stiffer, 1), (scene, 2)):
+        flank_transfer(assemble(other), SPEEDS, orders, cache=tmp_path)
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_another_scene_is_refused() -> None:
+    with pytest.raises(InputError, match="the scene of the transfer"):
+        transfer().excitation(assemble(two_stages(table())))
