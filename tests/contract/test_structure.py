@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (39_533, 702),
-    ("dynamics",): (41_101, 773),
+    ("dynamics",): (41_719, 788),
     ("lineofaction.gearbox",): (21_950, 434),
     ("lineofaction.report",): (10_545, 200),
     ("service",): (14_793, 339),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_340, 150),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 767
+MOST_FILES = 769
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
