@@ -1,7 +1,7 @@
 """Loaded contact: which teeth touch, what each carries, how far the driven gear lags."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from fe_contact.contact.adjoint import CarryingStrips, adjoint, force_changes
+from fe_contact.contact.adjoint import CarryingStrips, adjoint, force_changes, load_arm
 from fe_contact.contact.assembly import (
     contact_problem,
     face_contact_problem,
@@ -43,6 +43,7 @@ __all__ = [
     "flank_coordinate",
     "force_changes",
     "in_pitches",
+    "load_arm",
     "plane_flank_forces",
     "solve_contact",
     "teeth_in_reach",

@@ -10,11 +10,10 @@ from functools import cached_property
 import numpy as np
 
 from fe_contact.contact.model import Break, GapTerm
-from fe_contact.contact.newton import NewtonSystem, empty_system, newton_system
+from fe_contact.contact.newton import empty_system, newton_system
 from fe_contact.contact.point_problem import (
     PointProblem,
     PointProblems,
-    State,
     approach,
     carrying_strip,
     dot,
@@ -34,86 +33,112 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, IntArray, Status
 from host.loops import njit
 
-# Derivatives of the transmission error from the solved contact, by its adjoint.
+# Derivatives of transmission error and load arm from the solved contact, by its adjoint.
 
 
 @dataclass(frozen=True)
 class _Adjoint:
-    """Influences on the transmission error of P positions at L loads, and their strips; m candidates.
+    """Influences on transmission error and load arm of P positions at L loads, and the strips; m candidates.
 
     Attributes
     ----------
     weight : ndarray, shape (P, L, m)
         dSTE per normal approach taken away at each candidate, 1; zero where it does not carry, NaN where the
         contact is not solved. Their sum over the candidates, times `Candidates.motion_arm`, is 1.
+    arm_weight : ndarray, shape (P, L, m)
+        The same of the load arm; of it this sum is 0.
+    added_arm : ndarray, shape (P, L)
+        Arm of a little more load, m.
     middle, half : ndarray, shape (P, L, m)
         Middle of each contact strip from the touching point on, towards tip 1, and half its length, m.
     """
 
     weight: FloatArray
+    arm_weight: FloatArray
+    added_arm: FloatArray
     middle: FloatArray
     half: FloatArray
 
 
-def adjoint(problem: ContactProblem, solution: ContactSolution) -> _Adjoint:
-    """Find the weights of all candidates, and the strips, of a solved problem."""
-    weight, middle, half = np.zeros((3, *solution.force.shape))
-    _weigh(point_problems(problem), solution.force, weight, middle, half)
-    weight[solution.status != Status.CONVERGED] = np.nan
-    return _Adjoint(weight, middle, half)
+def load_arm(pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
+    """Return the arm of the load about the axis of a misalignment (P, L), m."""
+    _, moments = _shares(pair, problem.candidates)
+    return np.asarray(np.einsum("plm,pm->pl", solution.force, moments) / solution.load)
+
+
+def _shares(pair: ParallelAxes, c: Candidates) -> FloatArray:
+    """Return the shares of the load per unit force, and these times the arms in m, (2, P, m)."""
+    return c.torque_share * np.stack([np.ones(c.gap.shape), pair.tilt_arm(c.touch.roll_1, c.face_position)])
+
+
+def adjoint(pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> _Adjoint:
+    """Find the weights of all candidates, and the strips, of a solved problem.
+
+    With S the fall of the forces as contacts are moved apart by g at one deflection, which is symmetric, n
+    the shares of the load, m the normal approach per deflection and z the arms, dF = S (m dSTE - dg) and
+    n'dF = 0: the weights of the STE are S n/(n'S m), those of the arm (b S n - S (n z))/load, b being the
+    arm of a little more load.
+    """
+    c = problem.candidates
+    pushed, (middle, half) = (np.zeros((2, *solution.force.shape)) for _ in range(2))
+    _weigh(point_problems(problem), solution.force, _shares(pair, c), pushed, middle, half)
+    pushed[:, solution.status != Status.CONVERGED] = np.nan
+    stiffness, of_arm = np.einsum("rplm,pm->rpl", pushed, c.motion_arm)
+    weight, added_arm = pushed[0] / stiffness[..., None], of_arm / stiffness
+    arm_weight = (added_arm[..., None] * pushed[0] - pushed[1]) / solution.load[:, None]
+    return _Adjoint(weight, arm_weight, added_arm, middle, half)
 
 
 @njit(cache=True, error_model="numpy")
 def _weigh(
     every: PointProblems,
     force: FloatArray,
-    weight: FloatArray,
+    shares: FloatArray,
+    pushed: FloatArray,
     middle: FloatArray,
     half: FloatArray,
 ) -> None:
-    """Fill in the weights and strips of all positions and loads."""
+    """Fill in what rows of shares (R, P, m) push, (R, P, L, m), and the strips of all positions and loads."""
     for p in range(force.shape[0]):
         problem, here = problem_at(every, p)
+        rows = np.ascontiguousarray(shares[:, p][:, here])
         for k in range(force.shape[1]):
-            weights = _weights(problem, force[p, k][here])
+            parts = _pushed(problem, force[p, k][here], rows)
             for q in range(here.size):
-                if force[p, k, here[q]] > 0.0:
-                    at = here[q]
-                    weight[p, k, at] = weights[q]
-                    middle[p, k, at], half[p, k, at] = carrying_strip(
-                        problem.law, problem.place[q], force[p, k, at]
-                    )
+                at, carried = here[q], force[p, k, here[q]]
+                pushed[:, p, k, at] = parts[:, q]
+                if carried > 0.0:
+                    middle[p, k, at], half[p, k, at] = carrying_strip(problem.law, problem.place[q], carried)
 
 
 @njit(cache=True, error_model="numpy")
-def _linearized(problem: PointProblem, force: FloatArray) -> tuple[State, NewtonSystem, int]:
-    """Return the state of a solution, and Newton's equations there with their number."""
+def _pushed(problem: PointProblem, force: FloatArray, rows: FloatArray) -> FloatArray:
+    """Return by how much forces fall as contacts are moved apart by rows (R, m), at one deflection.
+
+    It is D (1 - N K (1 + N'DN K)^-1 N'D), which is symmetric, about the forces of a solution.
+    """
     state = pressed_state(problem, force)
     for q in range(force.size):
         if force[q] > 0.0:
             state.slope[q] = 1.0 / approach(problem.law, problem.place[q], force[q])[1]
     system = empty_system(problem)
-    return state, system, newton_system(problem, state, system)
-
-
-@njit(cache=True, error_model="numpy")
-def _weights(problem: PointProblem, force: FloatArray) -> FloatArray:
-    """Return the weights (m,) under the forces of a solution."""
-    state, system, size = _linearized(problem, force)
-    for r in range(size):
-        system.right[0, r] = system.shares[system.member[r]]
-    if not eliminate(system.matrix, system.right[:1], size):
-        return np.full(force.size, np.nan)
-    answer, motion = np.zeros((2, state.held.size))
-    for r in range(size):
-        answer[system.member[r]] = system.right[0, r]
-    yield_to(state.yielding, answer, motion)
-    weights, stiff = np.zeros(force.size), 0.0
-    for q in range(force.size):
-        if state.slope[q] > 0.0:
-            weights[q] = state.slope[q] * (problem.torque_arm[q] - motion_at(problem, q, motion))
-            stiff += weights[q] * problem.motion_arm[q]
-    return weights / stiff
+    size = newton_system(problem, state, system)
+    held, motion = np.zeros((2, state.held.size))
+    right, out = np.zeros((len(rows), size)), np.full(rows.shape, np.nan)
+    for a in range(len(rows)):
+        press(problem, state.slope * rows[a], held)
+        for r in range(size):
+            right[a, r] = held[system.member[r]]
+    if not eliminate(system.matrix, right, size):
+        return out
+    for a in range(len(rows)):
+        held[:] = 0.0
+        for r in range(size):
+            held[system.member[r]] = right[a, r]
+        yield_to(state.yielding, held, motion)
+        for q in range(force.size):
+            out[a, q] = state.slope[q] * (rows[a, q] - motion_at(problem, q, motion))
+    return out
 
 
 def force_changes(problem: ContactProblem, solution: ContactSolution, opened: FloatArray) -> FloatArray:
@@ -137,44 +162,18 @@ def force_changes(problem: ContactProblem, solution: ContactSolution, opened: Fl
 
 @njit(cache=True, error_model="numpy")
 def _respond(every: PointProblems, force: FloatArray, opened: FloatArray, changes: FloatArray) -> None:
-    """Fill in the changes of the forces of all positions and loads."""
+    """Fill in the changes of the forces of all positions and loads: dF = S (m dd - dg), n'dF = 0."""
     for p in range(force.shape[0]):
         problem, here = problem_at(every, p)
+        rows = np.empty((len(opened) + 1, here.size))
+        rows[0] = problem.motion_arm
         for k in range(force.shape[1]):
-            apart = np.ascontiguousarray(opened[:, p, k][:, here])
-            answers = _answers(problem, force[p, k][here], apart)
-            for a in range(answers.shape[0]):
-                for q in range(here.size):
-                    changes[a, p, k, here[q]] = answers[a, q]
-
-
-@njit(cache=True, error_model="numpy")
-def _answers(problem: PointProblem, force: FloatArray, opened: FloatArray) -> FloatArray:
-    """Return the changes of the forces (A, m): dF = D (m dd - dg - N K dh), dh = y dd - z, n'dF = 0."""
-    state, system, size = _linearized(problem, force)
-    count, m = opened.shape
-    right, rows = np.zeros((count + 1, size)), np.zeros((count + 1, state.held.size))
-    right[0] = system.right[0, :size]  # N'D m
-    for a in range(count):
-        press(problem, state.slope * opened[a], rows[a + 1])
-        for r in range(size):
-            right[a + 1, r] = rows[a + 1, system.member[r]]
-    if not eliminate(system.matrix, right, size):
-        return np.full((count, m), np.nan)
-    followed, motion, answers = np.zeros((count + 1, m)), np.zeros(state.held.size), np.zeros((count, m))
-    for a in range(count + 1):
-        rows[a, :] = 0.0
-        for r in range(size):
-            rows[a, system.member[r]] = right[a, r]
-        yield_to(state.yielding, rows[a], motion)
-        for q in range(m):
-            arm = problem.motion_arm[q] if a == 0 else opened[a - 1, q]
-            followed[a, q] = state.slope[q] * (arm - motion_at(problem, q, motion))
-    stiff = dot(problem.torque_arm, followed[0], m)
-    for a in range(count):
-        lag = dot(problem.torque_arm, followed[a + 1], m) / stiff
-        answers[a] = lag * followed[0] - followed[a + 1]
-    return answers
+            rows[1:] = opened[:, p, k][:, here]
+            parts = _pushed(problem, force[p, k][here], rows)
+            stiff = dot(problem.torque_arm, parts[0], here.size)
+            for a in range(len(opened)):
+                lag = dot(problem.torque_arm, parts[a + 1], here.size) / stiff
+                changes[a, p, k][here] = lag * parts[0] - parts[a + 1]
 
 
 _NODE = math.sqrt(0.75)
@@ -342,8 +341,10 @@ class CarryingStrips:
     arm, normal : ndarray, shape (k,), and float
         Normal approach taken away per gap opened on the line of action: at the touching point, and by what
         is removed over the strip beyond that.
-    weight : ndarray, shape (k,)
-        dSTE per normal approach taken away.
+    weight, arm_weight : ndarray, shape (k,)
+        dSTE, and change of the load arm, per normal approach taken away.
+    added_arm : ndarray, shape (P, L)
+        Arm of a little more load, m.
     """
 
     shape: tuple[int, int, int]
@@ -353,36 +354,39 @@ class CarryingStrips:
     arm: FloatArray
     normal: float
     weight: FloatArray
+    arm_weight: FloatArray
+    added_arm: FloatArray
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> CarryingStrips:
         """Gather them from a solution of a problem."""
-        found = adjoint(problem, solution)
+        found = adjoint(pair, problem, solution)
         at = np.nonzero(found.weight)
         following = _FollowingPatches.of(pair, problem, solution.force) if problem.tilt.size else None
-        strips = found.middle[at], found.half[at], found.weight[at]
-        return cls._at(pair, problem.candidates, found.weight.shape[1], at, following, *strips)
+        strips = found.middle[at], found.half[at], found.weight[at], found.arm_weight[at], found.added_arm
+        return cls._at(pair, problem.candidates, at, following, *strips)
 
     def at_edges(self, candidates: Candidates, at: tuple[IntArray, ...], half: float) -> CarryingStrips:
         """Return strips without weight, `half` m long, at positions, loads and candidates of the same."""
         zero = np.zeros(at[0].size)
-        pair, loads = self.strips.pair, self.shape[1]
-        return self._at(pair, candidates, loads, at, self.following, zero, zero + half, zero)
+        strips = zero, zero + half, zero, zero, self.added_arm
+        return self._at(self.strips.pair, candidates, at, self.following, *strips)
 
     @classmethod
     def _at(
         cls,
         pair: ParallelAxes,
         candidates: Candidates,
-        loads: int,
         at: tuple[IntArray, ...],
         following: _FollowingPatches | None,
         middle: FloatArray,
         half: FloatArray,
         weight: FloatArray,
+        arm_weight: FloatArray,
+        added_arm: FloatArray,
     ) -> CarryingStrips:
         p, _, m = at
-        touch, shape = candidates.touch, (candidates.position.size, loads, candidates.pair.size)
+        touch, shape = candidates.touch, (*added_arm.shape, candidates.pair.size)
         places = touch.s_1[p, m], touch.s_2[p, m], touch.roll_1[p, m], candidates.face_position[m]
         return cls(
             shape,
@@ -392,6 +396,8 @@ class CarryingStrips:
             candidates.motion_arm[p, m],
             math.cos(candidates.base_helix_angle),
             weight,
+            arm_weight,
+            added_arm,
         )
 
     @property
@@ -415,8 +421,15 @@ class CarryingStrips:
 
     def change(self, opened: FloatArray) -> FloatArray:
         """Return what normal approach taken away (k,) in m adds to the transmission error, (P, L) in m."""
+        return self._by_row(self.weight * opened)
+
+    def arm_change(self, opened: FloatArray) -> FloatArray:
+        """Return the same of the load arm, (P, L) in m; places and shares of the contacts stay."""
+        return self._by_row(self.arm_weight * opened)
+
+    def _by_row(self, values: FloatArray) -> FloatArray:
         rows = self.shape[:2]
-        return np.asarray(np.bincount(self.row, self.weight * opened, math.prod(rows)).reshape(rows))
+        return np.asarray(np.bincount(self.row, values, math.prod(rows)).reshape(rows))
 
     def on_flank(
         self, gear: int, roll_length: FloatArray, face_position: FloatArray, rows: FloatArray

@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.request.request import Checked
-from fe_contact.contact import CarryingStrips, ContactProblem, ContactSolution, force_changes
+from fe_contact.contact import CarryingStrips, ContactProblem, ContactSolution, force_changes, load_arm
 from fe_contact.contact.model import GapTerm
 from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.effects.misalignment import MisalignmentGap
@@ -43,7 +43,7 @@ from fe_contact.microgeometry.variables import (
 from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, PEAK_TO_PEAK, quantity_derivatives
 from fe_contact.types import FloatArray
 
-# Derivatives of transmission-error curves by the flanks, the alignment and the torque.
+# Derivatives of curves of transmission error and load arm by the flanks, the alignment and the torque.
 #
 # They come from the factors of the solved contact (`fe_contact.contact.adjoint`): a curve by a dozen figures
 # of its flanks costs about a third of the curve more.
@@ -92,6 +92,10 @@ class CurveDerivatives:
         m.
     by : ndarray, shape (A, P, F)
         dSTE/dfigure, m/m; by the torque in m/(N m).
+    load_arm : ndarray, shape (P, F)
+        Arm of the load about the axis of a misalignment, m.
+    load_arm_by : ndarray, shape (A, P, F)
+        Its derivatives, as `by`.
     mean, peak_to_peak : ndarray, shape (A, F)
         Of the curve's mean and peak-to-peak.
     harmonics : ndarray, shape (A, 20, F)
@@ -103,6 +107,8 @@ class CurveDerivatives:
     position: FloatArray
     ste: FloatArray
     by: FloatArray
+    load_arm: FloatArray
+    load_arm_by: FloatArray
     mean: FloatArray
     peak_to_peak: FloatArray
     harmonics: FloatArray
@@ -134,7 +140,7 @@ def curve_derivatives(
     misalignment: float = 0.0,
     center_distance_change: float = 0.0,
 ) -> CurveDerivatives:
-    """Solve the curves of flanks on condensed bodies, with their derivatives.
+    """Solve the curves of flanks on condensed bodies, and the arms of the load, with their derivatives.
 
     Parameters
     ----------
@@ -169,22 +175,28 @@ def curve_derivatives(
         _check_name(name, pair, checked)
     strips = CarryingStrips.of(solved.pair, problem, solution)
 
-    def derivative(name: str) -> FloatArray:
-        if name == TORQUE:
-            return np.asarray(solution.tangent * (solution.load / loads))
-        if name == CENTER_DISTANCE:
-            further = bodies.solve(pair, loads, misalignment, center_distance_change + DISTANCE_STEP).solution
-            _require_solved(further)
-            return (further.deflection - solution.deflection) / DISTANCE_STEP
-        return strips.change(_Difference.of(pair, name).opened(strips))
+    arm = load_arm(solved.pair, problem, solution)
 
-    derivatives = np.stack([derivative(name) for name in names])
+    def derivative(name: str) -> tuple[FloatArray, FloatArray]:
+        if name == TORQUE:
+            return solution.tangent * (solution.load / loads), (strips.added_arm - arm) / loads
+        if name == CENTER_DISTANCE:
+            further = bodies.solve(pair, loads, misalignment, center_distance_change + DISTANCE_STEP)
+            _require_solved(further.solution)
+            moved = load_arm(further.pair, further.problem, further.solution)
+            change = further.solution.deflection - solution.deflection
+            return change / DISTANCE_STEP, (moved - arm) / DISTANCE_STEP
+        opened = _Difference.of(pair, name).opened(strips)
+        return strips.change(opened), strips.arm_change(opened)
+
+    derivatives, of_arm = (np.stack(each) for each in zip(*map(derivative, names), strict=True))
     curves, period = solution.deflection.T, checked.model.period
     weights = np.stack([quantity_derivatives(curve, period) for curve in curves], axis=-1)
     changes = np.einsum("qpf,apf->aqf", weights, derivatives)
     of_quantities = changes[:, MEAN], changes[:, PEAK_TO_PEAK], changes[:, FIRST_HARMONIC:]
     position, ste = problem.candidates.position, solution.deflection
-    return CurveDerivatives(names, loads, position, ste, derivatives, *of_quantities, strips, weights)
+    arms = arm, of_arm
+    return CurveDerivatives(names, loads, position, ste, derivatives, *arms, *of_quantities, strips, weights)
 
 
 def _all_names(pair: ParallelAxes, checked: Checked) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Derivatives of transmission-error curves: of the contact, of the flanks, of the quantities of a curve."""
+"""Derivatives of transmission error and load arm: of the contact, of the flanks, of the quantities."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condensed_pair
-from fe_contact.contact import adjoint, force_changes, solve_contact
+from fe_contact.contact import adjoint, force_changes, load_arm, solve_contact
 from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear
 from fe_contact.microgeometry.linearized_design import curve_derivatives
@@ -51,6 +51,14 @@ def spur() -> GearPair:
     )
 
 
+def crowned_spur() -> GearPair:
+    """Over the face, and alike to both sides of its middle."""
+    crowned = replace(RELIEF, helix_crowning=6e-6)
+    return GearPair(
+        *(replace(gear, face_width=8e-3, modification=crowned) for gear in (spur().pinion, spur().wheel))
+    )
+
+
 def internal() -> InternalGearPair:
     pinion = Gear(teeth=23, bore_diameter=20e-3, modification=RELIEF, **SHAPE)
     ring = RingGear(teeth=71, rim_diameter=150e-3, addendum_coefficient=0.8, modification=RELIEF, **SHAPE)
@@ -64,7 +72,8 @@ def condensed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Conde
 
     def of(name: str) -> CondensedPair:
         if name not in known:
-            pair, model = PAIRS[name](), "3d" if name == "helical" else "plane_strain"
+            pair = crowned_spur() if name == "crowned" else PAIRS[name]()
+            model = "plane_strain" if name in IN_PLANE else "3d"
             wish = {"level": "draft", "model": model, "positions": 12, "receipt": "minimal"}
             table = analyze(pair, torques=TORQUES, cache=cache, **wish)
             known[name] = condensed_pair(pair, table, {}, cache)
@@ -73,13 +82,16 @@ def condensed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Conde
     return of
 
 
+IN_PLANE = ("spur", "internal")
 PAIRS: dict[str, Callable[[], ParallelAxes]] = {"helical": helical, "spur": spur, "internal": internal}
 
 
-def solved(bodies: CondensedPair, values: dict[str, float]) -> np.ndarray:
-    """Curves of other flanks, (P, F) in m."""
-    pair = bodies.checked.request.pair
-    return bodies.solve(modified(pair, values), TORQUES).solution.deflection
+def solved(
+    bodies: CondensedPair, values: dict[str, float], load: float = 1.0, *conditions: float
+) -> np.ndarray:
+    """Curves of other flanks, transmission error and load arm, (2, P, F) in m."""
+    found = bodies.solve(modified(bodies.checked.request.pair, values), load * TORQUES, *conditions)
+    return np.stack([found.solution.deflection, load_arm(found.pair, found.problem, found.solution)])
 
 
 def central(bodies: CondensedPair, name: str, step: float) -> np.ndarray:
@@ -96,7 +108,7 @@ def test_a_gap_opened_at_one_contact_counts_by_its_weight(name, condensed):
     bodies = condensed(name)
     solved = bodies.solve(bodies.checked.request.pair, TORQUES)
     problem, solution = solved.problem, solved.solution
-    found, c = adjoint(problem, solution), problem.candidates
+    found, c = adjoint(solved.pair, problem, solution), problem.candidates
     lever = np.einsum("pkm,pm->pk", found.weight, c.motion_arm)
     assert lever == pytest.approx(np.ones(lever.shape), rel=1e-12)  # all moved apart: the gear lags
     heaviest, step = np.argmax(solution.force[5].sum(axis=0)), 1e-9
@@ -107,6 +119,43 @@ def test_a_gap_opened_at_one_contact_counts_by_its_weight(name, condensed):
         ends.append(solve_contact(problem.touching(c.touching(replace(c.touch, gap=gap))), solution.load))
     difference = (ends[0].deflection - ends[1].deflection)[5] / (2.0 * step)
     assert found.weight[5, :, heaviest] == pytest.approx(difference, rel=1e-6)
+    arms = [load_arm(solved.pair, problem, end)[5] for end in ends]
+    by_difference = (arms[0] - arms[1]) / (2.0 * step)
+    assert found.arm_weight[5, :, heaviest] == pytest.approx(by_difference, rel=1e-5, abs=1e-12)
+    moved = np.einsum("pkm,pm->pk", found.arm_weight, c.motion_arm)
+    assert np.abs(moved).max() <= 1e-12 * np.abs(found.arm_weight).sum(axis=2).max()  # the arm stays
+
+
+@pytest.mark.law
+def test_a_tilt_of_rigid_bodies_moves_the_load_by_the_spread_of_what_carries(condensed):
+    """By the second central moment of the stiffness of the contacts over the load: no body couples them."""
+    bodies = condensed("helical")
+    found = bodies.solve(bodies.checked.request.pair, TORQUES)
+    problem = replace(found.problem, tilt=np.zeros((0, 0, 0)))
+    problem = replace(problem, compliance=problem.compliance - (1.0 - 1e-9) * problem.bodies)
+    c, near = problem.candidates, found.solution.load[0] * (1.0 + np.array([-1e-6, 0.0, 1e-6]))
+    solution = solve_contact(problem, near)
+    force, deflection = solution.force, solution.deflection
+    arms = found.pair.tilt_arm(c.touch.roll_1, c.face_position)
+    stiffness = c.torque_share * (force[:, 2] - force[:, 0]) / np.diff(deflection[:, ::2])
+    center = (stiffness * arms).sum(axis=1) / stiffness.sum(axis=1)
+    spread = (stiffness * np.square(arms - center[:, None])).sum(axis=1)
+    answer = adjoint(found.pair, problem, solution)
+    assert answer.added_arm[:, 1] == pytest.approx(center, abs=1e-6 * np.abs(arms).max())
+    moved = (answer.arm_weight[:, 1] * c.motion_arm * arms).sum(axis=1)
+    assert moved == pytest.approx(-spread / near[1], rel=1e-5)
+
+
+@pytest.mark.law
+def test_what_is_alike_to_both_sides_of_the_middle_moves_no_load(condensed):
+    names = ["pinion.helix_crowning", "wheel.tip_relief", "pinion.helix_slope", "torque"]
+    found = curve_derivatives(condensed("crowned"), crowned_spur(), TORQUES, names)
+    one_sided = np.abs(found.load_arm_by[2]).max()
+    assert np.abs(found.load_arm).max() < 1e-9 * crowned_spur().face_width
+    assert np.abs(found.load_arm_by[:2]).max() < 1e-6 * one_sided
+    assert np.abs(found.load_arm_by[3] * TORQUES).max() < 1e-8 * crowned_spur().face_width
+    in_plane = curve_derivatives(condensed("spur"), spur(), TORQUES, AMOUNTS)
+    assert not in_plane.load_arm.any() and not in_plane.load_arm_by.any()
 
 
 @pytest.mark.law
@@ -135,9 +184,12 @@ def test_forces_change_as_their_derivatives_say(name, condensed):
 @pytest.mark.parametrize("name", ["pinion.helix_crowning", "wheel.helix_slope"])
 def test_by_amounts_over_the_face_curves_change_as_differences_say(name, condensed):
     bodies = condensed("helical")
-    found = curve_derivatives(bodies, helical(), TORQUES, [name]).by[0]
-    off = np.abs(found - central(bodies, name, 1e-9)) / np.abs(found).max()
+    found = curve_derivatives(bodies, helical(), TORQUES, [name])
+    ste, arm = central(bodies, name, 1e-9)
+    off = np.abs(found.by[0] - ste) / np.abs(ste).max()
     assert np.quantile(off, 0.9) < 1e-6  # the rest: positions at which contacts begin within the step
+    moved = np.abs(found.load_arm_by[0] - arm) / np.abs(arm).max()
+    assert np.quantile(moved, 0.9) < 1e-6
 
 
 @pytest.mark.parametrize("pair", PAIRS)
@@ -145,9 +197,12 @@ def test_by_amounts_over_the_face_curves_change_as_differences_say(name, condens
 def test_by_amounts_along_the_profile_curves_change_as_differences_say(pair, name, condensed):
     """The gap of the solver is a parabola about its least point, by differences that move with that point."""
     bodies = condensed(pair)
-    found = curve_derivatives(bodies, PAIRS[pair](), TORQUES, [name]).by[0]
-    off = np.abs(found - central(bodies, name, 1e-9)) / np.abs(found).max()
-    assert np.median(off) < 1e-4 and off.max() < 2e-3
+    found = curve_derivatives(bodies, PAIRS[pair](), TORQUES, [name])
+    by_difference = central(bodies, name, 1e-9)
+    of_curves = [found.by[0], found.load_arm_by[0]] if pair == "helical" else [found.by[0]]
+    for derivative, difference in zip(of_curves, by_difference, strict=False):
+        off = np.abs(derivative - difference) / np.abs(derivative).max()
+        assert np.median(off) < 1e-4 and off.max() < 2e-3
 
 
 ONE_SIDED = {
@@ -185,24 +240,22 @@ def test_by_reliefs_of_any_shape_to_any_end_curves_change_as_differences_say(qua
 def test_by_the_length_of_a_relief_curves_change_as_differences_say(pair, condensed):
     name, bodies = "pinion.tip_relief_length", condensed(pair)
     found = curve_derivatives(bodies, PAIRS[pair](), TORQUES, [name]).by[0]
-    off = np.abs(found - central(bodies, name, 1e-8)) / np.abs(found).max()
+    off = np.abs(found - central(bodies, name, 1e-8)[0]) / np.abs(found).max()
     assert np.median(off) < 2e-4 and off.max() < 1e-2
 
 
 def test_by_misalignment_torque_and_center_distance_curves_change_as_differences_say(condensed):
     bodies, pair = condensed("helical"), helical()
     found = curve_derivatives(bodies, pair, TORQUES, ["misalignment", "torque", "center_distance_change"])
-    base = bodies.solve(pair, TORQUES).solution.deflection
-    misaligned = [bodies.solve(pair, TORQUES, way * 1e-9).solution.deflection for way in (1.0, -1.0)]
-    assert (
-        np.median(np.abs(found.by[0] - (misaligned[0] - misaligned[1]) / 2e-9))
-        < 1e-6 * np.abs(found.by[0]).max()
-    )
-    more, less = (bodies.solve(pair, TORQUES * (1.0 + way * 1e-6)).solution.deflection for way in (1.0, -1.0))
-    assert found.by[1] == pytest.approx((more - less) / (2e-6 * TORQUES), rel=1e-4)
-    apart = bodies.solve(pair, TORQUES, 0.0, 2e-6).solution.deflection
-    change = np.abs(found.by[2] - (apart - base) / 2e-6)
-    assert np.median(change) < 0.02 * np.abs(found.by[2]).max()
+    by = np.stack([found.by, found.load_arm_by], axis=1)
+    base, more, less = (solved(bodies, {}, 1.0 + part) for part in (0.0, 1e-6, -1e-6))
+    above, below, apart = (solved(bodies, {}, 1.0, *at) for at in ((1e-9,), (-1e-9,), (0.0, 2e-6)))
+    change = np.abs(by[0] - (above - below) / 2e-9)
+    assert (np.median(change, axis=(1, 2)) < 1e-6 * np.abs(by[0]).max(axis=(1, 2))).all()
+    assert by[1, 0] == pytest.approx((more - less)[0] / (2e-6 * TORQUES), rel=1e-4)
+    assert by[1, 1] == pytest.approx((more - less)[1] / (2e-6 * TORQUES), abs=1e-4 * np.abs(by[1, 1]).max())
+    change = np.abs(by[2] - (apart - base) / 2e-6)
+    assert (np.median(change, axis=(1, 2)) < 0.02 * np.abs(by[2]).max(axis=(1, 2))).all()
 
 
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
