@@ -16,6 +16,7 @@ from lineofaction.gearbox.study import F, P, StudyOf, T, Takes
 if TYPE_CHECKING:
     from lineofaction.gearbox.schemas.figures import Figures
     from lineofaction.gearbox.studies.ablate.run import RUN as ABLATE
+    from lineofaction.gearbox.studies.complaint.run import RUN as COMPLAINT
     from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
     from lineofaction.gearbox.studies.flank.run import RUN as FLANK
     from lineofaction.gearbox.studies.frontier.run import RUN as FRONTIER
@@ -42,6 +43,7 @@ RESULTS = "/v1/results"
 
 __all__ = [
     "ablate",
+    "complaint",
     "deflect",
     "flank",
     "frontier",
@@ -217,6 +219,17 @@ class Studies:
         stages=(("analysis", 0.9), ("response", 0.1)),
         version="3",
     )
+    complaint = StudyOf(
+        _scene(lambda: COMPLAINT),
+        "Complaint",
+        "Find what it is",
+        "Find which mesh and harmonic a complaint is, what else passes the same frequency, and the modes "
+        "within reach.",
+        "examples/palermo_scene.toml --frequency-hz 280 --speed-rpm 840 -o complaint.png",
+        kind="complaint",
+        stages=(("analysis", 0.9), ("modes", 0.1)),
+        version="1",
+    )
     noise = StudyOf(
         _scene(lambda: NOISE),
         "Noise",
@@ -309,6 +322,7 @@ scatter = Studies.scatter
 sweep = Studies.sweep
 modes = Studies.modes
 response = Studies.response
+complaint = Studies.complaint
 noise = Studies.noise
 vibration = Studies.vibration
 listen = Studies.listen

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -16,6 +16,7 @@ from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table
+from lineofaction.report.drawing.marks import marked, marked_page, marks_of
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.tables import cost_tables, ledger_section
 
@@ -44,7 +45,21 @@ def presentation_of(study: Study) -> Presentation:
     with LOADING:
         files = (f"{__package__}.{subject}.{study.package}" for subject in _SUBJECTS)
         shown: Presentation = import_module(next(filter(find_spec, files))).PAGE
-    return shown
+    return _marking(shown)
+
+
+def _marking(shown: Presentation) -> Presentation:
+    """Return a presentation that marks what is complained of in the plots of a result that says it."""
+
+    def figure(result: Any) -> Figure:
+        marks, plain = marks_of(result), shown.figure(result)
+        return plain if marks is None else marked(plain, marks)
+
+    def page(result: Any) -> Page:
+        marks, plain = marks_of(result), shown.page(result)
+        return plain if marks is None else marked_page(plain, marks)
+
+    return replace(shown, figure=figure, page=page)
 
 
 def dynamics_presentation(

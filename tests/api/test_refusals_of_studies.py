@@ -113,6 +113,16 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
         ({"orders": 0}, "orders"),
         ({"speed": [1.0]}, "speed"),
     ],
+    "complaint": [
+        ({}, "complaint"),
+        ({"frequency_hz": 1.4, "speed_rpm": 1200.0}, "complaint.frequency_hz"),
+        ({"frequency_hz": 400.0}, "complaint.speed_rpm"),
+        ({"frequency_hz": 400.0, "speed_rpm": 1200.0, "order": 20.0}, "complaint.order"),
+        ({"frequency_hz": 400.0, "speed_rpm": 1200.0, "shaft": "axle"}, "complaint.shaft"),
+        ({"frequency_hz": 400.0, "road_speed_km_h": 40.0}, "complaint.tire_radius_mm"),
+        ({"frequency_hz": 300.0, "speed_rpm": 1200.0}, "complaint.frequency_hz"),  # 400, 800 Hz pass
+        ({"order": 20.0, "microphone_mm": [0.0, 0.0, 1000.0]}, "complaint.microphone_mm"),
+    ],
     "response": [
         ({}, "speed_rpm"),
         ({"speed_rpm": [0.0, 1.0]}, "speed_rpm[0]"),
@@ -252,6 +262,10 @@ SAID: dict[str, list[tuple[list[str], str]]] = {
     ],
     "modes": [(["--speed-rpm", text], "--speed-rpm") for text in ("x", "0:1", "10:1:1", "0:1:-1", "0:1e6:1")],
     "response": [(["--speed-rpm", "0:100:50"], "speed_rpm[0]"), (["--speed-rpm", "1:x"], "--speed-rpm")],
+    "complaint": [
+        (["--frequency-hz", "300", "--speed-rpm", "1200"], 'nearest: harmonic 1 of mesh "mesh" at 400 Hz'),
+        (["--frequency-hz", "1.4", "--speed-rpm", "1200"], "In kHz? Then write 1400."),
+    ],
     "steady": [(["--speed-rpm", "0:100:50"], "speed_rpm[0]"), (["--speed-rpm", "a"], "--speed-rpm")],
     "noise": [(["--speed-rpm", "300", "--mesh-damping", "1.1,2"], "mesh_damping"), ([], "speed_rpm")],
     "vibration": [(["--speed-rpm", "300", "--at-order", "0"], "at_order")],

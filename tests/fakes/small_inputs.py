@@ -33,6 +33,7 @@ _FEW: dict[str, Json] = {
     "sweep": {"over": ["torque=0.5:1:0.5"], "show": ["peak_to_peak"]},
     "modes": {"speed_rpm": [0.0]},
     "response": {"speed_rpm": [300.0]},
+    "complaint": {"frequency_hz": 400.0, "speed_rpm": 1200.0},
     "vibration": {"speed_rpm": [300.0], "mode": 1},
     "noise": {"speed_rpm": [300.0]},
     "listen": {"microphone_mm": [10.0, 10.0, 400.0]},

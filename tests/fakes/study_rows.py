@@ -190,6 +190,14 @@ def _response(figures: Json, result: Any, table: SteDatabase) -> Pairs:
     yield np.shape(bearing), np.shape(mesh["mesh_force_n"])
 
 
+def _complaint(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    (first,) = figures["passing"]
+    yield (first["kind"], first["name"], first["harmonic"]), ("mesh", "mesh", 1)
+    yield (first["frequency_hz"], first["order"]), (1200.0 / 60.0 * 20, 20.0)
+    yield first["force_n"], result.forces[0].force
+    yield [mode["frequency_hz"] for mode in figures["modes"]], [mode.frequency for mode in result.modes]
+
+
 def _noise(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
     yield np.transpose(figures["level_db"]).tolist(), (10.0 * np.log10(result.power / 1e-12)).tolist()
     yield figures["frequency_hz"][0], [300.0 / 60.0 * 20]
@@ -313,6 +321,9 @@ ROWS = (
         "scene",
         _response,
         ends=(rf"largest mesh force of .+: {NUMBER} N \(order {NUMBER} at", "largest force on bearing"),
+    ),
+    StudyRow(
+        "complaint", "scene", _complaint, ends=(rf'complaint: harmonic 1 of mesh "mesh" \(at {NUMBER} Hz',)
     ),
     StudyRow("noise", "scene", _noise, FEW_ORDERS),
     StudyRow("vibration", "scene", _vibration, FEW_ORDERS, columns=_vibration_columns),

@@ -29,6 +29,7 @@ from dynamics.solid_housing import Material
 from dynamics.temperatures import Temperatures
 from fe_contact.ste import PairFacts, SteDatabase
 from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.complaint import complaint_of
 from lineofaction.gearbox.convert.declared import in_si, part_of
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.housings import ANY_STIFFNESS, housing_of, placeholder
@@ -397,10 +398,14 @@ def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> Scene:
     Raises
     ------
     BadInput
-        No such system exists or moves.
+        No such system exists or moves, or nothing of it passes where it is complained of.
     """
     tables = dict.fromkeys(facts, straight_table(ANY_STIFFNESS))
-    return _moving(scene, facts, tables, [placeholder(i, part) for i, part in enumerate(scene.housings)])
+    housings = [placeholder(i, part) for i, part in enumerate(scene.housings)]
+    moving = _moving(scene, facts, tables, housings)
+    if scene.complaint is not None:
+        complaint_of(scene, moving)
+    return moving
 
 
 def _moving(

@@ -287,6 +287,11 @@ class HousingInput(_MatrixHousing):
         return any(getattr(self, name) is not None for name in SOURCES)
 
     @property
+    def has_surface(self) -> bool:
+        """Whether its file may have a surface: matrices alone do not say what the air touches."""
+        return self.is_solid or self.modes_file is not None
+
+    @property
     def own_x_axis(self) -> tuple[float, ...]:
         """Direction of the x axis of the file in the scene."""
         return self.x_axis or (1.0, 0.0, 0.0)

@@ -17,6 +17,7 @@ from lineofaction.gearbox.schemas.bodies import (
     ShaftInput,
 )
 from lineofaction.gearbox.schemas.case import EffectName, Switch
+from lineofaction.gearbox.schemas.complaint import ComplaintInput
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.faults import model_in
 from lineofaction.gearbox.schemas.housings import HousingInput, TemperaturesInput
@@ -104,6 +105,12 @@ class SceneInput(BoundaryModel):
         examples=[{"housing_degc": 70.0, "housing_material": "cast_aluminum"}],
         exclude_if=lambda value: value is None,
     )
+    complaint: ComplaintInput | None = Field(
+        default=None,
+        description="What is complained of: plots mark it, loa complaint says what it is",
+        examples=[{"frequency_hz": 400.0, "speed_rpm": 1200.0}],
+        exclude_if=lambda value: value is None,
+    )
     accuracy: SceneAccuracyInput = Field(
         default=SceneAccuracyInput(), description="Tolerance that decides on automatic effects", examples=[{}]
     )
@@ -151,9 +158,14 @@ class SceneInput(BoundaryModel):
         for field, name in _further_shafts(self):
             _refuse_unknown(field, name, shafts)
         bushings = [*(part.name for part in self.bushings), *(part.name for part in self.rolling_bearings)]
+        pins = [part.name for part in self.planet_bearings]
         for index, housing in enumerate(self.housings):
             for number, name in enumerate(housing.bushings):
                 _refuse_unknown(f"housings[{index}].bushings[{number}]", name, bushings)
+        if self.complaint is not None:
+            for name, known in (("shaft", shafts), ("final_shaft", shafts), ("bearing", [*bushings, *pins])):
+                if (value := getattr(self.complaint, name)) is not None:
+                    _refuse_unknown(f"complaint.{name}", value, known)
         gears = [gear.name for gear in self.gears]
         for index, mesh in enumerate(self.meshes):
             _refuse_unknown(f"meshes[{index}].driver", mesh.driver, gears)
@@ -190,4 +202,4 @@ def _further_shafts(scene: SceneInput) -> Iterator[tuple[str, str]]:
 
 def _refuse_unknown(field: str, name: str, known: list[str]) -> None:
     if name not in known:
-        refuse(field, name, f"one of {', '.join(known)}", "Names are case-sensitive.")
+        refuse(field, name, f"one of {', '.join(known) or 'none'}", "Names are case-sensitive.")

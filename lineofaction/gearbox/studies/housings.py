@@ -18,6 +18,7 @@ from dynamics.scene import Scene
 from dynamics.vibration import ReportedHarmonics
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.complaint import complaint_of
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.figures import LINEAR
@@ -34,16 +35,23 @@ SAME = 1e-6
 """Largest difference between matrices of the same housing, of their largest entry."""
 
 
-def with_reduction_costs(result: Result, subject: TabledScene) -> Result:
-    """Return a result with what the housings cost beside what was predicted, as its fact `reduction_cost`."""
+def with_facts_of_scene(result: Result, subject: TabledScene) -> Result:
+    """Return a result with the `facts_of_scene` among its facts."""
     changed: Any = result
-    costed: Result = replace(changed, facts={**changed.facts, "reduction_cost": reduction_costs(subject)})
-    return costed
+    known: Result = replace(changed, facts={**changed.facts, **facts_of_scene(subject)})
+    return known
 
 
-def reduction_costs(subject: TabledScene) -> Json:
-    """Return the fields of the `WorkCost` of reductions by housing; a file of modes may be without them."""
-    return {name: asdict(body.cost) for name, body in subject.housings.items() if body.cost is not None}
+def facts_of_scene(subject: TabledScene) -> Json:
+    """Return what a result says of its scene.
+
+    Its `reduction_cost`, the fields of the `WorkCost` of the reductions by housing: a file of modes may be
+    without them. Of a scene with one its `complaint`, as plots mark it.
+    """
+    costs = {name: asdict(body.cost) for name, body in subject.housings.items() if body.cost is not None}
+    if subject.inputs.complaint is None:
+        return {"reduction_cost": costs}
+    return {"reduction_cost": costs, "complaint": complaint_of(subject.inputs, subject.scene).marks}
 
 
 def bearing_forces(subject: TabledScene, inputs: OverOrders, means: Means) -> ReportedHarmonics:
@@ -94,7 +102,7 @@ def no_surface(housings: list[str]) -> BadInput:
 
 def require_surface(scene: SceneInput) -> None:
     """Refuse a scene of whose housings none can have a surface; raises `BadInput`."""
-    if not any(part.is_solid or part.modes_file is not None for part in scene.housings):
+    if not any(part.has_surface for part in scene.housings):
         raise no_surface([part.name for part in scene.housings])
 
 

@@ -22,11 +22,11 @@ from lineofaction.report.drawing.figure import (
     Panel,
     Table,
     category_lines,
-    largest,
     number,
     shaded_levels,
     step_line,
 )
+from lineofaction.report.drawing.marks import shown_orders
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import surface_panels
 from lineofaction.report.drawing.tables import amount, gigabytes
@@ -81,7 +81,7 @@ def _cells(orders: OrderPower, speed: FloatArray) -> HeatMap:
 def _level_over_speed(sound: RadiatedSound) -> Figure:
     orders, (x, speed) = sound.orders, row_axis(sound.speed, sound.facts)
     level, total = orders.weighted_level, orders.total_weighted_level
-    shown = largest(level.max(axis=1), SHOWN)
+    shown = shown_orders(sound.order, level.max(axis=1), SHOWN, sound.facts)
     floor = float(total.max()) - DEPTH
     names = [f"order {sound.order[h]:.4g}" for h in shown]
     lines = (

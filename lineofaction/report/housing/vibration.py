@@ -25,6 +25,7 @@ from lineofaction.report.drawing.figure import (
     largest,
     number,
 )
+from lineofaction.report.drawing.marks import shown_orders
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import surface_panels
 from lineofaction.report.housing.forces import force_words, row_axis
@@ -134,7 +135,7 @@ def _velocity_panel(analysis: VibrationAnalysis, name: str, rms: FloatArray) -> 
     vibration = analysis.vibration
     x, speed = row_axis(vibration.speed, analysis.facts)
     lines = []
-    for k, h in enumerate(largest(rms.max(axis=0), SHOWN_ORDERS)):
+    for k, h in enumerate(shown_orders(vibration.order, rms.max(axis=0), SHOWN_ORDERS, analysis.facts)):
         valid, color, order = vibration.valid[:, h], palette.category(k), f"order {vibration.order[h]:.4g}"
         lines.append(Line(order, speed, np.where(valid, rms[:, h], np.nan), color, width=1.4))
         if not np.all(valid):

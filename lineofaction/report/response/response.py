@@ -19,9 +19,9 @@ from lineofaction.report.drawing.figure import (
     Reference,
     Table,
     category_lines,
-    largest,
     number,
 )
+from lineofaction.report.drawing.marks import shown_orders
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 
@@ -90,9 +90,8 @@ WITHOUT_MESHES = "Peak amplitudes of the orders of the leading shaft about the s
 
 def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
     x, speed, quantities = _speed_axis(response), response.speed / RPM, _quantities(response, mesh)
-    shown = (
-        largest(np.max(quantities[1 if response.mesh else 0][1], axis=0), SHOWN_ORDERS) if quantities else []
-    )
+    size = np.max(quantities[1 if response.mesh else 0][1], axis=0) if quantities else np.empty(0)
+    shown = shown_orders(response.order[: size.size], size, SHOWN_ORDERS, response.facts)
     names, panels = [f"order {response.order[h]:.4g}" for h in shown], []
     for label, amplitude in quantities:
         panels.append(Panel(x, Axis(label), category_lines(speed, names, amplitude[:, shown].T)))
@@ -124,8 +123,9 @@ def _quantities(response: ForcedResponse, mesh: int) -> list[tuple[str, FloatArr
         ]
     force = _bearing_force(response)
     if force.size:
-        loudest = int(np.argmax(np.max(force, axis=(1, 2))))
-        quantities.append((f"force on {response.bearing[loudest]}, N", force[loudest]))
+        name = response.facts.get("complaint", {}).get("bearing")
+        own = int(np.argmax(np.max(force, axis=(1, 2)))) if name is None else response.bearing.index(name)
+        quantities.append((f"force on {response.bearing[own]}, N", force[own]))
     return quantities
 
 

@@ -9,6 +9,7 @@ import { textAndFiles } from "./named_files.js";
 
 const WHAT = [
   ["simulate", "Run over time"], ["modes", "Modes over speed"], ["response", "Forced response over speed"],
+  ["complaint", "What its [complaint] is"],
   ["vibration", "Vibration of the housing over speed"], ["noise", "Sound power over speed"],
   ["listen", "Sound of the last run at a microphone"],
   ["steady", "Steady states over speed"], ["deflect", "Deflection under its loads"],
@@ -162,7 +163,7 @@ export class SceneEditor {
 
   /** What a process varies of a scene; a study runs it at each speed of its first drive. */
   varied(process, scene, speeds) {
-    if (process === "simulate") return {};
+    if (process === "simulate" || process === "complaint") return {};
     if (process === "deflect") return this.cases.length ? { load_cases: this.cases } : {};
     if (process !== "study") return { speed_rpm: speeds };
     const path = `drives.${(scene.drives ?? [{ name: "?" }])[0].name}.speed_rpm`;

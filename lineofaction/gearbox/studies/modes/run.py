@@ -12,7 +12,7 @@ from dynamics.linearize import ModalAnalysis, modal_analysis
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
-from lineofaction.gearbox.studies.housings import with_reduction_costs
+from lineofaction.gearbox.studies.housings import with_facts_of_scene
 from lineofaction.gearbox.studies.modes import Inputs, ModesFigures
 from lineofaction.gearbox.units import RPM
 
@@ -31,7 +31,7 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
                 progress=lambda fraction: means.report("modes", fraction),
                 highest_frequency=inputs.highest_frequency_hz,
             )
-        return with_reduction_costs(modes, subject)
+        return with_facts_of_scene(modes, subject)
 
     def _derived(self, modes: ModalAnalysis) -> Json:
         energies = modes.natural_strain_energy, modes.natural_kinetic_energy

@@ -57,7 +57,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.housings import bearing_forces, no_surface, reduction_costs, require_surface
+from lineofaction.gearbox.studies.housings import bearing_forces, facts_of_scene, no_surface, require_surface
 from lineofaction.gearbox.studies.noise import Inputs, NoiseFigures, SoundOverTimeFigures
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
 from model_studies.workers import spent
@@ -114,7 +114,7 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         own["over_time"] = heard and figures_of(
             SoundOverTimeFigures, heard, third_octave_db=sound_power_level(heard.power.T)
         )
-        own["reduction_cost"] = reduction_costs(subject)
+        own |= facts_of_scene(subject)
         known = {**whole.facts, **own, "models": compared, "seconds": seconds}
         whole = replace(whole, facts=known)
         return replace(whole, facts={**known, **uncertainty(subject, whole, radiation, off, inputs, means)})

@@ -11,7 +11,7 @@ from dynamics.linearize import ForcedResponse, peaks
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.figures import Row, rows
-from lineofaction.gearbox.studies.housings import response_of, with_reduction_costs
+from lineofaction.gearbox.studies.housings import response_of, with_facts_of_scene
 from lineofaction.gearbox.studies.response import Inputs, ResponseFigures
 
 
@@ -19,7 +19,7 @@ class _ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
     inputs, answer, file = Inputs, ResponseFigures, array_file(ForcedResponse)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ForcedResponse:
-        return with_reduction_costs(response_of(subject.scene, inputs, means), subject)
+        return with_facts_of_scene(response_of(subject.scene, inputs, means), subject)
 
     def _derived(self, response: ForcedResponse) -> Json:
         force, power = response.bearing_force, response.power

@@ -14,7 +14,7 @@ from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.figures import Row, rows
-from lineofaction.gearbox.studies.housings import with_reduction_costs
+from lineofaction.gearbox.studies.housings import with_facts_of_scene
 from lineofaction.gearbox.studies.steady import Inputs, SteadyFigures
 from lineofaction.gearbox.units import RPM
 
@@ -35,7 +35,7 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
                 progress=means.report,
                 workers=means.workers,
             )
-        return with_reduction_costs(states, subject)
+        return with_facts_of_scene(states, subject)
 
     def _derived(self, states: SteadyStates) -> Json:
         points: dict[str, list[Any]] = {

@@ -27,7 +27,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
 from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.housings import bearing_forces, with_reduction_costs
+from lineofaction.gearbox.studies.housings import bearing_forces, with_facts_of_scene
 from lineofaction.gearbox.studies.vibration import Inputs, VibrationFigures
 from lineofaction.gearbox.units import RPM
 
@@ -51,6 +51,11 @@ class HousingVibrationResult:
     natural_frequency: FloatArray
     mode: int = 0
     mode_shape: SurfaceShape | None = None
+
+    @property
+    def facts(self) -> Json:
+        """Return those of the analysis."""
+        return self.analysis.facts
 
     @property
     def shape(self) -> SurfaceShape | None:
@@ -79,7 +84,7 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
 
     def check(self, scene: SceneInput, _inputs: Inputs) -> None:
         """Refuse a scene of whose housings none has a solid or a file of modes."""
-        if not any(part.is_solid or part.modes_file is not None for part in scene.housings):
+        if not any(part.has_surface for part in scene.housings):
             value = f"{len(scene.housings)} by their matrices" if scene.housings else "none"
             raise BadInput.of("housings", value, "one with mass, a surface or points", _ADVICE)
 
@@ -102,7 +107,7 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
             mode = None if inputs.mode is None else mode_shape(housing, inputs.mode)
         seconds = {**analysis.facts["seconds"], "vibration": cpu_seconds() - began}
         analysis = replace(analysis, facts={**analysis.facts, "seconds": seconds})
-        analysis = with_reduction_costs(analysis, tabled)
+        analysis = with_facts_of_scene(analysis, tabled)
         return HousingVibrationResult(analysis, housing.frequency, inputs.mode or 0, mode)
 
     def figures(self, result: HousingVibrationResult) -> Json:

@@ -1,0 +1,255 @@
+"""A complaint about a scene: the order it is, per revolution of a shaft, and what passes beside it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from bounds import engineering
+from bounds.types import Json
+from dynamics.mechanism.kinematics import solve_kinematics
+from dynamics.mechanism.passing import (
+    BEARING,
+    MESH,
+    SAME,
+    SHAFT,
+    Excitation,
+    Passing,
+    excitations,
+    passing,
+    shaft_rates,
+)
+from dynamics.scene.scene import Scene
+from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.complaint import ComplaintInput
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.units import MM, RPM
+from model_studies import in_unit
+
+KM_H = 1.0 / 3.6
+HARMONICS, TOLERANCE = 10, 0.05
+NEAREST, NAMED = 6, 3
+"""Harmonics that are listed beside a complaint, and that are named where none passes."""
+_SURFACE = "Give a housing by step_file, mesh_file or modes_file, or leave the microphone out."
+
+
+@dataclass(frozen=True)
+class Complaint:
+    """What is heard.
+
+    Attributes
+    ----------
+    shaft : str
+        That orders are of.
+    order : float
+        Per revolution of it.
+    speed, frequency : float or None
+        Of the shaft, rad/s, and what is heard at it, Hz; None: an order at any speed.
+    tolerance : float
+        Relative.
+    passing : tuple of Passing
+        What is within the tolerance, and at least the `NEAREST` harmonics, the nearest first.
+    turns : mapping of str to float
+        Revolutions of every shaft per revolution of `shaft`.
+    bearing : str or None
+        Where it is measured; None: on the bearing that feels it most.
+    per_pitch : float
+        Order by which results count, of the order: base pitches of the first mesh, without one revolutions of
+        the leading shaft.
+    """
+
+    shaft: str
+    order: float
+    speed: float | None = field(metadata=in_unit("rad_per_s"))
+    frequency: float | None = field(metadata=in_unit("hz"))
+    tolerance: float
+    passing: tuple[Passing, ...]
+    turns: Mapping[str, float]
+    per_pitch: float
+    bearing: str | None = None
+
+    @property
+    def within(self) -> tuple[Passing, ...]:
+        """What passes within the tolerance: meshes, then what is not one and nearer than all of them."""
+        near = [each for each in self.passing if each.within(self.tolerance)]
+        meshes = [each for each in near if each.excitation.kind == MESH]
+        closest = abs(meshes[0].distance) if meshes else math.inf
+        others = [e for e in near if e.excitation.kind != MESH and abs(e.distance) < closest]
+        return (*meshes, *others)
+
+    def hertz(self, order: float) -> float | None:
+        """Return the frequency of an order of the shaft, Hz; None: at any speed."""
+        return None if self.speed is None else order * self.speed / (2.0 * math.pi)
+
+    @property
+    def marks(self) -> Json:
+        """Return what plots mark: values by the labels of axes, and the order by which results count."""
+        order = self.within[0].order * self.per_pitch
+        marks: Json = {"order": order, "axes": {}, "bearing": self.bearing, "words": sentence(self)}
+        if self.speed is not None:
+            speeds = {f"speed of {name}, rpm": turn * self.speed / RPM for name, turn in self.turns.items()}
+            marks["axes"] = speeds | {"frequency, Hz": self.frequency}
+        return marks
+
+
+def complaint_of(scene: SceneInput, moving: Scene) -> Complaint:
+    """Return the complaint of a scene that has one, about the parts it has as written.
+
+    Raises `BadInput`: no such shaft turns, nothing passes within the tolerance, the speed is beyond a table
+    of torques, or a microphone hears nothing.
+    """
+    stated = scene.complaint
+    assert stated is not None
+    if stated.microphone_mm is not None and not any(part.has_surface for part in scene.housings):
+        value, bound = list(stated.microphone_mm), "left out: no housing of the scene has a surface"
+        raise BadInput.of("complaint.microphone_mm", value, bound, _SURFACE)
+    kinematics = solve_kinematics(moving)
+    shaft, speed = _shaft(stated, scene, moving)
+    with boundary_errors("complaint"):
+        parts = excitations(moving, kinematics, shaft, HARMONICS if stated.orders is None else stated.orders)
+    own, turns = _as_written(parts, scene), shaft_rates(moving, kinematics, shaft)
+    if speed is not None:
+        _refuse_beyond(scene, turns, speed)
+    order, hertz = _heard(stated, speed)
+    rate = next((each.rate for each in own if each.kind == MESH), turns[leading_shaft(moving)])
+    tolerance = TOLERANCE if stated.tolerance_percent is None else stated.tolerance_percent / 100.0
+    every = passing(own, order)
+    reach = max(tolerance, *(abs(each.distance) + SAME for each in every[:NEAREST]))
+    complaint = Complaint(
+        shaft,
+        order,
+        speed,
+        hertz,
+        tolerance,
+        tuple(each for each in every if each.within(reach)),
+        {part.name: turns[part.name] for part in scene.shafts},
+        1.0 / rate,
+        stated.bearing,
+    )
+    if not complaint.within:
+        raise _nothing_passes(complaint, stated)
+    return complaint
+
+
+def leading_shaft(moving: Scene) -> str:
+    """Return the first driven shaft, which speeds of studies are those of."""
+    return next((part.shaft for part in moving.references if part.speed.extreme), moving.references[0].shaft)
+
+
+def _heard(stated: ComplaintInput, speed: float | None) -> tuple[float, float | None]:
+    """Return the order per revolution and the frequency, Hz; either follows from the other at a speed."""
+    if stated.order is None:
+        assert stated.frequency_hz is not None and speed is not None  # the schema has seen to it
+        return 2.0 * math.pi * stated.frequency_hz / speed, stated.frequency_hz
+    return stated.order, None if speed is None else stated.order * speed / (2.0 * math.pi)
+
+
+def _shaft(stated: ComplaintInput, scene: SceneInput, moving: Scene) -> tuple[str, float | None]:
+    """Return the shaft that orders are of, and its speed, rad/s.
+
+    An order at a road speed is of `shaft`, so that its speed follows from that of the wheels.
+    """
+    own = stated.shaft or leading_shaft(moving)
+    if stated.road_speed_km_h is None:
+        return own, None if stated.speed_rpm is None else stated.speed_rpm * RPM
+    assert stated.tire_radius_mm is not None  # the schema has seen to it
+    final = _final_shaft(stated, scene)
+    wheel = stated.road_speed_km_h * KM_H / (stated.tire_radius_mm * MM)
+    speed = wheel * (1.0 if stated.final_ratio is None else stated.final_ratio)
+    if stated.order is None:
+        return final, speed
+    with boundary_errors("complaint"):
+        turn = shaft_rates(moving, solve_kinematics(moving), own)[final]
+    if not turn:
+        raise BadInput.of("complaint.final_shaft", final, "a shaft that turns", "Name the one of the wheels.")
+    return own, speed / turn
+
+
+def _final_shaft(stated: ComplaintInput, scene: SceneInput) -> str:
+    """Return the shaft that turns the wheels, or the only one with a load."""
+    loaded = dict.fromkeys(part.shaft for part in scene.loads)
+    loaded |= dict.fromkeys(part.shaft for part in scene.speed_torques)
+    if stated.final_shaft is None and len(loaded) != 1:
+        names = ", ".join(part.name for part in scene.shafts)
+        bound = f"given, as {len(loaded) or 'no'} shafts have a load: one of {names}"
+        raise BadInput.of("complaint.final_shaft", None, bound, "Name the one that turns the wheels.")
+    return stated.final_shaft or next(iter(loaded))
+
+
+def _refuse_beyond(scene: SceneInput, turns: Mapping[str, float], speed: float) -> None:
+    """Refuse a speed (rad/s) at which a shaft is beyond its table of torques."""
+    for index, part in enumerate(scene.speed_torques):
+        own = turns[part.shaft] * speed / RPM
+        if part.kind == "table" and not part.speed_rpm[0] <= own <= part.speed_rpm[-1]:
+            bound = f"within speed_torques[{index}], {part.speed_rpm[0]:g} to {part.speed_rpm[-1]:g} rpm"
+            advice = f"Extend the table of {part.name}, or check the speed of the complaint."
+            value = f"{engineering(own, 4)} rpm of {part.shaft}"
+            raise BadInput.of("complaint.speed_rpm", value, bound, advice)
+
+
+def _as_written(every: Iterable[Excitation], scene: SceneInput) -> list[Excitation]:
+    """Return the excitations of the parts that the scene names; copies of a planet pass where it does."""
+    names = {
+        MESH: {part.name for part in scene.meshes},
+        SHAFT: {part.name for part in scene.shafts},
+        BEARING: {part.name for part in scene.rolling_bearings},
+    }
+    return [each for each in every if each.name in names[each.kind]]
+
+
+def _nothing_passes(complaint: Complaint, stated: ComplaintInput) -> BadInput:
+    """Return the answer to a complaint that nothing passes: what is nearest, and how far it is."""
+    name = "frequency_hz" if stated.order is None else "order"
+    meshes = [each for each in complaint.passing if each.excitation.kind == MESH] or complaint.passing
+    nearest = "; ".join(f"{words(alike)} {beside(complaint, alike[0])}" for alike in grouped(meshes)[:NAMED])
+    share = engineering(100.0 * complaint.tolerance, 3)
+    bound = f"within {share} % of what passes; nearest: {nearest}"
+    advice = "Check speed, ratios and tire; or state tolerance_percent, or more orders."
+    return BadInput.of(f"complaint.{name}", getattr(stated, name), bound, advice)
+
+
+def sentence(complaint: Complaint) -> str:
+    """Say what is heard and what it is."""
+    first = grouped(complaint.within)[0]
+    heard = f"order {engineering(complaint.order, 4)} of {complaint.shaft}"
+    if complaint.speed is not None and complaint.frequency is not None:
+        speed = f"{engineering(complaint.speed / RPM, 4)} rpm"
+        heard = f"{engineering(complaint.frequency, 4)} Hz at {speed} of {complaint.shaft}"
+    return f"{heard} is {words(first)} {beside(complaint, first[0])}"
+
+
+def grouped(every: Iterable[Passing]) -> list[tuple[Passing, ...]]:
+    """Return what passes, that of parts of a kind that pass alike at every speed together."""
+    groups: dict[tuple[str, str, int, str], list[Passing]] = {}
+    for each in every:
+        of = each.excitation
+        alike = of.kind, of.part, each.harmonic, f"{each.order:.9g}"
+        groups.setdefault(alike, []).append(each)
+    return [tuple(group) for group in groups.values()]
+
+
+_SEVERAL = {MESH: "meshes", SHAFT: "shafts", BEARING: "bearings"}
+
+
+def words(alike: Sequence[Passing]) -> str:
+    """Name a harmonic of one part, or of several as `grouped` returns them."""
+    of = alike[0].excitation
+    kind = of.kind if len(alike) == 1 else _SEVERAL[of.kind]
+    names = ", ".join(f'"{each.excitation.name}"' for each in alike)
+    number = "order" if of.kind == SHAFT else "harmonic"
+    return f"{number} {alike[0].harmonic} of {f'the {of.part} of ' if of.part else ''}{kind} {names}"
+
+
+def beside(complaint: Complaint, each: Passing) -> str:
+    """Say where a harmonic passes, and how far from the complaint."""
+    hertz = complaint.hertz(each.order)
+    if hertz is None or complaint.frequency is None:
+        at, apart = f"order {engineering(each.order, 4)} of {complaint.shaft}", ""
+    else:
+        off = engineering(hertz - complaint.frequency, 2, "+")
+        at, apart = f"{engineering(hertz, 4)} Hz", f" or {off} Hz"
+    if abs(each.distance) < SAME:
+        return f"at {at}, exactly"
+    return f"at {at}, off by {engineering(100.0 * each.distance, 2, '+')} %{apart}"

@@ -1,0 +1,141 @@
+"""A complaint: which frequency, or order, is heard at which speed, and where."""
+
+from __future__ import annotations
+
+from typing import Any, Self
+
+from pydantic import ConfigDict, Field, model_validator
+
+from lineofaction.gearbox.schemas.model import (
+    BoundaryModel,
+    Point,
+    at_most_one_of,
+    exactly_one_of,
+    refuse,
+    stated,
+)
+
+WHATS, SPEEDS = ("frequency_hz", "order"), ("road_speed_km_h", "speed_rpm")
+"""What is heard, and at which speed: one of each."""
+OF_ROAD = ("tire_radius_mm", "final_shaft", "final_ratio")
+"""What a road speed alone needs."""
+
+
+class ComplaintFields(BoundaryModel):
+    """Fields of a complaint, each of which may be left out."""
+
+    frequency_hz: float | None = Field(
+        default=None, gt=0.0, le=1e5, description="Frequency that is heard in Hz", examples=[400.0]
+    )
+    order: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e5,
+        description="Order that is heard, per revolution of `shaft`, in place of the frequency",
+    )
+    road_speed_km_h: float | None = Field(default=None, gt=0.0, le=600.0, description="Road speed in km/h")
+    tire_radius_mm: float | None = Field(
+        default=None, gt=0.0, le=2000.0, description="Rolling radius of the tires in mm"
+    )
+    final_shaft: str | None = Field(
+        default=None,
+        min_length=1,
+        max_length=64,
+        description="Shaft that turns the wheels; left out: the only one with a load",
+    )
+    final_ratio: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1000.0,
+        description="Revolutions of that shaft per revolution of a wheel; left out: 1",
+    )
+    speed_rpm: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e7,
+        description="Speed of `shaft` in rpm, in place of the road speed",
+        examples=[1200.0],
+    )
+    shaft: str | None = Field(
+        default=None,
+        min_length=1,
+        max_length=64,
+        description="Shaft of speed_rpm and order; left out: the first driven one",
+        examples=["input"],
+    )
+    tolerance_percent: float | None = Field(
+        default=None,
+        ge=0.1,
+        le=20.0,
+        description="How far the frequency and the speed may be off together, in percent; left out: 5",
+        examples=[5.0],
+    )
+    orders: int | None = Field(
+        default=None,
+        ge=1,
+        le=100,
+        description="Harmonics of every mesh that are looked at; left out: 10",
+        examples=[10],
+    )
+    bearing: str | None = Field(
+        default=None,
+        min_length=1,
+        max_length=64,
+        description="Bearing where it is measured: bushing or rolling bearing; left out: the most loaded",
+    )
+    microphone_mm: Point | None = Field(
+        default=None,
+        description="Where it is heard, x, y, z in mm: needs a housing with a surface",
+    )
+
+
+class ComplaintInput(ComplaintFields):
+    """A complaint: a frequency at a road speed or at a shaft's speed, or an order."""
+
+    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*WHATS), at_most_one_of(*SPEEDS)))
+
+    @model_validator(mode="after")
+    def _one_question(self) -> Self:
+        """Say which of the fields contradict each other, are missing, or are in another unit."""
+        if self.frequency_hz is None and self.order is None:
+            refuse("frequency_hz", None, "given, or order instead", "For example 1400.0, with a speed.")
+        for names in (WHATS, SPEEDS):
+            one, other = (getattr(self, name) for name in names)
+            if one is not None and other is not None:
+                refuse(names[1], other, f"left out beside {names[0]}", "Give one of them.")
+        if self.frequency_hz is not None and self.road_speed_km_h is None and self.speed_rpm is None:
+            bound = "given with a frequency, or road_speed_km_h instead"
+            refuse("speed_rpm", None, bound, "For example 3360.0; or give the order.")
+        for name in OF_ROAD if self.road_speed_km_h is None else ():
+            if (value := getattr(self, name)) is not None:
+                refuse(name, value, "left out without road_speed_km_h", "Give the road speed too.")
+        if self.road_speed_km_h is not None and self.tire_radius_mm is None:
+            refuse("tire_radius_mm", None, "given with a road speed", "Its rolling radius, such as 310.0.")
+        for name, least, unit in _LEAST:
+            value = getattr(self, name)
+            if value is not None and value < least:
+                refuse(name, value, f"at least {least:g} {unit[0]}", unit[1].format(1e3 * value))
+        return self
+
+
+_LEAST = (
+    ("frequency_hz", 20.0, ("Hz", "Lower ones are not heard. In kHz? Then write {:g}.")),
+    ("road_speed_km_h", 1.0, ("km/h", "Write kilometers per hour, such as 40.0.")),
+    ("tire_radius_mm", 50.0, ("mm", "In meters? Then write {:g}.")),
+)
+"""Fields, the least value of each, and what is said of lower ones: they are in another unit."""
+
+
+def with_options(stated_one: ComplaintInput | None, options: ComplaintFields) -> dict[str, Any]:
+    """Return the fields of a complaint with those of options before them, not yet validated.
+
+    An option also replaces the field that it is an alternative to.
+    """
+    own = {} if stated_one is None else stated_one.model_dump(exclude_none=True)
+    typed = options.model_dump(exclude_none=True, include=set(ComplaintFields.model_fields))
+    for names in (WHATS, SPEEDS):
+        if typed.keys() & set(names):
+            own = {name: value for name, value in own.items() if name not in names}
+    if "speed_rpm" in typed:
+        own = {name: value for name, value in own.items() if name not in OF_ROAD}
+    return own | typed

@@ -1,0 +1,50 @@
+"""What is complained of, over what the scene says of it."""
+
+from __future__ import annotations
+
+from lineofaction.gearbox.schemas.complaint import ComplaintFields
+from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Ledger, Part, ReductionCosts, Seconds
+
+
+class Inputs(ComplaintFields):
+    """What is complained of; what is left out is taken from the scene."""
+
+
+class ComplaintFigures(Figures):
+    """What passes where it is complained of, the likeliest first, and the modes within reach."""
+
+    class PassingFigures(Part):
+        """A harmonic of a mesh, a shaft or a bearing; its force is that of the linear response."""
+
+        kind: str
+        name: str
+        part: str
+        harmonic: int
+        order: float
+        frequency_hz: float | None
+        distance_percent: float
+        bearing: str
+        force_n: float | None
+
+    class ModeFigures(Part):
+        """A mode by which the frequency is amplified."""
+
+        frequency_hz: float
+        damping_ratio: float
+        distance_percent: float
+        amplification: float
+        kind: str
+
+    words: str
+    shaft: str
+    order: float
+    frequency_hz: float | None
+    speed_rpm: float | None
+    tolerance_percent: float
+    passing: list[PassingFigures]
+    nearest: list[PassingFigures]
+    modes: list[ModeFigures]
+    equilibrium: Equilibrium
+    cpu_seconds: Seconds
+    reduction_cost: ReductionCosts
+    effect_ledger: Ledger

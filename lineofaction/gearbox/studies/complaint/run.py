@@ -1,0 +1,181 @@
+"""A complaint about a scene: which mesh and harmonic it is, what else passes, which modes are in reach."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from bounds.types import Json
+from dynamics.assembly.assemble import System, assemble
+from dynamics.errors import InputError
+from dynamics.linearize import ForcedResponse, ModalAnalysis, forced_response, modal_analysis
+from dynamics.mechanism.passing import Passing
+from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.complaint import Complaint, complaint_of, leading_shaft, sentence
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.complaint import ComplaintInput, with_options
+from lineofaction.gearbox.schemas.reading import validated
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.complaint import ComplaintFigures, Inputs
+from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
+from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.housings import with_facts_of_scene
+from model_studies import in_unit
+
+REACH = 2.0
+"""Least amplification by a mode within reach: 6 dB."""
+RESOLVED = 1.5
+"""Frequency to which shafts that bend are resolved, over that of the complaint: modes above have less."""
+MOST_ORDERS = 100
+
+
+@dataclass(frozen=True)
+class NearMode:
+    """A mode within reach; `distance` is relative, positive above the complaint."""
+
+    frequency: float = field(metadata=in_unit("hz"))
+    damping_ratio: float
+    distance: float
+    amplification: float
+    kind: str
+
+
+@dataclass(frozen=True)
+class OrderForce:
+    """The amplitude of an order of the linear response on a bearing; NaN: not known, as of no mesh."""
+
+    bearing: str
+    force: float = field(metadata=in_unit("n"))
+
+
+@dataclass(frozen=True)
+class AnsweredComplaint:
+    """The answer.
+
+    Attributes
+    ----------
+    forces : tuple of OrderForce
+        Of all that passes within the tolerance, in its sequence.
+    modes : tuple of NearMode
+        The most amplified first; empty without a speed.
+    """
+
+    complaint: Complaint
+    forces: tuple[OrderForce, ...]
+    modes: tuple[NearMode, ...]
+    facts: Json
+
+
+class _ComplaintStudy(SceneStudy[Inputs, ComplaintFigures, AnsweredComplaint]):
+    inputs, answer, file = Inputs, ComplaintFigures, record_file(("complaint", AnsweredComplaint))
+
+    def narrowed(self, scene: SceneInput, inputs: Inputs) -> SceneInput:
+        """Return the scene with the complaint, as options state it over the scene's own."""
+        fields = with_options(scene.complaint, inputs)
+        if not fields:
+            bound, advice = "given by the scene or by options", "For example frequency_hz and speed_rpm."
+            raise BadInput.of("complaint", None, bound, advice)
+        try:
+            complaint = validated(ComplaintInput, fields)
+        except BadInput as error:
+            raise error.within("complaint") from None
+        return validated(SceneInput, {**dict(scene), "complaint": complaint})
+
+    def normalized(self, _scene: SceneInput, _inputs: Inputs) -> Json:
+        """Return nothing: the scene has all of it."""
+        return {}
+
+    def compute(self, subject: TabledScene, _inputs: Inputs, means: Means) -> AnsweredComplaint:
+        complaint = complaint_of(subject.inputs, subject.scene)
+        with boundary_errors():
+            system = assemble(subject.scene)
+            speed = _leading_speed(complaint, subject)
+            reach = None if complaint.frequency is None else RESOLVED * complaint.frequency
+            modes = modal_analysis(system, speed, highest_frequency=reach)
+        means.report("modes", 1.0)
+        forces = _forces(system, complaint, speed)
+        answer = AnsweredComplaint(complaint, forces, _near_modes(modes, complaint), modes.facts)
+        return with_facts_of_scene(answer, subject)
+
+    def figures(self, result: AnsweredComplaint) -> Json:
+        complaint = result.complaint
+        within = zip(complaint.within, result.forces, strict=True)
+        return figures_of(
+            ComplaintFigures,
+            complaint,
+            result.facts,
+            words=sentence(complaint),
+            tolerance_percent=100.0 * complaint.tolerance,
+            passing=[(force, _figures_of(each, complaint)) for each, force in within],
+            nearest=[
+                (OrderForce("", np.nan), _figures_of(each, complaint)) for each in complaint.passing[:5]
+            ],
+            modes=[(mode, {"distance_percent": 100.0 * mode.distance}) for mode in result.modes],
+        )
+
+
+def _figures_of(each: Passing, complaint: Complaint) -> Json:
+    of = each.excitation
+    named = {"kind": of.kind, "name": of.name, "part": of.part}
+    return named | {
+        "harmonic": each.harmonic,
+        "order": each.order,
+        "frequency": complaint.hertz(each.order),
+        "distance_percent": 100.0 * each.distance,
+    }
+
+
+def _leading_speed(complaint: Complaint, subject: TabledScene) -> list[float]:
+    """Return the speed of the shaft that speeds of studies are of, rad/s; none without, or from rest."""
+    if complaint.speed is None or not any(part.speed.extreme for part in subject.scene.references):
+        return []
+    return [complaint.turns[leading_shaft(subject.scene)] * complaint.speed]
+
+
+def _near_modes(modes: ModalAnalysis, complaint: Complaint) -> tuple[NearMode, ...]:
+    """Return the modes at the speed, or at rest, by which the frequency is amplified, most first."""
+    if complaint.frequency is None:
+        return ()
+    names = ("frequency", "damping_ratio", "strain_energy", "kinetic_energy")
+    turning = modes.speed.size > 0
+    columns = (getattr(modes, name)[0] if turning else getattr(modes, f"natural_{name}") for name in names)
+    near = []
+    for hertz, damping, strain, kinetic in zip(*columns, strict=True):
+        if hertz > 0.0:
+            ratio = complaint.frequency / float(hertz)
+            size = 1.0 / np.hypot(1.0 - ratio**2, 2.0 * float(damping) * ratio)
+            if size >= REACH:
+                kind = modes.kind(strain, kinetic)
+                near.append(NearMode(float(hertz), float(damping), 1.0 / ratio - 1.0, float(size), kind))
+    return tuple(sorted(near, key=lambda mode: -mode.amplification))
+
+
+def _forces(system: System, complaint: Complaint, speed: Sequence[float]) -> tuple[OrderForce, ...]:
+    """Return the force of each order that passes on a bearing, by default on the one that feels it most."""
+    orders = [each.order * complaint.per_pitch for each in complaint.within]
+    highest = int(np.ceil(max(orders) - 1e-6))
+    response: ForcedResponse | None = None
+    if speed and highest <= MOST_ORDERS:
+        try:
+            response = forced_response(system, speed, max(highest, 1))
+        except InputError:  # nothing excites, or no common period: the orders are named all the same
+            response = None
+    return tuple(_force(response, order, complaint.bearing) for order in orders)
+
+
+def _force(response: ForcedResponse | None, order: float, bearing: str | None) -> OrderForce:
+    unknown = OrderForce(bearing or "", np.nan)
+    if response is None or not response.bearing:
+        return unknown
+    (at,) = np.nonzero(np.isclose(response.order, order, rtol=1e-6))
+    if not at.size:
+        return unknown
+    size = np.sqrt(np.sum(np.abs(response.bearing_force[:, :3, 0, at[0]]) ** 2, axis=1))
+    b = int(np.argmax(size)) if bearing is None else response.bearing.index(bearing)
+    return OrderForce(response.bearing[b], float(size[b]))
+
+
+RUN = _ComplaintStudy()

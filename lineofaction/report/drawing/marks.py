@@ -1,0 +1,105 @@
+"""What is complained of, marked in every plot whose axes or orders have it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+
+from bounds import engineering
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Figure,
+    FloatArray,
+    Line,
+    Panel,
+    Reference,
+    largest,
+    unit_of,
+)
+from lineofaction.report.drawing.page import Page, Section
+
+NAME = "complaint"
+Marks = Mapping[str, Any]
+"""``axes``: values by the labels of axes; ``order``: by which results count; ``bearing``; ``words``."""
+BOLDER = 2.0
+"""Width of the line of the order, of what it is without a complaint."""
+
+
+def marks_of(result: Any) -> Marks | None:
+    """Return what a result says of the complaint of its scene, None without one."""
+    facts: Mapping[str, Any] = getattr(result, "facts", {})
+    return facts.get(NAME)
+
+
+def shown_orders(order: FloatArray, sizes: FloatArray, count: int, facts: Mapping[str, Any]) -> list[int]:
+    """Return the indices of `count` orders (H,), the largest by sizes (H,), one of them the complaint's."""
+    own = np.flatnonzero(np.isclose(order, facts.get(NAME, {}).get("order", np.nan), rtol=1e-6))
+    return largest(np.where(np.isin(np.arange(sizes.size), own), np.inf, sizes), count)
+
+
+def marked_page(page: Page, marks: Marks) -> Page:
+    """Return a page with the marks in all its plots, and what they stand for in its lead."""
+    sections = tuple(_marked_section(section, marks) for section in page.sections)
+    lead = " ".join(text for text in (page.lead, f"Complaint: {marks['words']}.") if text)
+    return replace(page, lead=lead, sections=sections)
+
+
+def _marked_section(section: Section, marks: Marks) -> Section:
+    return replace(section, figures=tuple(marked(figure, marks) for figure in section.figures))
+
+
+def marked(figure: Figure, marks: Marks) -> Figure:
+    """Return a figure with a line at speed and frequency, and the order's curves bold and named.
+
+    What lies beyond an axis is said in the caption.
+    """
+    panels = tuple(_marked_panel(panel, marks) for panel in figure.content)
+    beyond = dict.fromkeys(text for panel in figure.content for text in _beyond(panel, marks))
+    return replace(figure, content=panels, caption=" ".join([figure.caption, *beyond]))
+
+
+def _marked_panel(panel: Panel, marks: Marks) -> Panel:
+    own = tuple(
+        Reference(f"{NAME}, {engineering(value, 4)} {unit_of(axis.label)}", value, direction, 0.98)
+        for axis, direction, value in _values(panel, marks)
+        if _reaches(panel, axis, direction, value)
+    )
+    name = f"order {marks['order']:.4g}"
+    lines = tuple(_bold(line) if line.name == name else line for line in panel.lines)
+    return replace(panel, references=(*panel.references, *own), lines=lines)
+
+
+def _bold(line: Line) -> Line:
+    return replace(line, name=f"{line.name} ({NAME})", width=BOLDER * line.width)
+
+
+def _values(panel: Panel, marks: Marks) -> list[tuple[Axis, Literal["vertical", "horizontal"], float]]:
+    """Return the axes that have a value of the complaint, with the line across the panel that it is."""
+    axes: tuple[tuple[Axis, Literal["vertical", "horizontal"]], ...]
+    axes = ((panel.x, "vertical"), (panel.y, "horizontal"))
+    return [(axis, way, marks["axes"][axis.label]) for axis, way in axes if axis.label in marks["axes"]]
+
+
+def _reaches(panel: Panel, axis: Axis, direction: str, value: float) -> bool:
+    """Whether a value lies within the limits of an axis, or within its data."""
+    if axis.limits is not None:
+        low, high = axis.limits
+        return low <= value <= high
+    name = "x" if direction == "vertical" else "y"
+    shown = [getattr(line, name) for line in panel.lines]
+    shown += [] if panel.shade is None else [np.ravel(getattr(panel.shade, name))]
+    known = np.concatenate([np.empty(0), *shown])
+    known = known[np.isfinite(known)]
+    return bool(known.size and known.min() <= value <= known.max())
+
+
+def _beyond(panel: Panel, marks: Marks) -> list[str]:
+    """Say which values of the complaint a panel does not reach."""
+    return [
+        f"The {NAME}, {engineering(value, 4)} {unit_of(axis.label)}, lies beyond this axis."
+        for axis, direction, value in _values(panel, marks)
+        if not _reaches(panel, axis, direction, value)
+    ]

@@ -1,0 +1,236 @@
+"""Complaints: the mesh and the harmonic that teeth, ratios and speeds give by hand, and bad questions."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pytest import approx
+
+from dynamics.mechanism.passing import MESH
+from lineofaction.gearbox.convert.complaint import Complaint, complaint_of
+from lineofaction.gearbox.convert.scene import check_scene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.schemas.complaint import ComplaintFields, ComplaintInput, with_options
+from lineofaction.gearbox.schemas.scene import SceneInput
+
+Json = dict[str, Any]
+ROOT = Path(__file__).parents[3]
+ANGLE = math.radians(20.0)
+
+
+def train(*stages: tuple[int, int], idler: bool = False) -> Json:
+    """Return a scene of stages of module 2 mm one behind another; an idler's gear is in both meshes."""
+    shafts, gears, meshes, x = [{"name": "shaft 0"}], [], [], 0.0
+    for k, (pinion, wheel) in enumerate(stages):
+        driver = f"wheel {k - 1}" if idler and k else f"pinion {k}"
+        gears += [] if idler and k else [{"name": driver, "shaft": f"shaft {k}"}]
+        gears.append({"name": f"wheel {k}", "shaft": f"shaft {k + 1}"})
+        x += pinion + wheel
+        shafts.append({"name": f"shaft {k + 1}", "origin_mm": [x, 0.0, 0.0]})
+        stiffness = {
+            "teeth": [pinion, wheel],
+            "base_radius_mm": pinion * math.cos(ANGLE),
+            "working_pressure_angle_deg": 20.0,
+            "face_width_mm": 20.0,
+            "stiffness_n_per_m": {"value": [3e8]},
+        }
+        meshes.append({"name": f"mesh {k}", "driver": driver, "driven": f"wheel {k}", "stiffness": stiffness})
+    last = f"shaft {len(stages)}"
+    return {
+        "run": {"duration_s": 1.0},
+        "shafts": [{"length_mm": 50.0, "diameter_mm": 20.0} | shaft for shaft in shafts],
+        "gears": [{"position_mm": 25.0, "bore_diameter_mm": 20.0} | gear for gear in gears],
+        "meshes": meshes,
+        "drives": [{"name": "motor", "shaft": "shaft 0", "speed_rpm": [1000.0]}],
+        "loads": [{"name": "brake", "shaft": last, "torque_n_m": [10.0]}],
+    }
+
+
+def planetary(held: str = "ring") -> Json:
+    """Return the set of Lin and Parker: sun 27, planets 36, ring 99 teeth; the sun turns."""
+    scene = tomllib.loads((ROOT / "examples/lin_parker_planetary_scene.toml").read_text("utf-8"))
+    scene["drives"] = [
+        {"name": "held", "shaft": held, "speed_rpm": [0.0]},
+        {"name": "motor", "shaft": "sun", "speed_rpm": [1000.0]},
+    ]
+    scene["loads"] = [
+        {"name": "brake", "shaft": "ring" if held == "carrier" else "carrier", "torque_n_m": [10.0]}
+    ]
+    scene.pop("free_rotations", None)
+    return scene
+
+
+def asked(scene: Json, **fields: Any) -> Complaint:
+    """Return the complaint of a scene, all of it checked as every study does."""
+    stated = validated(SceneInput, scene | {"complaint": fields})
+    return complaint_of(stated, check_scene(stated, {}))
+
+
+PAIR, UNIT = train((25, 61)), train((25, 63), (21, 74))
+IDLER = train((30, 45), (45, 60), idler=True)
+AT_40 = {"road_speed_km_h": 40.0, "tire_radius_mm": 310.0}
+# by hand: rev/s of the shaft times teeth times harmonic; planetary: (sun - carrier) 27, carrier = 27/126 sun
+CASES: tuple[tuple[Json, Json, list[str], float], ...] = (
+    # 1000 rpm: 16.667 x 25 = 416.67 Hz
+    (PAIR, {"frequency_hz": 417.0, "speed_rpm": 1000.0}, ["mesh 0 h1"], 416.667),
+    # 3360 rpm: 56 x 25 = 1400 Hz, twice that
+    (PAIR, {"frequency_hz": 2810.0, "speed_rpm": 3360.0}, ["mesh 0 h2"], 2800.0),
+    # speed of the wheel's shaft: 10 x 61 x 3 = 1830 Hz
+    (PAIR, {"frequency_hz": 1800.0, "speed_rpm": 600.0, "shaft": "shaft 1"}, ["mesh 0 h3"], 1830.0),
+    # 40 km/h: 11.111 / (2 pi 0.31) = 5.7045 rev/s x 61 x 4 = 1391.9 Hz
+    (PAIR, {"frequency_hz": 1400.0, **AT_40}, ["mesh 0 h4"], 1391.9),
+    # order 50 of the pinion's shaft is 2 x 25, at any speed
+    (PAIR, {"order": 50.0}, ["mesh 0 h2"], math.nan),
+    # order 61 of the wheel's shaft at 600 rpm: 610 Hz
+    (PAIR, {"order": 61.0, "shaft": "shaft 1", "speed_rpm": 600.0}, ["mesh 0 h1"], 610.0),
+    # 3000 rpm: 50 x 25 = 1250; 50 x 25/63 x 21 = 416.67, three times that is 1250: both, always
+    (UNIT, {"frequency_hz": 1250.0, "speed_rpm": 3000.0}, ["mesh 0 h1", "mesh 1 h3"], 1250.0),
+    # twice 416.67
+    (UNIT, {"frequency_hz": 833.0, "speed_rpm": 3000.0}, ["mesh 1 h2"], 833.333),
+    # 40 km/h, axle 3.2: 18.254 rev/s x 74 = 1350.8 Hz; the first stage 18.254 x 74/21 x 63 = 4052
+    (UNIT, {"frequency_hz": 1370.0, **AT_40, "final_ratio": 3.2}, ["mesh 1 h1"], 1350.8),
+    # an idler: 1000 rpm x 30 = 500 Hz in both its meshes
+    (IDLER, {"frequency_hz": 505.0, "speed_rpm": 1000.0}, ["mesh 0 h1", "mesh 1 h1"], 500.0),
+    # sun 4450 rpm, ring held: carrier 953.57; 3496.43 / 60 x 27 = 1573.4 Hz in both meshes, twice that
+    (
+        planetary(),
+        {"frequency_hz": 3150.0, "speed_rpm": 4450.0, "shaft": "sun"},
+        ["sun mesh h2", "ring mesh h2"],
+        3146.8,
+    ),
+    # carrier 1000 rpm, ring held: 16.667 x 99 = 1650 Hz
+    (
+        planetary(),
+        {"frequency_hz": 1660.0, "speed_rpm": 1000.0, "shaft": "carrier"},
+        ["sun mesh h1", "ring mesh h1"],
+        1650.0,
+    ),
+    # carrier held: a train, 1000 rpm x 27 = 450 Hz
+    (
+        planetary("carrier"),
+        {"frequency_hz": 1340.0, "speed_rpm": 1000.0, "shaft": "sun"},
+        ["sun mesh h3", "ring mesh h3"],
+        1350.0,
+    ),
+)
+
+
+@pytest.mark.parametrize(("scene", "fields", "names", "hertz"), CASES)
+def test_the_mesh_and_the_harmonic_are_those_of_the_table(
+    scene: Json, fields: Json, names: list[str], hertz: float
+) -> None:
+    complaint = asked(scene, **fields)
+    within = complaint.within
+    assert [f"{each.excitation.name} h{each.harmonic}" for each in within] == names
+    assert {each.excitation.kind for each in within} == {MESH}
+    found = complaint.hertz(within[0].order)
+    assert found is None if math.isnan(hertz) else found == approx(hertz, rel=1e-4)
+
+
+def test_orders_are_counted_as_results_count_them() -> None:
+    """Results count by pitches of the first mesh: the second stage's second harmonic is 2/3 of one."""
+    complaint = asked(UNIT, frequency_hz=833.0, speed_rpm=3000.0)
+    assert complaint.marks["order"] == approx(2.0 / 3.0)
+    assert complaint.marks["axes"]["speed of shaft 2, rpm"] == approx(3000.0 * 25 * 21 / (63 * 74))
+    assert complaint.marks["axes"]["frequency, Hz"] == 833.0
+
+
+def with_balls(count: int, diameter_mm: float, pitch_diameter_mm: float) -> Json:
+    row = {"count": count, "diameter_mm": diameter_mm, "pitch_diameter_mm": pitch_diameter_mm}
+    bearing = {"name": "left", "shaft": "shaft 0", "position_mm": 0.0, "ball": row}
+    return PAIR | {"rolling_bearings": [bearing]}
+
+
+def test_a_bearing_is_named_where_no_mesh_passes() -> None:
+    """9 balls of 10 mm on 50 mm: 9 (1 - 0.2) / 2 = 3.6 pass the outer ring a revolution; twice is 120 Hz."""
+    (only,) = asked(with_balls(9, 10.0, 50.0), frequency_hz=121.0, speed_rpm=1000.0).within
+    of = only.excitation
+    assert (of.kind, of.name, of.part, only.harmonic) == ("bearing", "left", "outer ring", 2)
+
+
+def test_a_bearing_is_named_behind_a_mesh_only_where_it_is_nearer() -> None:
+    """22 balls of 6 mm on 60 mm: 22 (1 + 0.1) / 2 = 12.1 pass the inner ring, twice 24.2; the mesh has 25."""
+    scene = with_balls(22, 6.0, 60.0)
+    nearer, farther = (asked(scene, order=order).within for order in (24.4, 24.8))
+    assert [each.excitation.kind for each in nearer] == [MESH, "bearing"]
+    assert nearer[1].order == approx(24.2)
+    assert [each.excitation.kind for each in farther] == [MESH]
+
+
+REFUSED: tuple[tuple[Json, str, str], ...] = (
+    ({"frequency_hz": math.nan, "speed_rpm": 1000.0}, "complaint.frequency_hz", "finite"),
+    ({"frequency_hz": -1400.0, "speed_rpm": 1000.0}, "complaint.frequency_hz", "above 0"),
+    ({"frequency_hz": 0.0, "speed_rpm": 1000.0}, "complaint.frequency_hz", "above 0"),
+    ({"frequency_hz": 1e9, "speed_rpm": 1000.0}, "complaint.frequency_hz", "100000"),
+    ({"frequency_hz": 1.4, "speed_rpm": 1000.0}, "complaint.frequency_hz", "1400"),
+    ({"frequency_hz": 1400.0}, "complaint.speed_rpm", "road_speed_km_h"),
+    ({"speed_rpm": 1000.0}, "complaint.frequency_hz", "order"),
+    ({"frequency_hz": 1400.0, "speed_rpm": 0.0}, "complaint.speed_rpm", "above 0"),
+    ({"frequency_hz": 1400.0, "speed_rpm": math.inf}, "complaint.speed_rpm", "finite"),
+    ({"frequency_hz": 1400.0, "order": 3.0, "speed_rpm": 1000.0}, "complaint.order", "frequency_hz"),
+    ({"frequency_hz": 1400.0, "speed_rpm": 1e3, **AT_40}, "complaint.speed_rpm", "road_speed_km_h"),
+    ({"frequency_hz": 1400.0, "road_speed_km_h": 40.0}, "complaint.tire_radius_mm", "given"),
+    ({"frequency_hz": 1400.0, **AT_40, "road_speed_km_h": 0.4}, "complaint.road_speed_km_h", "km/h"),
+    ({"frequency_hz": 1400.0, **AT_40, "tire_radius_mm": 0.31}, "complaint.tire_radius_mm", "310"),
+    ({"frequency_hz": 1400.0, **AT_40, "final_ratio": -1.0}, "complaint.final_ratio", "above 0"),
+    ({"frequency_hz": 1400.0, **AT_40, "final_shaft": "axle"}, "complaint.final_shaft", "shaft 1"),
+    ({"frequency_hz": 400.0, "speed_rpm": 1e3, "shaft": "axle"}, "complaint.shaft", "shaft 0"),
+    ({"frequency_hz": 417.0, "speed_rpm": 1e3, "bearing": "left"}, "complaint.bearing", "none"),
+    ({"frequency_hz": 417.0, "speed_rpm": 1e3, "tire_radius_mm": 310.0}, "complaint.tire_radius_mm", "road"),
+    ({"order": 0.0}, "complaint.order", "above 0"),
+    # 416.67 and 833.33 Hz pass: 550 is 24 % and 52 % off
+    ({"frequency_hz": 550.0, "speed_rpm": 1000.0}, "complaint.frequency_hz", "416.7 Hz, off by -24 %"),
+    ({"order": 33.0}, "complaint.order", 'harmonic 1 of mesh "mesh 0" at order 25'),
+    (
+        {"frequency_hz": 417.0, "speed_rpm": 1000.0, "microphone_mm": [0.0, 0.0, 1000.0]},
+        "complaint.microphone_mm",
+        "no housing",
+    ),
+)
+
+
+@pytest.mark.parametrize(("fields", "field", "said"), REFUSED)
+def test_a_bad_question_is_one_sentence_that_names_its_field(fields: Json, field: str, said: str) -> None:
+    with pytest.raises(BadInput) as error:
+        asked(PAIR, **fields)
+    (fault,) = error.value.faults
+    assert fault.field == field
+    assert said in f"{fault.bound} {fault.suggestion}"
+
+
+def test_a_speed_beyond_a_table_of_torques_is_refused() -> None:
+    table = {
+        "name": "motor",
+        "shaft": "shaft 0",
+        "kind": "table",
+        "speed_rpm": [0.0, 2000.0],
+        "torque_n_m": [1.0, 2.0],
+    }
+    scene = PAIR | {"speed_torques": [table]}
+    assert asked(scene, frequency_hz=417.0, speed_rpm=1000.0).within
+    with pytest.raises(BadInput) as error:
+        asked(scene, frequency_hz=417.0 * 2.5, speed_rpm=2500.0)
+    (fault,) = error.value.faults
+    assert fault.field == "complaint.speed_rpm"
+    assert "0 to 2000 rpm" in fault.bound
+
+
+def test_the_shaft_of_the_wheels_is_asked_for_where_several_are_loaded() -> None:
+    second = {"name": "pump", "shaft": "shaft 0", "torque_n_m": [1.0]}
+    scene = PAIR | {"loads": [*PAIR["loads"], second]}
+    with pytest.raises(BadInput, match="2 shafts have a load"):
+        asked(scene, frequency_hz=1400.0, **AT_40)
+    assert asked(scene, frequency_hz=1400.0, **AT_40, final_shaft="shaft 1").within
+
+
+def test_an_option_replaces_what_it_is_an_alternative_to() -> None:
+    own = ComplaintInput(frequency_hz=1400.0, **AT_40)
+    assert with_options(own, ComplaintFields(order=25.0)) == {"order": 25.0, **AT_40}
+    by_shaft = with_options(own, ComplaintFields(speed_rpm=1000.0))
+    assert by_shaft == {"frequency_hz": 1400.0, "speed_rpm": 1000.0}
+    assert with_options(own, ComplaintFields(road_speed_km_h=50.0))["tire_radius_mm"] == 310.0

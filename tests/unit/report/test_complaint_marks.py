@@ -1,0 +1,75 @@
+"""Marks of a complaint: lines at its speed and frequency, its order bold, and words for what is beyond."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from lineofaction.report.drawing.figure import Axis, Figure, HeatMap, Line, Panel
+from lineofaction.report.drawing.marks import marked, marks_of, shown_orders
+
+MARKS: dict[str, Any] = {
+    "axes": {"speed of input, rpm": 1200.0, "speed of output, rpm": 600.0, "frequency, Hz": 400.0},
+    "order": 2.0 / 3.0,
+    "words": "400 Hz",
+}
+SPEED = np.array([300.0, 3000.0])
+
+
+def drawn(panel: Panel) -> Figure:
+    return marked(Figure("k", "title", "Caption.", "words", (panel,)), MARKS)
+
+
+def references(figure: Figure) -> list[tuple[str, float, str]]:
+    return [(one.direction, one.value, one.label) for one in figure.content[0].references]
+
+
+def test_speed_and_frequency_cross_where_the_complaint_is() -> None:
+    line = Line("mesh orders", SPEED, SPEED / 3.0, "#000")
+    figure = drawn(Panel(Axis.over("speed of input, rpm", SPEED), Axis("frequency, Hz"), (line,)))
+    assert references(figure) == [
+        ("vertical", 1200.0, "complaint, 1200 rpm"),
+        ("horizontal", 400.0, "complaint, 400 Hz"),
+    ]
+    assert figure.caption == "Caption."
+
+
+def test_the_speed_is_that_of_the_shaft_of_the_axis() -> None:
+    line = Line("force", SPEED, SPEED, "#000")
+    figure = drawn(Panel(Axis("speed of output, rpm"), Axis("force, N"), (line,)))
+    assert references(figure) == [("vertical", 600.0, "complaint, 600 rpm")]
+
+
+def test_a_complaint_beyond_an_axis_is_said_and_not_drawn() -> None:
+    shade = HeatMap(SPEED, np.array([10.0, 20.0]), np.ones((2, 2)), "level, dB", 1.0)
+    figure = drawn(Panel(Axis.over("speed of input, rpm", SPEED), Axis("frequency, Hz"), shade=shade))
+    assert references(figure) == [("vertical", 1200.0, "complaint, 1200 rpm")]
+    assert figure.caption == "Caption. The complaint, 400 Hz, lies beyond this axis."
+
+
+def test_only_the_order_of_the_complaint_is_bold() -> None:
+    lines = tuple(Line(name, SPEED, SPEED, "#000", width=1.0) for name in ("order 0.6667", "order 1"))
+    panel = drawn(Panel(Axis("time, s"), Axis("force, N"), lines)).content[0]
+    assert [(line.name, line.width) for line in panel.lines] == [
+        ("order 0.6667 (complaint)", 2.0),
+        ("order 1", 1.0),
+    ]
+    assert panel.references == ()
+
+
+def test_the_order_of_the_complaint_is_among_those_shown() -> None:
+    order, sizes = np.array([2.0 / 3.0, 1.0, 4.0 / 3.0, 2.0]), np.array([0.1, 3.0, 1.0, 2.0])
+    assert shown_orders(order, sizes, 2, {}) == [1, 3]
+    assert shown_orders(order, sizes, 2, {"complaint": MARKS}) == [0, 1]
+
+
+def test_a_result_without_a_complaint_has_no_marks() -> None:
+    @dataclass(frozen=True)
+    class Result:
+        facts: dict[str, Any] = field(default_factory=dict)
+
+    assert marks_of(Result()) is None
+    assert marks_of(Result({"complaint": MARKS})) is MARKS
+    assert marks_of(object()) is None
