@@ -12,9 +12,9 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (39_559, 703),
-    ("dynamics",): (41_719, 788),
-    ("lineofaction.gearbox",): (21_950, 434),
-    ("lineofaction.report",): (10_545, 200),
+    ("dynamics",): (41_861, 793),
+    ("lineofaction.gearbox",): (22_626, 449),
+    ("lineofaction.report",): (10_838, 204),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_710, 67),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_340, 150),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 769
+MOST_FILES = 776
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
