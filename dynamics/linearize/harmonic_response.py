@@ -12,6 +12,7 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.checks import integer, one_of, positive
 from dynamics.errors import SolveError
+from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import SAMPLES
 from dynamics.linearize.load_harmonics import load_multiples
 from dynamics.linearize.operating_speeds import LARGEST_DENOMINATOR
@@ -21,6 +22,7 @@ from dynamics.linearize.steady_vibration import (
     Excited,
     Steady,
     excited,
+    harmonics_of,
     solved,
     steady_vibration,
     swept_vibration,
@@ -37,6 +39,10 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 GRID = ("speed", "order")
 
 
+def _none() -> ComplexArray:
+    return np.empty((0, 0), dtype=complex)
+
+
 @dataclass(frozen=True)
 class HarmonicResponse:
     """Steady vibration at S speeds in H harmonics of the common period; m meshes, b bearings, n freedoms.
@@ -48,8 +54,10 @@ class HarmonicResponse:
     ----------
     order : (H,) array
         Those that are excited; fractions where tables or trains repeat after several pitches.
-    static_transmission_error : (m, H) complex array
-        At the static mesh forces.
+    static_transmission_error, load_moment, friction_force : (m, H) complex array
+        At the static mesh forces: what excites. The moment is that of the load as it travels, about the axis
+        of a misalignment, the friction that along the sliding at the pitch point; 0 of flanks without such
+        rows. Empty in older files.
     bearing_force : (b, 3, S, H) complex array
         On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m.
     least_mesh_force : (m, S) array
@@ -85,6 +93,12 @@ class HarmonicResponse:
         metadata=stored("N", "least of mean and harmonics together", "mesh", "speed")
     )
     residual: float = 0.0
+    load_moment: ComplexArray = field(
+        default_factory=_none, metadata=stored("N m", "complex amplitude of the excitation", "mesh", "order")
+    )
+    friction_force: ComplexArray = field(
+        default_factory=_none, metadata=stored("N", "complex amplitude of the excitation", "mesh", "order")
+    )
 
     @property
     def in_contact(self) -> BoolArray:
@@ -157,6 +171,7 @@ def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicRespo
     dte = np.moveaxis(steady.displacement @ system.arrays.direction[system.driving_rows].T, 2, 0)
     mesh_force, mean = _mesh_force(at, steady), linear.equilibrium.mesh_force
     order = steady.harmonics / at.period.counted
+    moment, friction = _static_loads(at, steady.harmonics)
     return HarmonicResponse(
         mesh=tuple(mesh.name for mesh in system.scene.meshes),
         bearing=system.supports.name,
@@ -173,7 +188,26 @@ def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicRespo
         mean_stiffness=np.array([cycle.tangent[0, 0] for cycle in at.cycles]),
         least_mesh_force=mean[:, None] + extremes(mesh_force, order)[0],
         residual=steady.residual,
+        load_moment=moment,
+        friction_force=friction,
     )
+
+
+def _static_loads(at: Excited, harmonics: IntArray) -> ComplexArray:
+    """Return the harmonics of moments (N m) and friction (N) of the static mesh forces, (2, m, H)."""
+    elements, found = at.system.arrays.elements, np.zeros((2, len(at.cycles), harmonics.size), dtype=complex)
+    laws = elements.laws.spatial_flank
+    for mesh, cycle in enumerate(at.cycles):
+        if elements.law[mesh] != Law.SPATIAL_FLANK:
+            continue
+        entry = elements.entry[mesh]
+        tilting, _, sliding = (int(row) for row in laws.row[entry])
+        if laws.per_face[entry] > 0.0:
+            moment = -cycle.force[:, tilting] / laws.per_face[entry]
+            found[0, mesh] = harmonics_of(at, mesh, moment, harmonics)
+        if sliding > 0:
+            found[1, mesh] = harmonics_of(at, mesh, cycle.force[:, sliding], harmonics)
+    return found
 
 
 def _mesh_force(at: Excited, steady: Steady) -> ComplexArray:

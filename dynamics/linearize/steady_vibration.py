@@ -302,24 +302,22 @@ def flank_forces(
     cycles = at.cycles
     static = np.zeros((len(cycles), harmonics.size), dtype=complex)
     force = np.zeros((cycles[-1].rows.stop if cycles else 0, harmonics.size), dtype=complex)
-    for f, (mesh, cycle) in enumerate(zip(at.system.scene.meshes, cycles, strict=True)):
-        grid = at.period.pitches[f], mesh.table.period, mesh.position_offset, harmonics
-        static[f] = _harmonics_of(cycle.static_error, *grid)
+    for f, cycle in enumerate(cycles):
+        static[f] = harmonics_of(at, f, cycle.static_error, harmonics)
         for p, row in enumerate(range(cycle.rows.start, cycle.rows.stop)):
             if kind == "static_error":
-                held = (
-                    _harmonics_of(cycle.force[:, p], *grid) if p else 0.0
-                )  # the first force is the same all along
+                # the first force is the same all along
+                held = harmonics_of(at, f, cycle.force[:, p], harmonics) if p else 0.0
                 force[row] = cycle.tangent[p, 0] * static[f] - held
             else:
-                force[row] = -_harmonics_of(cycle.blocked[:, p], *grid)
+                force[row] = -harmonics_of(at, f, cycle.blocked[:, p], harmonics)
     return static, force
 
 
-def _harmonics_of(
-    values: FloatArray, pitches: int, period: int, offset: float, harmonics: IntArray
-) -> ComplexArray:
-    """Amplitudes (H,) in multiples of the common period of a function of position, known over its table."""
+def harmonics_of(at: Excited, index: int, values: FloatArray, harmonics: IntArray) -> ComplexArray:
+    """Return amplitudes (H,) in multiples of the common period of values (T,) over the table of a mesh."""
+    mesh, pitches = at.system.scene.meshes[index], at.period.pitches[index]
+    period, offset = mesh.table.period, mesh.position_offset
     lines = 2.0 * np.fft.rfft(values) / values.size
     amplitudes = np.zeros(harmonics.size, dtype=complex)
     cycles = abs(pitches) // period

@@ -186,6 +186,8 @@ def _response(figures: Json, result: Any, table: SteDatabase) -> Pairs:
     mesh = figures["meshes"]["mesh"]
     yield mesh["static_transmission_error_um"], (1e6 * np.abs(result.static_transmission_error[0])).tolist()
     yield mesh["mesh_force_n"], np.abs(result.mesh_force[0]).T.tolist()
+    yield mesh["load_moment_n_m"], np.abs(result.load_moment[0]).tolist()
+    yield mesh["friction_force_n"], np.abs(result.friction_force[0]).tolist()
     bearing = figures["bearings"]["input at 0"]["force_n"]
     yield np.shape(bearing), np.shape(mesh["mesh_force_n"])
 

@@ -134,6 +134,19 @@ def _bearing_force(response: ForcedResponse) -> FloatArray:
     return np.asarray(np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1)))
 
 
+def _excitation_table(response: ForcedResponse) -> Table:
+    """List what excites, of the orders of the largest mesh forces."""
+    columns = "mesh", "order", "transmission error, nm", "moment of the load, N m", "friction, N"
+    excitations = (1e9 * response.static_transmission_error, response.load_moment, response.friction_force)
+    rows = []
+    for mesh, name in enumerate(response.mesh):
+        size = np.max(np.abs(response.mesh_force[mesh]), axis=0)
+        for h in shown_orders(response.order, size, SHOWN_ORDERS, response.facts):
+            sizes = (number(abs(each[mesh, h]), 3) for each in excitations)
+            rows.append((name, f"{response.order[h]:.4g}", *sizes))
+    return Table("What excites: amplitudes at the static mesh forces", columns, tuple(rows))
+
+
 def _peak_table(response: ForcedResponse) -> Table:
     every = peaks(response)
     listed = [
@@ -194,6 +207,8 @@ def _figures(response: ForcedResponse) -> tuple[Figure, ...]:
 
 def _text(response: ForcedResponse) -> Iterator[Table | str]:
     yield _peak_table(response)
+    if response.load_moment.size:
+        yield _excitation_table(response)
     parting = response.speed[~response.in_contact] / RPM
     if parting.size:
         where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"

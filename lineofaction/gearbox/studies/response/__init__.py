@@ -34,6 +34,8 @@ class ResponseFigures(Figures):
         mean_force_n: float
         mean_stiffness_n_per_um: float
         static_transmission_error_um: list[float]
+        load_moment_n_m: list[float]
+        friction_force_n: list[float]
         dynamic_transmission_error_um: list[list[float]]
         mesh_force_n: list[list[float]]
         least_mesh_force_n: list[float]

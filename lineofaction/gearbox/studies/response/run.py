@@ -44,6 +44,8 @@ def _mesh(row: Row) -> tuple[Any, ...]:
     """Return a mesh with its amplitudes by order, then by speed."""
     return row, {
         "static_transmission_error": np.abs(row.static_transmission_error),
+        "load_moment": np.abs(row.load_moment),
+        "friction_force": np.abs(row.friction_force),
         "dynamic_transmission_error": np.abs(row.dynamic_transmission_error).T,
         "mesh_force": np.abs(row.mesh_force).T,
     }

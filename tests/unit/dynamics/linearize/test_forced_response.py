@@ -12,6 +12,7 @@ from geared_scenes import (
     gear_pair_scene,
     spring_table,
     square_wave_table,
+    with_bushings,
     with_gear,
     with_mesh,
 )
@@ -35,8 +36,10 @@ from dynamics.linearize.harmonic_response import parametric_response
 from dynamics.linearize.load_harmonics import load_harmonics
 from dynamics.linearize.steady_vibration import excited
 from dynamics.loads import TimeLaw
+from dynamics.mechanism.bodies import build_rotor
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate
+from fe_contact.ste import ForceTable
 
 STIFFNESS, RIPPLE = 4e8, 1e-7
 MASS = 1.1344291072112745e-3 / BASE_RADIUS**2
@@ -257,3 +260,26 @@ def test_a_system_without_freedoms_has_no_modes_and_its_run_is_whole(tmp_path):
     with pytest.raises(InputError, match="freedoms = 0"):
         modal_analysis(assemble(alone), [0.0])
     assert simulate(alone).modes["frequency"] == []
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_load_that_travels_on_a_rigid_rotor_shakes_its_two_bearings(sense):
+    """k b M/(2 k b^2 - I w^2) on bearings k at b to both sides of the mesh, M = F z of the load's arm z."""
+    spring, far, arm = spring_table(STIFFNESS), 8e7, 2e-3
+    wave = arm * np.cos(2.0 * np.pi * spring.position)[:, None] * np.ones(spring.level.size)
+    table = ForceTable(**vars(spring), load_arm=wave[None, None])
+    scene = gear_pair_scene(table, speed=TimeLaw.constant(sense * 900.0 * RPM))
+    scene = with_bushings(scene, radial_stiffness=far, radial_damping=0.0, axial_damping=0.0)
+    system = assemble(replace(with_mesh(scene, damping=0.0), effects={"tilt": "on"}))
+    found = harmonic_response(system, np.array([60.0, 95.0, 700.0]), 3)
+    moment, rotor, b = found.load_moment[0, 0], build_rotor(scene, scene.shafts[0]), 0.1
+    assert abs(moment) == pytest.approx(found.mean_force[0] * arm, rel=1e-5)  # a cubic between knots
+    assert np.abs(found.static_transmission_error).max() < 1e-18
+    omega = 2.0 * np.pi * found.frequency[:, 0]
+    expected = far * b * abs(moment) / np.abs(2.0 * far * b**2 - rotor.inertia.transverse * omega**2)
+    force = found.bearing_force[:, :3, :, 0]
+    for left, right in ((0, 1), (2, 3)):  # alike rotors
+        np.testing.assert_allclose(np.sqrt(np.sum(np.abs(force[left]) ** 2, axis=0)), expected, rtol=1e-9)
+        np.testing.assert_allclose(force[left], -force[right], rtol=0.0, atol=1e-9 * expected.max())
+    np.testing.assert_allclose(np.abs(found.friction_force), 0.0)
