@@ -6,13 +6,14 @@ import math
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
+from functools import cache
 from typing import Any, Self
 
 import numpy as np
 
 from bounds.bound import Bound, Choice, above, at_least, from_to, one_of
 from bounds.declared import declarations
-from bounds.text import Reader, SiNote, Text, Words
+from bounds.text import Reader, Text, Words
 from bounds.types import FloatArray
 
 
@@ -63,6 +64,12 @@ def inside(part: str) -> Iterator[None]:
         yield
     except RefusedValue as error:
         raise error.within(part) from None
+
+
+@cache
+def _left_out(kind: type) -> frozenset[str]:
+    """Return the fields of a dataclass whose default is None."""
+    return frozenset(entry.name for entry in fields(kind) if entry.default is None)
 
 
 @dataclass(frozen=True)
@@ -130,10 +137,10 @@ class Checks:
 
     def declared_fields(self, thing: Any, beyond: Collection[str] = ()) -> None:
         """Check declared fields, each alone; what is left out passes, what is in `beyond` if it is finite."""
-        defaults = {entry.name: entry.default for entry in fields(thing)}
+        may_miss = _left_out(type(thing))
         for field, fact in declarations(type(thing)).items():
-            value, advice = getattr(thing, field), SiNote(f"In {fact.unit}, for example {fact.example}.")
-            if value is None and defaults[field] is None:
+            value = getattr(thing, field)
+            if value is None and field in may_miss:
                 continue
             limits = fact.limits
             if field in beyond:
@@ -143,7 +150,7 @@ class Checks:
             elif limits is not None and limits.integer:
                 self.integer(field, value, int(limits.low or 0), int(limits.high or 0))
             elif limits is not None:
-                self.in_bound(field, value, limits, advice if fact.unit else "")
+                self.in_bound(field, value, limits, fact.advice if fact.unit else "")
 
     def increasing(
         self, field: str, values: Sequence[float] | FloatArray, suggestion: Words = ""

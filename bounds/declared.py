@@ -6,13 +6,14 @@ import inspect
 from collections.abc import Hashable, Mapping
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from enum import Flag, StrEnum, auto
-from functools import cache
+from functools import cache, cached_property
 from types import MappingProxyType
 from typing import Any, TypeVar, cast
 
 from annotated_types import Interval
 
 from bounds.bound import Bound, Choice
+from bounds.text import SiNote
 
 Thing = TypeVar("Thing")
 
@@ -106,13 +107,18 @@ class Declared:
     later: bool = False
     with_unit: bool = False
 
-    @property
+    @cached_property
     def limits(self) -> Bound | Choice | None:
         """What is accepted, as a message says it."""
         if not isinstance(self.bound, Interval):
             return self.bound
         unit = self.unit if self.with_unit else ""
         return Bound.of(self.bound, integer=self.kind is Kind.COUNT, unit=unit)
+
+    @cached_property
+    def advice(self) -> SiNote:
+        """What to try where a value is refused."""
+        return SiNote(f"In {self.unit}, for example {self.example}.")
 
 
 def declared(default: Any, declaration: Declared) -> Any:

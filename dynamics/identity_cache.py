@@ -12,33 +12,50 @@ KEPT = 8
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+Parts = Callable[[Any], tuple[Any, ...]]
+
+
+def _itself(data: Any) -> tuple[Any, ...]:
+    """Return the parts of data: those of a tuple, of all else itself."""
+    return data if type(data) is tuple else (data,)
+
+
 class _Identity:
-    """Data by its identity: arrays have no hash."""
+    """Data by the identity of its parts: arrays have no hash."""
 
-    __slots__ = ("data",)
+    __slots__ = ("data", "parts")
 
-    def __init__(self, data: Any) -> None:
-        self.data = data
+    def __init__(self, data: Any, parts: tuple[Any, ...]) -> None:
+        self.data, self.parts = data, tuple(map(id, parts))
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Identity) and self.data is other.data
+        return isinstance(other, _Identity) and self.parts == other.parts
 
     def __hash__(self) -> int:
-        return id(self.data)
+        return hash(self.parts)
 
 
 def identity_cached(make: Function) -> Function:
     """Return `make`, which then returns the same object for the same data and equal further arguments.
 
-    Data and results are frozen: who changes an array in place gets what was made before.
+    A tuple is the same if its parts are. Data and results are frozen: who changes an array in place gets what
+    was made before.
     """
+    return cached_by(_itself)(make)
 
-    @lru_cache(maxsize=KEPT)
-    def kept(identity: _Identity, *args: Any) -> Any:
-        return make(identity.data, *args)
 
-    @wraps(make)
-    def of(data: Any, *args: Any) -> Any:
-        return kept(_Identity(data), *args)
+def cached_by(parts: Parts) -> Callable[[Function], Function]:
+    """Return `identity_cached` for data that is the same if the `parts` of it are that `make` reads."""
 
-    return cast(Function, of)
+    def cached(make: Function) -> Function:
+        @lru_cache(maxsize=KEPT)
+        def kept(identity: _Identity, *args: Any) -> Any:
+            return make(identity.data, *args)
+
+        @wraps(make)
+        def of(data: Any, *args: Any) -> Any:
+            return kept(_Identity(data, parts(data)), *args)
+
+        return cast(Function, of)
+
+    return cached

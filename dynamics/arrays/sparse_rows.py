@@ -10,10 +10,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 
 from dynamics.kernels.compiled import inner, inner_sums
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import BoolArray, FloatArray, IntArray
 
 # Modal freedoms: amplitudes that force elements alone couple, and their compiled products.
 
@@ -185,10 +184,8 @@ def sparse_matrices(
 
     `others` (..., n) are all further rows that act on its freedoms, or that these act on.
     """
-    joined = connected_components((mass != 0.0) | (damping != 0.0) | (stiffness != 0.0))[1]
-    coupling = joined[:, None] == joined
-    alone = connected_components(mass != 0.0)[1]
-    mobility = np.where(alone[:, None] == alone, np.linalg.inv(mass), 0.0)
+    coupling = _chained((mass != 0.0) | (damping != 0.0) | (stiffness != 0.0))
+    mobility = np.where(_chained(mass != 0.0), np.linalg.inv(mass), 0.0)
     either = (damping != 0.0) | (stiffness != 0.0)
     modal = _modal_freedoms(mass, damping, stiffness, direction, np.concatenate([turn, *others]))
     return SparseMatrices(
@@ -201,6 +198,20 @@ def sparse_matrices(
         coupling=_sparse_rows(coupling.astype(float)),
         modal=modal,
     )
+
+
+def _chained(entries: BoolArray) -> BoolArray:
+    """Return which freedoms a chain of `entries` (n, n) joins, either way, (n, n); each is joined to itself.
+
+    Each pass doubles the length of the chains.
+    """
+    joined = entries | entries.T | np.eye(len(entries), dtype=bool)
+    while True:
+        reached = joined.astype(float)
+        further = reached @ reached > 0.0
+        if np.array_equal(further, joined):
+            return joined
+        joined = further
 
 
 _NONE = np.zeros((0, 0))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from dynamics.checks import one_of
 from dynamics.effects.effect import Effect, MeshEffect, RotorEffect, Verdict
 from dynamics.effects.registry import EFFECTS, LEFT_OUT
-from dynamics.identity_cache import identity_cached
+from dynamics.identity_cache import cached_by
 from dynamics.mechanism.additions import Additions
 from dynamics.mechanism.mechanism import Mechanism, gather_mechanism
 from dynamics.scene.scene import Scene
@@ -156,15 +156,28 @@ class EffectLedger:
         return {"entries": entries, "left_out": dict(LEFT_OUT)}
 
 
-@identity_cached
 def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechanism:
     """Gather the mechanism of `scene`; every effect that is not switched off checks it.
+
+    Scenes that differ by their outputs alone share it.
 
     Raises
     ------
     InputError
         If a choice is unknown, parts do not fit each other, or an effect cannot do without a part.
     """
+    mechanism = _shared_mechanism(scene, registry)
+    if mechanism.scene.outputs is scene.outputs:
+        return mechanism
+    return replace(mechanism, scene=replace(mechanism.scene, outputs=scene.outputs))
+
+
+def _without_outputs(scene: Scene) -> tuple[object, ...]:
+    return tuple(part for name, part in vars(scene).items() if name != "outputs")
+
+
+@cached_by(_without_outputs)
+def _shared_mechanism(scene: Scene, registry: tuple[Effect, ...]) -> Mechanism:
     names = [effect.name for effect in registry]
     for name, choice in scene.effects.items():
         one_of("effects", name, names)

@@ -155,6 +155,11 @@ def _decimated(table: _Table, every: int) -> _Table:
 
 def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
     """Lay out `tables`, each with misalignment and center-distance axes of length 1."""
+    return _packed(tuple(tables))
+
+
+@identity_cached
+def _packed(tables: tuple[MeshTable, ...]) -> PackedTables:
     laid_out = [_laid_out(table) for table in tables]
     parts = {id(part): part for part in laid_out}
     index = {key: k for k, key in enumerate(parts)}

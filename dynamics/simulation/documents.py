@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -35,7 +35,7 @@ from dynamics.results import EnergyAudit, StepStatistics
 from dynamics.results.checks import Check
 from dynamics.results.histories import checked_series, filtered, histories, unfiltered
 from dynamics.results.run_checks import RunChecks
-from dynamics.scene import Integration
+from dynamics.scene import Integration, Scene
 from dynamics.shafts import ElasticShaft
 from dynamics.simulation.violations import FIRST, EarlierRun
 from dynamics.types import FloatArray, Json
@@ -122,12 +122,12 @@ def _resolved_case(system: System) -> Json:
     scene, flanks = system.scene, system.flanks
 
     def parts(*names: str) -> dict[str, Any]:
-        return {name: [asdict(part) for part in getattr(scene, name)] for name in names}
+        return {name: getattr(scene, name) for name in names}
 
     case = {
         **parts("shafts", "gears", "discs"),
-        "bushings": [asdict(part) for rotor in system.rotors for part in rotor.bushings],
-        "planet_bearings": [asdict(part) for rotor in system.rotors for part in rotor.planet_bearings],
+        "bushings": [part for rotor in system.rotors for part in rotor.bushings],
+        "planet_bearings": [part for rotor in system.rotors for part in rotor.planet_bearings],
         "meshes": [_mesh(system, index) for index in range(len(scene.meshes))],
         **parts("drives", "speed_torques", "forces", "unbalances"),
         "housings": [vars(housing) for housing in scene.housings],  # as it is: matrices of 10^4 numbers
@@ -146,13 +146,20 @@ def _resolved_case(system: System) -> Json:
         "gravity": list(scene.gravity),
         "effects": dict(scene.effects),
         "tolerance": scene.tolerance,
-        "outputs": {**asdict(scene.outputs), "sample_rate": system.sampling.rate},
-        "integration": asdict(scene.integration),
+        "outputs": replace(scene.outputs, sample_rate=system.sampling.rate),
+        "integration": scene.integration,
         "freedoms": list(system.freedoms.name),
         "damping_reach": [float(value) for value in flanks.law.reach[: len(scene.meshes)]],
     }
-    plain: Json = json.loads(json.dumps(case, default=float))  # lists for tuples, as a file gives them back
+    plain: Json = json.loads(json.dumps(case, default=_plain))  # lists for tuples, as a file gives them back
     return plain
+
+
+def _plain(part: Any) -> Any:
+    """Return the fields of a dataclass, of a number of NumPy the number."""
+    if is_dataclass(part):
+        return {each.name: getattr(part, each.name) for each in fields(part)}
+    return float(part)
 
 
 def _mesh(system: System, index: int) -> Json:
@@ -301,7 +308,7 @@ def documents(
     before: EarlierRun = FIRST,
     choice: MethodChoice | None = None,
 ) -> dict[str, Any]:
-    """Return the fields of `RunResult` that are no series.
+    """Return the fields of `RunResult` that are no series and not `described`.
 
     `before` is the run that this one repeats, `choice` that of its method; None: it never started.
     """
@@ -332,9 +339,21 @@ def documents(
         | _bearings_at_rest(system)
         | system.corrections,
         "case": _resolved_case(system),
-        "warnings": [finding.to_json() for finding in scene_findings(decided.scene)],
-        "modes": _modes_of_run(system),
     }
+
+
+Description = Callable[[System, Scene], dict[str, Any]]
+
+
+def described(system: System, scene: Scene) -> dict[str, Any]:
+    """Return the fields of `RunResult` that need no run: what is implausible about a scene, and its modes."""
+    warnings = [finding.to_json() for finding in scene_findings(scene)]
+    return {"warnings": warnings, "modes": _modes_of_run(system)}
+
+
+def undescribed(_system: System, _scene: Scene) -> dict[str, Any]:
+    """Return none of them: a study takes the responses of a run alone."""
+    return {}
 
 
 def _known_influences(decided: Decided, system: System, end: Ending) -> Mapping[str, Influence]:

@@ -33,6 +33,8 @@ from dynamics.results.run_checks import RunChecks
 from dynamics.results.run_result import SAMPLED, RunFile, attributes
 from dynamics.scene import Integration, Scene
 from dynamics.simulation.documents import (
+    Description,
+    described,
     documents,
     finer,
     measured_error,
@@ -172,13 +174,18 @@ def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | No
     return run_scene(scene, progress, cancel)
 
 
-def run_scene(scene: Scene, progress: Progress | None = None, cancel: Cancel | None = None) -> RunResult:
-    """Run `scene` as `simulate` does; what is implausible about it is in the result alone."""
+def run_scene(
+    scene: Scene,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    describe: Description = described,
+) -> RunResult:
+    """Run `scene` as `simulate` does; what is implausible about it is in the result alone, if `describe`d."""
     decided, before = decide_effects(scene), FIRST
-    run = _run(decided, before, None, progress, cancel)
+    run = _run(decided, before, None, progress, cancel, describe)
     while needed := _needed_effects(scene, run.result.effect_ledger, run.result):
         before = before.then(needed, sum(run.result.receipt["seconds"].values()))
-        run = _run(before.of(decided), before, run, progress, cancel)
+        run = _run(before.of(decided), before, run, progress, cancel, describe)
     if progress is not None:
         progress(1.0, "done")
     return run.result
@@ -246,6 +253,7 @@ def _run(
     earlier: _Run | None,
     progress: Progress | None,
     cancel: Cancel | None,
+    describe: Description,
 ) -> _Run:
     """Run a scene once; `before` says what of the run `earlier` it repeats."""
     start, taken = _Start.of(decided), None
@@ -260,7 +268,7 @@ def _run(
     start.clock.book("integration", trajectory.taken)
     with start.clock.stage("error_estimate"):
         error = _error_estimate(system, start.rest, trajectory, progress)
-    result = _result(system, trajectory, start.clock, error, decided, before, start.choice)
+    result = _result(system, trajectory, start.clock, error, decided, before, start.choice, describe)
     if not trajectory.status.usable:
         reached = f"at {trajectory.end:.6g} s of {decided.scene.duration:g} s"
         raise SolveError(f"run ended early, {trajectory.status.name.lower()} {reached}", result)
@@ -275,13 +283,14 @@ def _result(
     decided: Decided,
     before: EarlierRun = FIRST,
     choice: MethodChoice | None = None,
+    describe: Description = described,
 ) -> RunResult:
     checks = RunChecks(system, [NeglectedChecks(decided)])
     with clock.stage("outputs"):
         parts = _checked_series(system, trajectory.states.rows, trajectory.samples, checks)
         series = _joined(parts, trajectory.samples)
     about = documents(system, trajectory, checks, clock, error, decided, before, choice)
-    return RunResult(**series, **about)
+    return RunResult(**series, **about, **describe(system, decided.scene))
 
 
 def _checked_series(
@@ -480,7 +489,7 @@ def _write(
             for series in _checked_series(system, leg.spool.states, end.samples, checks):
                 file.append(series)
         about = documents(system, end, checks, start.clock, error, decided, before, start.choice)
-        file.publish(attributes(about))
+        file.publish(attributes(about | described(system, decided.scene)))
     return dict(about["effect_ledger"])
 
 

@@ -15,7 +15,7 @@ from dynamics.checks import integer, within
 from dynamics.errors import DynamicsError, InputError
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.scene import Scene
-from dynamics.simulation import run_scene, simulate_to_file
+from dynamics.simulation import run_scene, simulate_to_file, undescribed
 from dynamics.study.design import Design
 from dynamics.study.responses import Response, responses_of
 from dynamics.types import FloatArray, IntArray, Json
@@ -256,7 +256,8 @@ def _run_point(task: StudyTask, values: tuple[float, ...]) -> _PointResult:
     try:
         scene = task.scene(values)
         stored = {"energy_audit": False, "displacements": False, "accelerations": False}
-        run = run_scene(replace(scene, outputs=replace(scene.outputs, receipt=task.receipt, **stored)))
+        lean = replace(scene, outputs=replace(scene.outputs, receipt=task.receipt, **stored))
+        run = run_scene(lean, describe=undescribed)
         integration = float(run.receipt["seconds"]["integration"])
         figures, errors = responses_of(run, task.responses, task.start)
         reason = ""

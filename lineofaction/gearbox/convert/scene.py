@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -381,10 +381,8 @@ def dynamic_scene(
     with boundary_errors():
         tables: dict[str, MeshTable] = {name: table.force_table() for name, table in databases.items()}
     housings = [housing_of(i, part, reduced.get(part.name)) for i, part in enumerate(scene.housings)]
-    moving = _moving(scene, facts, tables, housings)
     bent = {name for name, database in databases.items() if _has_bent_shafts(database)}
-    meshes = tuple(replace(mesh, bent_shafts=mesh.name in bent) for mesh in moving.meshes)
-    return replace(moving, meshes=meshes)
+    return _moving(scene, facts, tables, housings, bent)
 
 
 def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> Scene:
@@ -413,17 +411,20 @@ def _moving(
     facts: Mapping[str, PairFacts],
     tables: Mapping[str, MeshTable],
     housings: Sequence[Housing],
+    bent: Set[str] = frozenset(),
 ) -> Scene:
     """Return the scene with all its planets, its parts checked one by one, together, and in motion.
 
-    Facts and tables are those of the meshes with a database.
+    Facts and tables are those of the meshes with a database, `bent` the names of those whose tables have the
+    bending of their shafts in them.
     """
     closed = _closed_forms(scene)
     facts = {**facts, **{name: pair for name, (pair, _) in closed.items()}}
     tables = {**tables, **{name: table for name, (_, table) in closed.items()}}
-    meshes = tuple(
+    stated = (
         _mesh(i, mesh, tables[mesh.name], facts[mesh.name].base_pitch) for i, mesh in enumerate(scene.meshes)
     )
+    meshes = tuple(replace(mesh, bent_shafts=mesh.name in bent) for mesh in stated)
     one_of_each = _assembled(scene, facts, meshes, housings)
     with named(""):
         check_motion(one_of_each)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import difflib
 import json
 import re
@@ -172,7 +171,7 @@ class VariedScene:
 
     def inputs(self, values: Mapping[str, float]) -> SceneInput:
         """Return the scene file at values of the factors; raises `BadInput`."""
-        table = copy.deepcopy(self._table)
+        table = self._table()
         for name, value in values.items():
             for place in self.places[name]:
                 with_value(table, place, value)
@@ -189,7 +188,6 @@ class VariedScene:
             known = self._last[name] = key, make()
         return known[1]
 
-    @cached_property
     def _table(self) -> Json:
         return dict(json.loads(self.written))
 
@@ -200,7 +198,7 @@ class VariedScene:
     @cached_property
     def _condensed(self) -> dict[str, CondensedPair]:
         """Gears with their compliance, of the meshes whose flanks change."""
-        inputs = scene_of_json(self._table)
+        inputs = scene_of_json(self._table())
         changed = {mesh_of_case(place) for name in self._of_flanks for place in self.places[name]}
         return {mesh.name: self._compliance_of(mesh) for k, mesh in enumerate(inputs.meshes) if k in changed}
 
