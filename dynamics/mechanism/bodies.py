@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TypeVar, overload
 
 import numpy as np
@@ -61,12 +62,12 @@ class Rotor:
     curved: tuple[tuple[FloatArray, float], ...] = ()
     elastic: ElasticShaft | None = None
 
-    @property
+    @cached_property
     def supports(self) -> tuple[Bushing | PlanetBearing, ...]:
         """All supports."""
         return (*self.bushings, *self.planet_bearings)
 
-    @property
+    @cached_property
     def elastic_count(self) -> int:
         """Number of elastic coordinates."""
         return 0 if self.elastic is None else self.elastic.mass.size
@@ -85,19 +86,19 @@ class Rotor:
         """Axial distance of `support` from the center of mass, m."""
         return float(self.shaft.origin[2] + support.position - self.center[2])
 
-    @property
+    @cached_property
     def radial_stiffness(self) -> float:
         """Sum over the supports, N/m."""
         plain = sum(support.radial_stiffness for support in self.supports)
         return plain + sum(0.5 * float(k[0, 0] + k[1, 1]) for k, _ in self._matrices)
 
-    @property
+    @cached_property
     def axial_stiffness(self) -> float:
         """Sum over the supports, N/m."""
         plain = sum(support.axial_stiffness for support in self.supports)
         return plain + sum(float(k[2, 2]) for k, _ in self._matrices)
 
-    @property
+    @cached_property
     def elastic_lever(self) -> float:
         """Axial distance from the center of mass to where a radial force does not tilt the shaft, m."""
         moment = sum(support.radial_stiffness * self.lever(support) for support in self.supports)
@@ -105,7 +106,7 @@ class Rotor:
             moment += 0.5 * float((k[0, 0] + k[1, 1]) * lever + k[0, 4] - k[1, 3])
         return moment / self.radial_stiffness if self.radial_stiffness > 0.0 else 0.0
 
-    @property
+    @cached_property
     def tilt_stiffness(self) -> float:
         """Moment per tilt about the elastic center, N m/rad."""
         arms = [(b.radial_stiffness, self.lever(b) - self.elastic_lever) for b in self.supports]
@@ -116,7 +117,7 @@ class Rotor:
             for k, a in added
         )
 
-    @property
+    @cached_property
     def _matrices(self) -> list[tuple[FloatArray, float]]:
         """Stiffness on top of the isotropic one, with levers; means of x and y are used."""
         stated = [(b.added_stiffness, self.lever(b)) for b in self.supports if b.stiffness is not None]
@@ -268,6 +269,16 @@ class Bodies(Sequence[Rotor]):
 
     def __len__(self) -> int:
         return len(self.rotors)
+
+    @cached_property
+    def first_of_housings(self) -> int:
+        """Number of freedoms of the rotors: the amplitudes of the housings come behind them."""
+        return 6 * len(self) + sum(rotor.elastic_count for rotor in self)
+
+    @cached_property
+    def freedoms(self) -> int:
+        """Number of freedoms of all bodies."""
+        return self.first_of_housings + sum(housing.stiffness.size for housing in self.housings)
 
     def housing_of(self, bearing: str) -> int | None:
         """Return the index of the housing that moves under `bearing`; None: nothing does."""

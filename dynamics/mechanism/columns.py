@@ -19,8 +19,7 @@ Wrench = Callable[[FloatArray], FloatArray]
 
 def column_count(rotors: Bodies) -> int:
     """Return N, the number of freedoms of all bodies."""
-    housings = sum(housing.stiffness.size for housing in rotors.housings)
-    return _first_of_housings(rotors) + housings
+    return rotors.freedoms
 
 
 def elastic_columns(rotors: Bodies, index: int) -> slice:
@@ -32,12 +31,8 @@ def elastic_columns(rotors: Bodies, index: int) -> slice:
 def housing_columns(rotors: Bodies, index: int) -> slice:
     """Return where the amplitudes of the housing `index` are among the freedoms."""
     sizes = [housing.stiffness.size for housing in rotors.housings[: index + 1]]
-    first = _first_of_housings(rotors) + sum(sizes[:index])
+    first = rotors.first_of_housings + sum(sizes[:index])
     return slice(first, first + sizes[index])
-
-
-def _first_of_housings(rotors: Bodies) -> int:
-    return 6 * len(rotors) + sum(rotor.elastic_count for rotor in rotors)
 
 
 def rigid_motion(arm: FloatArray) -> FloatArray:
@@ -120,7 +115,7 @@ def mass_terms(rotors: Bodies) -> tuple[FloatArray, FloatArray]:
         if rotor.elastic is not None:
             own = elastic_columns(rotors, index)
             diagonal[own], turned[own, index] = rotor.elastic.mass, rotor.elastic.turned
-    diagonal[_first_of_housings(rotors) :] = 1.0
+    diagonal[rotors.first_of_housings :] = 1.0
     return diagonal, turned
 
 
