@@ -47,6 +47,7 @@ from benchmarks import (
     solvers_3d,
     static_table,
     step_cost,
+    study_cost,
     tolerance_kept,
     worker_cost,
 )
@@ -69,6 +70,7 @@ SUBJECTS = (
     corrected_plane,
     dynamics_cost,
     step_cost,
+    study_cost,
     bearing_rate,
     solvers_3d,
     housing_modes,

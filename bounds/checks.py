@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Hashable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from functools import cache
-from typing import Any, Self
+from typing import Any, Self, cast
 
 import numpy as np
 
@@ -67,7 +67,7 @@ def inside(part: str) -> Iterator[None]:
 
 
 @cache
-def _left_out(kind: type) -> frozenset[str]:
+def _left_out(kind: Any) -> frozenset[str]:
     """Return the fields of a dataclass whose default is None."""
     return frozenset(entry.name for entry in fields(kind) if entry.default is None)
 
@@ -137,7 +137,7 @@ class Checks:
 
     def declared_fields(self, thing: Any, beyond: Collection[str] = ()) -> None:
         """Check declared fields, each alone; what is left out passes, what is in `beyond` if it is finite."""
-        may_miss = _left_out(type(thing))
+        may_miss = _left_out(cast("Hashable", type(thing)))
         for field, fact in declarations(type(thing)).items():
             value = getattr(thing, field)
             if value is None and field in may_miss:

@@ -31,8 +31,6 @@ from numba.extending import (
 )
 from numba.np.arrayobj import make_array, populate_array
 
-from dynamics.types import FloatArray, IntArray
-
 WORD = ir.IntType(64)
 SCALARS = {bool: types.boolean, int: types.int64, float: types.float64}
 ITEMS = {"d": types.float64, "l": types.int64, "q": types.int64, "?": types.boolean}
@@ -117,7 +115,7 @@ def _lay_out(value: Any, words: list[int]) -> _AddressType:
     return kind
 
 
-def _address_of(array: FloatArray | IntArray) -> int:
+def _address_of(array: Any) -> int:
     """Return where the items of an array begin."""
     if not array.flags.c_contiguous:
         raise TypeError(f"compiled functions take C-contiguous arrays, not strides of {array.strides}")

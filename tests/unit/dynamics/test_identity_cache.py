@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from dynamics.identity_cache import KEPT, identity_cached
+from dynamics.identity_cache import KEPT, cached_by, identity_cached
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,20 @@ def test_a_result_is_made_once_for_each_object_and_argument() -> None:
     assert total(equal, 2.0) is not total(one, 2.0)
     assert total(one, 3.0) == [3.0]
     assert [data is one for data in calls] == [True, False, True]
+
+
+def test_a_tuple_is_the_same_if_its_parts_are() -> None:
+    one, other = Frozen([1.0]), Frozen([1.0])
+    joined = identity_cached(lambda parts: [*parts])
+    assert joined((one, other)) is joined((one, other))
+    assert joined((one, other)) is not joined((one, one))
+
+
+def test_data_is_the_same_if_the_parts_that_are_read_are() -> None:
+    values = [1.0]
+    total = cached_by(lambda data: (data.values,))(lambda data: [sum(data.values)])
+    assert total(Frozen(values)) is total(Frozen(values))
+    assert total(Frozen(values)) is not total(Frozen([1.0]))
 
 
 def test_an_error_is_raised_each_time() -> None:

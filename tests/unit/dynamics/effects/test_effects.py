@@ -12,10 +12,21 @@ from planetary_scenes import BEARING_STIFFNESS, PRESSURE_ANGLE, driven_scene, pu
 
 from dynamics.assembly.assemble import assemble
 from dynamics.effects import EFFECTS, LEFT_OUT, RotorEffect
+from dynamics.effects.ledger import mechanism_of
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
 from dynamics.loads import AppliedForce
 from dynamics.shafts import Inertia
+
+
+def test_scenes_that_differ_by_their_outputs_share_a_mechanism():
+    scene = gear_pair_scene()
+    lean = replace(scene, outputs=replace(scene.outputs, energy_audit=False))
+    whole, other = mechanism_of(scene), mechanism_of(lean)
+    assert other.rotors is whole.rotors and other.scene.outputs is lean.outputs
+    assert whole.scene.outputs is scene.outputs
+    longer = replace(scene, duration=2.0 * scene.duration)
+    assert mechanism_of(longer).scene.duration == longer.duration
 
 
 def kinds(scene, shaft="output"):

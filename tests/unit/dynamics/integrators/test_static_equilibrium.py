@@ -10,8 +10,9 @@ from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table, square_wav
 from housed_pair import MODES, NAMES, SEATS, SPEED, housed_pair
 from planetary_scenes import planetary_scene, published_set
 from scipy.linalg import expm
+from scipy.sparse.csgraph import connected_components
 
-from dynamics.arrays.sparse_rows import LEAST, TOGETHER, _modal_freedoms, sparse_matrices
+from dynamics.arrays.sparse_rows import LEAST, TOGETHER, _chained, _modal_freedoms, sparse_matrices
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError
 from dynamics.forces import RollingContact
@@ -257,3 +258,13 @@ def test_series_are_the_same_whether_amplitudes_are_filtered_or_not(tmp_path):
     simulate_to_file(replace(scene, outputs=Outputs(sample_rate=10e3)), path)
     kept = type(runs[0]).from_netcdf(path)
     np.testing.assert_array_equal(kept.bearing_force, runs[0].bearing_force)
+
+
+def test_freedoms_that_a_chain_joins_are_those_of_a_graph() -> None:
+    random = np.random.default_rng(4)
+    for size, entries in ((1, 0), (2, 1), (40, 20), (40, 40), (40, 200)):
+        joined = np.zeros((size, size), dtype=bool)
+        joined[random.integers(0, size, entries), random.integers(0, size, entries)] = True
+        part = connected_components(joined)[1]
+        np.testing.assert_array_equal(_chained(joined), part[:, None] == part)
+    assert _chained(np.eye(100, k=1, dtype=bool)).all()  # one chain through all

@@ -91,6 +91,14 @@ def test_numbers_of_numpy_are_numbers():
     np.testing.assert_array_equal(found[0, :12], found[1, :12])
 
 
+def test_arrays_that_may_not_be_written_have_an_address_too():
+    value, found = whole(), np.zeros((2, 13))
+    read(value, found[0])
+    value.inside.table.flags.writeable = False
+    read(by_address(value), found[1])
+    np.testing.assert_array_equal(found[0], found[1])
+
+
 def test_an_address_does_not_outlive_its_process():
     whole_tuple = pickle.loads(pickle.dumps(by_address(whole())))
     found = np.zeros(13)

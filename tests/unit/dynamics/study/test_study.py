@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table
+from geared_scenes import (
+    BASE_RADIUS,
+    gear_pair_scene,
+    spring_table,
+    square_wave_table,
+    with_bushings,
+    with_mesh,
+)
 
 from dynamics.errors import InputError, SolveError
 from dynamics.loads import TimeLaw
@@ -42,6 +49,7 @@ RESPONSES = (
     Response("dynamic_factor"),
     Response("contact_loss"),
 )
+TABLE = square_wave_table()
 TORQUE, SPEED = "torque", "speed"
 
 
@@ -88,6 +96,39 @@ def test_figures_are_those_of_single_runs_to_the_last_bit(found: Study) -> None:
     for values, figures in zip(found.value, found.figure, strict=True):
         run = simulate(Pairs().scene({TORQUE: values[0], SPEED: values[1]}))  # with all its checks
         np.testing.assert_array_equal(figures, responses_of(run, RESPONSES)[0])
+
+
+@dataclass(frozen=True)
+class Supported:
+    """Pairs on bearings of a stiffness (N/m), with a damping ratio and an offset of their mesh."""
+
+    def scene(self, values: Mapping[str, float]) -> Scene:
+        stiffness, ratio, offset = (values[name] for name in ("stiffness", "ratio", "offset"))
+        pair = with_bushings(gear_pair_scene(TABLE, duration=0.01), radial_stiffness=stiffness)
+        return with_mesh(pair, damping_ratio=ratio, position_offset=offset)
+
+    def expensive(self, values: Mapping[str, float]) -> Mapping[str, float]:
+        return {}
+
+
+def test_every_run_of_a_batch_is_the_run_alone_bit_by_bit() -> None:
+    levels = {"stiffness": (8e7, 2e8), "ratio": (0.05, 0.1), "offset": (0.0, 0.3)}
+    design = Design({name: Levels(values) for name, values in levels.items()})
+    batch = study(task(design, Supported()), design)
+    assert np.ptp(batch.figure[:, 1]) > 0.0 and batch.usable == 8
+    for values, figures in zip(batch.value, batch.figure, strict=True):
+        alone = Supported().scene(dict(zip(levels, map(float, values), strict=True)))
+        fresh = replace(alone, meshes=tuple(replace(m, table=replace(m.table)) for m in alone.meshes))
+        np.testing.assert_array_equal(figures, responses_of(simulate(fresh), RESPONSES)[0])
+
+
+def test_a_study_describes_no_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    def described(*_: object) -> None:
+        raise AssertionError("modes of a run whose responses alone are taken")
+
+    monkeypatch.setattr("dynamics.simulation.documents.natural_modes", described)
+    design = Design({TORQUE: Levels((100.0,))})
+    assert study(task(design), design).usable == 1
 
 
 def test_threads_give_the_same_bits(found: Study) -> None:
