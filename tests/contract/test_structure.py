@@ -12,14 +12,14 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (39_559, 703),
-    ("dynamics",): (41_893, 794),
-    ("lineofaction.gearbox",): (22_630, 449),
+    ("dynamics",): (41_987, 797),
+    ("lineofaction.gearbox",): (22_629, 449),
     ("lineofaction.report",): (10_853, 204),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_710, 67),
     ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_340, 150),
+    ("bounds", "host", "model_studies"): (4_353, 150),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 776
