@@ -18,6 +18,7 @@ from benchmarks.marked_section import replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.stored_runs import finest_run, table_run
 from fe_contact import AllowedError
+from fe_contact.ste.curve import METHOD
 from fe_contact.types import FloatArray
 
 PAGE, SECTION = Path(__file__).parents[1] / "docs" / "lab" / "accuracy.md", "tolerance"
@@ -41,7 +42,8 @@ class ToleranceRun:
     met : bool
         What its receipt says.
     stated, true : float
-        Largest stated and true error of mean and peak-to-peak over the loads, in parts of what is allowed.
+        Largest stated and true error of mean and peak-to-peak over the loads, in parts of what is allowed;
+        of what is stated the part that a tolerance bounds: without `METHOD`, which no mesh lowers.
     seconds : float
         CPU seconds of all passes.
     least_stated, least_true : float
@@ -87,7 +89,7 @@ def assess(case: PairCase) -> ToleranceRun:
     """Hold a run under the tolerance, and the levels, against the true values."""
     run, exact = table_run(case, tolerance=ALLOWED.relative), finest_run(case)
     tried = [run, *(table_run(case, level=level) for level in LEVELS)]
-    stated = [one.seconds for one in tried if used(one.stated(), one.value) <= 1.0]
+    stated = [one.seconds for one in tried if used(one.stated(METHOD), one.value) <= 1.0]
     true = [one.seconds for one in tried if used(one.value - exact, exact) <= 1.0]
     last = next(one for one in run.receipt["passes"] if one["kept"])
     across = f", {last['slices']} slices" if last["slices"] > 1 else ""
@@ -96,7 +98,7 @@ def assess(case: PairCase) -> ToleranceRun:
         last["level"] + across,
         len(run.receipt["passes"]),
         bool(run.receipt["tolerance"]["met"]),
-        used(run.stated(), run.value),
+        used(run.stated(METHOD), run.value),
         used(run.value - exact, exact),
         run.seconds,
         min(stated, default=float("nan")),
