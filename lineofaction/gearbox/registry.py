@@ -16,6 +16,7 @@ from lineofaction.gearbox.study import F, P, StudyOf, T, Takes
 if TYPE_CHECKING:
     from lineofaction.gearbox.schemas.figures import Figures
     from lineofaction.gearbox.studies.ablate.run import RUN as ABLATE
+    from lineofaction.gearbox.studies.change.run import RUN as CHANGE
     from lineofaction.gearbox.studies.complaint.run import RUN as COMPLAINT
     from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
     from lineofaction.gearbox.studies.flank.run import RUN as FLANK
@@ -43,6 +44,7 @@ RESULTS = "/v1/results"
 
 __all__ = [
     "ablate",
+    "change",
     "complaint",
     "deflect",
     "flank",
@@ -199,6 +201,16 @@ class Studies:
         version="1",
         further=(".csv",),
     )
+    change = StudyOf(
+        _as(_scene_and_file, lambda: CHANGE),
+        "Change of flanks",
+        "Compare the flanks",
+        "Compare two flanks of a mesh by what is heard of a scene over one sample of tolerances: levels by "
+        "order and load before and after, which pairs get louder, which deviation decides.",
+        "scene.toml change.toml -o change.html",
+        kind="change",
+        stages=(("analysis", 0.2), ("transfer functions", 0.1), ("radiation", 0.1), ("pairs", 0.6)),
+    )
     modes = StudyOf(
         _scene(lambda: MODES),
         "Modes",
@@ -314,6 +326,7 @@ class Studies:
 
 flank = Studies.flank
 ablate = Studies.ablate
+change = Studies.change
 frontier = Studies.frontier
 sensitivity = Studies.sensitivity
 root_stress = Studies.root_stress

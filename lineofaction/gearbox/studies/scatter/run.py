@@ -27,7 +27,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
 
     def check(self, case: CheckedCase, inputs: Inputs) -> None:
         with boundary_errors():
-            _ = case.request(_drawn, inputs).checked
+            _ = case.request(tolerance_request, inputs).checked
 
     def normalized(self, case: CheckedCase, inputs: Inputs) -> Json:
         """Return all inputs; refuse a sample too large for a job."""
@@ -40,7 +40,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         """Sample the pairs of a case; in a plane model helix slopes do not deviate."""
         with boundary_errors():
             run = means.analysis
-            return sampled(case.request(_drawn, inputs), run)
+            return sampled(case.request(tolerance_request, inputs), run)
 
     def _derived(self, study: ToleranceStudy) -> Json:
         widths = study.asked["tolerances"]
@@ -55,7 +55,8 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         }
 
 
-def _drawn(checked: CheckedCase, inputs: Inputs) -> ToleranceRequest:
+def tolerance_request(checked: CheckedCase, inputs: Inputs) -> ToleranceRequest:
+    """Return the pair of a case with the tolerances of its class; in a plane model helix slopes do not deviate."""
     pair, case, load = checked.pair, checked.case, checked.case.load
     tolerances = iso1328_tolerances(
         pair,

@@ -1,0 +1,115 @@
+"""Two flanks of a mesh, the speeds and loads at which they are heard, and the tolerances of both."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from lineofaction.gearbox.schemas.case import Case
+from lineofaction.gearbox.schemas.figures import Figures, Json, Part
+from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row
+from lineofaction.gearbox.schemas.studied import OverOrders
+from lineofaction.gearbox.studies.scatter import Inputs as ToleranceInputs
+
+MOST_LOADS = 16
+PAIRS = 200
+
+LoadFactor = Annotated[float, Field(gt=0.0, le=1e6)]
+
+
+class HeardInput(BoundaryModel):
+    """What is compared: a quantity, and what is made of it over the speeds."""
+
+    quantity: Literal["sound_power", "bearing_force"] | None = Field(
+        default=None,
+        description="Sound power of the housings in dB(A) re 1 pW, or force on bearings in dB re 1 N; left out: "
+        "sound power where a housing has a surface",
+        examples=["bearing_force"],
+    )
+    bearing: Name | None = Field(
+        default=None,
+        description="Bearing whose force is compared; left out: all, their mean squares added",
+        examples=["input left"],
+    )
+    over_speeds: Literal["worst", "energy_mean"] = Field(
+        default="worst", description="The loudest speed, or the mean of the power", examples=["energy_mean"]
+    )
+
+
+class Inputs(OverOrders):
+    """The flanks before and after, and how they are compared."""
+
+    after: Case = Field(description="Case with the flanks after the change; its pair is that of the scene")
+    before: Case | None = Field(
+        default=None, description="Case with the flanks before it; left out: the case of the mesh in the scene"
+    )
+    mesh: Name | None = Field(
+        default=None,
+        description="Mesh of the scene whose flanks they are; left out: the only one with a case",
+        examples=["mesh"],
+    )
+    load_factors: Row[LoadFactor] = Field(
+        default=(1.0,),
+        min_length=1,
+        max_length=MOST_LOADS,
+        description="Factors on the loads of the scene at t = 0, each a load case",
+        examples=[[0.25, 0.5, 1.0]],
+    )
+    heard: HeardInput = Field(default=HeardInput(), description="What is compared")
+    tolerances: ToleranceInputs = Field(
+        default=ToleranceInputs(samples=PAIRS),
+        description="Tolerances of both designs and the sample, drawn once: each pair takes two contact "
+        "solutions, 0.4 to 2 CPU s each in three dimensions",
+    )
+    requirement_db: float | None = Field(
+        default=None,
+        ge=-300.0,
+        le=300.0,
+        description="Highest level of all orders together that 95 % of the pairs may have after the change, "
+        "under every load case",
+        examples=[72.0],
+    )
+
+
+class QuantileFigures(Part):
+    """A level of all pairs: the nominal one, and what 5, 50 and 95 % of the pairs are below."""
+
+    nominal_db: float
+    low_db: float
+    median_db: float
+    high_db: float
+
+
+class ChangeFigures(Figures):
+    """Levels before and after by load case, then by order ("all": all of them together)."""
+
+    class LoadCaseFigures(Part):
+        """A load case by the torque on the driving gear of the mesh."""
+
+        class LineFigures(Part):
+            """An order of the mesh, or all orders together."""
+
+            order: str
+            before: QuantileFigures
+            after: QuantileFigures
+            change: QuantileFigures
+            louder_share: float
+
+        torque_n_m: float
+        lines: list[LineFigures]
+        influence_on_change: dict[str, float]
+        influence_after: dict[str, float]
+
+    mesh: str
+    quantity: str
+    unit: str
+    over_speeds: str
+    verdict: str
+    met: bool | None
+    requirement_db: float | None
+    pairs: int
+    load_cases: list[LoadCaseFigures]
+    louder: list[str]
+    parting: list[str]
+    cost: Json

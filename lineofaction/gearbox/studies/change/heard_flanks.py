@@ -1,0 +1,198 @@
+"""Levels of a scene by the flanks of one of its meshes: transfer functions once, then a table each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.acoustics import ElementalRadiators
+from dynamics.assembly.assemble import System, assemble
+from dynamics.linearize.flank_transfer import FlankTransfer, flank_transfer
+from dynamics.linearize.operating_speeds import common_period
+from dynamics.loads import TimeLaw
+from dynamics.noise import SoundModel, estimated_radiation, kept_radiation
+from dynamics.noise.transferred_quantities import BearingForce, QuantityForm, SoundPower
+from dynamics.scene import Scene
+from dynamics.types import FloatArray
+from fe_contact.analysis.live.condensed_pair import CondensedPair
+from fe_contact.errors import InputError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.evaluator import least_deviation
+from fe_contact.microgeometry.scatter import MISALIGNMENT
+from fe_contact.microgeometry.variables import figure, modified
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.convert.housings import FOLDER
+from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
+from lineofaction.gearbox.studies.change import HeardInput, Inputs
+from lineofaction.gearbox.studies.change.result import ALL
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.units import RPM
+
+BEARING_FORCE, SOUND_POWER = "bearing_force", "sound_power"
+UNITS = {BEARING_FORCE: "dB re 1 N", SOUND_POWER: "dB(A) re 1 pW"}
+
+
+class FlankLevels(NamedTuple):
+    """Levels (L, K), dB, and by what share of the mesh force flanks part (L,), 0: not at all."""
+
+    level: FloatArray
+    parting: FloatArray
+
+
+@dataclass(frozen=True)
+class _LoadCase:
+    """A load case: its transfer functions, the form of what is heard, and the lines of its harmonics.
+
+    `lines` is (K, H): 1 where a harmonic of the common period belongs to a line.
+    """
+
+    factor: float
+    transfer: FlankTransfer
+    form: QuantityForm
+    lines: FloatArray
+
+    def levels(self, system: System, over_speeds: str) -> tuple[FloatArray, float]:
+        """Return levels (K,) of flanks, dB, and by what share of the mesh force they part."""
+        flanks = self.transfer.excitation(system)
+        power = self.form.weighted(self.transfer.inputs(flanks)) @ self.lines.T
+        heard = power.max(axis=0) if over_speeds == "worst" else power.mean(axis=0)
+        least = self.transfer.response(flanks).least_mesh_force.min(axis=1)
+        apart = np.max(-least / np.abs(flanks.mean_force), initial=0.0)
+        return self.form.decibels(heard), float(apart)
+
+
+@dataclass(frozen=True)
+class HeardFlanks:
+    """A scene in which flanks of one mesh are heard.
+
+    Attributes
+    ----------
+    bodies : CondensedPair
+        Of the mesh: both designs are flanks on them.
+    torque : (L,) array
+        On its driving gear, N m.
+    """
+
+    subject: TabledScene
+    mesh: str
+    bodies: CondensedPair
+    over_speeds: str
+    load_cases: tuple[_LoadCase, ...]
+    torque: FloatArray
+
+    def table(self, pair: ParallelAxes, misalignment: float = 0.0) -> SteDatabase:
+        """Return the table of flanks, at a misalignment beside that of the scene, m."""
+        known = self.subject.databases[self.mesh]
+        force = np.union1d(known.force, known.support_force)
+        torques = np.asarray(pair.torque(force[force <= self.bodies.largest_load * (1.0 + 1e-9)]))
+        skew, change = float(known.misalignment[0]), float(known.center_distance_change[0])
+        return self.bodies.table(pair, torques, skew + misalignment, change)
+
+    def levels(self, table: SteDatabase) -> FlankLevels:
+        """Return the levels with a table of the mesh."""
+        scene = _scene_with(self.subject, self.mesh, table)
+        found = [
+            case.levels(assemble(_loaded(scene, case.factor)), self.over_speeds) for case in self.load_cases
+        ]
+        level, parting = zip(*found, strict=True)
+        return FlankLevels(np.stack(level), np.array(parting))
+
+    def of_pair(self, pair: ParallelAxes, names: Sequence[str], deviation: FloatArray) -> FlankLevels:
+        """Return the levels of a design that deviates by (d,), m; no material is removed below zero."""
+        figures, misalignment = {}, 0.0
+        for name, value in zip(names, deviation.tolist(), strict=True):
+            if name == MISALIGNMENT:
+                misalignment = value
+            else:
+                own = figure(pair, name)
+                figures[name] = own + max(value, least_deviation(own, name))
+        return self.levels(self.table(modified(pair, figures), misalignment))
+
+
+def heard_flanks(
+    subject: TabledScene, mesh: str, inputs: Inputs, bodies: CondensedPair, table: SteDatabase, means: Means
+) -> HeardFlanks:
+    """Solve the transfer functions of a scene under every load case, about the flanks of a table."""
+    scene = _scene_with(subject, mesh, table)
+    systems = [assemble(_loaded(scene, factor)) for factor in inputs.load_factors]
+    index = [part.name for part in scene.meshes].index(mesh)
+    speed, transfers = np.array(inputs.speed_rpm) * RPM, []
+    for done, system in enumerate(systems):
+        period = common_period(system)
+        if not period.pitches[index]:
+            raise InputError("mesh", mesh, "one that turns")
+        orders = math.ceil(inputs.orders * abs(period.pitches[index]) / period.counted)
+        transfers.append(flank_transfer(system, speed, orders, cache=means.home / FOLDER))
+        means.report("transfer functions", (done + 1) / len(systems))
+    model = _sound_model(subject, scene, transfers[0].frequency, inputs.heard, means)
+    cases = []
+    for factor, system, transfer in zip(inputs.load_factors, systems, transfers, strict=True):
+        step = abs(common_period(system).pitches[index])
+        own = step * np.arange(1, inputs.orders + 1)
+        lines = np.vstack([np.ones(transfer.harmonics.size), own[:, None] == transfer.harmonics])
+        cases.append(_LoadCase(factor, transfer, _form(transfer, model, inputs.heard), lines))
+    force = np.array([transfer.excitation(own).mean_force[index] for transfer, own in zip(transfers, systems, strict=True)])
+    torque = force * subject.databases[mesh].facts.base_radius[0]
+    return HeardFlanks(subject, mesh, bodies, inputs.heard.over_speeds, tuple(cases), torque)
+
+
+def line_names(orders: int) -> tuple[str, ...]:
+    """Return the names of the lines: all orders together, then each."""
+    return (ALL, *map(str, range(1, orders + 1)))
+
+
+def quantity_of(subject: TabledScene, heard: HeardInput) -> str:
+    """Return the quantity that is heard: sound power where a housing has a surface, unless it is stated."""
+    sounds = any(body.surface is not None for body in subject.housings.values())
+    return heard.quantity or (SOUND_POWER if sounds and heard.bearing is None else BEARING_FORCE)
+
+
+def _scene_with(subject: TabledScene, mesh: str, table: SteDatabase) -> Scene:
+    return dynamic_scene(subject.inputs, {**subject.databases, mesh: table}, subject.housings)
+
+
+def _loaded(scene: Scene, factor: float) -> Scene:
+    """Return a scene whose loads at t = 0 are multiplied; its flanks carry what that brings."""
+    if factor == 1.0:
+        return scene
+    loads = (
+        replace(load, torque=TimeLaw.constant(factor * float(load.torque(0.0)))) for load in scene.loads
+    )
+    meshes = (replace(part, technique="variable_torque", nominal_force=None) for part in scene.meshes)
+    return replace(scene, loads=tuple(loads), meshes=tuple(meshes))
+
+
+def _sound_model(
+    subject: TabledScene, scene: Scene, hertz: FloatArray, heard: HeardInput, means: Means
+) -> SoundModel:
+    """Return what radiates, with the estimate of its radiation."""
+    if quantity_of(subject, heard) != SOUND_POWER:
+        return SoundModel(scene, {}, {})
+    bodies = {name: body for name, body in subject.housings.items() if body.surface is not None}
+    radiation = {
+        name: estimated_radiation(
+            body,
+            kept_radiation(
+                body,
+                ElementalRadiators(),
+                hertz.ravel(),
+                cache=means.home / FOLDER,
+                progress=means.report,
+                workers=means.workers,
+            ),
+        )
+        for name, body in bodies.items()
+    }
+    return SoundModel(scene, bodies, radiation)
+
+
+def _form(transfer: FlankTransfer, model: SoundModel, heard: HeardInput) -> QuantityForm:
+    if model.housings:
+        return SoundPower().form(transfer, model)
+    names = transfer.bearing if heard.bearing is None else (heard.bearing,)
+    first, *others = (BearingForce(name).form(transfer, model) for name in names)
+    return replace(first, matrix=sum((own.matrix for own in others), first.matrix))

@@ -1,0 +1,166 @@
+"""What a change of flanks brings: levels of the same sample of pairs before and after it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from bounds.types import Json
+from fe_contact.types import FloatArray
+from model_studies import in_unit
+from model_studies.spread import rank_correlation
+
+ALL = "all"
+"""The line of all orders together."""
+LOW, MEDIAN, HIGH = 0.05, 0.5, 0.95
+"""Quantiles of the band of a level."""
+AUDIBLE = 0.1
+"""dB; a change of less is none."""
+
+
+@dataclass(frozen=True)
+class DesignLevels:
+    """Levels of a design under L load cases in K lines: as designed, and of N pairs, dB.
+
+    Attributes
+    ----------
+    nominal : (L, K) array
+    pairs : (N, L, K) array
+    parting : (L,) array
+        Largest share of the static mesh force by which flanks part at a speed, 0: they do not.
+    """
+
+    nominal: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
+    pairs: FloatArray = field(metadata=in_unit("dB", "pair", "load_case", "line"))
+    parting: FloatArray = field(metadata=in_unit("1", "load_case"))
+
+    def quantiles(self) -> FloatArray:
+        """Return the band (3, L, K) in which 90 % of the pairs lie, and its median, dB."""
+        return quantiles(self.pairs)
+
+
+def quantiles(levels: FloatArray) -> FloatArray:
+    """Return the quantiles `LOW`, `MEDIAN` and `HIGH` (3, ...) of pairs (N, ...)."""
+    return np.asarray(np.quantile(levels, (LOW, MEDIAN, HIGH), axis=0))
+
+
+@dataclass(frozen=True)
+class FlankChange:
+    """Levels of N pairs with the flanks before and after a change, pair by pair with the same deviations.
+
+    Attributes
+    ----------
+    mesh, quantity, unit, over_speeds : str
+        What is compared, in words; the unit with its reference.
+    lines : tuple of str
+        `ALL` orders together, then the orders of the mesh.
+    torque : (L,) array
+        On the driving gear of the mesh, N m.
+    speed : (S,) array
+        Of the leading shaft, rad/s.
+    names : tuple of str
+        The deviations: "misalignment" and ``gear.quantity``.
+    deviation : (N, d) array
+        m.
+    requirement : float or None
+        Highest level of all orders together that `HIGH` of the pairs may have, dB.
+    cost : dict
+        CPU seconds by stage.
+    """
+
+    mesh: str
+    quantity: str
+    unit: str
+    over_speeds: str
+    lines: tuple[str, ...]
+    torque: FloatArray = field(metadata=in_unit("n_m", "load_case"))
+    speed: FloatArray = field(metadata=in_unit("rad s-1", "speed"))
+    names: tuple[str, ...]
+    deviation: FloatArray = field(metadata=in_unit("m", "pair", "deviating"))
+    before: DesignLevels
+    after: DesignLevels
+    requirement: float | None
+    cost: Json
+
+    @property
+    def nominal_change(self) -> FloatArray:
+        """As designed (L, K), dB; > 0: louder."""
+        return np.asarray(self.after.nominal - self.before.nominal)
+
+    @property
+    def change(self) -> FloatArray:
+        """Of each pair (N, L, K), dB; > 0: louder."""
+        return np.asarray(self.after.pairs - self.before.pairs)
+
+    @cached_property
+    def change_quantiles(self) -> FloatArray:
+        """The band of the change and its median (3, L, K), dB."""
+        return quantiles(self.change)
+
+    @property
+    def louder_share(self) -> FloatArray:
+        """Share of the pairs that get louder (L, K)."""
+        return np.asarray(np.mean(self.change > 0.0, axis=0))
+
+    @property
+    def influence(self) -> FloatArray:
+        """Rank correlation (2, d, L) of each deviation with the change and the level after it, all orders."""
+        of_change, of_level = self.change[:, :, 0], self.after.pairs[:, :, 0]
+        return np.stack([rank_correlation(self.deviation, each) for each in (of_change, of_level)])
+
+    @property
+    def met(self) -> bool | None:
+        """Whether the requirement is met; None where there is none."""
+        if self.requirement is None:
+            return None
+        return bool(np.all(self.after.quantiles()[2, :, 0] <= self.requirement))
+
+    def verdict(self) -> str:
+        """Return what the change brings of all orders together, in a sentence."""
+        low, median, high = self.change_quantiles[:, :, 0]
+        at = int(np.argmax(median))
+        band = f"{median[at]:+.1f} dB ({low[at]:+.1f} to {high[at]:+.1f} dB) at {self.torque[at]:.4g} N m"
+        if np.all(np.abs(self.change[:, :, 0]) < AUDIBLE):
+            said = "No change"
+        elif np.all(high < 0.0):
+            said = "Quieter under every load case"
+        elif np.any(low > 0.0):
+            said = "Louder"
+        else:
+            said = "Quieter or louder, by the pair"
+        return f"{said}: {band}, {100.0 * self.louder_share[at, 0]:.0f} % of the pairs get louder."
+
+    def required(self) -> str:
+        """Return whether the requirement is met, in a sentence; empty where there is none."""
+        if self.requirement is None:
+            return ""
+        high = self.after.quantiles()[2, :, 0]
+        at = int(np.argmax(high))
+        met = "met" if self.met else "not met"
+        return (
+            f"Requirement {self.requirement:.4g} {self.unit}: {met}, {100.0 * HIGH:.0f} % of the pairs are below "
+            f"{high[at]:.1f} dB at {self.torque[at]:.4g} N m."
+        )
+
+    def louder(self) -> Iterator[str]:
+        """Yield the orders that get louder as designed, the one that gains most first."""
+        change = self.nominal_change
+        for flat in np.argsort(-change, axis=None, kind="stable").tolist():
+            load, line = np.unravel_index(flat, change.shape)
+            if change[load, line] < AUDIBLE:
+                return
+            if self.lines[line] != ALL:
+                low, _, high = self.change_quantiles[:, load, line]
+                yield (
+                    f"order {self.lines[line]} at {self.torque[load]:.4g} N m: {change[load, line]:+.1f} dB "
+                    f"({low:+.1f} to {high:+.1f} dB), to {self.after.nominal[load, line]:.1f} dB"
+                )
+
+    def partings(self) -> Iterator[str]:
+        """Yield where flanks would part, so that no linear response holds."""
+        for name, design in (("before", self.before), ("after", self.after)):
+            for load in np.flatnonzero(design.parting > 0.0).tolist():
+                yield f"{name} the change flanks would part at {self.torque[load]:.4g} N m: no linear level holds"

@@ -1,0 +1,242 @@
+"""What a change of flanks brings in a scene, over one sample of tolerances."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from bounds import one_of
+from bounds.types import Json
+from fe_contact.analysis.live.condensed_request import condensed_pair
+from fe_contact.errors import SolveError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.tolerance_study import ToleranceRequest
+from fe_contact.types import FloatArray
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
+from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.case import Case
+from lineofaction.gearbox.schemas.meshes import MeshInput
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.change import ChangeFigures, Inputs
+from lineofaction.gearbox.studies.change.heard_flanks import (
+    SOUND_POWER,
+    UNITS,
+    FlankLevels,
+    HeardFlanks,
+    heard_flanks,
+    line_names,
+    quantity_of,
+)
+from lineofaction.gearbox.studies.change.result import DesignLevels, FlankChange, quantiles
+from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
+from lineofaction.gearbox.studies.housings import require_surface
+from lineofaction.gearbox.studies.scatter.run import tolerance_request
+from lineofaction.gearbox.studies.study.scenes import FLANKS
+from lineofaction.gearbox.units import RPM
+from model_studies.stage_clock import StageClock
+
+IN_A_TASK = 5
+"""Pairs of a task: some seconds. It does not depend on who does the tasks."""
+MOST_PAIRS = 10_000
+"""Of a job: two contact solutions each."""
+GEARS = ("pinion", "wheel")
+
+
+class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
+    inputs, answer, file = Inputs, ChangeFigures, record_file(("change", FlankChange))
+
+    def check(self, scene: SceneInput, inputs: Inputs) -> None:
+        """Refuse another pair than the scene's, tolerances that it cannot have, and what it does not hear."""
+        if inputs.tolerances.samples > MOST_PAIRS:
+            raise BadInput.of("tolerances.samples", inputs.tolerances.samples, f"at most {MOST_PAIRS}")
+        if inputs.heard.quantity == SOUND_POWER:
+            require_surface(scene)
+        if inputs.heard.bearing is not None:
+            known = [part.name for part in (*scene.bushings, *scene.rolling_bearings, *scene.planet_bearings)]
+            _require_named("heard.bearing", inputs.heard.bearing, known)
+        mesh = _mesh_of(scene, inputs)
+        if mesh.case is not None:
+            _designs(mesh.case, inputs)
+
+    def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> FlankChange:
+        clock = StageClock(means.workers.cost)
+        mesh = _mesh_of(subject.inputs, inputs)
+        assert mesh.case is not None  # a scene with its tables has its cases written out
+        before, after = _designs(mesh.case, inputs)
+        tolerances, sampling = before.tolerances, before.sampling
+        names, deviation = tuple(tolerances.widths), tolerances.sample(sampling.samples, sampling.seed)
+        with boundary_errors():
+            with clock.stage("transfer functions"):
+                heard, nominal = _heard(subject, mesh, (before.pair, after.pair), inputs, means)
+            with clock.stage("pairs"):
+                levels = _levels(heard, (before.pair, after.pair), names, deviation, means)
+        designs = [
+            DesignLevels(own.level, pairs, own.parting) for own, pairs in zip(nominal, levels, strict=True)
+        ]
+        quantity = quantity_of(subject, inputs.heard)
+        return FlankChange(
+            mesh.name,
+            quantity if inputs.heard.bearing is None else f"{quantity} of {inputs.heard.bearing}",
+            UNITS[quantity],
+            inputs.heard.over_speeds,
+            line_names(inputs.orders),
+            heard.torque,
+            np.array(inputs.speed_rpm) * RPM,
+            names,
+            deviation,
+            *designs,
+            inputs.requirement_db,
+            clock.to_json(),
+        )
+
+    def _derived(self, result: FlankChange) -> Json:
+        return {
+            "verdict": " ".join(filter(None, (result.verdict(), result.required()))),
+            "met": result.met,
+            "requirement_db": result.requirement,
+            "pairs": len(result.deviation),
+            "load_cases": [_load_case(result, load) for load in range(result.torque.size)],
+            "louder": list(result.louder()),
+            "parting": list(result.partings()),
+        }
+
+
+def _load_case(result: FlankChange, load: int) -> Json:
+    sides = {
+        "before": (result.before.nominal, result.before.quantiles()),
+        "after": (result.after.nominal, result.after.quantiles()),
+        "change": (result.nominal_change, result.change_quantiles),
+    }
+    lines = [
+        {"order": name, "louder_share": float(result.louder_share[load, line])}
+        | {side: _quantiles(nominal[load, line], band[:, load, line]) for side, (nominal, band) in sides.items()}
+        for line, name in enumerate(result.lines)
+    ]
+    names = [boundary_name(name) for name in result.names]
+    of_change, of_level = (dict(zip(names, own[:, load].tolist(), strict=True)) for own in result.influence)
+    return {
+        "torque_n_m": float(result.torque[load]),
+        "lines": lines,
+        "influence_on_change": of_change,
+        "influence_after": of_level,
+    }
+
+
+def _quantiles(nominal: float, band: FloatArray) -> Json:
+    low, median, high = band.tolist()
+    return {"nominal_db": float(nominal), "low_db": low, "median_db": median, "high_db": high}
+
+
+def _require_named(field: str, name: str, known: list[str]) -> None:
+    if name not in known:
+        raise BadInput.of(field, name, f"one of {', '.join(known)}" if known else "left out: there is none")
+
+
+def _mesh_of(scene: SceneInput, inputs: Inputs) -> MeshInput:
+    """Return the mesh whose flanks are compared; raises `BadInput`."""
+    by_name = {mesh.name: mesh for mesh in scene.meshes if mesh.case or mesh.case_file}
+    if inputs.mesh is None and len(by_name) == 1:
+        return next(iter(by_name.values()))
+    if not by_name:
+        raise BadInput.of("scene.meshes", None, "at least one mesh with a case", "Give it case or case_file.")
+    if inputs.mesh is None:
+        raise BadInput.of("mesh", None, f"one of {', '.join(by_name)}", "Name the mesh of the flanks.")
+    _require_named("mesh", inputs.mesh, list(by_name))
+    return by_name[inputs.mesh]
+
+
+def _designs(case: Case, inputs: Inputs) -> tuple[ToleranceRequest, ToleranceRequest]:
+    """Return both designs with their tolerances: flanks on the bodies, loads and accuracy of the scene's case.
+
+    Raises `BadInput`.
+    """
+    if len(case.errors.misalignment_um) > 1 or len(case.errors.center_distance_change_mm) > 1:
+        bound = "one misalignment and one center distance in the case of the mesh"
+        raise BadInput.of("scene.meshes", "a range", bound, "The tolerances vary the misalignment.")
+    return tuple(_design(case, name, getattr(inputs, name) or case, inputs) for name in ("before", "after"))
+
+
+def _design(case: Case, name: str, own: Case, inputs: Inputs) -> ToleranceRequest:
+    for path, stated, known in _bodies(own, case):
+        if stated != known:
+            bound = f"{known}, as in the case of the mesh: only flanks may differ"
+            raise BadInput.of(f"{name}.pair.{path}", stated, bound)
+    checked = CheckedCase(case.model_copy(update={"pair": own.pair}))
+    try:
+        request = checked.request(tolerance_request, inputs.tolerances)
+        with boundary_errors():
+            _ = request.checked
+    except BadInput as error:
+        raise error.within("tolerances") from None
+    return request
+
+
+def _bodies(first: Case, second: Case) -> list[tuple[str, Any, Any]]:
+    """Return the figures of two pairs that are none of their flanks, by their paths."""
+    a, b = (_leaves(case.pair.model_dump(mode="json"), "") for case in (first, second))
+    return [(path, a.get(path), b.get(path)) for path in {**a, **b}]
+
+
+def _leaves(table: Mapping[str, Any], path: str) -> dict[str, Any]:
+    leaves: dict[str, Any] = {}
+    for name, value in table.items():
+        if path and name in (*FLANKS, "flank_grid"):
+            continue
+        here = f"{path}.{name}" if path else name
+        leaves |= _leaves(value, here) if name in GEARS else {here: value}
+    return leaves
+
+
+def _heard(
+    subject: TabledScene,
+    mesh: MeshInput,
+    pairs: tuple[ParallelAxes, ParallelAxes],
+    inputs: Inputs,
+    means: Means,
+) -> tuple[HeardFlanks, tuple[FlankLevels, FlankLevels]]:
+    """Return the scene in which flanks are heard, and both designs in it."""
+    assert mesh.case is not None
+    database, cache = subject.databases[mesh.name], means.home / "compliance"
+    bodies = condensed_pair(CheckedCase(mesh.case).pair, database, dict(mesh.case.effects), cache, compute=True)
+    assert bodies is not None
+    empty = HeardFlanks(subject, mesh.name, bodies, inputs.heard.over_speeds, (), np.zeros(0))
+    tables = [empty.table(pair) for pair in pairs]
+    heard = heard_flanks(subject, mesh.name, inputs, bodies, tables[0], means)
+    before, after = (heard.levels(table) for table in tables)
+    return heard, (before, after)
+
+
+def _levels(
+    heard: HeardFlanks,
+    pairs: tuple[ParallelAxes, ParallelAxes],
+    names: tuple[str, ...],
+    deviation: FloatArray,
+    means: Means,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the levels (N, L, K) of both designs with the same deviations (N, d), m."""
+    tasks = [deviation[k : k + IN_A_TASK] for k in range(0, len(deviation), IN_A_TASK)]
+    parts = []
+    for done, part in enumerate(means.workers.run(_levels_of_pairs, (heard, pairs, names), tasks)):
+        parts.append(part)
+        means.report("pairs", (done + 1) / len(tasks))
+    before, after = np.concatenate(parts, axis=1)
+    for own in (before, after):
+        bad = int((~np.isfinite(own)).any(axis=(1, 2)).sum())
+        if bad:
+            raise SolveError(f"{bad} of {len(own)} pairs have no level", own)
+    return before, after
+
+
+def _levels_of_pairs(
+    shared: tuple[HeardFlanks, tuple[ParallelAxes, ParallelAxes], tuple[str, ...]], deviation: FloatArray
+) -> FloatArray:
+    """Return the levels (2, n, L, K) of some pairs (n, d): one task."""
+    heard, pairs, names = shared
+    return np.stack([np.stack([heard.of_pair(pair, names, own).level for own in deviation]) for pair in pairs])
+
+
+RUN = _ChangeStudy()
