@@ -23,8 +23,8 @@ class HeardInput(BoundaryModel):
 
     quantity: Literal["sound_power", "bearing_force"] | None = Field(
         default=None,
-        description="Sound power of the housings in dB(A) re 1 pW, or force on bearings in dB re 1 N; left out: "
-        "sound power where a housing has a surface",
+        description="Sound power of the housings in dB(A) re 1 pW, or force on bearings in dB re 1 N; left "
+        "out: sound power where a housing has a surface",
         examples=["bearing_force"],
     )
     bearing: Name | None = Field(
@@ -42,7 +42,8 @@ class Inputs(OverOrders):
 
     after: Case = Field(description="Case with the flanks after the change; its pair is that of the scene")
     before: Case | None = Field(
-        default=None, description="Case with the flanks before it; left out: the case of the mesh in the scene"
+        default=None,
+        description="Case with the flanks before it; left out: the case of the mesh in the scene",
     )
     mesh: Name | None = Field(
         default=None,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -11,11 +11,17 @@ import numpy as np
 
 from dynamics.acoustics import ElementalRadiators
 from dynamics.assembly.assemble import System, assemble
-from dynamics.linearize.flank_transfer import FlankTransfer, flank_transfer
+from dynamics.linearize import FlankTransfer, flank_transfer
 from dynamics.linearize.operating_speeds import common_period
 from dynamics.loads import TimeLaw
-from dynamics.noise import SoundModel, estimated_radiation, kept_radiation
-from dynamics.noise.transferred_quantities import BearingForce, QuantityForm, SoundPower
+from dynamics.noise import (
+    BearingForce,
+    QuantityForm,
+    SoundModel,
+    SoundPower,
+    estimated_radiation,
+    kept_radiation,
+)
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
 from fe_contact.analysis.live.condensed_pair import CondensedPair
@@ -135,7 +141,9 @@ def heard_flanks(
         own = step * np.arange(1, inputs.orders + 1)
         lines = np.vstack([np.ones(transfer.harmonics.size), own[:, None] == transfer.harmonics])
         cases.append(_LoadCase(factor, transfer, _form(transfer, model, inputs.heard), lines))
-    force = np.array([transfer.excitation(own).mean_force[index] for transfer, own in zip(transfers, systems, strict=True)])
+    force = np.array(
+        [transfer.excitation(own).mean_force[index] for transfer, own in zip(transfers, systems, strict=True)]
+    )
     torque = force * subject.databases[mesh].facts.base_radius[0]
     return HeardFlanks(subject, mesh, bodies, inputs.heard.over_speeds, tuple(cases), torque)
 
@@ -159,9 +167,7 @@ def _loaded(scene: Scene, factor: float) -> Scene:
     """Return a scene whose loads at t = 0 are multiplied; its flanks carry what that brings."""
     if factor == 1.0:
         return scene
-    loads = (
-        replace(load, torque=TimeLaw.constant(factor * float(load.torque(0.0)))) for load in scene.loads
-    )
+    loads = (replace(load, torque=TimeLaw.constant(factor * float(load.torque(0.0)))) for load in scene.loads)
     meshes = (replace(part, technique="variable_torque", nominal_force=None) for part in scene.meshes)
     return replace(scene, loads=tuple(loads), meshes=tuple(meshes))
 

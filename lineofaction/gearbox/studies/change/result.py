@@ -139,9 +139,9 @@ class FlankChange:
             return ""
         high = self.after.quantiles()[2, :, 0]
         at = int(np.argmax(high))
-        met = "met" if self.met else "not met"
+        met, share = "met" if self.met else "not met", 100.0 * HIGH
         return (
-            f"Requirement {self.requirement:.4g} {self.unit}: {met}, {100.0 * HIGH:.0f} % of the pairs are below "
+            f"Requirement {self.requirement:.4g} {self.unit}: {met}, {share:.0f} % of the pairs are below "
             f"{high[at]:.1f} dB at {self.torque[at]:.4g} N m."
         )
 
@@ -163,4 +163,5 @@ class FlankChange:
         """Yield where flanks would part, so that no linear response holds."""
         for name, design in (("before", self.before), ("after", self.after)):
             for load in np.flatnonzero(design.parting > 0.0).tolist():
-                yield f"{name} the change flanks would part at {self.torque[load]:.4g} N m: no linear level holds"
+                torque = f"{self.torque[load]:.4g} N m"
+                yield f"{name} the change flanks would part at {torque}: no linear level holds"

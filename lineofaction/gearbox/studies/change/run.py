@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from bounds import one_of
 from bounds.types import Json
 from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.errors import SolveError
@@ -31,7 +30,7 @@ from lineofaction.gearbox.studies.change.heard_flanks import (
     line_names,
     quantity_of,
 )
-from lineofaction.gearbox.studies.change.result import DesignLevels, FlankChange, quantiles
+from lineofaction.gearbox.studies.change.result import DesignLevels, FlankChange
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
 from lineofaction.gearbox.studies.housings import require_surface
 from lineofaction.gearbox.studies.scatter.run import tolerance_request
@@ -113,7 +112,10 @@ def _load_case(result: FlankChange, load: int) -> Json:
     }
     lines = [
         {"order": name, "louder_share": float(result.louder_share[load, line])}
-        | {side: _quantiles(nominal[load, line], band[:, load, line]) for side, (nominal, band) in sides.items()}
+        | {
+            side: _quantiles(nominal[load, line], band[:, load, line])
+            for side, (nominal, band) in sides.items()
+        }
         for line, name in enumerate(result.lines)
     ]
     names = [boundary_name(name) for name in result.names]
@@ -150,7 +152,7 @@ def _mesh_of(scene: SceneInput, inputs: Inputs) -> MeshInput:
 
 
 def _designs(case: Case, inputs: Inputs) -> tuple[ToleranceRequest, ToleranceRequest]:
-    """Return both designs with their tolerances: flanks on the bodies, loads and accuracy of the scene's case.
+    """Return both designs with their tolerances: flanks on the bodies, loads and accuracy those of a case.
 
     Raises `BadInput`.
     """
@@ -201,7 +203,9 @@ def _heard(
     """Return the scene in which flanks are heard, and both designs in it."""
     assert mesh.case is not None
     database, cache = subject.databases[mesh.name], means.home / "compliance"
-    bodies = condensed_pair(CheckedCase(mesh.case).pair, database, dict(mesh.case.effects), cache, compute=True)
+    bodies = condensed_pair(
+        CheckedCase(mesh.case).pair, database, dict(mesh.case.effects), cache, compute=True
+    )
     assert bodies is not None
     empty = HeardFlanks(subject, mesh.name, bodies, inputs.heard.over_speeds, (), np.zeros(0))
     tables = [empty.table(pair) for pair in pairs]
@@ -236,7 +240,9 @@ def _levels_of_pairs(
 ) -> FloatArray:
     """Return the levels (2, n, L, K) of some pairs (n, d): one task."""
     heard, pairs, names = shared
-    return np.stack([np.stack([heard.of_pair(pair, names, own).level for own in deviation]) for pair in pairs])
+    return np.stack(
+        [np.stack([heard.of_pair(pair, names, own).level for own in deviation]) for pair in pairs]
+    )
 
 
 RUN = _ChangeStudy()

@@ -56,7 +56,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
 
 
 def tolerance_request(checked: CheckedCase, inputs: Inputs) -> ToleranceRequest:
-    """Return the pair of a case with the tolerances of its class; in a plane model helix slopes do not deviate."""
+    """Return the pair of a case with the tolerances of its class; none of helix slopes in the plane."""
     pair, case, load = checked.pair, checked.case, checked.case.load
     tolerances = iso1328_tolerances(
         pair,

@@ -1,0 +1,121 @@
+"""What a change of flanks brings: levels before and after over the same pairs, and what decides."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.studies.change.result import HIGH, LOW, FlankChange
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table
+from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.presentation import Presentation
+
+BAND = f"{100 * (HIGH - LOW):.0f} %"
+
+
+def _loads(result: FlankChange) -> tuple[str, ...]:
+    return tuple(f"{torque:.4g} N m" for torque in result.torque)
+
+
+def _change_figure(result: FlankChange) -> Figure:
+    change = result.change_quantiles[:, :, 0]
+    worst = int(np.argmax(change[1]))
+    return Figure(
+        key="change",
+        title="Levels of the pairs before and after",
+        caption=f"{len(result.deviation)} pairs, each with the same deviations before and after. "
+        f"{result.quantity}, {result.unit}, all orders, {result.over_speeds.replace('_', ' ')} over the speeds.",
+        alternative=f"The median change is {change[1, worst]:+.1f} dB at {_loads(result)[worst]}.",
+        content=(_levels_panel(result), _change_panel(result)),
+    )
+
+
+def _levels_panel(result: FlankChange) -> Panel:
+    lines = []
+    for k, load in enumerate(_loads(result)):
+        color = palette.ordered(k, result.torque.size)
+        lines.append(_distribution(f"{load}, before", result.before.pairs[:, k, 0], color, dashed=True))
+        lines.append(_distribution(f"{load}, after", result.after.pairs[:, k, 0], color))
+    limit = () if result.requirement is None else (Reference("requirement", result.requirement),)
+    return Panel(Axis(result.unit), Axis("share of all pairs"), tuple(lines), limit, title="Level")
+
+
+def _change_panel(result: FlankChange) -> Panel:
+    lines = tuple(
+        _distribution(load, result.change[:, k, 0], palette.ordered(k, result.torque.size))
+        for k, load in enumerate(_loads(result))
+    )
+    return Panel(
+        Axis("change, dB"), Axis("share of all pairs"), lines, (Reference("as before", 0.0),), title="Change"
+    )
+
+
+def _distribution(name: str, level: FloatArray, color: str, *, dashed: bool = False) -> Line:
+    part = np.arange(1, level.size + 1) / level.size
+    return Line(name, np.sort(level), part, color, "dash" if dashed else "solid")
+
+
+def _levels_table(result: FlankChange) -> Table:
+    head = ("load", "order", *(f"{name}, dB" for name in ("before", "after", "change")), "louder")
+    caption = f"As designed, and in brackets where {BAND} of the pairs lie; {result.unit}"
+    return Table(caption, head, tuple(_rows(result)))
+
+
+def _rows(result: FlankChange) -> Iterator[tuple[str, ...]]:
+    before, after = result.before.quantiles(), result.after.quantiles()
+    for k, load in enumerate(_loads(result)):
+        for line, name in enumerate(result.lines):
+            at = k, line
+            yield (
+                load,
+                name,
+                _banded(result.before.nominal[at], before[:, *at]),
+                _banded(result.after.nominal[at], after[:, *at]),
+                _banded(result.nominal_change[at], result.change_quantiles[:, *at], "+"),
+                f"{100.0 * result.louder_share[at]:.0f} %",
+            )
+
+
+def _banded(nominal: float, band: FloatArray, sign: str = "") -> str:
+    return f"{nominal:{sign}.1f} ({band[0]:{sign}.1f} to {band[2]:{sign}.1f})"
+
+
+def _influence_table(result: FlankChange) -> Table:
+    of_change, of_level = result.influence
+    order = np.argsort(-np.abs(of_level).max(axis=1), kind="stable")
+    head = ("deviation", *(f"{what}, {load}" for load in _loads(result) for what in ("after", "change")))
+    rows = []
+    for i in order.tolist():
+        values = np.stack([of_level[i], of_change[i]], axis=1).ravel()
+        rows.append((boundary_name(result.names[i]), *(f"{value:+.2f}" for value in values)))
+    caption = "Which deviation decides: rank correlation of it, or of its size, with the level and its change"
+    return Table(caption, head, tuple(rows))
+
+
+def _text(result: FlankChange) -> Iterator[Table | str]:
+    yield result.verdict()
+    yield from filter(None, (result.required(),))
+    louder = list(result.louder())
+    yield f"Gets louder: {louder[0]}" if louder else "No order gets louder as designed."
+    yield from result.partings()
+    yield _levels_table(result)
+    yield _influence_table(result)
+
+
+def _page(result: FlankChange) -> Page:
+    louder = next(result.louder(), "no order as designed")
+    heads = (
+        Headline("verdict", result.verdict(), result.required()),
+        Headline("gets louder", louder),
+    )
+    section = Section(
+        "What it brings", "", (_change_figure(result),), (_levels_table(result), _influence_table(result))
+    )
+    lead = f"Flanks of {result.mesh} over {len(result.deviation)} pairs within their tolerances"
+    return Page("Change of flanks", lead, heads, (section,), tuple(result.partings()))
+
+
+PAGE = Presentation(_change_figure, _page, _text)
