@@ -35,6 +35,12 @@ GRID = {
 }
 
 
+CHANGE: Json = {"after": small_inputs("change")["after"], "speed_rpm": [300.0]}
+FEWER_TEETH: Json = CHANGE["after"] | {
+    "pair": CHANGE["after"]["pair"] | {"wheel": CHANGE["after"]["pair"]["wheel"] | {"teeth": 19}}
+}
+
+
 def factor(index: int, **changes: Any) -> Json:
     """Return the study with another factor; what is None is left out."""
     factors = [dict(each) for each in GRID["factors"]]  # type: ignore[attr-defined]
@@ -146,6 +152,16 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
         ({"speed_rpm": [5.0], "repeat": 0}, "repeat"),
         ({"speed_rpm": [5.0], "settling_periods": -1}, "settling_periods"),
         ({"speed_rpm": [0.0, 50.0]}, "speed_rpm[0]"),
+    ],
+    "change": [
+        ({}, "after"),
+        (CHANGE | {"mesh": "second"}, "mesh"),
+        (CHANGE | {"after": FEWER_TEETH}, "after.pair.wheel.teeth"),
+        (CHANGE | {"tolerances": {"misalignment_um": 10.0}}, "tolerances.misalignment_um"),  # in the plane
+        (CHANGE | {"tolerances": {"samples": 20_000}}, "tolerances.samples"),
+        (CHANGE | {"heard": {"quantity": "sound_power"}}, "housings"),
+        (CHANGE | {"heard": {"bearing": "output in"}}, "heard.bearing"),
+        (CHANGE | {"load_factors": []}, "load_factors"),
     ],
     "deflect": [
         ({"load_cases": [{"name": "a"}, {"name": "a"}]}, "load_cases"),

@@ -22,6 +22,8 @@ _CASE: Json = {
     "load": {"torque_n_m": [0.5, 1.0]},
     "accuracy": _DRAFT,
 }
+_RELIEF = {"tip_relief_um": 3.0, "tip_relief_length_mm": 0.4}
+_RELIEVED = _CASE | {"pair": _CASE["pair"] | {"pinion": _GEAR | _RELIEF}}
 _FEW: dict[str, Json] = {
     "flank": {"torque_n_m": 1.0},
     "root-stress": {"torque_n_m": 1.0},
@@ -30,6 +32,7 @@ _FEW: dict[str, Json] = {
     "sensitivity": {"misalignment_um": [0.0, 5.0], "center_distance_change_percent": [0.0]},
     "optimize": {"search": {"evaluations": 8, "sample": 4, "trials": 1, "positions": 16}},
     "scatter": {"samples": 4},
+    "change": {"after": _RELIEVED, "speed_rpm": [300.0], "orders": 3, "tolerances": {"samples": 4}},
     "sweep": {"over": ["torque=0.5:1:0.5"], "show": ["peak_to_peak"]},
     "modes": {"speed_rpm": [0.0]},
     "response": {"speed_rpm": [300.0]},

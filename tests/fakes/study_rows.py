@@ -246,6 +246,19 @@ def _deflection(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
     yield (case["torque_n_m"], case["status"]), (1.0, "converged")
 
 
+def _change(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    (case,) = figures["load_cases"]
+    whole, first, *_ = case["lines"]
+    yield [line["order"] for line in case["lines"]], ["all", "1", "2", "3"]
+    yield case["torque_n_m"], approx(1.0)
+    for side, design in (("before", result.before), ("after", result.after)):
+        orders = sum(10.0 ** (0.1 * line[side]["nominal_db"]) for line in case["lines"][1:])
+        yield whole[side]["nominal_db"], approx(10.0 * math.log10(orders))
+        yield whole[side]["median_db"], float(np.median(design.pairs[:, 0, 0]))
+    yield first["change"]["nominal_db"], float(result.after.nominal[0, 1] - result.before.nominal[0, 1])
+    yield figures["pairs"], 4
+
+
 def _many_scenes(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
     (response,) = figures["responses"]
     yield response["mean"], (1e6 * result.figure[:, 0]).tolist()
@@ -341,5 +354,6 @@ ROWS = (
         ),
     ),
     StudyRow("deflect", "scene", _deflection),
+    StudyRow("change", "scene", _change),
     StudyRow("study", "scene", _many_scenes),
 )

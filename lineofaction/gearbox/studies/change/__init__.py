@@ -15,6 +15,17 @@ from lineofaction.gearbox.studies.scatter import Inputs as ToleranceInputs
 MOST_LOADS = 16
 PAIRS = 200
 
+_GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
+_RELIEVED = {"tip_relief_um": 20.0, "tip_relief_length_mm": 1.5}
+_AFTER = {
+    "pair": {
+        "normal_module_mm": 4.0,
+        "center_distance_mm": 80.0,
+        "pinion": _GEAR | _RELIEVED,
+        "wheel": _GEAR | _RELIEVED,
+    },
+    "load": {"torque_n_m": [10.0, 50.0, 100.0, 200.0, 400.0]},
+}
 LoadFactor = Annotated[float, Field(gt=0.0, le=1e6)]
 
 
@@ -40,7 +51,9 @@ class HeardInput(BoundaryModel):
 class Inputs(OverOrders):
     """The flanks before and after, and how they are compared."""
 
-    after: Case = Field(description="Case with the flanks after the change; its pair is that of the scene")
+    after: Case = Field(
+        description="Case with the flanks after the change; its pair is that of the scene", examples=[_AFTER]
+    )
     before: Case | None = Field(
         default=None,
         description="Case with the flanks before it; left out: the case of the mesh in the scene",

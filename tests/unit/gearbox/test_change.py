@@ -1,0 +1,124 @@
+"""What a change of flanks brings: laws of levels over one sample of tolerances."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from small_inputs import small_inputs
+
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.registry import change, response, scatter
+from lineofaction.gearbox.studies.change.heard_flanks import HeardFlanks
+from lineofaction.gearbox.studies.change.result import FlankChange
+
+Json = dict[str, Any]
+PAIRS = 12
+QUESTION: Json = {"speed_rpm": [300.0, 3000.0], "orders": 4, "load_factors": [0.5, 1.0]}
+
+
+def scene() -> Json:
+    return small_inputs("modes")["scene"]
+
+
+def case(**pinion: float) -> Json:
+    own = copy.deepcopy(scene()["meshes"][0]["case"])
+    own["pair"]["pinion"] = own["pair"]["pinion"] | pinion
+    return own
+
+
+RELIEVED = case(tip_relief_um=3.0, tip_relief_length_mm=0.4)
+
+
+def rippling(table: SteDatabase, amplitude: float) -> SteDatabase:
+    """Return a table that is the same at all positions but for a wave of its transmission error, m."""
+    arrays = {}
+    for name, dimensions in table.stored.items():
+        array = getattr(table, name)
+        if dimensions[:1] == ("position",) and array.ndim > 1 and array.size:
+            flat = array.mean(axis=0) if array.dtype.kind == "f" else array.max(axis=0)
+            arrays[name] = np.broadcast_to(flat, array.shape).astype(array.dtype)
+            if name.endswith("transmission_error"):
+                wave = amplitude * np.cos(2.0 * np.pi * table.position)
+                arrays[name] = arrays[name] + wave.reshape(-1, *(1,) * (array.ndim - 1))
+    return replace(table, **arrays)
+
+
+def compared(before: Json | None, after: Json, **question: Any) -> FlankChange:
+    tolerances = {"samples": PAIRS, "tolerance_class": 3}
+    result: FlankChange = change(
+        scene(), {"before": before, "after": after, "tolerances": tolerances, **QUESTION, **question}
+    )
+    return result
+
+
+@cache
+def relieved() -> FlankChange:
+    return compared(None, RELIEVED)
+
+
+def test_equal_flanks_change_nothing_of_any_pair() -> None:
+    same = compared(case(), case())
+    assert np.array_equal(same.before.pairs, same.after.pairs)
+    assert not same.change.any() and not same.louder_share.any() and not list(same.louder())
+    assert same.verdict().startswith("No change")
+
+
+def test_the_other_way_round_changes_the_sign() -> None:
+    """Each level is one of a pair: it does not depend on which design the transfer functions are about."""
+    back = compared(RELIEVED, case())
+    np.testing.assert_allclose(back.change, -relieved().change, atol=1e-6)
+    np.testing.assert_allclose(back.nominal_change, -relieved().nominal_change, atol=1e-6)
+
+
+def test_the_same_deviations_leave_less_spread_than_two_samples() -> None:
+    own = relieved()
+    before, after = own.before.pairs[:, :, 0], own.after.pairs[:, :, 0]
+    together = (after - before).std(axis=0)
+    apart = np.sqrt(before.var(axis=0) + after.var(axis=0))
+    assert np.all(together < 0.9 * apart)
+
+
+def test_the_sample_is_that_of_the_tolerances_of_the_case() -> None:
+    drawn = scatter(case(), {"samples": PAIRS, "tolerance_class": 3})
+    assert relieved().names == drawn.names
+    assert np.array_equal(relieved().deviation, drawn.deviation)
+
+
+@pytest.mark.parametrize("side", ["before", "after"])
+def test_as_designed_is_what_a_whole_analysis_of_the_scene_gives(side: str) -> None:
+    """Bearing forces of the forced response with the table of the case, not of condensed gears."""
+    whole = scene()
+    whole["meshes"][0]["case"] = RELIEVED if side == "after" else case()
+    found = response(whole, {name: QUESTION[name] for name in ("speed_rpm", "orders")})
+    square = 0.5 * np.sum(np.abs(found.bearing_force[:, :3]) ** 2, axis=(0, 1)).max(axis=0)
+    level = getattr(relieved(), side).nominal[1, 1:]
+    loud = level > level.max() - 25.0
+    np.testing.assert_allclose(level[loud], 10.0 * np.log10(square)[loud], atol=0.2)
+
+
+def test_twice_the_transmission_error_is_6_db_louder(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A spur pair whose stiffness is the same everywhere: its transmission error alone excites it."""
+    involute = HeardFlanks.table
+
+    def waved(self: HeardFlanks, pair: Any, misalignment: float = 0.0) -> SteDatabase:
+        plain = self.bodies.checked.request.pair
+        twice = pair.pinion.modification.tip_relief > 0.0
+        return rippling(involute(self, plain, misalignment), 2e-8 if twice else 1e-8)
+
+    monkeypatch.setattr(HeardFlanks, "table", waved)
+    louder = compared(None, RELIEVED, tolerances={"samples": 2})
+    np.testing.assert_allclose(louder.nominal_change[:, :2], 20.0 * np.log10(2.0), atol=1e-3)
+    np.testing.assert_allclose(louder.change[:, :, :2], 20.0 * np.log10(2.0), atol=1e-3)
+
+
+def test_a_requirement_is_met_or_not() -> None:
+    own = relieved()
+    high = own.after.quantiles()[2, :, 0].max()
+    met, missed = (compared(None, RELIEVED, requirement_db=float(high) + step) for step in (0.1, -0.1))
+    assert (own.met, met.met, missed.met) == (None, True, False)
+    assert ": met" in met.required() and "not met" in missed.required() and not own.required()
