@@ -26,7 +26,7 @@ def _change_figure(result: FlankChange) -> Figure:
     return Figure(
         key="change",
         title="Levels of the pairs before and after",
-        caption=f"{len(result.deviation)} pairs, each with the same deviations before and after. All orders of "
+        caption=f"{len(result.deviation)} pairs, deviating alike before and after. All orders of "
         f"{result.quantity.replace('_', ' ')}, {result.over_speeds.replace('_', ' ')} over the speeds.",
         alternative=f"The median change is {change[1, worst]:+.1f} dB at {_loads(result)[worst]}.",
         content=(_levels_panel(result), _change_panel(result)),

@@ -33,7 +33,7 @@ from lineofaction.gearbox.studies.change.heard_flanks import (
 from lineofaction.gearbox.studies.change.result import DesignLevels, FlankChange
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
 from lineofaction.gearbox.studies.housings import require_surface
-from lineofaction.gearbox.studies.scatter.run import tolerance_request
+from lineofaction.gearbox.studies.scatter.run import PLANE, tolerance_request
 from lineofaction.gearbox.studies.study.scenes import FLANKS
 from lineofaction.gearbox.units import RPM
 from model_studies.stage_clock import StageClock
@@ -159,6 +159,10 @@ def _designs(case: Case, inputs: Inputs) -> tuple[ToleranceRequest, ToleranceReq
     if len(case.errors.misalignment_um) > 1 or len(case.errors.center_distance_change_mm) > 1:
         bound = "one misalignment and one center distance in the case of the mesh"
         raise BadInput.of("scene.meshes", "a range", bound, "The tolerances vary the misalignment.")
+    skew = inputs.tolerances.misalignment_um
+    if skew and case.accuracy.model in PLANE:
+        advice = "A plane model has no width: take the 3-D model."
+        raise BadInput.of("tolerances.misalignment_um", skew, "0 in a plane model", advice)
     return tuple(_design(case, name, getattr(inputs, name) or case, inputs) for name in ("before", "after"))
 
 

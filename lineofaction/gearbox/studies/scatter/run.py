@@ -19,7 +19,7 @@ from lineofaction.gearbox.units import UM, in_um
 
 MOST_SAMPLES = 100_000
 """Of a job: its result holds every pair, 10 to 100 MB."""
-_PLANE = ("plane_strain", "plane_stress")
+PLANE = ("plane_strain", "plane_stress")
 
 
 class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
@@ -62,7 +62,7 @@ def tolerance_request(checked: CheckedCase, inputs: Inputs) -> ToleranceRequest:
         pair,
         inputs.tolerance_class,
         misalignment=inputs.misalignment_um * UM,
-        across_face=case.accuracy.model not in _PLANE,
+        across_face=case.accuracy.model not in PLANE,
         distribution=inputs.distribution,
     )
     torques = load.torque_n_m or [float(pair.torque(force)) for force in load.normal_force_n or ()]
