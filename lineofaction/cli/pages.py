@@ -4,25 +4,27 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 
 from bounds import engineering
+from bounds.types import Json
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
 from host.directories import cache_home
 from lineofaction.cli.guard import messages, warn
 from lineofaction.cli.output import Report, check_writable, console, print_json, progress_bar, table
+from lineofaction.cli.run_study import run_study
 from lineofaction.cli.subjects import assessed_case
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
-from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import stamped
-from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.units import UM
 from lineofaction.report.comparison.compare import compare
@@ -161,6 +163,41 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
 
 
 # ``loa compare``.
+
+
+@dataclass(frozen=True)
+class FlankQuestion:
+    """What ``loa compare BEFORE AFTER --scene SCENE`` was called with, as typed."""
+
+    scene: Path
+    tolerances: Path | None
+    speed_rpm: str | None
+    requirement_db: float | None
+
+
+def run_compare_flanks(
+    files: Sequence[Path], question: FlankQuestion, output: Path, *, as_json: bool
+) -> None:
+    """Run the study of a change of flanks: of two case files, over the tolerances of a file."""
+    if len(files) != 2:
+        bound = "two case files beside a scene: the flanks before and after"
+        raise BadInput.of("files", [str(file) for file in files], bound)
+    if question.speed_rpm is None:
+        raise BadInput.of(
+            "--speed-rpm", None, "given beside a scene", "For example --speed-rpm 500:6000:100."
+        )
+    before, after = (read_model(Case, file) for file in files)
+    inputs: Json = {
+        "before": before,
+        "after": after,
+        "speed_rpm": number_list("--speed-rpm", question.speed_rpm),
+        "requirement_db": question.requirement_db,
+    }
+    study = STUDIES["change"]
+    if question.tolerances is not None:
+        inputs["tolerances"] = read_table(question.tolerances)
+    options = {"scene": InputFile(question.scene), "study": validated(study.inputs, inputs), "output": output}
+    run_study(study, options | {"workers": 1, "scheduler": None, "json": as_json})
 
 
 def run_compare(

@@ -132,6 +132,8 @@ def _tell(
 
 
 def _inputs(study: Study, options: Json) -> Any:
+    if isinstance(options.get("study"), BoundaryModel):  # of a verb that has read it
+        return options["study"]
     if study.takes.from_file and options["study"] is not None:
         return read_model(study.inputs, options["study"])
     return validated(study.inputs, {} if study.takes.from_file else _fields(study, options))

@@ -403,15 +403,34 @@ def _compare(
     *,
     files: Annotated[
         list[Path],
-        typer.Argument(help="Two STE databases, two runs, or one of them and a measurement (CSV, UFF)."),
+        typer.Argument(
+            help="Two STE databases, two runs, or one of them and a measurement (CSV, UFF); with --scene the "
+            "case files of the flanks before and after."
+        ),
     ],
     output: Annotated[Path, to_file("Page to write.")] = Path("comparison.html"),
     torque: Annotated[
         float | None,
         typer.Option(help="Torque of the ripples shown, N m.", show_default="the middle one"),
     ] = None,
+    scene: Annotated[
+        Path | None, typer.Option(help="Scene file in which two flanks are heard: what a change brings.")
+    ] = None,
+    tolerances: Annotated[
+        Path | None, typer.Option(help="Of the flanks: file with the options of loa scatter (TOML).")
+    ] = None,
+    speed_rpm: Annotated[
+        str | None, typer.Option(help="Of the scene: speeds in rpm, FIRST:LAST:STEP or a list.")
+    ] = None,
+    requirement_db: Annotated[
+        float | None, typer.Option(help="Highest level of all orders that 95 % of the pairs may have.")
+    ] = None,
     view: _ViewOptions,
     json: AsJson = False,
 ) -> None:
-    """Compare two tables or two runs, or one with a measurement: differences with their errors."""
+    """Compare two tables, two runs, two flanks in a scene, or one with a measurement: differences."""
+    if scene is not None:
+        question = pages.FlankQuestion(scene, tolerances, speed_rpm, requirement_db)
+        pages.run_compare_flanks(files, question, output, as_json=json)
+        return
     pages.run_compare(files, output, view.view, torque, as_json=json)

@@ -146,13 +146,12 @@ class FlankChange:
         )
 
     def louder(self) -> Iterator[str]:
-        """Yield the orders that get louder as designed, the one that gains most first."""
+        """Yield the orders that get louder as designed, the one that gains most power first."""
         change = self.nominal_change
-        for flat in np.argsort(-change, axis=None, kind="stable").tolist():
+        gain = 10.0 ** (0.1 * self.after.nominal) - 10.0 ** (0.1 * self.before.nominal)
+        for flat in np.argsort(-gain, axis=None, kind="stable").tolist():
             load, line = np.unravel_index(flat, change.shape)
-            if change[load, line] < AUDIBLE:
-                return
-            if self.lines[line] != ALL:
+            if change[load, line] >= AUDIBLE and self.lines[line] != ALL:
                 low, _, high = self.change_quantiles[:, load, line]
                 yield (
                     f"order {self.lines[line]} at {self.torque[load]:.4g} N m: {change[load, line]:+.1f} dB "

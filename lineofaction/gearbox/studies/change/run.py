@@ -55,7 +55,9 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
         if inputs.heard.quantity == SOUND_POWER:
             require_surface(scene)
         if inputs.heard.bearing is not None:
-            known = [part.name for part in (*scene.bushings, *scene.rolling_bearings, *scene.planet_bearings)]
+            known = [part.name for part in scene.bushings]
+            known += [part.name for part in scene.rolling_bearings]
+            known += [part.name for part in scene.planet_bearings]
             _require_named("heard.bearing", inputs.heard.bearing, known)
         mesh = _mesh_of(scene, inputs)
         if mesh.case is not None:
@@ -73,9 +75,9 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
                 heard, nominal = _heard(subject, mesh, (before.pair, after.pair), inputs, means)
             with clock.stage("pairs"):
                 levels = _levels(heard, (before.pair, after.pair), names, deviation, means)
-        designs = [
+        first, second = (
             DesignLevels(own.level, pairs, own.parting) for own, pairs in zip(nominal, levels, strict=True)
-        ]
+        )
         quantity = quantity_of(subject, inputs.heard)
         return FlankChange(
             mesh.name,
@@ -87,7 +89,8 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
             np.array(inputs.speed_rpm) * RPM,
             names,
             deviation,
-            *designs,
+            first,
+            second,
             inputs.requirement_db,
             clock.to_json(),
         )
@@ -163,7 +166,8 @@ def _designs(case: Case, inputs: Inputs) -> tuple[ToleranceRequest, ToleranceReq
     if skew and case.accuracy.model in PLANE:
         advice = "A plane model has no width: take the 3-D model."
         raise BadInput.of("tolerances.misalignment_um", skew, "0 in a plane model", advice)
-    return tuple(_design(case, name, getattr(inputs, name) or case, inputs) for name in ("before", "after"))
+    before = _design(case, "before", inputs.before or case, inputs)
+    return before, _design(case, "after", inputs.after, inputs)
 
 
 def _design(case: Case, name: str, own: Case, inputs: Inputs) -> ToleranceRequest:
