@@ -13,16 +13,16 @@ ROOT = Path(__file__).parents[2]
 BUDGETS = {
     ("fe_contact",): (39_559, 703),
     ("dynamics",): (41_987, 797),
-    ("lineofaction.gearbox",): (22_629, 449),
-    ("lineofaction.report",): (10_853, 204),
+    ("lineofaction.gearbox",): (23_398, 462),
+    ("lineofaction.report",): (10_974, 204),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
-    ("lineofaction.cli",): (4_710, 67),
+    ("lineofaction.cli",): (4_768, 69),
     ("lineofaction.hardcases",): (3_844, 35),
     ("bounds", "host", "model_studies"): (4_353, 150),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 776
+MOST_FILES = 781
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
