@@ -3,6 +3,9 @@
 Each would otherwise compile for itself what is not kept yet, and two that keep different signatures of a
 function at a time could take the same file for them. An entry is renewed with the file of its loop; it also
 names modules and functions that the loop calls: where an upgrade has taken one away, it is compiled anew.
+
+numba optimizes each loop, makes machine code of it and wraps it for Python, and does so again in every loop
+that calls it. An inner loop is linked as it is: what Python calls is optimized once, with all that it calls.
 """
 
 from __future__ import annotations
@@ -10,17 +13,21 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from numba import njit
 from numba.core.caching import IndexDataCacheFile
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
+from numba.core.registry import CPUDispatcher
 
 from host import Unavailable, lock
 
-__all__ = ["njit"]
+__all__ = ["inner", "njit"]
 
 _held: set[Path] = set()
 
@@ -77,3 +84,53 @@ def _locked(file: Path) -> Iterator[None]:
 
 
 Dispatcher.compile = _one_at_a_time(Dispatcher.compile)  # type: ignore[method-assign]
+
+
+class _Linked(JITCodeLibrary):
+    """The code of a loop as others link it: what it becomes part of is optimized, and made machine code."""
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def get_pointer_to_function(self, name: str) -> int:
+        return 0
+
+    @property
+    def codegen(self) -> Any:
+        return self  # for the one call below: there is no machine code that has an environment
+
+    def set_env(self, name: str, environment: Any) -> None:
+        pass
+
+
+class _LinkedCompiler(Compiler):
+    def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
+        super().__init__(typing, target, library or _Linked(target.codegen(), "inner"), *rest)
+
+
+class _Inner(CPUDispatcher):
+    """A loop of compiled loops: without machine code, wrappers for Python and an entry of its own."""
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self._outer(*arguments)
+
+    @cached_property
+    def _outer(self) -> Any:
+        options = {name: value for name, value in self.targetoptions.items() if name not in _BARE}
+        return njit(cache=True, **options)(self.py_func)
+
+
+_BARE = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+def inner(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Compile a loop into those that call it, with options of `njit`; called from Python, once more."""
+
+    def compiled(function: Callable[..., Any]) -> Any:
+        return _Inner(function, targetoptions={**_BARE, **options}, pipeline_class=_LinkedCompiler)
+
+    return compiled

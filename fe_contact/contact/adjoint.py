@@ -31,7 +31,7 @@ from fe_contact.contact.tilted_bodies import yield_to
 from fe_contact.contact.touch import rolls_at
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, IntArray, Status
-from host.loops import njit
+from host.loops import inner, njit
 
 # Derivatives of transmission error and load arm from the solved contact, by its adjoint.
 
@@ -111,7 +111,7 @@ def _weigh(
                     middle[p, k, at], half[p, k, at] = carrying_strip(problem.law, problem.place[q], carried)
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _pushed(problem: PointProblem, force: FloatArray, rows: FloatArray) -> FloatArray:
     """Return by how much forces fall as contacts are moved apart by rows (R, m), at one deflection.
 

@@ -15,7 +15,7 @@ import numpy as np
 from fe_contact.contact.patch import profile_moments
 from fe_contact.contact.point_problem import dot
 from fe_contact.types import BoolArray, FloatArray, IntArray
-from host.loops import njit
+from host.loops import inner, njit
 
 
 class FaceGrid(NamedTuple):
@@ -110,7 +110,7 @@ def face_loads(
     return FaceLoads(nodes, forces, used)
 
 
-@njit(cache=True)
+@inner()
 def _most_nodes(
     grid: FaceGrid, center: FloatArray, half_width: FloatArray, low: FloatArray, high: FloatArray
 ) -> int:
@@ -127,20 +127,20 @@ def _most_nodes(
     return most
 
 
-@njit(cache=True)
+@inner()
 def _part(low: float, high: float, q: int, count: int) -> tuple[float, float]:
     """Return one of the equal parts of a range."""
     step = (high - low) / count
     return low + q * step, low + (q + 1) * step
 
 
-@njit(cache=True)
+@inner()
 def _overlaps(left: float, right: float, low: float, high: float) -> bool:
     """Whether two intervals share more than a point."""
     return right > low and left < high
 
 
-@njit(cache=True)
+@inner()
 def _touched(ends: FloatArray, low: float, high: float) -> int:
     """Count the elements between consecutive ends that the interval overlaps."""
     count = 0
@@ -149,7 +149,7 @@ def _touched(ends: FloatArray, low: float, high: float) -> int:
     return count
 
 
-@njit(cache=True)
+@inner()
 def _box_moments(left: float, right: float, low: float, high: float, out: FloatArray) -> None:
     """Moments 0 to 2 of a unit box load on one layer, in its coordinate from -1 to 1."""
     start = 2.0 * (max(left, low) - left) / (right - left) - 1.0
@@ -160,7 +160,7 @@ def _box_moments(left: float, right: float, low: float, high: float, out: FloatA
     out[2] = density * (stop**3 - start**3) / 3.0
 
 
-@njit(cache=True)
+@inner()
 def _add_face(
     index: IntArray,
     e: int,
@@ -264,7 +264,7 @@ class _SliceForces(NamedTuple):
     lever: FloatArray
 
 
-@njit(cache=True)
+@inner()
 def _slice_forces(
     loads: FaceLoads, at: IntArray, lever: FloatArray, place: IntArray, ends: IntArray
 ) -> _SliceForces:
@@ -280,7 +280,7 @@ def _slice_forces(
     return _SliceForces(low, width, start, force, lever)
 
 
-@njit(cache=True)
+@inner()
 def _gathered(block: FloatArray, rows: IntArray, columns: IntArray, room: FloatArray) -> FloatArray:
     """Return the rows and columns of a block beside each other in memory, within `room`."""
     gathered = room[: rows.size * columns.size].reshape(rows.size, columns.size)
@@ -291,7 +291,7 @@ def _gathered(block: FloatArray, rows: IntArray, columns: IntArray, room: FloatA
     return gathered
 
 
-@njit(cache=True)
+@inner()
 def _add_teeth(
     block: FloatArray, slices: _SliceForces, ends: IntArray, a: int, b: int, out: FloatArray
 ) -> None:
@@ -311,7 +311,7 @@ def _add_teeth(
                     out[p, j, i] += value
 
 
-@njit(cache=True)
+@inner()
 def _ends(tooth: IntArray) -> IntArray:
     """Return where the slices of each tooth begin, and where the last ones end."""
     inner = np.flatnonzero(np.diff(tooth)) + 1
@@ -320,7 +320,7 @@ def _ends(tooth: IntArray) -> IntArray:
     return ends
 
 
-@njit(cache=True)
+@inner()
 def _needed(order: IntArray, loads: FaceLoads, on: IntArray, ends: IntArray) -> tuple[IntArray, IntArray]:
     """Return how many freedoms of each tooth are loaded and which, and the place of each by slice."""
     needed = np.zeros((ends.size - 1, order.size + 1), dtype=np.int64)
@@ -339,7 +339,7 @@ def _needed(order: IntArray, loads: FaceLoads, on: IntArray, ends: IntArray) -> 
     return needed, place
 
 
-@njit(cache=True)
+@inner()
 def _ranges(
     loads: FaceLoads, on: IntArray, place: IntArray, ends: IntArray
 ) -> tuple[IntArray, IntArray, IntArray]:

@@ -38,7 +38,7 @@ from fe_contact.contact.point_problem import (
 )
 from fe_contact.contact.tilted_bodies import fill_yielding, move, yield_to
 from fe_contact.types import FloatArray, IntArray
-from host.loops import njit
+from host.loops import inner
 
 CONVERGED, ITERATION_LIMIT, SINGULAR, OUT_OF_MODEL = 0, 1, 2, 3
 """The values of `fe_contact.types.Status` that this solver gives."""
@@ -83,7 +83,7 @@ class NewtonSystem(NamedTuple):
     left: FloatArray
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def empty_system(problem: PointProblem) -> NewtonSystem:
     """Return room for the equations of a problem."""
     n = problem.bodies.shape[0]
@@ -92,7 +92,7 @@ def empty_system(problem: PointProblem) -> NewtonSystem:
     return NewtonSystem(member, touching, square[0], square[1], right, line[0], line[1])
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def solve_point(
     problem: PointProblem, total: float, force: FloatArray, residual: FloatArray
 ) -> tuple[float, float, int, int, bool]:
@@ -135,7 +135,7 @@ def solve_point(
     return touch + elastic, tangent, status, iterations, beyond
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _start(problem: PointProblem, total: float, gap: FloatArray, state: State) -> float:
     """Fill the state by the given forces, or a guess of them; return the elastic deflection they ask for."""
     state.force[:] = np.maximum(state.force, 0.0)
@@ -154,7 +154,7 @@ def _start(problem: PointProblem, total: float, gap: FloatArray, state: State) -
     return float(elastic)
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArray) -> None:
     """Fill in forces as the gaps would take them if all contacts gave way as the first one to touch."""
     depth, carried = total * _softness(problem, int(np.argmin(gap))), 0.0
@@ -164,7 +164,7 @@ def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArr
     force *= total / carried
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _softness(problem: PointProblem, q: int) -> float:
     """Return how far the bodies move at most at a contact under a unit force on it, m/N."""
     total, first, curve = 0.0, problem.first[q], problem.curve[q]
@@ -174,7 +174,7 @@ def _softness(problem: PointProblem, q: int) -> float:
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _iterate(
     problem: PointProblem, total: float, gap: FloatArray, elastic: float, state: State
 ) -> tuple[float, float, int, int]:
@@ -208,7 +208,7 @@ def _iterate(
     return elastic, tangent, ITERATION_LIMIT, MAX_ITERATIONS
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _settle(
     problem: PointProblem, gap: FloatArray, elastic: float, step: float, motion: FloatArray, state: State
 ) -> bool:
@@ -226,7 +226,7 @@ def _settle(
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _condensed(problem: PointProblem, state: State, system: NewtonSystem, size: int) -> tuple[float, float]:
     """Return the stiffness of the position in N/m, and what the curves miss of the load in N."""
     stiff, missed = stiffness(problem, state), 0.0
@@ -240,7 +240,7 @@ def _condensed(problem: PointProblem, state: State, system: NewtonSystem, size: 
     return stiff, missed
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _advance(
     problem: PointProblem,
     total: float,
@@ -273,7 +273,7 @@ def _advance(
     return elastic
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> int:
     """Fill in Newton's equations; return the number of curves over contacts that touch."""
     pulled, pushed = np.zeros((2, state.held.size))
@@ -307,7 +307,7 @@ def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> 
     return size
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _touching(problem: PointProblem, state: State, system: NewtonSystem, pulled: FloatArray) -> None:
     """Fill in N'DN by its diagonals, N'D m and N'D n of all curves."""
     touching, shares = system.touching, system.shares
@@ -323,7 +323,7 @@ def _touching(problem: PointProblem, state: State, system: NewtonSystem, pulled:
                     touching[first + a, a - b] += part * problem.curve[q, b]
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _residuals(
     problem: PointProblem,
     total: float,

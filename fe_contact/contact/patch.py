@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.types import FloatArray, IntArray
-from host.loops import njit
+from host.loops import inner
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ def tip_patches(
     return Patches(center, half, share)
 
 
-@njit(cache=True)
+@inner()
 def load_vector(
     nodes: FloatArray, center: float, half_width: float, edge_share: float, out: FloatArray
 ) -> tuple[int, int]:
@@ -147,7 +147,7 @@ def load_vector(
     return 2 * first, 2 * last + 1
 
 
-@njit(cache=True)
+@inner()
 def patch_angles(nodes: FloatArray, e: int, center: float, half_width: float) -> tuple[float, float]:
     """Return the angles of a patch, -pi/2 to pi/2, between which it lies on element e.
 
@@ -160,7 +160,7 @@ def patch_angles(nodes: FloatArray, e: int, center: float, half_width: float) ->
     return start, math.asin(min(max((nodes[2 * e + 2] - center) / half_width, -1.0), 1.0))
 
 
-@njit(cache=True)
+@inner()
 def profile_moments(
     nodes: FloatArray, e: int, center: float, half_width: float, edge_share: float
 ) -> tuple[float, float, float]:
@@ -174,7 +174,7 @@ def profile_moments(
     return zeroth, by_one, middle * by_one + half * (middle * tilt + half * square)
 
 
-@njit(cache=True)
+@inner()
 def _sine_moments(angle: float, edge_share: float) -> tuple[float, float, float]:
     """Return integrals of a unit patch times powers 0 to 2 of the sine up to an angle, but for constants."""
     sine, cosine = math.sin(angle), math.cos(angle)

@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.strip import Gap, free_strip, gap_at, half_strip, strip_at, strip_load, strip_middle
 from fe_contact.types import BoolArray, FloatArray, IntArray
-from host.loops import njit
+from host.loops import inner
 
 # Local approach of the contacts as the compiled solver uses it: increasing and concave in the load.
 
@@ -47,7 +47,7 @@ class _LocalLaw(NamedTuple):
     modulus: FloatArray
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def approach(law: _LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     """Local approach of contact `i` under `force` in N.
 
@@ -72,7 +72,7 @@ def approach(law: _LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     return rigid + slope * p, slope / width, beyond
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def carrying_strip(law: _LocalLaw, i: int, force: float) -> tuple[float, float]:
     """Return middle and half length in m of the strip over which contact `i` carries `force` in N, > 0."""
     _, least, most = _limits(law, i)
@@ -81,7 +81,7 @@ def carrying_strip(law: _LocalLaw, i: int, force: float) -> tuple[float, float]:
     return (0.0 if half <= law.free[i] else strip_middle(law.gap, i, half)), half
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _force_at(law: _LocalLaw, i: int, value: float) -> tuple[float, float]:
     """Force of contact `i` in N at a local approach in m, and its derivative in N/m; zero where flanks part.
 
@@ -104,7 +104,7 @@ def _force_at(law: _LocalLaw, i: int, value: float) -> tuple[float, float]:
     return law.width[i] * load, law.width[i] * slope
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _load_on(
     half: float, carried: float, rigid: float, length: float, modulus: float, value: float
 ) -> tuple[float, float]:
@@ -120,13 +120,13 @@ def _load_on(
     return (value - rigid) / slope, 1.0 / slope
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _limits(law: _LocalLaw, i: int) -> tuple[float, float, float]:
     """Return k = 2/(pi E*) in 1/Pa, and the least and the largest half strip that the formulas take, m."""
     return 2.0 / (math.pi * law.modulus[i]), SMALLEST_STRIP * law.length, LARGEST_STRIP * law.length
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _plain_strip(curvature: float, length: float, value: float) -> float:
     """Half strip in m of a parabola at an approach in m: y (1/4 - ln(y)/2) = 2 approach/(q l^2), y = (h/l)^2.
 
@@ -146,7 +146,7 @@ def _plain_strip(curvature: float, length: float, value: float) -> float:
     return length * math.sqrt(y)
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _plain_load(
     curvature: float, length: float, modulus: float, half: float, value: float
 ) -> tuple[float, float]:
@@ -156,13 +156,13 @@ def _plain_load(
     return _load_on(half, math.pi * modulus * rise, rise, length, modulus, value)
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _free_strips(gap: Gap) -> FloatArray:
     """Half strips (n,) in m up to which gaps are parabolas."""
     return np.array([free_strip(gap, i) for i in range(gap.slope.size)])
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _strip_at(law: _LocalLaw, i: int, value: float, half: float) -> float:
     """Half strip in m at an approach in m, from a guess on; at the limits where it would be beyond them."""
     k, low, high = _limits(law, i)
@@ -199,7 +199,7 @@ def _strip_at(law: _LocalLaw, i: int, value: float, half: float) -> float:
 # Gaussian elimination with partial pivoting for the small dense systems of the contact, compiled.
 
 
-@njit(cache=True, fastmath={"reassoc", "contract"})
+@inner(fastmath={"reassoc", "contract"})
 def dot(x: FloatArray, y: FloatArray, n: int) -> float:
     """Sum of products of the first `n` entries."""
     total = 0.0
@@ -208,7 +208,7 @@ def dot(x: FloatArray, y: FloatArray, n: int) -> float:
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
     """Solve a x = right for the leading n x n block; `right` (k, n) holds k right-hand sides, then solutions.
 
@@ -237,14 +237,14 @@ def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def subtract(x: FloatArray, y: FloatArray, part: float) -> None:
     """Take a part of `y` off `x`."""
     for k in range(x.size):
         x[k] -= part * y[k]
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _swap(x: FloatArray, y: FloatArray, n: int) -> None:
     for k in range(n):
         x[k], y[k] = y[k], x[k]
@@ -343,7 +343,7 @@ class PointProblem(NamedTuple):
     law: _LocalLaw
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
     """Return the problem of a position, and its contacts among all candidates."""
     row, (points, count) = p % every.bodies.shape[0], every.curves.shape
@@ -367,7 +367,7 @@ def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
     return PointProblem(inner, tilt, radius, curve[point], first, slot, every.gap[p][here], *arms, law), here
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _turned(heights: FloatArray, moved: FloatArray) -> FloatArray:
     """Return the heights (r, n) of the curves of all pairs for motions (n, r) of their slices."""
     count, turned = heights.shape[0], np.zeros(moved.shape)
@@ -377,7 +377,7 @@ def _turned(heights: FloatArray, moved: FloatArray) -> FloatArray:
     return np.ascontiguousarray(turned.T)
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _beside(curves: FloatArray) -> tuple[FloatArray, IntArray]:
     """Return the curves (points, w) that are not zero at each point, and which is the first of them."""
     points, count = curves.shape
@@ -417,7 +417,7 @@ class State(NamedTuple):
     pressed: FloatArray
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def pressed_state(problem: PointProblem, force: FloatArray) -> State:
     """Return a state with the forces (m,) of the contacts on the curves; what they move is still missing."""
     n, m = problem.bodies.shape[0], force.size
@@ -427,7 +427,7 @@ def pressed_state(problem: PointProblem, force: FloatArray) -> State:
     return state
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: State) -> None:
     """Fill in forces and slopes of the contacts, and the forces on the curves, under the motions."""
     width, curvature, free = problem.law.width, problem.law.gap.curvature, problem.law.free
@@ -447,7 +447,7 @@ def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: Stat
     press(problem, state.force, state.pressed)
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def press(problem: PointProblem, force: FloatArray, out: FloatArray) -> None:
     """Fill in the forces of the contacts on the curves."""
     out[:] = 0.0
@@ -457,7 +457,7 @@ def press(problem: PointProblem, force: FloatArray, out: FloatArray) -> None:
                 out[problem.first[q] + a] += problem.curve[q, a] * force[q]
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def motion_at(problem: PointProblem, q: int, moved: FloatArray) -> float:
     """Return the motion of the bodies at a contact, m."""
     value = 0.0
@@ -466,7 +466,7 @@ def motion_at(problem: PointProblem, q: int, moved: FloatArray) -> float:
     return value
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def stiffness(problem: PointProblem, state: State) -> float:
     """Return how fast the contacts take load as the gear moves, N/m."""
     value = 0.0

@@ -31,7 +31,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.types import FloatArray, IntArray
-from host.loops import njit
+from host.loops import inner, njit
 
 _TOLERANCE = 1e-9
 """Of strip and middle over the strip; the approach is stationary in both."""
@@ -68,7 +68,7 @@ class Gap(NamedTuple):
     bend: FloatArray
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def gap_at(about: Gap, at: int | IntArray) -> Gap:
     """Return the gaps at one of the positions of arrays (P, n) and (P, n, B), or some of those of (n,)."""
     return Gap(
@@ -82,7 +82,7 @@ def gap_at(about: Gap, at: int | IntArray) -> Gap:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def free_strip(gap: Gap, i: int) -> float:
     """Half strip in m up to which a gap is a parabola: to the nearest edge or break; 0 on a slope."""
     if gap.slope[i] != 0.0:
@@ -93,7 +93,7 @@ def free_strip(gap: Gap, i: int) -> float:
     return free
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[float, float]:
     """Return half the length of the strip in m and the mean gap over it in m, from the touching point's on.
 
@@ -137,7 +137,7 @@ def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[floa
     return half, rigid
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def strip_load(gap: Gap, i: int, half: float, modulus: float) -> tuple[float, float]:
     """Return the line load in N/m under a strip of this half length, and the mean gap over it in m."""
     if half <= free_strip(gap, i):
@@ -152,7 +152,7 @@ def strip_load(gap: Gap, i: int, half: float, modulus: float) -> tuple[float, fl
     return 0.5 * math.pi * modulus * half * first, mean
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _tilting(gap: Gap, i: int, center: float, half: float) -> float:
     """Return how the mean of g' sin t changes with that of g' as the middle moves.
 
@@ -172,7 +172,7 @@ def _tilting(gap: Gap, i: int, center: float, half: float) -> float:
     return by_first / by_slope
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def strip_middle(gap: Gap, i: int, half: float) -> float:
     """Return the middle of a strip in m: where pressure vanishes at both ends, or one end is at an edge."""
     low: float = max(-half, gap.low[i] + half)
@@ -254,7 +254,7 @@ def rolling_radii(gap: Gap, half: FloatArray) -> FloatArray:
     return radius
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def strip_at(gap: Gap, i: int, value: float, length: float, half: float) -> tuple[float, float, float]:
     """Return the strip of an approach or a load where no edge is near, by Newton's method from a guess on.
 
@@ -291,7 +291,7 @@ def strip_at(gap: Gap, i: int, value: float, length: float, half: float) -> tupl
     return 0.0, 0.0, 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def past_break(beyond: float, half: float) -> tuple[float, float, float, float, float]:
     """Return integrals over the angle of a strip of what lies past a break, d from it on.
 
@@ -317,7 +317,7 @@ def past_break(beyond: float, half: float) -> tuple[float, float, float, float, 
     return angle, cosine, ramp, tilted, half * tilted - beyond * ramp
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _means(gap: Gap, i: int, center: float, half: float) -> tuple[float, float, float, float, float, float]:
     """Return the means of g', g' sin t, g, g'', g'' sin t and g'' sin^2 t over the angle t of the strip."""
     s, q = float(gap.slope[i]), float(gap.curvature[i])

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from fe_contact.contact.point_problem import PointProblem, State, dot, subtract
 from fe_contact.types import FloatArray
-from host.loops import njit
+from host.loops import inner
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def move(problem: PointProblem, state: State) -> None:
     """Fill in the heights of the curves under the forces on them, u(h).
 
@@ -25,7 +25,7 @@ def move(problem: PointProblem, state: State) -> None:
                 state.moved[k] += problem.tilt[j, k] * way * state.held[j]
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def rolled(problem: PointProblem, j: int, held: FloatArray) -> tuple[float, float, float]:
     """Return the tilt of the flanks at a curve, how far it moves their strip in m, and per tilt."""
     tilt, radius = dot(problem.tilt[j], held, held.size), problem.radius[j]
@@ -33,7 +33,7 @@ def rolled(problem: PointProblem, j: int, held: FloatArray) -> tuple[float, floa
     return tilt, way, -radius if abs(way) < problem.law.length else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def fill_yielding(problem: PointProblem, state: State) -> None:
     """Fill in the derivative of the motions: symmetric."""
     n, out = state.held.size, state.yielding
@@ -50,7 +50,7 @@ def fill_yielding(problem: PointProblem, state: State) -> None:
                     subtract(out[k], row, -rate * state.held[j] * row[k])
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def yield_to(yielding: FloatArray, change: FloatArray, out: FloatArray) -> None:
     """Fill in the change of the heights by small changes of the forces."""
     for j in range(change.size):

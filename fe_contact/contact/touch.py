@@ -12,7 +12,7 @@ from fe_contact.contact.strip import Gap
 from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact, edge_gap
 from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray, IntArray
-from host.loops import njit
+from host.loops import inner, njit
 
 # Positions where gaps made of parabolas are least, and the gaps about them.
 
@@ -64,7 +64,7 @@ def _touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
     return touching
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _slope(gap: Gap, i: int, x: float) -> float:
     """Return the slope of the gap, the side to which it falls if there is one; zero at a break that holds."""
     left, right = _slope_beside(gap, i, x, -1.0), _slope_beside(gap, i, x, 1.0)
@@ -73,7 +73,7 @@ def _slope(gap: Gap, i: int, x: float) -> float:
     return right if right < 0.0 else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _slope_beside(gap: Gap, i: int, x: float, side: float) -> float:
     slope: float = gap.slope[i] + gap.curvature[i] * x
     for k in range(gap.place.shape[1]):
@@ -86,7 +86,7 @@ def _slope_beside(gap: Gap, i: int, x: float, side: float) -> float:
     return slope
 
 
-@njit(cache=True, error_model="numpy")
+@inner(error_model="numpy")
 def _curvature(gap: Gap, i: int, x: float) -> float:
     curvature: float = gap.curvature[i]
     for k in range(gap.place.shape[1]):

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.types import FloatArray
-from host.loops import njit
+from host.loops import inner, njit
 
 
-@njit(cache=True)
+@inner()
 def _hermite(axis: FloatArray, at: float, weight: FloatArray) -> int:
     """Fill the weights of value and slope at either end of the cell that holds `at`; return the cell."""
     x = min(max(at, axis[0]), axis[-1])

@@ -14,7 +14,7 @@ from fe_contact.ste.force_table import LevelGrid
 from fe_contact.ste.interpolation import Axis
 from fe_contact.ste.mesh_force import MeshForce
 from fe_contact.types import FloatArray, IntArray
-from host.loops import njit
+from host.loops import inner, njit
 
 # The evaluation of `MeshForce` compiled: force and stiffness at many points, equal to the last bit.
 
@@ -54,7 +54,7 @@ class _KernelTable(NamedTuple):
     order: IntArray
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner(nogil=True, error_model="numpy")
 def _inside(knots: FloatArray, first: int, size: int, period: float, query: float) -> float:
     """Return the query wrapped into the period, or held between the ends of an open axis (period 0)."""
     start = knots[first]
@@ -65,7 +65,7 @@ def _inside(knots: FloatArray, first: int, size: int, period: float, query: floa
     return float(min(max(query, start), knots[first + size - 1]))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner(nogil=True, error_model="numpy")
 def _interval(knots: FloatArray, first: int, size: int, closed: bool, inside: float) -> int:
     """Return the knot left of a value, as np.searchsorted finds it, that begins an interval."""
     low, high = 0, size
@@ -79,7 +79,7 @@ def _interval(knots: FloatArray, first: int, size: int, closed: bool, inside: fl
     return min(max(low - 1, 0), last)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner(nogil=True, error_model="numpy")
 def _corners(offset: IntArray, active: int, left: int, size: int) -> None:
     """Multiply the corners found on `active` axes by the two knots of one more, or by its only one."""
     for corner in range((1 << active) - 1, -1, -1):
@@ -91,7 +91,7 @@ def _corners(offset: IntArray, active: int, left: int, size: int) -> None:
             offset[corner] = begin
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner(nogil=True, error_model="numpy")
 def _weigh(weight: FloatArray, axis: int, t: float, h: float) -> None:
     """Fill the Hermite weights (2 knots, value and slope) of one axis: `Stencil.weights`."""
     s = 1.0 - t
@@ -101,7 +101,7 @@ def _weigh(weight: FloatArray, axis: int, t: float, h: float) -> None:
     weight[axis, 1, 1] = -h * t * t * s
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner(nogil=True, error_model="numpy")
 def _factors(factor: FloatArray, weight: FloatArray, order: IntArray) -> None:
     """Fill the products of one-axis weights, (corners, derivatives): `LevelGrid._factor`."""
     corners, active = order.shape
@@ -114,7 +114,7 @@ def _factors(factor: FloatArray, weight: FloatArray, order: IntArray) -> None:
             factor[corner, o] = total
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner(nogil=True, error_model="numpy")
 def _value(numbers: FloatArray, offset: IntArray, factor: FloatArray, level: int) -> float:
     """Return one level at the query that was placed: `LevelGrid._sum`."""
     total, corners = 0.0, offset.size
@@ -125,7 +125,7 @@ def _value(numbers: FloatArray, offset: IntArray, factor: FloatArray, level: int
     return total
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner(nogil=True, error_model="numpy")
 def _level_below(numbers: FloatArray, offset: IntArray, factor: FloatArray, levels: int, d: float) -> int:
     """Return the highest level not above a deflection, -1 below lift-off: `MeshForce._level_below`."""
     low, high = -1, levels
@@ -138,7 +138,7 @@ def _level_below(numbers: FloatArray, offset: IntArray, factor: FloatArray, leve
     return low
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner(nogil=True, error_model="numpy")
 def _between(
     d: float, d0: float, d1: float, low: float, high: float, stiffness0: float, stiffness1: float
 ) -> tuple[float, float]:
@@ -152,7 +152,7 @@ def _between(
     return max(force, 0.0), max(tangent / width, 0.0)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner(nogil=True, error_model="numpy")
 def _at_deflection(
     level: FloatArray,
     deflection: FloatArray,

@@ -79,3 +79,24 @@ def test_processes_that_need_a_loop_at_once_compile_it_once(tmp_path: Path) -> N
             child.stdin.flush()
         compiled = [int(child.communicate()[0]) for child in children]
     assert sorted(compiled) == [0, 0, 1]
+
+
+def test_an_inner_loop_is_part_of_its_callers_and_python_may_call_it_too() -> None:
+    @loops.inner(error_model="numpy")
+    def reciprocal(x: float) -> float:
+        return 1.0 / x
+
+    @loops.inner()
+    def twice(x: float) -> float:
+        return 2.0 * reciprocal(x)
+
+    @loops.njit
+    def outer(x: float) -> float:
+        return twice(x) + reciprocal(x)
+
+    assert outer(0.0) == float("inf")
+    assert twice(4.0) == reciprocal(2.0) == 0.5
+    for loop in (reciprocal, twice):
+        (linked,) = loop.overloads.values()
+        assert linked.library.get_pointer_to_function(linked.fndesc.llvm_func_name) == 0
+        assert not any("cpython" in each.name for each in linked.library.get_defined_functions())
