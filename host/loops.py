@@ -8,6 +8,9 @@ numba optimizes each loop, makes machine code of it and wraps it for Python, and
 that calls it. An inner loop is linked as it is: what Python calls is optimized once, with all that it calls.
 """
 
+# numba annotates little of what extends it
+# mypy: disable-error-code="no-untyped-call"
+
 from __future__ import annotations
 
 import os
@@ -15,7 +18,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
 from numba import njit
 from numba.core.caching import IndexDataCacheFile
@@ -28,6 +31,8 @@ from numba.core.registry import CPUDispatcher
 from host import Unavailable, lock
 
 __all__ = ["inner", "njit"]
+
+Loop = TypeVar("Loop", bound=Callable[..., Any])
 
 _held: set[Path] = set()
 
@@ -127,10 +132,12 @@ class _Inner(CPUDispatcher):
 _BARE = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
-def inner(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+def inner(**options: Any) -> Callable[[Loop], Loop]:
     """Compile a loop into those that call it, with options of `njit`; called from Python, once more."""
 
-    def compiled(function: Callable[..., Any]) -> Any:
-        return _Inner(function, targetoptions={**_BARE, **options}, pipeline_class=_LinkedCompiler)
+    def compiled(function: Loop) -> Loop:
+        return cast(
+            Loop, _Inner(function, targetoptions={**_BARE, **options}, pipeline_class=_LinkedCompiler)
+        )
 
     return compiled
