@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from functools import partial
 
+from host import loops
 from host.loops import njit
 
 # error_model="numpy": a division by zero gives an infinity, which the step control sees, and no branch at
 # every division. _nrt=False: compiled functions allocate nothing and count no references; they write into
 # what they are given. forceinline: what they call is part of them, so that addresses and lengths of arrays
 # are read once; what is too large for that is a `Routine`.
-_numba = partial(njit, error_model="numpy", nogil=True, _nrt=False, forceinline=True)
+_numba, _inner = (
+    partial(each, error_model="numpy", nogil=True, _nrt=False, forceinline=True) for each in (njit, loops.inner)
+)
 
 # Callable from Python. The first call compiles or reads the cache beside the source (in NUMBA_CACHE_DIR
 # where that cannot be written). Tuples of arrays go in `by_address`, arrays are C-contiguous float64 and
@@ -19,9 +22,8 @@ _numba = partial(njit, error_model="numpy", nogil=True, _nrt=False, forceinline=
 # cache.
 compiled = _numba(cache=True)
 
-# Callable from compiled functions only: no wrappers, no cache entry of its own, which halves the compile
-# time.
-inner = _numba(no_cpython_wrapper=True, no_cfunc_wrapper=True)
+# Part of the compiled functions that call them, compiled with those; from Python compiled once more.
+inner = _inner()
 
 # The same for sums of many products, which may be taken in any order: side by side in vector registers.
-inner_sums = _numba(no_cpython_wrapper=True, no_cfunc_wrapper=True, fastmath={"reassoc", "contract"})
+inner_sums = _inner(fastmath={"reassoc", "contract"})
