@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from inspect import unwrap
 from typing import NamedTuple
 
 import numpy as np
@@ -220,8 +221,9 @@ def _counts(step_sizes: FloatArray, first_step: float) -> IntArray:
 
 def _linear_rows(elements: Elements) -> IntArray:
     rows: list[tuple[int, int, int]] = []
+    linear = unwrap(is_linear)  # as Python: not compiled for this alone
     for e in range(elements.law.size):
-        if is_linear.py_func(elements, e):
+        if linear(elements, e):
             first, count = int(elements.first[e]), int(elements.first[e + 1] - elements.first[e])
             start = len(rows)
             rows += [(first + k, start, start + count) for k in range(count)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 from host import loops
 from host.loops import njit
@@ -11,19 +12,17 @@ from host.loops import njit
 # every division. _nrt=False: compiled functions allocate nothing and count no references; they write into
 # what they are given. forceinline: what they call is part of them, so that addresses and lengths of arrays
 # are read once; what is too large for that is a `Routine`.
-_numba, _inner = (
-    partial(each, error_model="numpy", nogil=True, _nrt=False, forceinline=True) for each in (njit, loops.inner)
-)
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False, "forceinline": True}
 
 # Callable from Python. The first call compiles or reads the cache beside the source (in NUMBA_CACHE_DIR
 # where that cannot be written). Tuples of arrays go in `by_address`, arrays are C-contiguous float64 and
 # int64, so each function has one signature and one cache entry serves every process. numba renews an entry
 # when the function's own file changes, not when a function it calls does: after editing a kernel, clear the
 # cache.
-compiled = _numba(cache=True)
+compiled = partial(njit, **_OPTIONS)(cache=True)
 
 # Part of the compiled functions that call them, compiled with those; from Python compiled once more.
-inner = _inner()
+inner = loops.inner(**_OPTIONS)
 
 # The same for sums of many products, which may be taken in any order: side by side in vector registers.
-inner_sums = _inner(fastmath={"reassoc", "contract"})
+inner_sums = loops.inner(**_OPTIONS, fastmath={"reassoc", "contract"})
