@@ -12,14 +12,14 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (39_559, 703),
-    ("dynamics",): (41_987, 797),
+    ("dynamics",): (41_990, 797),
     ("lineofaction.gearbox",): (23_398, 462),
     ("lineofaction.report",): (10_974, 204),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_768, 69),
     ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_353, 150),
+    ("bounds", "host", "model_studies"): (4_417, 151),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 781
