@@ -170,6 +170,7 @@ class FlankQuestion:
     """What ``loa compare BEFORE AFTER --scene SCENE`` was called with, as typed."""
 
     scene: Path
+    mesh: str | None
     tolerances: Path | None
     speed_rpm: str | None
     requirement_db: float | None
@@ -190,6 +191,7 @@ def run_compare_flanks(
     inputs: Json = {
         "before": before,
         "after": after,
+        "mesh": question.mesh,
         "speed_rpm": number_list("--speed-rpm", question.speed_rpm),
         "requirement_db": question.requirement_db,
     }

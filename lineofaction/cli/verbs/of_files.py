@@ -347,7 +347,11 @@ class _ViewOptions:
     ] = ""
     bearing: Annotated[str, typer.Option(help="Bearing of a run to show.", show_default="the loudest")] = ""
     mesh: Annotated[
-        str, typer.Option(help="Mesh of a run whose orders are shown.", show_default="the first")
+        str,
+        typer.Option(
+            help="Mesh of a run whose orders are shown, or of a scene, whose flanks are compared.",
+            show_default="the first, the only one",
+        ),
     ] = ""
     orders: Annotated[
         str,
@@ -430,7 +434,7 @@ def _compare(
 ) -> None:
     """Compare two tables, two runs, two flanks in a scene, or one with a measurement: differences."""
     if scene is not None:
-        question = pages.FlankQuestion(scene, tolerances, speed_rpm, requirement_db)
+        question = pages.FlankQuestion(scene, view.mesh or None, tolerances, speed_rpm, requirement_db)
         pages.run_compare_flanks(files, question, output, as_json=json)
         return
     pages.run_compare(files, output, view.view, torque, as_json=json)

@@ -1,0 +1,37 @@
+"""``loa compare BEFORE AFTER --scene``: the options reach the study of a change of flanks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from command_line import loa
+
+from lineofaction.cli import pages
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+SPUR, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
+
+
+def called(*options: object) -> str:
+    return loa("compare", SPUR, SPUR, "--scene", SCENE, *options).output
+
+
+def test_what_is_typed_reaches_the_study(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    seen = {}
+    monkeypatch.setattr(pages, "run_study", lambda study, options: seen.update(options))
+    tolerances = tmp_path / "tolerances.toml"
+    tolerances.write_text("# tolerances.toml\nsamples = 16\n", encoding="utf-8")
+    called("--mesh", "gears", "--speed-rpm", "500,600", "--requirement-db", "70", "--tolerances", tolerances)
+    study = seen["study"]
+    assert (study.mesh, study.speed_rpm, study.requirement_db) == ("gears", (500.0, 600.0), 70.0)
+    assert study.tolerances.samples == 16
+    called("--speed-rpm", "500,600")
+    assert seen["study"].mesh is None
+
+
+def test_speeds_and_two_files_are_required() -> None:
+    assert "--speed-rpm 500:6000:100" in called()
+    alone = loa("compare", SPUR, "--scene", SCENE)
+    assert alone.exit_code != 0
+    assert "two case files beside a scene" in alone.output
