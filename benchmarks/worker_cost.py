@@ -81,6 +81,11 @@ def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
     yield "modes", "modes", scene
     yield "deflect, the scene's own loads", "deflect", scene
     yield "response, 20 speeds", "response", scene | {"speed_rpm": _SPEEDS}
+    yield "complaint of 280 Hz", "complaint", scene | {"frequency_hz": 280.0, "speed_rpm": 840.0}
+    after = json.loads(json.dumps(spur))
+    after["pair"]["pinion"] |= {"tip_relief_um": 20.0, "tip_relief_length_mm": 1.5}
+    brought = {"after": after, "tolerances": {"samples": 8}}
+    yield "change, 8 pairs, 20 speeds", "change", scene | brought | {"speed_rpm": _SPEEDS}
     yield "steady, 20 speeds", "steady", scene | {"speed_rpm": _SPEEDS}
     boxed = boxed_scene(scene) | {"speed_rpm": _SPEEDS, "orders": 3}
     yield "vibration of a cast box, 20 speeds", "vibration", boxed

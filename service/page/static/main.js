@@ -59,7 +59,7 @@ class Page {
     const show = (target, reference, signal) => showResult(target, reference, { take, signal });
     showStudies(studies, { design: this.design, slot, show });
     const dynamics = new Dynamics({ slot, show });
-    this.scenes = new SceneEditor({ slot, show });
+    this.scenes = new SceneEditor({ slot, show, design: this.design });
     const live = new Live(this, { take, inThreeDimensions: () => this.inThreeDimensions() });
     this.glance = new Glance();
     this.results = new Results(this, this.glance, live, [dynamics, this.scenes]);

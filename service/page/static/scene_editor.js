@@ -12,6 +12,7 @@ const WHAT = [
   ["complaint", "What its [complaint] is"],
   ["vibration", "Vibration of the housing over speed"], ["noise", "Sound power over speed"],
   ["listen", "Sound of the last run at a microphone"],
+  ["change", "What the pair of this page brings"],
   ["steady", "Steady states over speed"], ["deflect", "Deflection under its loads"],
   ["study", "Many runs, at constant speeds"],
 ];
@@ -26,8 +27,9 @@ const FIELDS = [
 ];
 
 export class SceneEditor {
-  /** @param {{slot: Function, show: Function}} page */
-  constructor({ slot, show }) {
+  /** @param {{slot: Function, show: Function, design: import("./design.js").Design}} page */
+  constructor({ slot, show, design }) {
+    this.design = design;
     this.text = make("textarea", {
       id: "scene-text", rows: 16, spellcheck: "false", autocomplete: "off", wrap: "off",
     });
@@ -165,6 +167,7 @@ export class SceneEditor {
   varied(process, scene, speeds) {
     if (process === "simulate" || process === "complaint") return {};
     if (process === "deflect") return this.cases.length ? { load_cases: this.cases } : {};
+    if (process === "change") return { after: this.design.case, speed_rpm: speeds };
     if (process !== "study") return { speed_rpm: speeds };
     const path = `drives.${(scene.drives ?? [{ name: "?" }])[0].name}.speed_rpm`;
     return { factors: [{ path, levels: speeds }], responses: RESPONSES };
