@@ -12,7 +12,7 @@ from benchmarks.fresh_process import measure
 
 SCENE = Path(__file__).parents[1] / "examples" / "palermo_scene.toml"
 _REPEATS = 3
-_TABLE = (
+TABLE = (
     PAIR
     + """
 analyze(pair, torques={torques}, model="plane_strain").to_netcdf({table!r})
@@ -50,7 +50,7 @@ def figures() -> list[Figure]:
     """Return the median times of several fresh processes, and the errors of one run."""
     with tempfile.TemporaryDirectory() as folder:
         names = {"scene": str(SCENE), "table": str(Path(folder) / "ste.nc")}
-        measure(_TABLE.format(torques=list(TORQUES), **names))
+        measure(TABLE.format(torques=list(TORQUES), **names))
         errors = measure(_ERRORS.format(**names))  # compiles where nothing is cached yet
         runs = [measure(_RUN.format(**names)) for _ in range(_REPEATS)]
     again = median(run["again"] for run in runs)

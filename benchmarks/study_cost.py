@@ -6,21 +6,14 @@ import tempfile
 from pathlib import Path
 from statistics import median
 
-from benchmarks.example_pair import PAIR, TORQUES
+from benchmarks.example_pair import TORQUES
 from benchmarks.figures import Figure
 from benchmarks.fresh_process import measure
-from benchmarks.run_up import SCENE
+from benchmarks.run_up import SCENE, TABLE
 
 TARGET = 8.0
 """Of a run beyond its integration, ms of CPU time."""
 _REPEATS = 3
-_TABLE = (
-    PAIR
-    + """
-analyze(pair, torques={torques}, model="plane_strain").to_netcdf({table!r})
-measured = {{}}
-"""
-)
 _STUDY = """
 import time
 from pathlib import Path
@@ -55,7 +48,7 @@ def figures() -> list[Figure]:
     """Return the median times of several fresh processes."""
     with tempfile.TemporaryDirectory() as folder:
         names = {"scene": str(SCENE), "table": str(Path(folder) / "ste.nc"), "home": folder}
-        measure(_TABLE.format(torques=list(TORQUES), **names))
+        measure(TABLE.format(torques=list(TORQUES), **names))
         measure(_STUDY.format(**names))  # compiles where nothing is cached yet
         times = [measure(_STUDY.format(**names)) for _ in range(_REPEATS)]
     subject = "study of 60 runs of 0.3 s, bearings, damping and speed varied"

@@ -91,24 +91,33 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
         If the case has no speed, or its torque cannot be had from the loads of the scene.
     """
     leader = leader_of(scene)
-    speed = abs(leader.speed) if case.speed is None else case.speed
-    if speed == 0.0:
-        raise InputError("speed", 0.0, above(0.0, "rad/s"), "The scene starts from rest: give the speed.")
-    turned = 1.0 if case.direction == DRIVE else -1.0
-    scale = turned * (speed / abs(leader.speed) if leader.speed else speed)
+    speed = _speed(leader, case)
+    scale = _turned(case) * (speed / abs(leader.speed) if leader.speed else speed)
     drives = (
         replace(drive, speed=TimeLaw.constant(scale * float(drive.speed.extreme))) for drive in scene.drives
     )
-    stated = {part.name: part for part in case.forces}
-    driven = replace(
-        scene,
-        drives=(*drives, *_held_trains(scene, leader, scale)),
-        free_rotations=(),
-        forces=tuple(_stated(force, stated.get(force.name)) for force in scene.forces),
-    )
-    factor = case.factor if case.torque is None else _factor(driven, speed, case.torque)
+    driven = replace(scene, drives=(*drives, *_held_trains(scene, leader, scale)), free_rotations=())
     return replace(
-        driven,
+        with_loads(driven, case),
+        housings=resting_housings(scene),
+        effects=_effects_at_rest(scene),
+        tolerance=None,
+        highest_frequency=STATIC,
+    )
+
+
+def with_loads(scene: Scene, case: LoadCase) -> Scene:
+    """Return `scene` with the constant loads and the forces of `case`, which its flanks carry.
+
+    Drives and speeds stay. Raises `InputError`: as `loaded_scene`.
+    """
+    stated = {part.name: part for part in case.forces}
+    pushed = replace(scene, forces=tuple(_stated(force, stated.get(force.name)) for force in scene.forces))
+    factor = case.factor
+    if case.torque is not None:
+        factor = _factor(pushed, _speed(leader_of(scene), case), case.torque)
+    return replace(
+        pushed,
         loads=tuple(
             replace(load, torque=TimeLaw.constant(factor * float(load.torque(0.0)))) for load in scene.loads
         ),
@@ -117,15 +126,23 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
                 mesh,
                 technique="variable_torque",
                 nominal_force=None,
-                misalignment=turned * mesh.misalignment,
+                misalignment=_turned(case) * mesh.misalignment,
             )
             for mesh in scene.meshes
         ),
-        housings=resting_housings(scene),
-        effects=_effects_at_rest(scene),
-        tolerance=None,
-        highest_frequency=STATIC,
     )
+
+
+def _turned(case: LoadCase) -> float:
+    return 1.0 if case.direction == DRIVE else -1.0
+
+
+def _speed(leader: _Leader, case: LoadCase) -> float:
+    """Return the speed of the leading shaft, rad/s; raises `InputError`: neither case nor scene has one."""
+    speed = abs(leader.speed) if case.speed is None else case.speed
+    if speed == 0.0:
+        raise InputError("speed", 0.0, above(0.0, "rad/s"), "The scene starts from rest: give the speed.")
+    return speed
 
 
 def _effects_at_rest(scene: Scene) -> dict[str, str]:

@@ -153,11 +153,7 @@ class Evaluator:
 
     def scattered(self, values: Mapping[str, float], node: int) -> ParallelAxes:
         """Return the pair with a design as it comes out at a node."""
-        out = dict(values)
-        for name, amount in self.nodes.modification(node).items():
-            designed = values[name] if name in values else figure(self.contact.pair, name)
-            out[name] = designed + max(amount, least_deviation(designed, name))
-        return modified(self.contact.pair, out)
+        return deviating(modified(self.contact.pair, values), self.nodes.modification(node))
 
     def _at_node(
         self, values: Mapping[str, float], node: int, group: IntArray, touches: dict[tuple[float, ...], Touch]
@@ -177,6 +173,15 @@ class Evaluator:
         touch = modified_touch(pair, touches[key], face, steady) if steady else touches[key]
         problem = _in_all_pitches(bodies.touching(bodies.candidates.touching(touch)), model)
         return pair, problem, solve_contact(problem, load)
+
+
+def deviating(pair: ParallelAxes, deviation: Mapping[str, float]) -> ParallelAxes:
+    """Return a pair whose figures deviate by so much, m, as far as material and lengths are left."""
+    figures = {}
+    for name, amount in deviation.items():
+        designed = figure(pair, name)
+        figures[name] = designed + max(amount, least_deviation(designed, name))
+    return modified(pair, figures)
 
 
 def least_deviation(designed: float, name: str) -> float:

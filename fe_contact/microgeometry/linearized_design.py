@@ -177,15 +177,18 @@ def curve_derivatives(
 
     arm = load_arm(solved.pair, problem, solution)
 
+    def by_distance() -> tuple[FloatArray, FloatArray]:
+        further = bodies.solve(pair, loads, misalignment, center_distance_change + DISTANCE_STEP)
+        _require_solved(further.solution)
+        moved = load_arm(further.pair, further.problem, further.solution)
+        change = further.solution.deflection - solution.deflection
+        return change / DISTANCE_STEP, (moved - arm) / DISTANCE_STEP
+
     def derivative(name: str) -> tuple[FloatArray, FloatArray]:
         if name == TORQUE:
             return solution.tangent * (solution.load / loads), (strips.added_arm - arm) / loads
         if name == CENTER_DISTANCE:
-            further = bodies.solve(pair, loads, misalignment, center_distance_change + DISTANCE_STEP)
-            _require_solved(further.solution)
-            moved = load_arm(further.pair, further.problem, further.solution)
-            change = further.solution.deflection - solution.deflection
-            return change / DISTANCE_STEP, (moved - arm) / DISTANCE_STEP
+            return by_distance()
         opened = _Difference.of(pair, name).opened(strips)
         return strips.change(opened), strips.arm_change(opened)
 

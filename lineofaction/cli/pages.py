@@ -172,6 +172,7 @@ class FlankQuestion:
     scene: Path
     mesh: str | None
     tolerances: Path | None
+    load_cases: Path | None
     speed_rpm: str | None
     requirement_db: float | None
 
@@ -198,6 +199,8 @@ def run_compare_flanks(
     study = STUDIES["change"]
     if question.tolerances is not None:
         inputs["tolerances"] = read_table(question.tolerances)
+    if question.load_cases is not None:
+        inputs |= read_table(question.load_cases)
     options = {"scene": InputFile(question.scene), "study": validated(study.inputs, inputs), "output": output}
     run_study(study, options | {"workers": 1, "scheduler": None, "json": as_json})
 

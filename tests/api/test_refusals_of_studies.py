@@ -161,7 +161,8 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
         (CHANGE | {"tolerances": {"samples": 20_000}}, "tolerances.samples"),
         (CHANGE | {"heard": {"quantity": "sound_power"}}, "housings"),
         (CHANGE | {"heard": {"bearing": "output in"}}, "heard.bearing"),
-        (CHANGE | {"load_factors": []}, "load_factors"),
+        (CHANGE | {"load_cases": []}, "load_cases"),
+        (CHANGE | {"load_cases": [{"name": "back", "direction": "coast"}]}, "load_cases[0].direction"),
     ],
     "deflect": [
         ({"load_cases": [{"name": "a"}, {"name": "a"}]}, "load_cases"),

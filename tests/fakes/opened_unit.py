@@ -18,8 +18,8 @@ from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.deflect import Inputs
+from lineofaction.gearbox.studies.deflect.cases import load_cases
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, Outline
-from lineofaction.gearbox.studies.deflect.run import load_cases
 from lineofaction.gearbox.studies.deflect.run import scene_of as kept_scene
 
 HALF_FACE = 0.01
@@ -36,7 +36,7 @@ def deflection_of_unit(unit: OpenedUnit) -> GearboxDeflection:
     """Return the result as `loa deflect` keeps it, under all load cases of the unit."""
     scene = scene_in_si(unit)
     inputs = validated(Inputs, {"load_cases": [case.table() for case in unit.load_cases]})
-    found = deflect(scene, load_cases(inputs), POSITIONS)
+    found = deflect(scene, load_cases(inputs.load_cases), POSITIONS)
     flanks = tuple(_flanks(case, mesh) for case in found.cases for mesh in case.meshes)
     cases = {case.name: case.case.model_dump(mode="json") for case in unit.cases}
     by_mesh = {name: cases[part.case] for name, part in unit.parts.meshes.items()}

@@ -423,6 +423,9 @@ def _compare(
     tolerances: Annotated[
         Path | None, typer.Option(help="Of the flanks: file with the options of loa scatter (TOML).")
     ] = None,
+    load_cases: Annotated[
+        Path | None, typer.Option(help="Of the scene: file with [[load_cases]] (TOML), as of loa deflect.")
+    ] = None,
     speed_rpm: Annotated[
         str | None, typer.Option(help="Of the scene: speeds in rpm, FIRST:LAST:STEP or a list.")
     ] = None,
@@ -434,7 +437,9 @@ def _compare(
 ) -> None:
     """Compare two tables, two runs, two flanks in a scene, or one with a measurement: differences."""
     if scene is not None:
-        question = pages.FlankQuestion(scene, view.mesh or None, tolerances, speed_rpm, requirement_db)
+        question = pages.FlankQuestion(
+            scene, view.mesh or None, tolerances, load_cases, speed_rpm, requirement_db
+        )
         pages.run_compare_flanks(files, question, output, as_json=json)
         return
     pages.run_compare(files, output, view.view, torque, as_json=json)

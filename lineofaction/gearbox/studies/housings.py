@@ -9,16 +9,21 @@ from typing import Any, TypeVar
 import numpy as np
 
 from bounds.types import Json
+from dynamics.acoustics import PanelModel
 from dynamics.assembly.assemble import assemble
+from dynamics.housings import ReducedHousing
 from dynamics.joints import Housing
 from dynamics.linearize import ForcedResponse, forced_response
+from dynamics.noise import HousingRadiation, kept_radiation
 from dynamics.orders import BearingOrders, bearing_orders
 from dynamics.results import RunResult
 from dynamics.scene import Scene
+from dynamics.types import FloatArray
 from dynamics.vibration import ReportedHarmonics
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.complaint import complaint_of
+from lineofaction.gearbox.convert.housings import FOLDER
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.figures import LINEAR
@@ -52,6 +57,20 @@ def facts_of_scene(subject: TabledScene) -> Json:
     if subject.inputs.complaint is None:
         return {"reduction_cost": costs}
     return {"reduction_cost": costs, "complaint": complaint_of(subject.inputs, subject.scene).marks}
+
+
+def radiation_of(
+    body: ReducedHousing, model: PanelModel, frequency: FloatArray, means: Means
+) -> HousingRadiation:
+    """Return the radiation of a housing by a model at frequencies, Hz, kept by its content."""
+    return kept_radiation(
+        body,
+        model,
+        frequency.ravel(),
+        cache=means.home / FOLDER,
+        progress=means.report,
+        workers=means.workers,
+    )
 
 
 def bearing_forces(subject: TabledScene, inputs: OverOrders, means: Means) -> ReportedHarmonics:

@@ -22,10 +22,14 @@ def test_what_is_typed_reaches_the_study(monkeypatch: pytest.MonkeyPatch, tmp_pa
     monkeypatch.setattr(pages, "run_study", lambda study, options: seen.update(options))
     tolerances = tmp_path / "tolerances.toml"
     tolerances.write_text("# tolerances.toml\nsamples = 16\n", encoding="utf-8")
-    called("--mesh", "gears", "--speed-rpm", "500,600", "--requirement-db", "70", "--tolerances", tolerances)
+    cases = tmp_path / "cases.toml"
+    cases.write_text("[[load_cases]]\nname = 'cruise'\ntorque_n_m = 60.0\n", encoding="utf-8")
+    options = {"mesh": "gears", "load-cases": cases, "requirement-db": 70, "tolerances": tolerances}
+    called("--speed-rpm", "500,600", *(word for name, own in options.items() for word in (f"--{name}", own)))
     study = seen["study"]
     assert (study.mesh, study.speed_rpm, study.requirement_db) == ("gears", (500.0, 600.0), 70.0)
     assert study.tolerances.samples == 16
+    assert [(own.name, own.torque_n_m) for own in study.load_cases] == [("cruise", 60.0)]
     called("--speed-rpm", "500,600")
     assert seen["study"].mesh is None
 

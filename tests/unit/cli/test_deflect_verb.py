@@ -24,9 +24,10 @@ from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.deflect import Inputs
+from lineofaction.gearbox.studies.deflect.cases import load_cases
 from lineofaction.gearbox.studies.deflect.figures import _optimization_inputs, write_spectrum
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, Outline
-from lineofaction.gearbox.studies.deflect.run import RUN, load_cases
+from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
 from lineofaction.report.deflection.deflect import (
     PAGE,
@@ -46,7 +47,7 @@ def tables(result: GearboxDeflection) -> list[Table]:
 def test_load_cases_come_from_their_file_in_its_units(tmp_path: Path) -> None:
     file = tmp_path / "cases.toml"
     file.write_text('[[load_cases]]\nname = "a"\nspeed_rpm = 600.0\ntorque_n_m = 20.0\ndirection = "coast"\n')
-    (case,) = load_cases(read_model(Inputs, file))
+    (case,) = load_cases(read_model(Inputs, file).load_cases)
     assert case.speed == pytest.approx(20.0 * np.pi) and (case.torque, case.direction) == (20.0, "coast")
     answer = printed("deflect", scene_file(tmp_path), file)["load_cases"][0]
     assert (answer["torque_n_m"], answer["speed_rpm"]) == (pytest.approx(20.0), pytest.approx(600.0))

@@ -18,7 +18,8 @@ from lineofaction.gearbox.studies.change.result import FlankChange
 
 Json = dict[str, Any]
 PAIRS = 12
-QUESTION: Json = {"speed_rpm": [300.0, 3000.0], "orders": 4, "load_factors": [0.5, 1.0]}
+HALF: Json = {"name": "half", "factor": 0.5}
+QUESTION: Json = {"speed_rpm": [300.0, 3000.0], "orders": 4, "load_cases": [HALF, {"name": "whole"}]}
 
 
 def scene() -> Json:
@@ -185,7 +186,7 @@ def test_quantiles_are_those_of_whole_analyses_of_the_pairs() -> None:
 @pytest.mark.nightly
 def test_nine_of_ten_further_pairs_lie_in_the_band() -> None:
     """In the mean over samples of 200: one alone covers 2 % more or less."""
-    question = {"load_factors": [1.0]}
+    question = {"load_cases": [{"name": "whole"}]}
     further = compared(
         None, RELIEVED, **question, tolerances={"samples": 1000, "tolerance_class": 3, "seed": 99}
     )

@@ -37,7 +37,7 @@ from lineofaction.gearbox.rexs.files import serialized
 from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.studies.deflect import Inputs
-from lineofaction.gearbox.studies.deflect.run import load_cases
+from lineofaction.gearbox.studies.deflect.cases import load_cases
 from service.schemas.answers import UnitBody
 
 LEFT, RIGHT, END = 15.0, 140.0, 150.0
@@ -157,7 +157,7 @@ def test_a_load_case_sets_what_it_states_and_keeps_the_rest() -> None:
     unit = OpenedUnit.of(two_stages(**loads))
     assert forces_of(two_stages(**loads)) == {"external_load 44": ((100.0, 5.0, 0.0), (0.0, 0.0, 0.0))}
     tables = tomllib.loads(unit.files()[LOAD_CASES_FILE])
-    read = [case.forces for case in load_cases(validated(Inputs, tables))]
+    read = [case.forces for case in load_cases(validated(Inputs, tables).load_cases)]
     assert [[(part.name, part.force, part.moment) for part in case] for case in read] == [
         [("external_load 44", (200.0, 5.0, 0.0), (0.0, 0.0, 0.0))],
         [],

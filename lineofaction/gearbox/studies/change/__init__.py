@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Literal
 
 from pydantic import Field
 
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
-from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row
+from lineofaction.gearbox.schemas.model import BoundaryModel, Name
 from lineofaction.gearbox.schemas.studied import OverOrders
+from lineofaction.gearbox.studies.deflect import LoadCaseInput, LoadCases
 from lineofaction.gearbox.studies.scatter import Inputs as ToleranceInputs
 
-MOST_LOADS = 16
 PAIRS = 200
 
 _GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
@@ -26,7 +26,6 @@ _AFTER = {
     },
     "load": {"torque_n_m": [10.0, 50.0, 100.0, 200.0, 400.0]},
 }
-LoadFactor = Annotated[float, Field(gt=0.0, le=1e6)]
 
 
 class HeardInput(BoundaryModel):
@@ -63,12 +62,10 @@ class Inputs(OverOrders):
         description="Mesh of the scene whose flanks they are; left out: the only one with a case",
         examples=["mesh"],
     )
-    load_factors: Row[LoadFactor] = Field(
-        default=(1.0,),
-        min_length=1,
-        max_length=MOST_LOADS,
-        description="Factors on the loads of the scene at t = 0, each a load case",
-        examples=[[0.25, 0.5, 1.0]],
+    load_cases: LoadCases = Field(
+        default=(LoadCaseInput(name="load"),),
+        description="Load cases on the driving flanks; default: the loads of the scene at t = 0",
+        examples=[[{"name": "cruise", "torque_n_m": 60.0, "speed_rpm": 3000.0}]],
     )
     heard: HeardInput = Field(default=HeardInput(), description="What is compared")
     tolerances: ToleranceInputs = Field(

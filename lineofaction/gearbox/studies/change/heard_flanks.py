@@ -11,31 +11,32 @@ import numpy as np
 
 from dynamics.acoustics import ElementalRadiators
 from dynamics.assembly.assemble import System, assemble
+from dynamics.deflection.loaded_scene import with_loads
 from dynamics.linearize import FlankTransfer, flank_transfer
 from dynamics.linearize.operating_speeds import common_period
-from dynamics.loads import TimeLaw
 from dynamics.noise import (
     BearingForce,
     QuantityForm,
     SoundModel,
     SoundPower,
     estimated_radiation,
-    kept_radiation,
 )
 from dynamics.scene import Scene
+from dynamics.settings.load_case import LoadCase
 from dynamics.types import FloatArray
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.evaluator import least_deviation
+from fe_contact.microgeometry.evaluator import deviating
 from fe_contact.microgeometry.scatter import MISALIGNMENT
-from fe_contact.microgeometry.variables import figure, modified
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.housings import FOLDER
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.studies.change import HeardInput, Inputs
 from lineofaction.gearbox.studies.change.result import ALL
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.deflect.cases import load_cases
+from lineofaction.gearbox.studies.housings import radiation_of
 from lineofaction.gearbox.units import RPM
 
 BEARING_FORCE, SOUND_POWER = "bearing_force", "sound_power"
@@ -56,7 +57,7 @@ class _LoadCase:
     `lines` is (K, H): 1 where a harmonic of the common period belongs to a line.
     """
 
-    factor: float
+    load: LoadCase
     transfer: FlankTransfer
     form: QuantityForm
     lines: FloatArray
@@ -102,21 +103,16 @@ class HeardFlanks:
         """Return the levels with a table of the mesh."""
         scene = _scene_with(self.subject, self.mesh, table)
         found = [
-            case.levels(assemble(_loaded(scene, case.factor)), self.over_speeds) for case in self.load_cases
+            case.levels(assemble(with_loads(scene, case.load)), self.over_speeds) for case in self.load_cases
         ]
         level, parting = zip(*found, strict=True)
         return FlankLevels(np.stack(level), np.array(parting))
 
     def of_pair(self, pair: ParallelAxes, names: Sequence[str], deviation: FloatArray) -> FlankLevels:
         """Return the levels of a design that deviates by (d,), m; no material is removed below zero."""
-        figures, misalignment = {}, 0.0
-        for name, value in zip(names, deviation.tolist(), strict=True):
-            if name == MISALIGNMENT:
-                misalignment = value
-            else:
-                own = figure(pair, name)
-                figures[name] = own + max(value, least_deviation(own, name))
-        return self.levels(self.table(modified(pair, figures), misalignment))
+        by_name = dict(zip(names, deviation.tolist(), strict=True))
+        misalignment = by_name.pop(MISALIGNMENT, 0.0)
+        return self.levels(self.table(deviating(pair, by_name), misalignment))
 
 
 def heard_flanks(
@@ -124,7 +120,8 @@ def heard_flanks(
 ) -> HeardFlanks:
     """Solve the transfer functions of a scene under every load case, about the flanks of a table."""
     scene = _scene_with(subject, mesh, table)
-    systems = [assemble(_loaded(scene, factor)) for factor in inputs.load_factors]
+    loads = load_cases(inputs.load_cases)
+    systems = [assemble(with_loads(scene, load)) for load in loads]
     index = [part.name for part in scene.meshes].index(mesh)
     speed, transfers = np.array(inputs.speed_rpm) * RPM, []
     for done, system in enumerate(systems):
@@ -136,11 +133,11 @@ def heard_flanks(
         means.report("transfer functions", (done + 1) / len(systems))
     model = _sound_model(subject, scene, transfers[0].frequency, inputs.heard, means)
     cases = []
-    for factor, system, transfer in zip(inputs.load_factors, systems, transfers, strict=True):
+    for load, system, transfer in zip(loads, systems, transfers, strict=True):
         step = abs(common_period(system).pitches[index])
         own = step * np.arange(1, inputs.orders + 1)
         lines = np.vstack([np.ones(transfer.harmonics.size), own[:, None] == transfer.harmonics])
-        cases.append(_LoadCase(factor, transfer, _form(transfer, model, inputs.heard), lines))
+        cases.append(_LoadCase(load, transfer, _form(transfer, model, inputs.heard), lines))
     force = np.array(
         [transfer.excitation(own).mean_force[index] for transfer, own in zip(transfers, systems, strict=True)]
     )
@@ -163,15 +160,6 @@ def _scene_with(subject: TabledScene, mesh: str, table: SteDatabase) -> Scene:
     return dynamic_scene(subject.inputs, {**subject.databases, mesh: table}, subject.housings)
 
 
-def _loaded(scene: Scene, factor: float) -> Scene:
-    """Return a scene whose loads at t = 0 are multiplied; its flanks carry what that brings."""
-    if factor == 1.0:
-        return scene
-    loads = (replace(load, torque=TimeLaw.constant(factor * float(load.torque(0.0)))) for load in scene.loads)
-    meshes = (replace(part, technique="variable_torque", nominal_force=None) for part in scene.meshes)
-    return replace(scene, loads=tuple(loads), meshes=tuple(meshes))
-
-
 def _sound_model(
     subject: TabledScene, scene: Scene, hertz: FloatArray, heard: HeardInput, means: Means
 ) -> SoundModel:
@@ -180,17 +168,7 @@ def _sound_model(
         return SoundModel(scene, {}, {})
     bodies = {name: body for name, body in subject.housings.items() if body.surface is not None}
     radiation = {
-        name: estimated_radiation(
-            body,
-            kept_radiation(
-                body,
-                ElementalRadiators(),
-                hertz.ravel(),
-                cache=means.home / FOLDER,
-                progress=means.report,
-                workers=means.workers,
-            ),
-        )
+        name: estimated_radiation(body, radiation_of(body, ElementalRadiators(), hertz, means))
         for name, body in bodies.items()
     }
     return SoundModel(scene, bodies, radiation)

@@ -17,8 +17,8 @@ ALL = "all"
 """The line of all orders together."""
 LOW, MEDIAN, HIGH = 0.05, 0.5, 0.95
 """Quantiles of the band of a level."""
-AUDIBLE = 0.1
-"""dB; a change of less is none."""
+AUDIBLE = 0.5
+"""dB; a change of less is none: of a level hardly anybody hears it."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ class FlankChange:
         low, median, high = self.change_quantiles[:, :, 0]
         at = int(np.argmax(median))
         band = f"{median[at]:+.1f} dB ({low[at]:+.1f} to {high[at]:+.1f} dB) at {self.torque[at]:.4g} N m"
-        if np.all(np.abs(self.change[:, :, 0]) < AUDIBLE):
+        if np.all(np.abs(self.change_quantiles[:, :, 0]) < AUDIBLE):
             said = "No change"
         elif np.all(high < 0.0):
             said = "Quieter under every load case"

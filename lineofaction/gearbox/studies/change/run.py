@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from bounds.types import Json
+from dynamics.settings.load_case import DRIVE
 from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
@@ -32,6 +33,7 @@ from lineofaction.gearbox.studies.change.heard_flanks import (
 )
 from lineofaction.gearbox.studies.change.result import DesignLevels, FlankChange
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
+from lineofaction.gearbox.studies.deflect.cases import check_cases
 from lineofaction.gearbox.studies.housings import require_surface
 from lineofaction.gearbox.studies.scatter.run import PLANE, tolerance_request
 from lineofaction.gearbox.studies.study.scenes import FLANKS
@@ -59,6 +61,10 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
             known += [part.name for part in scene.rolling_bearings]
             known += [part.name for part in scene.planet_bearings]
             _require_named("heard.bearing", inputs.heard.bearing, known)
+        for index, case in enumerate(check_cases(scene, inputs.load_cases)):
+            if case.direction != DRIVE:
+                bound = f'"{DRIVE}": the flanks that are compared are the driving ones'
+                raise BadInput.of(f"load_cases[{index}].direction", case.direction, bound)
         mesh = _mesh_of(scene, inputs)
         if mesh.case is not None:
             _designs(mesh.case, inputs)

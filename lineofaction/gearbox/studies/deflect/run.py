@@ -7,17 +7,13 @@ from types import MappingProxyType
 
 import numpy as np
 
-from bounds import inside, leftover
+from bounds import leftover
 from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
-from dynamics.settings.load_case import CaseForce, LoadCase, check_forces
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.convert.declared import in_si
-from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.scene import TabledScene
-from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -29,6 +25,7 @@ from lineofaction.gearbox.studies.deflect.agreement import (
     MeshContact,
     in_agreement,
 )
+from lineofaction.gearbox.studies.deflect.cases import check_cases, load_cases
 from lineofaction.gearbox.studies.deflect.figures import figures_by_case, write_spectrum
 from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks, Outline
 from model_studies.workers import divided, spent
@@ -42,22 +39,12 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
 
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
         """Refuse load cases that cannot be, or that need what the scene lacks, before tables are computed."""
-        with named(""):
-            cases = load_cases(inputs)
-            check_forces(cases, [force.name for force in scene.forces])
-        for index, case in enumerate(cases):
-            if case.torque is not None and not scene.loads:
-                raise BadInput.of(
-                    f"load_cases[{index}].torque_n_m",
-                    case.torque,
-                    "left out: the scene has no loads",
-                    "A load case scales them. Add [[loads]] where the torque leaves the gearbox.",
-                )
+        check_cases(scene, inputs.load_cases)
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
         began, scene = spent(means.workers) - tabled.seconds, tabled.scene
         with boundary_errors():
-            cases = load_cases(inputs)
+            cases = load_cases(inputs.load_cases)
             positions, workers = inputs.positions, means.workers
             first = deflect(scene, cases, positions, lambda done: means.report("deflection", done), workers)
             contacts = _contacts(tabled, first.cases, means)
@@ -101,19 +88,6 @@ def scene_of(inputs: SceneInput) -> Json:
     """Return a scene as it is kept with its deflection: without the cases of its meshes."""
     kept: Json = inputs.model_dump(mode="json", exclude={"meshes": {"__all__": {"case", "case_file"}}})
     return kept
-
-
-def load_cases(inputs: Inputs) -> tuple[LoadCase, ...]:
-    """Return the load cases in SI."""
-    cases = []
-    for index, case in enumerate(inputs.load_cases):
-        with inside(f"load_cases[{index}]"):
-            forces = []
-            for number, force in enumerate(case.forces):
-                with inside(f"forces[{number}]"):
-                    forces.append(CaseForce(**in_si(CaseForce, force)))
-            cases.append(LoadCase(**in_si(LoadCase, case), forces=tuple(forces)))
-    return tuple(cases)
 
 
 def _with_case(tabled: TabledScene) -> Iterator[tuple[str, MeshInput]]:

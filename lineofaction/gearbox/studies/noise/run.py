@@ -33,7 +33,6 @@ from dynamics.noise import (
     SoundOverTime,
     corrected_radiation,
     estimated_radiation,
-    kept_radiation,
     loudest,
     models_at,
     panel_sound,
@@ -57,7 +56,13 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.housings import bearing_forces, facts_of_scene, no_surface, require_surface
+from lineofaction.gearbox.studies.housings import (
+    bearing_forces,
+    facts_of_scene,
+    no_surface,
+    radiation_of,
+    require_surface,
+)
 from lineofaction.gearbox.studies.noise import Inputs, NoiseFigures, SoundOverTimeFigures
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
 from model_studies.workers import spent
@@ -248,8 +253,7 @@ def _radiation(
     if means.run is not None:
         ends = [LOWEST, float(means.run.receipt["sampling"]["pass_frequency"])]
         hertz = np.append(hertz.ravel(), ends)
-    model, cache = MODELS[inputs.radiation], means.home / FOLDER
-    own = kept_radiation(body, model, hertz, cache=cache, progress=means.report, workers=means.workers)
+    own = radiation_of(body, MODELS[inputs.radiation], hertz, means)
     return estimated_radiation(body, own) if inputs.radiation == ESTIMATE else own
 
 
