@@ -7,10 +7,11 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
+from rich.console import Console
+
 from bounds import engineering
 from bounds.types import Json
 from fe_contact.analysis.run_plan import PlannedLevel, RunPlan
-from fe_contact.planning.cost_model import STAGES
 from fe_contact.ste import SteDatabase, in_own_model
 from host.directories import cache_home
 from lineofaction.cli.guard import warn
@@ -26,7 +27,13 @@ from lineofaction.cli.output import (
 from lineofaction.cli.subjects import assessed_case
 from lineofaction.gearbox.convert.answers import draft_line, source_rows, summary_json
 from lineofaction.gearbox.convert.case import CheckedCase
-from lineofaction.gearbox.convert.effects import assumption_lines, ledger_lines
+from lineofaction.gearbox.convert.effects import (
+    assumption_lines,
+    by_size,
+    influence_place,
+    ledger_table,
+    trifles_title,
+)
 from lineofaction.gearbox.convert.live import plan_json, plan_of
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import JobFailed
@@ -102,7 +109,7 @@ def _pass(number: int, entry: Json) -> str:
 # ``loa analyze``.
 
 
-_SHOWN_HARMONICS = 3
+_SHOWN_HARMONICS = 2
 
 
 def run_analyze(file: InputFile, output: Path, executor: tuple[int, str | None], *, as_json: bool) -> None:
@@ -142,24 +149,33 @@ def analyzed(
 
 def _show(summary: dict[str, Any]) -> None:
     out = console()
-    names = [f"harmonic {n} um" for n in range(1, _SHOWN_HARMONICS + 1)]
+    names = [f"harm. {n} µm" for n in range(1, _SHOWN_HARMONICS + 1)]
     rows = [_row(load) for load in summary["loads"]]
-    out.print(
-        table(["torque N m", "force N", "mean um", "peak-to-peak um", *names], rows, "Transmission error")
-    )
+    out.print(table(["torque N m", "force N", "mean µm", "p-p µm", *names], rows, "Transmission error"))
     receipt, load = summary["receipt"], summary["loads"][-1]
     if bias := receipt.get("bias"):
         out.print(bias["words"], soft_wrap=True)
     if sources := source_rows(receipt, -1):
         rows = [[name, *(engineering(error / UM, 2) for error in errors)] for name, *errors in sources]
-        head = ["source", "mean um", "peak-to-peak um", "harmonic 1 um"]
+        head = ["source", "mean µm", "p-p µm", "harm. 1 µm"]
         out.print(table(head, rows, f"Errors by source at {load['torque_n_m']:.6g} N m"))
-    out.print()
-    for line in (*ledger_lines(summary["effect_ledger"]), *assumption_lines(summary["receipt"])):
+    _show_effects(out, summary["effect_ledger"])
+    for line in assumption_lines(summary["receipt"]):
         out.print(line)
     out.print(_cost(summary["receipt"]))
     out.print(f"points {summary['points']}, failed {summary['failed_points']}")
     out.print(f"content hash {summary['content_hash']}")
+
+
+def _show_effects(out: Console, ledger: list[dict[str, Any]]) -> None:
+    """Print the decision about every effect that is not a trifle, and what leaving it out changes."""
+    columns, rows = ledger_table(ledger)
+    title = f"Effects: estimated change without each, {influence_place(ledger)}".removesuffix(", ")
+    out.print()
+    out.print(table(columns, rows, title, words=(columns[0], columns[-1])))
+    if trifles := by_size(ledger)[1]:
+        names = ", ".join(entry["name"].replace("_", " ") for entry in trifles)
+        out.print(f"{trifles_title(trifles)}: {names}")
 
 
 def _cost(receipt: dict[str, Any]) -> str:
@@ -225,38 +241,35 @@ def run_plan(file: InputFile, time_budget_s: float | None, *, as_json: bool) -> 
         _show_plan(plan)
 
 
-_PARTS = ("numerical %", "plane %", "method %")
-
-
 def _show_plan(plan: RunPlan) -> None:
-    out = console()
-    for line in ledger_lines(plan_json(plan)["effect_ledger"]):
-        out.print(line)
-    head = ["mesh", "CPU s", *STAGES, "memory MiB", *_PARTS, "mean um", "p-p um", ""]
+    out, cost = console(), plan.chosen.cost
+    model = plan.plan.discretization.to_json()["model"].replace("_", " ")
+    positions = plan.plan.positions or f"about {cost.positions}, placed where the curve bends"
+    size = f"{engineering(cost.cpu_seconds, 2)} CPU s, {cost.memory_bytes / 2**30:.2g} GiB"
+    out.print(f"{_mesh(plan.chosen, plan.chosen)}: {size}; nothing is computed yet")
+    out.print(f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}")
+    if plan.conflict or not plan.choice.met:
+        out.print(plan.conflict or f"cannot be had: {plan.choice.reason}")
+    if bias := plan.chosen.error.bias:
+        out.print(bias.words, soft_wrap=True)
+    out.print()
+    head = ["mesh", "CPU s", "GiB", "numerical", "plane", "method", "mean µm", "p-p µm"]
     rows = [
         [
-            _mesh(entry, plan.chosen),
+            f"{'> ' if entry is plan.chosen else ''}{_mesh(entry, plan.chosen)}",
             engineering(entry.cost.cpu_seconds, 2),
-            *(engineering(entry.cost.stages[stage], 2) for stage in STAGES),
-            f"{entry.cost.memory_bytes / 2**20:.0f}",
+            f"{entry.cost.memory_bytes / 2**30:.1f}",
             engineering(100.0 * error.numerical, 2),
             "bias" if error.bias else engineering(100.0 * error.plane, 2),
             engineering(100.0 * error.method, 2),
             # per cent of a small ripple mean little; no size is known without a reference
             *("" if size is None else engineering(size / UM, 2) for size in (error.mean, error.peak_to_peak)),
-            "chosen" if entry is plan.chosen else "",
         ]
         for entry in plan.levels
         for error in (entry.error,)
     ]
-    out.print(table(head, rows, "Predicted, nothing computed"))
-    if bias := plan.chosen.error.bias:
-        out.print(bias.words, soft_wrap=True)
-    model = plan.plan.discretization.to_json()["model"].replace("_", " ")
-    positions = plan.plan.positions or f"about {plan.chosen.cost.positions}, placed where the curve bends"
-    out.print(f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}")
-    if plan.conflict or not plan.choice.met:
-        out.print(plan.conflict or f"cannot be had: {plan.choice.reason}")
+    out.print(table(head, rows, "Cost, and errors in % and as a whole"))
+    _show_effects(out, plan_json(plan)["effect_ledger"])
 
 
 def _mesh(entry: PlannedLevel, chosen: PlannedLevel) -> str:

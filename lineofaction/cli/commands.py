@@ -34,10 +34,10 @@ for family in (of_files, of_services):
     for verb in family.verbs.registered_commands:  # the whole sentence, which the list would cut off
         verb.short_help = (verb.callback.__doc__ or "").partition("\n")[0]
     app.add_typer(family.verbs)
-app.add_typer(of_services.access_keys, name="keys")
-app.add_typer(of_services.cache, name="cache")
-app.add_typer(of_services.database, name="database")
-app.add_typer(of_services.store, name="store")
+app.add_typer(of_services.access_keys, name="keys", rich_help_panel="service")
+app.add_typer(of_services.cache, name="cache", rich_help_panel="results")
+app.add_typer(of_services.database, name="database", rich_help_panel="service")
+app.add_typer(of_services.store, name="store", rich_help_panel="service")
 
 
 def main() -> None:

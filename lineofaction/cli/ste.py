@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from bounds import engineering
 from fe_contact.ste import SteDatabase
@@ -16,10 +19,12 @@ from lineofaction.gearbox.problems import BadInput
 
 _FARTHEST = 1e6
 _SHOWN_ORDERS = 8
+_NAME, _NUMBER, _DECIMALS, _BAR, _SPARKS = 12, 9, 4, 16, 24
+_BLOCKS = "▁▂▃▄▅▆▇█"
 
 
 def run_ste(
-    file: Path, point: dict[str, float | None], at: str | None, *, as_csv: bool, as_json: bool
+    file: Path, point: dict[str, float | None], at: str | None, *, as_table: bool, as_csv: bool, as_json: bool
 ) -> None:
     """Read, evaluate, print; `point` holds the options of load and alignment by their names."""
     database = open_ste(file)
@@ -29,8 +34,11 @@ def run_ste(
         print_json(curve)
     elif as_csv:
         sys.stdout.write(csv_text(_columns(curve), _rows(curve)))
+    elif as_table or at is not None:
+        console().print(table(_columns(curve), [_typed(row) for row in _rows(curve)]))
     else:
-        _show(curve)
+        for line in _answer(database, file, curve):
+            console().print(line, soft_wrap=True)
 
 
 def open_ste(file: Path) -> SteDatabase:
@@ -76,25 +84,74 @@ def _rows(curve: dict[str, Any]) -> list[list[str]]:
     return [[repr(x), f"{ste:.9g}", *(f"{share:.6g}" for share in shares)] for x, ste, shares in lines]
 
 
+def _typed(row: list[str]) -> list[str]:
+    return [f"{float(row[0]):.5f}", f"{float(row[1]):.4f}", *row[2:]]
+
+
 def _columns(curve: dict[str, Any]) -> list[str]:
     return ["position", "ste_um", *(f"load_share_{pair:+d}" for pair in curve["pair"])]
 
 
-def _show(curve: dict[str, Any]) -> None:
-    out = console()
-    rows = [[f"{float(row[0]):.5f}", f"{float(row[1]):.4f}", *row[2:]] for row in _rows(curve)]
-    out.print(table(_columns(curve), rows))
-    out.print()
-    out.print(f"torque {curve['torque_n_m']:.6g} N m, normal force {curve['normal_force_n']:.6g} N")
+def _answer(database: SteDatabase, file: Path, curve: dict[str, Any]) -> Iterator[str]:
+    """Yield what a curve says: figures with their errors, harmonics, load sharing, what is next."""
+    one, other = database.facts.teeth
+    yield f"gear pair {one}/{other} at {curve['torque_n_m']:.6g} N m ({curve['normal_force_n']:.0f} N)"
+    yield ""
+    figures = [
+        ("mean", *_with_error(curve, "mean_um")),
+        ("peak to peak", *_with_error(curve, "peak_to_peak_um")),
+    ]
+    known, unknown = _orders(curve)
+    errors = [error for _, _, error in (*figures, *known) if error]
+    decimals = max(1 - math.floor(math.log10(min(errors))), 0) if errors else _DECIMALS
+    largest = max((amplitude for _, amplitude, _ in known), default=1.0)
+    yield _figure(*figures[0], decimals)
+    yield f"{_figure(*figures[1], decimals)}   {_sparkline(curve['ste_um'])}  two periods"
+    for line in known:
+        level, bar = 20.0 * math.log10(line[1]), "█" * round(_BAR * line[1] / largest)
+        yield f"{_figure(*line, decimals)}   {level:6.1f} dB re 1 µm  {bar}".rstrip()
+    if unknown:
+        orders, below = (
+            ", ".join(name for name, _, _ in unknown),
+            max(error for _, _, error in unknown if error),
+        )
+        yield f"  {orders.replace(', harmonic', ',')}: below {engineering(below, 2)} µm, their error"
+    shares = np.array(curve["load_share"])
+    carrying = (shares > 0.0).sum(axis=1)
+    pairs = " to ".join(f"{number}" for number in dict.fromkeys([carrying.min(), carrying.max()]))
+    yield f"  load sharing: {pairs} pairs carry; most on one {100.0 * shares.max():.0f} %"
+    yield ""
+    yield f"next: loa report {file}     all positions: --table, --csv"
+
+
+_Line = tuple[str, float, float | None]
+
+
+def _with_error(curve: dict[str, Any], name: str) -> tuple[Any, Any]:
+    return curve[name], curve.get(name.replace("_um", "_error_um"))
+
+
+def _figure(name: str, value: float, error: float | None, decimals: int) -> str:
+    band = "(error not estimated)" if error is None else f"± {error:.{decimals}f} µm"
+    return f"  {name:<{_NAME}} {value:{_NUMBER}.{decimals}f} {band}"
+
+
+def _orders(curve: dict[str, Any]) -> tuple[list[_Line], list[_Line]]:
+    """Return the largest lines of the spectrum above their errors, and those below."""
     if curve["period"] > 1:
-        lines = sorted(zip(curve["amplitude_um"], curve["order"], strict=True), reverse=True)[:_SHOWN_ORDERS]
-        orders = ", ".join(f"{order:.4g}: {amplitude:.4f}" for amplitude, order in lines)
-        out.print(f"period {curve['period']} base pitches; largest orders of the mesh {orders} um")
-    harmonics = ", ".join(f"{value:.4f}" for value in curve["harmonics_um"][:_SHOWN_ORDERS])
-    out.print(f"harmonics {harmonics} um")
-    for name in ("mean", "peak_to_peak"):
-        error = curve.get(f"{name}_error_um")
-        band = "(error not estimated)" if error is None else f"± {engineering(error, 2)} µm"
-        value = f"{engineering(curve[f'{name}_um'], 4)} µm"
-        words = f"{name.replace('_', '-')} STE at {curve['torque_n_m']:.6g} N m"
-        out.print(f"{words}: {value} {band}")
+        largest = sorted(zip(curve["amplitude_um"], curve["order"], strict=True), reverse=True)
+        return [
+            (f"order {order:.4g}", size, None) for size, order in largest[:_SHOWN_ORDERS] if size > 0.0
+        ], []
+    sizes, errors = _with_error(curve, "harmonics_um")
+    named = [(f"harmonic {k}", size, errors[k - 1] if errors else None) for k, size in enumerate(sizes, 1)]
+    known = [line for line in named[:_SHOWN_ORDERS] if line[1] > (line[2] or 0.0)]
+    return known, [line for line in named[:_SHOWN_ORDERS] if line not in known]
+
+
+def _sparkline(values: list[float]) -> str:
+    """Return two periods of a curve as one line of blocks, from its least to its largest value."""
+    shown = np.array(values)[np.arange(_SPARKS) * len(values) // (_SPARKS // 2) % len(values)]
+    span = np.ptp(values)
+    steps = (len(_BLOCKS) - 1) * (shown - min(values)) / span if span > 0.0 else np.zeros(_SPARKS)
+    return "".join(_BLOCKS[round(step)] for step in steps)

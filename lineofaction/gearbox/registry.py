@@ -116,6 +116,7 @@ class Studies:
         "Compute flank pressure",
         "Compute pressure, line load and gap on the flanks at one load: contact pattern and K_Hbeta.",
         "examples/palermo_spur_20_20.toml --torque 100 -o flank.nc",
+        group="pair",
         kind="flanks",
         stages=(("compliance", 0.9), ("contact", 0.1)),
         version="3",
@@ -126,6 +127,7 @@ class Studies:
         "Toggle every effect",
         "Toggle each effect of a case or a scene: what it changes, what was estimated, what it costs.",
         "examples/palermo_spur_20_20.toml -o ablation.png",
+        group="trust",
         kind="ablation",
         stages=(("analysis", 0.1), ("ablation", 0.9)),
         version="4",
@@ -136,6 +138,7 @@ class Studies:
         "Run the accuracy study",
         "Study the accuracy of a case (ISO 6336 to fine finite elements) or a scene: error against time.",
         "examples/palermo_spur_20_20.toml -o frontier",
+        group="trust",
         kind="frontier",
         stages=(("analysis", 0.1), ("ladder", 0.9)),
         version="4",
@@ -147,6 +150,7 @@ class Studies:
         "Study the sensitivity",
         "Vary misalignment and center distance of a case at its highest load: peak-to-peak STE.",
         "examples/sensitivity_wind_turbine.toml -o sensitivity",
+        group="design",
         kind="sensitivity",
         stages=(("tables", 1.0),),
         version="3",
@@ -160,6 +164,7 @@ class Studies:
         "Compute the root stress",
         "Compute the stress of the tooth roots at one load: peaks, where they are, and their history.",
         "examples/palermo_spur_20_20.toml --torque 100 -o root.png",
+        group="pair",
         kind="root_stress",
         stages=(("compliance", 0.5), ("contact", 0.1), ("root stress", 0.4)),
         version="3",
@@ -172,6 +177,7 @@ class Studies:
         "Search better flanks",
         "Choose flank modifications for the least peak-to-peak STE over torques and scatter.",
         "examples/palermo_spur_20_20.toml examples/optimize_tip_relief.toml -o best",
+        group="design",
         kind="optimization",
         stages=(("compliance", 0.2), ("search", 0.6), ("confirmation", 0.2)),
         version="4",
@@ -185,6 +191,7 @@ class Studies:
         "Draw pairs within tolerances (Monte Carlo): distribution of peak-to-peak STE with confidence "
         "bounds.",
         "examples/sensitivity_automotive.toml --samples 400 -o scatter.png",
+        group="design",
         kind="scatter",
         stages=(("compliance", 0.2), ("samples", 0.7), ("confirmation", 0.1)),
         version="3",
@@ -196,6 +203,7 @@ class Studies:
         "Map ripple, mesh harmonics, flank pressure and K_Hbeta over one or two of torque, alignment and "
         "flank modifications.",
         "examples/helical_ev_23_67.toml --over torque,tip_relief=0:16:2 -o map.html",
+        group="pair",
         kind="sweep",
         stages=(("compliance", 0.4), ("contact", 0.6)),
         version="1",
@@ -208,6 +216,7 @@ class Studies:
         "Compare two flanks of a mesh by what is heard of a scene over one sample of tolerances: levels by "
         "order and load before and after, which pairs get louder, which deviation decides.",
         "scene.toml change.toml -o change.html",
+        group="design",
         kind="change",
         stages=(("analysis", 0.2), ("transfer functions", 0.1), ("radiation", 0.1), ("pairs", 0.6)),
     )
@@ -217,6 +226,7 @@ class Studies:
         "Find the modes",
         "Find natural modes about the loaded equilibrium, whirl modes over speed, and critical speeds.",
         "examples/palermo_scene.toml --speed-rpm 0:15000:250 -o modes.png",
+        group="gearbox",
         kind="modes",
         stages=(("analysis", 0.9), ("modes", 0.1)),
         version="3",
@@ -227,6 +237,7 @@ class Studies:
         "Find the response",
         "Find the linear response to the transmission error over speed: mesh and bearing forces by order.",
         "examples/palermo_scene.toml --speed-rpm 100:6000:25 -o response.png",
+        group="gearbox",
         kind="response",
         stages=(("analysis", 0.9), ("response", 0.1)),
         version="3",
@@ -238,6 +249,7 @@ class Studies:
         "Find which mesh and harmonic a complaint is, what else passes the same frequency, and the modes "
         "within reach.",
         "examples/palermo_scene.toml --frequency-hz 280 --speed-rpm 840 -o complaint.png",
+        group="gearbox",
         kind="complaint",
         stages=(("analysis", 0.9), ("modes", 0.1)),
         version="1",
@@ -249,6 +261,7 @@ class Studies:
         "Find the sound power of the housings over speed: dB(A) by order, third octaves, and which order "
         "is loudest where, through which mode, bearing and wall.",
         "scene.toml --speed-rpm 100:6000:25 -o noise.html",
+        group="sound",
         kind="noise",
         stages=(
             ("analysis", 0.3),
@@ -270,6 +283,7 @@ class Studies:
         "Find the vibration of a housing under its bearings over speed: points and surface by order, "
         "contributions, transfer functions, operating deflection.",
         "scene.toml --speed-rpm 500:3000:25 -o deflection.png",
+        group="sound",
         kind="vibration",
         stages=(("analysis", 0.9), ("response", 0.1)),
         version="3",
@@ -283,6 +297,7 @@ class Studies:
         "Hear a run through the housings of a scene: sound pressure at a microphone, with level, "
         "loudness and tones, or velocity of a point.",
         "run.nc --scene scene.toml --microphone 40,60,1000 -o run.wav",
+        group="sound",
         kind="recording",
         stages=(("radiation", 0.7), ("sound", 0.3)),
         version="2",
@@ -294,6 +309,7 @@ class Studies:
         "Find the steady states",
         "Find periodic steady states at rising and falling speeds by shooting: stability, jumps, contact.",
         "scene.toml --speed-rpm 11000:13500:100 -o steady.png",
+        group="gearbox",
         kind="steady",
         stages=(("analysis", 0.4), ("up", 0.2), ("down", 0.2), ("branch", 0.2)),
         version="3",
@@ -305,6 +321,7 @@ class Studies:
         "Deflect a scene under load cases: misalignment of each mesh by cause, K_Hbeta, contact pattern, "
         "transmission error, bearing loads.",
         "examples/flexible_shafts_scene.toml -o deflect",
+        group="gearbox",
         kind="deflection",
         stages=(("analysis", 0.5), ("deflection", 0.2), ("flanks", 0.3)),
         version="2",
@@ -318,6 +335,7 @@ class Studies:
         "Run many scenes: a grid, a list or a Monte Carlo over anything a scene declares; maps, spread, "
         "what matters, worst cases.",
         "examples/palermo_scene.toml examples/study_torque_speed.toml -o study",
+        group="gearbox",
         kind="study",
         stages=(("analysis", 0.2), ("runs", 0.7), ("worst cases", 0.1)),
         folder="study",

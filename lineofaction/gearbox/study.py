@@ -91,6 +91,8 @@ class Study:
         A noun, what the button of the page says, and an imperative sentence of what is done.
     example : str
         Arguments of the verb.
+    group : str
+        Under which the help lists the verb.
     kind : str
         Kind of the result, which is the process' output too.
     stages : tuple of (str, float)
@@ -116,6 +118,7 @@ class Study:
     action: str
     description: str
     example: str
+    group: str
     kind: str
     stages: tuple[tuple[str, float], ...]
     version: str = "2"

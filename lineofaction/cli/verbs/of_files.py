@@ -43,7 +43,11 @@ _ASSUME = (
 )
 
 
-@verbs.command("new", epilog="Example: loa new --helical --module 1.8 --teeth 23 --ratio 2.9 -o pair.toml")
+@verbs.command(
+    "new",
+    rich_help_panel="start",
+    epilog="Example: loa new --helical --module 1.8 --teeth 23 --ratio 2.9 -o pair.toml",
+)
 @guarded
 @grouped
 def _new(
@@ -61,7 +65,7 @@ def _new(
     new.run_new(kinds, wanted, output)
 
 
-@verbs.command("open", epilog="Example: loa open gearbox.rexs --out gearbox")
+@verbs.command("open", rich_help_panel="start", epilog="Example: loa open gearbox.rexs --out gearbox")
 @computing
 def _open_unit(
     file: Annotated[Path, typer.Argument(help="Gear unit as REXS: .rexs, .rexsj, .rexsz or .rexs.zip.")],
@@ -82,7 +86,11 @@ def _open_unit(
 # Verbs on one gear pair: its table, curves, and files for other programs.
 
 
-@verbs.command("analyze", epilog="Example: loa analyze examples/palermo_spur_20_20.toml -o ste.nc")
+@verbs.command(
+    "analyze",
+    rich_help_panel="pair",
+    epilog="Example: loa analyze examples/palermo_spur_20_20.toml -o ste.nc",
+)
 @computing
 @overridable("case")
 def _analyze(
@@ -96,7 +104,11 @@ def _analyze(
     analyze.run_analyze(case, output, (workers, scheduler), as_json=json)
 
 
-@verbs.command("geometry", epilog="Example: loa geometry examples/sensitivity_automotive.toml -o pair.html")
+@verbs.command(
+    "geometry",
+    rich_help_panel="start",
+    epilog="Example: loa geometry examples/sensitivity_automotive.toml -o pair.html",
+)
 @computing
 @overridable("case")
 def _geometry(
@@ -111,7 +123,7 @@ def _geometry(
     pages.run_geometry(case, output, as_json=json)
 
 
-@verbs.command("ste", epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")
+@verbs.command("ste", rich_help_panel="pair", epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")
 @computing
 def _ste(
     database: Annotated[Path, typer.Argument(help="STE database (netCDF).")],
@@ -125,12 +137,14 @@ def _ste(
     center_distance_change_mm: Annotated[
         float | None, typer.Option(help="Change of the center distance in mm.")
     ] = None,
+    table: Annotated[bool, typer.Option("--table", help="Print every position of the curve.")] = False,
     csv: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False,
     json: AsJson = False,
 ) -> None:
-    """Print one STE curve of a database, with load sharing, mean, peak-to-peak and harmonics."""
+    """Print one STE curve of a database: mean, peak-to-peak, harmonics with their errors, load sharing."""
     place = {"misalignment_um": misalignment_um, "center_distance_change_mm": center_distance_change_mm}
-    ste.run_ste(database, {"torque": torque, "force": force, **place}, at, as_csv=csv, as_json=json)
+    point = {"torque": torque, "force": force, **place}
+    ste.run_ste(database, point, at, as_table=table, as_csv=csv, as_json=json)
 
 
 @dataclass(frozen=True)
@@ -183,7 +197,9 @@ class _RunPart:
 
 
 @verbs.command(
-    "export", epilog="Example: loa export examples/palermo_spur_20_20.toml --torque 100 -o deformed"
+    "export",
+    rich_help_panel="results",
+    epilog="Example: loa export examples/palermo_spur_20_20.toml --torque 100 -o deformed",
 )
 @computing
 @overridable("case")
@@ -267,7 +283,11 @@ class _HousingOptions:
     ] = ""
 
 
-@verbs.command("simulate", epilog="Example: loa simulate examples/palermo_scene.toml -o run.nc")
+@verbs.command(
+    "simulate",
+    rich_help_panel="gearbox",
+    epilog="Example: loa simulate examples/palermo_scene.toml -o run.nc",
+)
 @computing
 @overridable("scene", "scene")
 def _simulate(
@@ -285,7 +305,7 @@ def _simulate(
     simulate.run_simulate(scene, output, (workers, scheduler), service, resume=resume, as_json=json)
 
 
-@verbs.command("listen", epilog="Example: loa listen before.nc after.nc -o sounds")
+@verbs.command("listen", rich_help_panel="sound", epilog="Example: loa listen before.nc after.nc -o sounds")
 @computing
 @grouped
 def _listen(
@@ -303,7 +323,11 @@ def _listen(
 # Verbs on accuracy and robustness that are not studies of the registry: plans, hard scenes.
 
 
-@verbs.command("plan", epilog="Example: loa plan examples/palermo_spur_20_20.toml --time-budget-s 5")
+@verbs.command(
+    "plan",
+    rich_help_panel="pair",
+    epilog="Example: loa plan examples/palermo_spur_20_20.toml --time-budget-s 5",
+)
 @computing
 @overridable("case")
 def _plan(
@@ -318,7 +342,9 @@ def _plan(
     analyze.run_plan(case, time_budget_s, as_json=json)
 
 
-@verbs.command("hardcases", epilog="Example: loa hardcases --only table -o hardcases.html")
+@verbs.command(
+    "hardcases", rich_help_panel="trust", epilog="Example: loa hardcases --only table -o hardcases.html"
+)
 @guarded
 def _hardcases(
     only: Annotated[
@@ -376,7 +402,7 @@ class _ViewOptions:
         return views.RunView(**{**asdict(self), "orders": cuts})
 
 
-@verbs.command("report", epilog="Example: loa report ste.nc run.nc -o report.html")
+@verbs.command("report", rich_help_panel="results", epilog="Example: loa report ste.nc run.nc -o report.html")
 @computing
 @grouped
 def _report(
@@ -400,7 +426,11 @@ def _report(
     pages.run_report(files, output, images, view.view, flank=flank, as_json=json)
 
 
-@verbs.command("compare", epilog="Example: loa compare before.nc after.nc measured.csv -o comparison.html")
+@verbs.command(
+    "compare",
+    rich_help_panel="design",
+    epilog="Example: loa compare before.nc after.nc measured.csv -o comparison.html",
+)
 @computing
 @grouped
 def _compare(

@@ -28,7 +28,7 @@ DataDirectory = Annotated[
 Workers = Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")]
 
 
-@verbs.command("serve", epilog="Example: loa serve --port 8321 --workers 2")
+@verbs.command("serve", rich_help_panel="service", epilog="Example: loa serve --port 8321 --workers 2")
 @guarded
 def _serve(
     host: Annotated[
@@ -65,7 +65,11 @@ class _TermOptions:
         return {"title": self.title, "tags": tuple(self.tag or ()), **limits}
 
 
-@verbs.command("submit", epilog="Example: loa submit examples/palermo_spur_20_20.toml --wait -o ste.nc")
+@verbs.command(
+    "submit",
+    rich_help_panel="service",
+    epilog="Example: loa submit examples/palermo_spur_20_20.toml --wait -o ste.nc",
+)
 @computing
 @overridable("file", "case or scene")
 @grouped
@@ -93,7 +97,11 @@ def _submit(
     remote.run_submit(file, service, *job, wait=wait, output=output, as_json=json)
 
 
-@verbs.command("fetch", epilog="Example: loa fetch 3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d -o ste.nc")
+@verbs.command(
+    "fetch",
+    rich_help_panel="service",
+    epilog="Example: loa fetch 3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d -o ste.nc",
+)
 @computing
 def _fetch(
     name: Annotated[str, typer.Argument(help="Identifier of a job, or content hash of a result.")],
@@ -109,7 +117,7 @@ def _fetch(
 # Verbs of the jobs of a service.
 
 
-@verbs.command("jobs", epilog="Example: loa jobs --status running")
+@verbs.command("jobs", rich_help_panel="service", epilog="Example: loa jobs --status running")
 @guarded
 def _jobs(
     process: Annotated[list[str] | None, typer.Option(help="Only of this process; may be repeated.")] = None,
@@ -125,7 +133,9 @@ def _jobs(
     remote.run_jobs(service, process or (), status or (), limit, as_json=json)
 
 
-@verbs.command("dismiss", epilog="Example: loa dismiss 3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d")
+@verbs.command(
+    "dismiss", rich_help_panel="service", epilog="Example: loa dismiss 3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d"
+)
 @guarded
 def _dismiss(
     job: Annotated[str, typer.Argument(help="Identifier of a job.")],

@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
 
+GROUPS = ("start", "pair", "gearbox", "design", "sound", "trust", "results", "service")
+"""Groups of verbs in the help."""
+
+
 class StudyGroup(TyperGroup):
     """A group of verbs that has those of all studies too; each is made when it is requested.
 
@@ -44,12 +48,23 @@ class StudyGroup(TyperGroup):
         own, study = super().get_command(ctx, cmd_name), STUDIES.get(cmd_name)
         return own if own is not None or study is None else _command(study)
 
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """List the verbs by groups, each with its whole sentence."""
+        groups: dict[str, list[tuple[str, str]]] = {group: [] for group in GROUPS}
+        for name in self.list_commands(ctx):
+            verb = self.get_command(ctx, name)
+            groups[verb.rich_help_panel].append((name, verb.short_help or verb.help))
+        for group, verbs in groups.items():
+            with formatter.section(group.capitalize()):
+                formatter.write_dl(verbs)
+
 
 def _command(study: Study) -> Any:
     verb = typer.Typer(add_completion=False, rich_markup_mode=None)
     example = f"Example: loa {study.name} {study.example}"
     called = overridable(study.argument, study.takes.subject)(_verb(study))
-    verb.command(study.name, epilog=example, short_help=study.description)(computing(called))
+    about: dict[str, Any] = {"short_help": study.description, "rich_help_panel": study.group}
+    verb.command(study.name, epilog=example, **about)(computing(called))
     return typer.main.get_command(verb)
 
 

@@ -42,26 +42,29 @@ def influence_place(ledger: Iterable[Entry]) -> str:
     return ""
 
 
-def ledger_lines(ledger: Iterable[Mapping[str, Any]]) -> Iterator[str]:
-    """Yield the decision about every effect, its influence at the nominal load, and its price."""
-    shown, trifles = by_size(ledger)
-    if where := influence_place(ledger):
-        yield f"influence of effects: estimated change without each, {where}"
-    for entry in shown:
-        state = "on " if entry["on"] else "off"
-        yield f"effect {entry['name']}: {state} ({entry['choice']}); {entry['reason']}"
-        if entry["decision"].startswith(("neglected", "on after")):
-            yield f"       {entry['decision']}"
-        if entry["on"] or entry["called_for"]:
-            seconds = entry["cost_cpu_seconds"]
-            cost = (
-                f"{engineering(seconds, 2)} CPU s ({entry['cost']})" if seconds is not None else entry["cost"]
-            )
-            yield f"       without it {influence_words(entry)}; cost {cost}"
-        if entry["price"] and entry["on"]:
-            yield f"       price of the choice: {entry['price']}"
-    if trifles:
-        yield f"{trifles_title(trifles)}: {', '.join(entry['name'] for entry in trifles)}"
+def ledger_table(ledger: Iterable[Entry]) -> tuple[list[str], list[list[str]]]:
+    """Return columns and a row for each effect that is no trifle: decision, influence, price, reason."""
+    columns = ["effect", "on", "mean", "p-p", "CPU s", "why"]
+    return columns, [_row(entry) for entry in by_size(ledger)[0]]
+
+
+def _row(entry: Entry) -> list[str]:
+    influence = entry.get("influence") or {}
+    changes = [influence.get(name) for name in ("relative_mean", "relative_peak_to_peak")]
+    seconds = entry["cost_cpu_seconds"]
+    why = [
+        *([] if entry["choice"] == "auto" else [f"requested: {entry['choice']}"]),
+        entry["reason"],
+        *([entry["decision"]] if entry["decision"].startswith(("neglected", "on after")) else []),
+        *([f"price: {entry['price']}"] if entry["price"] and entry["on"] else []),
+    ]
+    return [
+        entry["name"].replace("_", " "),
+        "yes" if entry["on"] else "no",
+        *("" if change is None else f"{100.0 * change:+.2g} %" for change in changes),
+        engineering(seconds, 2) if seconds and entry["on"] else "",
+        "; ".join(why),
+    ]
 
 
 def assumption_lines(receipt: Mapping[str, Any]) -> Iterator[str]:

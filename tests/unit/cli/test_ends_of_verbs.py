@@ -6,12 +6,18 @@ import re
 from pathlib import Path
 
 import pytest
+from click import Context
 from command_line import loa
 from small_table import small_table
+from typer.main import get_command
 
+from lineofaction.cli.commands import app
 from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.registry import STUDIES
 
 SPUR = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
+LOA = get_command(app)
+VERBS = LOA.list_commands(Context(LOA))
 COARSE = ("--level", "draft", "--set", "accuracy.positions=16")
 
 
@@ -30,20 +36,12 @@ def test_a_table_ends_with_mean_and_ripple_and_its_file(tmp_path: Path) -> None:
     assert written == f"written to {file}"
 
 
-def test_a_plan_ends_with_what_it_chose() -> None:
-    assert "mesh standard" in last_lines("plan", SPUR, count=1)[0]
-
-
-NUMBER = r"-?[\d.]+"
-
-
-def test_a_curve_ends_with_its_harmonics_mean_and_ripple(tmp_path: Path) -> None:
-    file = tmp_path / "ste.nc"
-    small_table().to_netcdf(file)
-    harmonics, mean, ripple = last_lines("ste", file, "--torque", 100)
-    assert harmonics.startswith("harmonics ")
-    assert re.fullmatch(rf"mean STE at 100 N m: {NUMBER} µm .+", mean)
-    assert re.fullmatch(rf"peak-to-peak STE at 100 N m: {NUMBER} µm .+", ripple)
+def test_a_plan_begins_with_what_it_chose() -> None:
+    done = loa("plan", SPUR)
+    size, chosen, *_ = done.stdout.splitlines()
+    assert re.fullmatch(r"standard: [\d.]+ CPU s, [\d.]+ GiB; nothing is computed yet", size)
+    assert "mesh standard: as requested" in chosen
+    assert [line.split()[:2] for line in done.stdout.splitlines() if ">" in line] == [[">", "standard"]]
 
 
 def test_a_fetched_result_ends_with_its_figures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -54,3 +52,11 @@ def test_a_fetched_result_ends_with_its_figures(tmp_path: Path, monkeypatch: pyt
     assert results[0] == f"database {key}"
     assert [line.partition(" STE at ")[0] for line in results[1:]] == ["mean", "peak-to-peak"]
     assert written == f"written to {file}"
+
+
+def test_the_help_lists_every_verb_once_in_a_group_with_its_whole_sentence() -> None:
+    groups = loa("--help").stdout.partition("Start:\n")[2].partition("\n\n  Start with")[0]
+    listed = re.findall(r"^  ([a-z-]+)  +\S", groups, re.M)
+    assert sorted(listed) == sorted(VERBS)
+    assert "..." not in groups
+    assert " ".join(STUDIES["noise"].description.split()) in " ".join(groups.split())

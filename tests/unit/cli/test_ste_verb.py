@@ -1,0 +1,84 @@
+"""What a curve says stands in one look: figures with errors, harmonics in decibels, load sharing."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from command_line import loa
+from small_table import small_table
+
+from fe_contact.ste import SteDatabase
+from lineofaction.cli.ste import _answer
+from lineofaction.gearbox.convert.answers import curve_json
+
+Json = dict[str, Any]
+TORQUE = 1.0
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("table") / "ste.nc"
+    small_table().to_netcdf(file)
+    return file
+
+
+@pytest.fixture(scope="module")
+def curve(file: Path) -> Json:
+    """A curve whose errors are small enough for some of its harmonics to be above them."""
+    found = curve_json(SteDatabase.from_netcdf(file), torque_n_m=TORQUE)
+    smaller = {name: 0.01 * np.array(value) for name, value in found.items() if "error" in name}
+    return found | {name: value.tolist() for name, value in smaller.items()}
+
+
+@pytest.fixture(scope="module")
+def answer(file: Path, curve: Json) -> list[str]:
+    return list(_answer(SteDatabase.from_netcdf(file), file, curve))
+
+
+def test_the_answer_is_one_look(file: Path, answer: list[str]) -> None:
+    done = loa("ste", file, "--torque", TORQUE)
+    assert done.exit_code == 0, done.output
+    for lines in (answer, done.stdout.splitlines()):
+        assert len(lines) <= 14
+        assert all(len(line) <= 80 for line in lines if str(file) not in line)
+        assert lines[0].startswith("gear pair 20/20 at 1 N m (")
+        assert lines[-1].startswith(f"next: loa report {file}")
+
+
+def test_figures_are_those_of_the_curve_with_two_digits_of_the_error(answer: list[str], curve: Json) -> None:
+    for name, key in (("mean", "mean_um"), ("peak to peak", "peak_to_peak_um")):
+        (line,) = (line for line in answer if line.startswith(f"  {name} "))
+        found = re.match(rf"  {name} +([\d.]+) ± ([\d.]+) µm", line)
+        assert found is not None
+        last = 0.51 * 10.0 ** -len(found[1].partition(".")[2])
+        assert float(found[1]) == pytest.approx(curve[key], abs=last)
+        assert float(found[2]) == pytest.approx(curve[key.replace("_um", "_error_um")], abs=last)
+
+
+def test_harmonics_above_their_errors_are_in_decibels_and_the_others_are_named(
+    answer: list[str], curve: Json
+) -> None:
+    sizes, errors = (dict(enumerate(curve[name][:8], 1)) for name in ("harmonics_um", "harmonics_error_um"))
+    sure = {order for order, size in sizes.items() if size > errors[order]}
+    assert 0 < len(sure) < 8
+    pattern = r"  harmonic (\d) +([\d.]+) ± [\d.]+ µm +(-?[\d.]+) dB re 1 µm  ?(█*)"
+    found = {int(line[1]): line for line in (re.match(pattern, line) for line in answer) if line}
+    assert set(found) == sure
+    for order, line in found.items():
+        assert float(line[3]) == pytest.approx(20.0 * math.log10(sizes[order]), abs=0.051)
+        assert len(line[4]) == round(16 * sizes[order] / max(sizes[k] for k in sure))
+    (rest,) = (line for line in answer if "their error" in line)
+    assert {int(order) for order in re.findall(r"\d+", rest.partition(":")[0])} == set(sizes) - sure
+
+
+def test_positions_are_printed_where_they_are_requested(file: Path) -> None:
+    whole = loa("ste", file, "--torque", TORQUE, "--table").stdout.splitlines()
+    some = loa("ste", file, "--torque", TORQUE, "--at", "0,0.25").stdout.splitlines()
+    assert whole[0].split()[:2] == some[0].split()[:2] == ["position", "ste_um"]
+    assert len(some) == 3
+    assert len(whole) == 1 + len(SteDatabase.from_netcdf(file).position)
