@@ -19,6 +19,7 @@ from lineofaction.cli.output import (
     Report,
     check_netcdf_output,
     console,
+    output_of,
     print_json,
     print_result,
     progress_bar,
@@ -112,9 +113,12 @@ def _pass(number: int, entry: Json) -> str:
 _SHOWN_HARMONICS = 2
 
 
-def run_analyze(file: InputFile, output: Path, executor: tuple[int, str | None], *, as_json: bool) -> None:
+def run_analyze(
+    file: InputFile, named: Path | None, executor: tuple[int, str | None], *, as_json: bool
+) -> None:
     """Compute, write, print."""
     case = assessed_case(file)
+    output = output_of(named, file, f"{file.path.stem}.nc")
     check_netcdf_output(output)
     with open_executor(*executor) as workers, progress_bar() as report:
         database = analyzed(case, report, workers)

@@ -83,7 +83,9 @@ _SHORTHANDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
 def file_argument(text: str, metavar: str) -> Any:
     """Return the argument of a case or scene file."""
     return typer.Argument(
-        help=f"{text} (TOML, or JSON of the same shape).", parser=InputFile.named, metavar=metavar
+        help=f"{text} (TOML, or JSON of the same shape), or the folder that has it.",
+        parser=InputFile.named,
+        metavar=metavar,
     )
 
 
@@ -117,9 +119,12 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
         @functools.wraps(verb)
         def run(**options: Any) -> R:
             typed = {option.name: options.pop(option.name, None) for option in added}
-            files, overrides = options[argument], _overrides(typed)
-            several = isinstance(files, list)
-            read = [replace(file, overrides=overrides) for file in (files if several else [files])]
+            from lineofaction.gearbox.project import file_of  # noqa: PLC0415 (start-up time)
+
+            named, overrides = options[argument], _overrides(typed)
+            several = isinstance(named, list)
+            files = [file_of(file, subject) for file in (named if several else [named])]
+            read = [replace(file, overrides=overrides) for file in files]
             options[argument] = read if several else read[0]
             return verb(**options)
 

@@ -16,6 +16,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 from rich.table import Table
 
 from lineofaction.cli.guard import warnings_so_far
+from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from model_studies.progress import silent, stage_name
 
@@ -86,6 +87,16 @@ def progress_bar() -> Iterator[Report]:
             bars.update(tasks[name], description=stage, completed=min(max(fraction, 0.0), 1.0))
 
         yield report
+
+
+def output_of(output: Path | None, file: InputFile, name: str) -> Path:
+    """Return the output that is named, else the file of a name in the project of what was read.
+
+    Raises `BadInput`: neither.
+    """
+    if output is None and file.project is None:
+        raise BadInput.of("output", None, "a file to write", "Give one with -o, or name a folder to work in.")
+    return output or (file.project or Path()) / name
 
 
 def check_writable(output: Path) -> None:

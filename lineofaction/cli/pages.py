@@ -22,6 +22,7 @@ from lineofaction.cli.subjects import assessed_case
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.project import results_in
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
@@ -107,9 +108,17 @@ def _summary(pair: ParallelAxes) -> tuple[str, str]:
 
 
 def run_report(
-    files: Sequence[Path], output: Path, images: Path | None, view: RunView, *, flank: bool, as_json: bool
+    named: Sequence[Path],
+    page: Path | None,
+    images: Path | None,
+    view: RunView,
+    *,
+    flank: bool,
+    as_json: bool,
 ) -> None:
     """Write the page; draw the pictures and compute the flank results if requested."""
+    files = [file for name in named for file in (results_in(name) if name.is_dir() else [name])]
+    output = page or next((name for name in named if name.is_dir()), Path()) / "report.html"
     for file in files:
         if not file.is_file():
             raise BadInput.of("file", str(file), "a file of results", "Check the path.")
@@ -120,8 +129,8 @@ def run_report(
     if flank:
         with progress_bar() as report:
             found = _flanks(read, report)
-        page = page_beside(STUDIES["flank"], found, read.database)
-        read = replace(read, pages={**read.pages, "flanks": page})
+        flanks = page_beside(STUDIES["flank"], found, read.database)
+        read = replace(read, pages={**read.pages, "flanks": flanks})
         spent = found.metadata.receipt["cpu_seconds"]
     written = write_whole(page_of(read), output, images)
     if as_json:

@@ -31,6 +31,7 @@ from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.project import inputs_in, result_name
 from lineofaction.gearbox.result_files import stamp
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.model import BoundaryModel, item_type, spelling_of
@@ -75,7 +76,7 @@ def run_study(study: Study, options: Json) -> None:
     files = options[study.argument] if study.several else [options[study.argument]]
     read = [_read(study, file) for file in files]
     run = None if options.get("run") is None else read_run(options["run"], "run")
-    inputs = _inputs(study, options)
+    inputs = _inputs(study, options, files[0].project)
     subjects = []
     for file, (subject, folder) in zip(files, read, strict=True):
         with located(file):
@@ -83,7 +84,7 @@ def run_study(study: Study, options: Json) -> None:
             if isinstance(narrowed, CheckedCase):  # what is implausible about a scene is said with its tables
                 warn(case_warnings(narrowed))
             subjects.append((narrowed, folder))
-    targets = _targets(study, options["output"])
+    targets = _targets(study, options["output"], files[0].project)
     for subject, _ in subjects:
         study.run.check(subject, inputs)
     written = [subject.case if isinstance(subject, CheckedCase) else subject for subject, _ in subjects]
@@ -131,12 +132,15 @@ def _tell(
         _show(study, result, targets, remote_seconds)
 
 
-def _inputs(study: Study, options: Json) -> Any:
+def _inputs(study: Study, options: Json, project: Path | None) -> Any:
     if isinstance(options.get("study"), BoundaryModel):  # of a verb that has read it
         return options["study"]
-    if study.takes.from_file and options["study"] is not None:
-        return read_model(study.inputs, options["study"])
-    return validated(study.inputs, {} if study.takes.from_file else _fields(study, options))
+    if not study.takes.from_file:
+        return validated(study.inputs, _fields(study, options))
+    file = options["study"] or (inputs_in(project, study) if project else None)
+    if file is None and not study.takes.bare:
+        raise BadInput.of("study", None, "a study file", f"For example: loa {study.name} {study.example}")
+    return validated(study.inputs, {}) if file is None else read_model(study.inputs, file)
 
 
 def _fields(study: Study, options: Json) -> Json:
@@ -177,8 +181,11 @@ def _names(study: Study, files: Sequence[InputFile]) -> list[str]:
     return [str(file) for file in files] if len(set(names)) < len(names) else names
 
 
-def _targets(study: Study, output: Path | None) -> list[Path]:
+def _targets(study: Study, output: Path | None, project: Path | None) -> list[Path]:
     """Return the files to write; raises `BadInput` if one cannot be."""
+    if output is None and project is not None:
+        result = project / result_name(study)
+        output = result.parent if study.folder else result
     if output is None:
         return []
     if study.folder:

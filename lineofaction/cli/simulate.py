@@ -14,6 +14,7 @@ from lineofaction.cli.output import (
     Report,
     check_netcdf_output,
     console,
+    output_of,
     print_json,
     print_result,
     progress_bar,
@@ -53,7 +54,7 @@ def _run_headlines(peaks: Mapping[str, Any]) -> tuple[Headline, ...]:
 
 def run_simulate(
     file: InputFile,
-    output: Path,
+    named: Path | None,
     executor: tuple[int, str | None],
     service: str | None,
     *,
@@ -62,6 +63,7 @@ def run_simulate(
 ) -> None:
     """Gather the tables, integrate here into the file, print."""
     scene, folder = assessed_scene(file)
+    output = output_of(named, file, "run.nc")
     check_netcdf_output(output)
     if resume and not interrupted_run(output).is_dir():
         advice = "There is none. Omit --resume to start a run."

@@ -51,10 +51,11 @@ class Override:
 
 @dataclass(frozen=True)
 class InputFile:
-    """A file and what is set over it, in order."""
+    """A file and what is set over it, in order; `project` is the folder that was named in its place."""
 
     path: Path
     overrides: tuple[Override, ...] = ()
+    project: Path | None = None
 
     @classmethod
     def named(cls, name: str) -> InputFile:

@@ -86,6 +86,16 @@ def _open_unit(
 # Verbs on one gear pair: its table, curves, and files for other programs.
 
 
+@verbs.command("status", rich_help_panel="start", epilog="Example: loa status gearbox")
+@computing
+def _status(
+    folder: Annotated[Path, typer.Argument(help="Folder that loa open made, or with a case or scene file.")],
+    json: AsJson = False,
+) -> None:
+    """Say which results of a folder are fresh, stale or missing, and which verb makes them."""
+    new.run_status(folder, as_json=json)
+
+
 @verbs.command(
     "analyze",
     rich_help_panel="pair",
@@ -95,7 +105,7 @@ def _open_unit(
 @overridable("case")
 def _analyze(
     case: CaseFile,
-    output: Annotated[Path, to_file("STE database to write (netCDF).")],
+    output: Annotated[Path | None, to_file("STE database to write (netCDF).")] = None,
     workers: TaskWorkers = 1,
     scheduler: Scheduler = None,
     json: AsJson = False,
@@ -292,7 +302,7 @@ class _HousingOptions:
 @overridable("scene", "scene")
 def _simulate(
     scene: SceneFile,
-    output: Annotated[Path, to_file("Run to write (netCDF).")],
+    output: Annotated[Path | None, to_file("Run to write (netCDF).")] = None,
     workers: TaskWorkers = 1,
     scheduler: Scheduler = None,
     service: TableService = None,
@@ -410,10 +420,13 @@ def _report(
     files: Annotated[
         list[Path],
         typer.Argument(
-            help="Result files, netCDF or JSON: STE database, flank results, studies, run; one of each kind."
+            help="Result files, netCDF or JSON: STE database, flank results, studies, run; one of each kind. "
+            "Of a folder all that are in it."
         ),
     ],
-    output: Annotated[Path, to_file("Page to write.")] = Path("report.html"),
+    output: Annotated[
+        Path | None, to_file("Page to write; default: report.html, here or in the folder.")
+    ] = None,
     images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
     flank: Annotated[
         bool,

@@ -86,11 +86,10 @@ def _parameters(study: Study) -> Iterator[Parameter]:
     metavar = study.takes.subject.upper().replace(" ", "_")
     argument = file_argument(f"{study.takes.subject.capitalize()} file", metavar)
     yield keyword(study.argument, Annotated[list[InputFile] if study.several else InputFile, argument])
-    if study.takes.from_file and study.takes.bare:
-        file = typer.Argument(help="Study file (TOML); left out: all defaults.")
+    if study.takes.from_file:
+        absent = "all defaults" if study.takes.bare else "the one in the folder"
+        file = typer.Argument(help=f"Study file (TOML); left out: {absent}.")
         yield keyword("study", Annotated[Path | None, file], None)
-    elif study.takes.from_file:
-        yield keyword("study", Annotated[Path, typer.Argument(help="Study file (TOML).")])
     else:
         yield from (_option(name, field) for name, field in study.inputs.model_fields.items())
     place = "Folder, or a file" if study.folder else "File to write,"

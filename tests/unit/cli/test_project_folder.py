@@ -1,0 +1,103 @@
+"""A folder in place of a file: verbs find what they take in it and leave their results there."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+from command_line import loa
+
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.problems import EXIT_BAD_INPUT, BadInput
+from lineofaction.gearbox.project import file_of, inputs_in, results_in, status_of
+from lineofaction.gearbox.registry import STUDIES
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+
+@pytest.fixture
+def rotor(tmp_path: Path) -> Path:
+    """A folder with a scene under another name, and files that are none of the program's."""
+    folder = tmp_path / "rotor"
+    folder.mkdir()
+    shutil.copy(EXAMPLES / "jeffcott_scene.toml", folder / "jeffcott.toml")
+    (folder / "notes.json").write_text("[1, 2]")
+    (folder / "broken.toml").write_text("[[shafts")
+    (folder / "latin.toml").write_bytes(b"name = '\xe9'")
+    (folder / "folder.toml").mkdir()
+    (folder / "gone.toml").symlink_to(folder / "nothing.toml")
+    os.mkfifo(folder / "pipe.toml")
+    (folder / "deep.json").write_text("[" * 100_000)
+    return folder
+
+
+def test_a_folder_stands_for_the_scene_in_it_whatever_lies_beside(rotor: Path) -> None:
+    assert file_of(InputFile(rotor), "scene") == InputFile(rotor / "jeffcott.toml", (), rotor)
+    assert file_of(InputFile(rotor), "case or scene").path == rotor / "jeffcott.toml"
+    with pytest.raises(BadInput, match="must be a folder with a case file in it"):
+        file_of(InputFile(rotor), "case")
+
+
+def test_of_several_the_one_of_that_name_is_taken_and_none_is_guessed(rotor: Path) -> None:
+    shutil.copy(rotor / "jeffcott.toml", rotor / "stiffer.toml")
+    with pytest.raises(BadInput, match=r"Name one: .*jeffcott\.toml, .*stiffer\.toml"):
+        file_of(InputFile(rotor), "scene")
+    shutil.copy(rotor / "jeffcott.toml", rotor / "scene.toml")
+    assert file_of(InputFile(rotor), "scene").path == rotor / "scene.toml"
+
+
+def test_the_file_of_a_study_is_known_by_its_fields(rotor: Path) -> None:
+    assert inputs_in(rotor, STUDIES["deflect"]) is None
+    (rotor / "loads.toml").write_text("[[load_cases]]\nname = 'one'\n")
+    assert inputs_in(rotor, STUDIES["deflect"]) == rotor / "loads.toml"
+    shutil.copy(rotor / "loads.toml", rotor / "others.toml")
+    with pytest.raises(BadInput, match=r"one file for deflect. Name one: .*loads\.toml, .*others\.toml"):
+        inputs_in(rotor, STUDIES["deflect"])
+
+
+def states(folder: Path) -> dict[str, str]:
+    return {one.name: one.state for one in status_of(folder)}
+
+
+def test_a_result_lies_in_the_folder_and_is_stale_once_its_scene_is_newer(rotor: Path) -> None:
+    assert set(states(rotor).values()) == {"missing"}
+    done = loa("modes", rotor, "--speed-rpm", "0:3000:1500")
+    assert done.exit_code == 0, done.output
+    assert done.stdout.splitlines()[-1] == f"written to {rotor / 'modes.nc'}"
+    assert states(rotor)["modes.nc"] == "fresh"
+    assert states(rotor)["response.nc"] == "missing"
+    made = (rotor / "modes.nc").stat().st_mtime
+    os.utime(rotor / "jeffcott.toml", (made + 1.0, made + 1.0))
+    assert states(rotor)["modes.nc"] == "stale"
+
+
+def test_a_report_of_a_folder_has_all_results_in_it(rotor: Path) -> None:
+    assert loa("modes", rotor, "--speed-rpm", "0:3000:1500").exit_code == 0
+    (rotor / "sub").mkdir()
+    shutil.move(rotor / "modes.nc", rotor / "sub" / "modes.nc")
+    assert results_in(rotor) == [rotor / "sub" / "modes.nc"]
+    done = loa("report", rotor)
+    assert done.exit_code == 0, done.output
+    assert "lowest natural frequency" in (rotor / "report.html").read_text("utf-8")
+
+
+@pytest.mark.parametrize("verb", ["analyze", "simulate"])
+def test_without_a_folder_an_output_is_asked_for(verb: str) -> None:
+    file = EXAMPLES / ("palermo_spur_20_20.toml" if verb == "analyze" else "jeffcott_scene.toml")
+    done = loa(verb, file)
+    assert done.exit_code == EXIT_BAD_INPUT
+    assert "Give one with -o, or name a folder to work in" in done.output
+
+
+def test_the_status_is_json_too_and_a_folder_of_nothing_says_so(rotor: Path, tmp_path: Path) -> None:
+    rows = json.loads(loa("status", rotor, "--json").stdout)["results"]
+    assert {"name": "modes.nc", "verb": "modes", "state": "missing"} in rows
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    for folder, bound in ((empty, "a folder with a case or scene file in it"), (tmp_path / "no", "a folder")):
+        done = loa("status", folder)
+        assert done.exit_code == EXIT_BAD_INPUT
+        assert f"must be {bound}" in done.output
