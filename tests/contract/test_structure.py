@@ -13,16 +13,16 @@ ROOT = Path(__file__).parents[2]
 BUDGETS = {
     ("fe_contact",): (39_567, 704),
     ("dynamics",): (42_007, 798),
-    ("lineofaction.gearbox",): (23_442, 464),
+    ("lineofaction.gearbox",): (23_570, 470),
     ("lineofaction.report",): (10_974, 204),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
-    ("lineofaction.cli",): (4_907, 69),
+    ("lineofaction.cli",): (4_972, 71),
     ("lineofaction.hardcases",): (3_844, 35),
     ("bounds", "host", "model_studies"): (4_417, 151),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 782
+MOST_FILES = 783
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
