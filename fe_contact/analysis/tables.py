@@ -200,7 +200,7 @@ def _curves(points: OperatingPoints, load: FloatArray, position: FloatArray, pit
         points.assessed, [position] * len(points.assessed), load, pitches, points.workers
     )
     shape = (pitches.size, position.size, -1)
-    return np.concatenate([curve.reshape(shape) for curve in curves], axis=2)
+    return np.concatenate([curve[..., 0].reshape(shape) for curve in curves], axis=2)
 
 
 @dataclass(frozen=True)

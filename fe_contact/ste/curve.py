@@ -95,9 +95,11 @@ AT_NODES = ("discretisation", "slices", "contact_solver", PLANE, "position", MET
 BETWEEN_NODES = ("force", "misalignment", "center_distance_change")
 """Interpolation along each axis: nothing on its nodes; stored at the lower node of every interval."""
 SOURCES = AT_NODES + BETWEEN_NODES
+OF_LOAD_ARM = ("discretisation", "slices", "position")
+"""Sources of the errors of the load arm at stored loads and alignments."""
 
 
-def _errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
+def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
     """Return the errors of the quantities (sources, 22) in m at one load and alignment.
 
     Linear between the nodes. NaN: not estimated.
@@ -356,7 +358,7 @@ def _errors(
     ends = left[int(np.argmin(ste))] + left[int(np.argmax(ste))]
     mean = float(np.mean(left[:even]))
     bounds = np.array([mean, ends, *[2.0 * mean] * HARMONICS])
-    total = bounds + all_sources(_errors_by_source(database, point)) if stored else bounds
+    total = bounds + all_sources(errors_by_source(database, point)) if stored else bounds
     return [float(error) for error in total]
 
 

@@ -137,7 +137,7 @@ SMOOTHING = 0.01
 """Half width of the smoothed change of direction at the pitch point, base pitches."""
 
 
-def _sliding(database: SteFields) -> tuple[FloatArray, FloatArray]:
+def sliding_sums(database: SteFields) -> tuple[FloatArray, FloatArray]:
     """Return sum of share sign(y) and sum of share |y| (m) over the pairs, both (P, F, M, D).
 
     The sign is y/sqrt(y^2 + h^2), h `SMOOTHING` base pitches. On helical teeth the load of a pair lies
@@ -188,7 +188,7 @@ def force_table(database: SteFields) -> ForceTable:
     unlimited = stiffness_grid((axis,), levels.stiffness, (monotone_slopes(axis, levels.stiffness),))
     stiffness = monotone_stiffness(unlimited, deflection, levels.force)
     flat = np.zeros_like(levels.deflection)  # the slopes of a table of one position
-    slides, sliding = _sliding(database)
+    slides, sliding = sliding_sums(database)
     arm = database.load_arm if database.load_arm.size else database.face_centroid
     return ForceTable(
         position=database.position,

@@ -46,6 +46,7 @@ OPTIONAL: dict[str, tuple[str, ...]] = {
     "edge_pressure": GRID,
     "load_arm": GRID,
     "curve_error": CURVE_ERROR,
+    "load_arm_error": ("load_arm_source", *CURVE_ERROR[1:]),
 }
 """Dimensions of the arrays that older tables do not have: they are empty there."""
 INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
@@ -112,6 +113,9 @@ class SteFields:
         Arm of the load about the axis of a misalignment, m: over all points of the contact lines the mean of
         the offset from mid-face less tan(beta_b) times the way from the pitch point along the line of action.
         On spur gears `face_centroid`. Empty for tables without.
+    load_arm_error : (3, 22, F, M, D) array
+        Errors of its mean, peak-to-peak and 20 harmonics in m, >= 0, by source (`ste.curve.OF_LOAD_ARM`);
+        NaN: not estimated. Empty for tables without.
 
     Raises
     ------
@@ -145,6 +149,7 @@ class SteFields:
     curve_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(CURVE_ERROR)))
     edge_pressure: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
     load_arm: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
+    load_arm_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(CURVE_ERROR)))
 
     def __post_init__(self) -> None:
         if np.size(self.support_force) == 0:
@@ -241,12 +246,13 @@ def _check_shapes(table: SteFields) -> None:
             name,
             "have the dimensions of max_pressure",
         )
-    _refuse(
-        table.curve_error.size > 0
-        and table.curve_error.shape[2:] != table.static_transmission_error.shape[1:],
-        "curve_error",
-        f"have the dimensions {', '.join(CURVE_ERROR)}",
-    )
+    for name in ("curve_error", "load_arm_error"):
+        errors = getattr(table, name)
+        _refuse(
+            errors.size > 0 and errors.shape[2:] != table.static_transmission_error.shape[1:],
+            name,
+            f"have the dimensions {', '.join(OPTIONAL[name])}",
+        )
 
 
 def _check_axes(table: SteFields) -> None:
@@ -299,7 +305,8 @@ def _check_values(table: SteFields) -> None:
         "load_share",
         "sum to 1 where converged",
     )
-    for name, errors in (("error_estimate", table.error_estimate[good]), ("curve_error", table.curve_error)):
+    curves = {name: getattr(table, name) for name in ("curve_error", "load_arm_error")}
+    for name, errors in {"error_estimate": table.error_estimate[good], **curves}.items():
         _refuse(bool(np.any(errors < 0.0)), name, "be >= 0 m, or NaN where not estimated")
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from fe_contact.errors import DatabaseError
-from fe_contact.ste.curve import AT_NODES, METHOD, SOURCES
+from fe_contact.ste.curve import AT_NODES, METHOD, OF_LOAD_ARM, SOURCES
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import DIMENSIONS, OPTIONAL, RESIDUALS, SteFields
 from fe_contact.types import Json, Status
@@ -145,6 +145,11 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
     "curve_error": (
         "m",
         "error of mean, peak-to-peak and the harmonics 1 to 20, by source: " + ", ".join(SOURCES),
+    ),
+    "load_arm_error": (
+        "m",
+        "error of mean, peak-to-peak and harmonics 1 to 20 of the load arm, by source: "
+        + ", ".join(OF_LOAD_ARM),
     ),
     "support_force": ("N", "further loads that only carry the force extraction"),
     "support_transmission_error": ("m", "static transmission error at the support loads"),

@@ -188,8 +188,18 @@ def _response(figures: Json, result: Any, table: SteDatabase) -> Pairs:
     yield mesh["mesh_force_n"], np.abs(result.mesh_force[0]).T.tolist()
     yield mesh["load_moment_n_m"], np.abs(result.load_moment[0]).tolist()
     yield mesh["friction_force_n"], np.abs(result.friction_force[0]).tolist()
+    yield from _excitations(figures, mesh["static_transmission_error_um"], table)
     bearing = figures["bearings"]["input at 0"]["force_n"]
     yield np.shape(bearing), np.shape(mesh["mesh_force_n"])
+
+
+def _excitations(figures: Json, transmission_error_um: list[float], table: SteDatabase) -> Pairs:
+    """What excites at 1 N m, harmonic by harmonic; a table with the minimal receipt states no errors."""
+    rows = figures["excitations"]
+    yield [row["harmonic"] for row in rows], list(range(1, len(rows) + 1))
+    yield [row["transmission_error_um"] for row in rows], transmission_error_um[: len(rows)]
+    yield {row["error_of_transmission_error_um"] for row in rows}, {None}
+    yield {round(row["torque_n_m"], 6) for row in rows}, {float(table.torque[-1])}
 
 
 def _complaint(figures: Json, result: Any, _table: SteDatabase) -> Pairs:

@@ -217,9 +217,7 @@ def compute_pass(
     if remote.tasks or remote.lost:
         receipt["elsewhere"] = asdict(remote)
     metadata = _metadata(case, made, receipt, ledger)
-    table = replace(
-        made.table, error_estimate=assessed.band, curve_error=assessed.curve_error, metadata=metadata
-    )
+    table = assessed.stated(replace(made.table, metadata=metadata))
     tolerance = made.checked.request.options.tolerance
     if tolerance is not None:
         kept = _tolerance_receipt(table, tolerance, made.checked.request)

@@ -3,138 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fe_contact.analysis.estimates.held_out_axes import AxisError, held_out_axes
-from fe_contact.analysis.estimates.position_errors import PositionErrors, position_errors
-from fe_contact.analysis.pairs.contact_lines import Solved, deflected_operating_points
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
+from fe_contact.analysis.estimates.position_errors import (
+    PositionErrors,
+    errors_by_halves,
+    position_errors,
+)
+from fe_contact.analysis.estimates.table_sample import Nested, TableSample
+from fe_contact.analysis.pairs.contact_lines import Solved
+from fe_contact.analysis.pairs.pair_contact import OperatingPoints
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.tables import PositionNodes
-from fe_contact.contact import Candidates, ContactSolution
+from fe_contact.contact import ContactSolution
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.model_error import model_errors, point_error
 from fe_contact.planning.plan import FaceDiscretization, Plan
 from fe_contact.planning.plane_bias import LEFT_OUT, PlaneBias
-from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of, some_positions, spread, spread_around
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, PLANE, SOURCES
+from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, OF_LOAD_ARM, PLANE, SOURCES
 from fe_contact.ste.curve_quantities import (
     BY_SOURCE,
     FIRST_HARMONIC,
+    MEAN,
     PEAK_TO_PEAK,
     QUANTITIES,
     error_bound,
     mean_of_curves,
     quantity_changes,
 )
-from fe_contact.types import FloatArray, IntArray, Json, Status
-
-# A table solved again at some of its points, on the rougher discretizations that measure its errors.
-#
-# Bodies, slices and corrections change; where teeth touch does not, so that the candidates of the run serve
-# again unless the slices are others.
-
-Axes = tuple[FloatArray, FloatArray, FloatArray]
-"""Loads in N, misalignments and changes of the center distance in m of a table."""
-
-
-@dataclass(frozen=True)
-class TableSample:
-    """Points of a table (P positions of each of T pitches, F, M, D) that are solved again.
-
-    Attributes
-    ----------
-    position : ndarray, shape (P,)
-        Of the table, in the first base pitch.
-    period : int
-        Base pitches T.
-    axes : tuple of ndarray
-        Loads, misalignments, changes of the center distance.
-    rows : ndarray of int, shape (R,)
-        Positions that are solved.
-    nodes : tuple of ndarray of int
-        Loads (f), misalignments (m) and changes of the center distance (d) that are.
-    """
-
-    position: FloatArray
-    period: int
-    axes: Axes
-    rows: IntArray
-    nodes: tuple[IntArray, IntArray, IntArray]
-
-    @classmethod
-    def of(cls, position: FloatArray, period: int, axes: Axes) -> TableSample:
-        """Take at least 32 positions, four loads and three alignments of each axis, as far as there are."""
-        load, skew, change = axes
-        most = (
-            sample_of(load.size, LOADS),
-            sample_of(skew.size, ALIGNMENTS),
-            sample_of(change.size, ALIGNMENTS),
-        )
-        return cls(position, period, axes, some_positions(position.size), most)
-
-    @property
-    def places(self) -> list[int]:
-        """The places of the alignments that are solved, center distance running fastest."""
-        _, skews, changes = self.nodes
-        return [int(m) * self.axes[2].size + int(d) for m in skews for d in changes]
-
-    @property
-    def knots(self) -> FloatArray:
-        """Positions of all pitches that are solved, (T R,)."""
-        return (np.arange(self.period)[:, None] + self.position[self.rows]).ravel()
-
-    @property
-    def every_row(self) -> IntArray:
-        """Their rows among those of the table, (T R,)."""
-        return (np.arange(self.period)[:, None] * self.position.size + self.rows).ravel()
-
-    def shaped(self, by_place: Sequence[FloatArray]) -> FloatArray:
-        """Stack arrays (..., f) of the places solved into (..., f, m, d)."""
-        stacked = np.stack(by_place, axis=-1)
-        return stacked.reshape(*stacked.shape[:-1], self.nodes[1].size, self.nodes[2].size)
-
-    def spread(self, values: FloatArray) -> FloatArray:
-        """Carry values (..., f, m, d) on to all loads and alignments, (..., F, M, D)."""
-        for axis, (knots, sample) in enumerate(zip(self.axes, self.nodes, strict=True), start=-3):
-            values = spread(knots, sample, values, axis)
-        return values
-
-    def spread_points(self, values: FloatArray) -> FloatArray:
-        """Carry values (T R, f, m, d) on to all points of the table, (T P, F, M, D)."""
-        knots = (np.arange(self.period)[:, None] + self.position).ravel()
-        return spread_around(knots, self.period, self.every_row, self.spread(values))
-
-    def taken(self, solutions: Sequence[ContactSolution]) -> FloatArray:
-        """Return the STE of the table's own solutions at the points, (T R, f, m, d) in m."""
-        loads = self.nodes[0]
-        curves = [solutions[k].deflection[np.ix_(self.every_row, loads)] for k in self.places]
-        return self.shaped(curves)
-
-    def solved(self, points: OperatingPoints, known: OperatingPoints) -> FloatArray:
-        """Solve the points on other places, (T R, f, m, d) in m; `known` are those of the table."""
-        pitches, load = np.arange(self.period), self.axes[0][self.nodes[0]]
-        chosen = [points.places[k] for k in self.places]
-        where = [self.position[self.rows]] * len(chosen)
-        candidates = self._candidates(chosen[0], [known.places[k] for k in self.places])
-        return self.shaped(
-            deflected_operating_points(chosen, where, load, pitches, points.workers, candidates)
-        )
-
-    def _candidates(self, point: OperatingPoint, known: Sequence[OperatingPoint]) -> list[Candidates] | None:
-        """Return those of the table's places, which do not depend on the bodies.
-
-        None in other slices and under other load patches, which have candidates of their own.
-        """
-        plans = point.contact.plan, known[0].contact.plan
-        first, second = ((plan.discretization.slices, plan.patch) for plan in plans)
-        if first != second:
-            return None
-        return [own.contact.candidates(own.model, self.position).rows(self.rows) for own in known]
-
+from fe_contact.types import FloatArray, Json, Status
 
 # Errors of a table, by source.
 #
@@ -200,34 +101,6 @@ def _largest_known(errors: FloatArray) -> list[float | None]:
     """Return the largest number of errors (P, F, M, D) at each load; None if there is none."""
     worst = np.where(np.isnan(errors), -np.inf, errors).max(axis=(0, 2, 3))
     return [float(value) if np.isfinite(value) else None for value in worst]
-
-
-@dataclass(frozen=True)
-class Nested:
-    """STE at some points of a table, from the run's own and rougher discretizations.
-
-    Attributes
-    ----------
-    sample : TableSample
-        The points.
-    table : ndarray, shape (T R, f, m, d)
-        The table's own, m.
-    plane : ndarray
-        Without the correction for a finite width; `table` if there is none.
-    patched : ndarray
-        Under the wider load patches of the coarse meshes, without that correction.
-    coarse : ndarray
-        Under these on the coarse meshes.
-    sliced : ndarray
-        In half the slices; `table` in the plane.
-    """
-
-    sample: TableSample
-    table: FloatArray
-    plane: FloatArray
-    patched: FloatArray
-    coarse: FloatArray
-    sliced: FloatArray
 
 
 def estimate_errors(
@@ -320,17 +193,7 @@ def curve_errors(
     alignments that were solved again, and interpolated between them.
     """
     made, sample, pair = plan.discretization, nested.sample, points.nominal.pair
-    helical = isinstance(made, FaceDiscretization) and pair.base_helix_angle != 0.0
-    # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
-    many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
-    parts = 1.0, _left_by_mesh(pair, plan, helical), plan.remaining_patches, 1.0, CORRECTION_ERROR
-    own, by_mesh, by_patches, by_slices, free_ends = _changes(
-        sample,
-        (nested.table, nested.patched, nested.plane, nested.table, nested.table),
-        (np.zeros_like(nested.table), nested.coarse, nested.patched, many_slices, nested.plane),
-        np.stack(np.broadcast_arrays(*parts)),
-        helical,
-    )
+    own, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
     if bias := PlaneBias.of(pair, made):
         free_ends = bias.errors(pair, own)
     by_source = {
@@ -346,17 +209,72 @@ def curve_errors(
     return np.stack([by_source[name] for name in AT_NODES])
 
 
+LEFT_OF_ARM = (1.75, 1.0, 1.25)
+"""What meshes leave of mean, peak-to-peak and harmonics of the load arm, over the same parts of the
+transmission error: where the load lies follows from differences of compliance along the face."""
+BALANCE = 0.5
+"""Least change of the mean arm over the mean size of the change about it. An arm balances one end of the
+face against the other, so that the change of its mean may cross zero by accident. Both were set on the pairs
+over the face of docs/lab/accuracy.md, three loads on two meshes, against 31 slices on the mesh fine."""
+
+
+def load_arm_errors(points: OperatingPoints, table: SteDatabase, nested: Nested, plan: Plan) -> FloatArray:
+    """Return the errors of the arm of the load at the nodes, (3, 22, F, M, D) in m: sources `OF_LOAD_ARM`.
+
+    As those of the transmission error (`curve_errors`), of a mesh with more left of the change
+    (`LEFT_OF_ARM`); between the positions half of them are held against all. `nested` are load arms.
+    """
+    _, by_mesh, by_patches, by_slices, _ = _measured(points, nested, plan, BALANCE)
+    mean, ripple, harmonics = LEFT_OF_ARM
+    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - FIRST_HARMONIC)])
+    by_mesh = part[:, None, None, None] * by_mesh
+    arms = table.load_arm.reshape(table.position.size, -1)
+    by_positions = errors_by_halves(table.position, arms, table.period).curves
+    by_source = {
+        "discretisation": np.hypot(by_mesh, by_patches),
+        "slices": by_slices,
+        "position": by_positions.reshape(by_slices.shape),
+    }
+    return np.stack([by_source[name] for name in OF_LOAD_ARM])
+
+
+def _measured(points: OperatingPoints, nested: Nested, plan: Plan, balance: float = 0.0) -> FloatArray:
+    """Return quantities, and what meshes, patches, slices and free ends leave, (5, 22, F, M, D) in m.
+
+    `balance` is the least change of a mean over the mean size of the change about it.
+    """
+    made, pair = plan.discretization, points.nominal.pair
+    helical = isinstance(made, FaceDiscretization) and pair.base_helix_angle != 0.0
+    # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
+    many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
+    parts = 1.0, _left_by_mesh(pair, plan, helical), plan.remaining_patches, 1.0, CORRECTION_ERROR
+    return _changes(
+        nested.sample,
+        (nested.table, nested.patched, nested.plane, nested.table, nested.table),
+        (np.zeros_like(nested.table), nested.coarse, nested.patched, many_slices, nested.plane),
+        np.stack(np.broadcast_arrays(*parts)),
+        balance,
+        helical,
+    )
+
+
 def _changes(
     sample: TableSample,
     these: Sequence[FloatArray],
     those: Sequence[FloatArray],
     parts: FloatArray,
+    balance: float,
     helical: bool,
 ) -> FloatArray:
     """Return parts (k, 22) of the changes of k sets of curves (T R, f, m, d), (k, 22, F, M, D) in m."""
     first, second = np.stack(these, axis=1), np.stack(those, axis=1)
     rows = sample.knots.size
     change = quantity_changes(sample.knots, first.reshape(rows, -1), second.reshape(rows, -1), sample.period)
+    if balance:
+        about = np.nan_to_num(first - second).reshape(rows, -1)
+        about = np.abs(about - mean_of_curves(sample.knots, about, sample.period))
+        least = balance * mean_of_curves(sample.knots, about, sample.period)
+        change[MEAN] = np.maximum(change[MEAN], least)
     change = parts.T[:, :, None, None, None] * change.reshape(QUANTITIES, *first.shape[1:])
     return sample.spread(np.moveaxis(_shared(change) if helical else change, 1, 0))
 
@@ -427,6 +345,8 @@ class AssessedTable:
         Of every point, m; NaN where not estimated.
     curve_error : ndarray, shape (9, 22, F, M, D)
         Of mean, peak-to-peak and harmonics by source, m; NaN where not estimated.
+    load_arm_error : ndarray, shape (3, 22, F, M, D)
+        The same of the load arm.
     by_source, held_out : dict
         The largest by source; what was measured between the nodes of each axis.
     bias : PlaneBias, optional
@@ -435,9 +355,15 @@ class AssessedTable:
 
     band: FloatArray
     curve_error: FloatArray
+    load_arm_error: FloatArray
     by_source: Json
     held_out: Json
     bias: PlaneBias | None
+
+    def stated(self, table: SteDatabase) -> SteDatabase:
+        """Return the table with them."""
+        arms = self.load_arm_error
+        return replace(table, error_estimate=self.band, curve_error=self.curve_error, load_arm_error=arms)
 
     def to_json(self) -> Json:
         """Return what the receipt says of the errors."""
@@ -469,18 +395,20 @@ def assessed_table(
     made, solutions = plan.discretization, [solution for _, solution in solved]
     axes = plan.load, table.misalignment, table.center_distance_change
     sample = TableSample.of(nodes.position, fine.period, axes)
-    own = sample.taken(solutions)
+    own = sample.taken(table)
     plane = sample.solved(fine.in_plane_strain, fine) if made.corrected else own
     sliced = sample.solved(fine.in_slices(made.coarse_slices), fine) if made.slices > 1 else own
     patched = sample.solved(fine.in_plane_strain.in_coarse_patches, fine)
     nested = Nested(sample, own, plane, patched, sample.solved(coarse, fine), sliced)
     positions = position_errors(nodes, fine, solutions, plan)
-    measured = fine, solutions, nested, positions, plan
+    ste, arms = nested.parts
+    measured = fine, solutions, ste, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     between = held_out_axes(table, fine, checked.request.scene, checked.decided, solved)
     held_out = {name: error.to_json() for name, error in between.items()}
     bias = plane_bias(table, fine, plan)
-    return AssessedTable(sources.total, with_axes(errors, between), sources.to_json(), held_out, bias)
+    of_arm = load_arm_errors(fine, table, arms, plan)
+    return AssessedTable(sources.total, with_axes(errors, between), of_arm, sources.to_json(), held_out, bias)
 
 
 def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) -> AssessedTable:
@@ -489,7 +417,7 @@ def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) ->
     left = {"plane_for_finite_width_relative": abs(bias.mean) if bias else 0.0}
     unknown = np.full(table.error_estimate.shape, np.nan)
     errors = np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
-    return AssessedTable(unknown, errors, left, {}, bias)
+    return AssessedTable(unknown, errors, errors[: len(OF_LOAD_ARM)], left, {}, bias)
 
 
 def plane_bias(table: SteDatabase, points: OperatingPoints, plan: Plan) -> PlaneBias | None:

@@ -158,7 +158,9 @@ class _Assessed:
         points, workers = self._held_out(m, middles), self.places.workers
         solved = deflected_operating_points(points, position, force[some], None, workers)
         held_out = zip(position, solved, middles, strict=True)
-        worst = [_worst((self._tabulated(where, force[some], m[0], x), own)) for where, own, x in held_out]
+        worst = [
+            _worst((self._tabulated(where, force[some], m[0], x), own[..., 0])) for where, own, x in held_out
+        ]
         errors = spread(force, some, np.array(worst), 1)
         return AxisError(middles, errors, np.stack([errors, *[2.0 * errors] * (QUANTITIES - 1)]))
 
@@ -173,7 +175,7 @@ class _Assessed:
         where = [position] * len(points)
         solved = deflected_operating_points(points, where, load, None, workers, starts=starts)
         tabulated = [self._tabulated(position, load, x, change) for x in misalignment]
-        return list(zip(tabulated, solved, strict=True))
+        return [(own, curves[..., 0]) for own, curves in zip(tabulated, solved, strict=True)]
 
     def _start(self, load: FloatArray, misalignment: float, change: float) -> Start:
         """Start between the solutions at the nodes around the points: of loads, and of misalignments."""

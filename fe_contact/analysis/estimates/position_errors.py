@@ -97,7 +97,7 @@ def _measured(
         curves = deflected_operating_points(
             points.assessed, [middles] * len(assessed), plan.load[some], pitches, points.workers
         )
-        return np.concatenate(curves, axis=1)
+        return np.concatenate([curve[..., 0] for curve in curves], axis=1)
 
     return _measured_nodes(position, value, solve, points.period, plan.nodes)
 

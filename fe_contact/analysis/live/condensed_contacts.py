@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from fe_contact.analysis.estimates.assessed_table import TableSample
+from fe_contact.analysis.estimates.table_sample import TableSample
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes

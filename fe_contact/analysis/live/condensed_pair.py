@@ -19,15 +19,15 @@ from fe_contact.analysis.checks.assumptions import Assumption, check_cheaply
 from fe_contact.analysis.database.compute_database import failed_points
 from fe_contact.analysis.estimates.assessed_table import (
     AssessedTable,
-    Nested,
-    TableSample,
     curve_errors,
     estimate_errors,
+    load_arm_errors,
     plane_bias,
     with_axes,
     worst_residual,
 )
 from fe_contact.analysis.estimates.position_errors import errors_by_halves
+from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.live.condensed_contacts import CondensedContacts
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact, operating_points
 from fe_contact.analysis.request.request import Checked
@@ -72,19 +72,21 @@ def _condensed_errors(
             return otherwise
         return sample.solved(points.on(rougher), points)
 
-    own = sample.taken([solution])
+    own = sample.taken(table)
     plane = solved(contacts.plane, own)
     patched = solved(contacts.patched, own)
     coarse = solved(contacts.coarse, patched)
     nested = Nested(sample, own, plane, patched, coarse, solved(contacts.sliced, own))
     positions = errors_by_halves(table.position, solution.deflection, points.period)
-    measured = points, [solution], nested, positions, plan
+    ste, arms = nested.parts
+    measured = points, [solution], ste, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     if contacts.coarse is None:
         errors[BY_MESH], band = _expected(table, plan, contacts.own)
         sources = replace(sources, discretization=np.broadcast_to(band, sources.contact.shape))
     bias = plane_bias(table, points, plan)
-    return AssessedTable(sources.total, with_axes(errors, {}), sources.to_json(), {}, bias)
+    of_arm = load_arm_errors(points, table, arms, plan)
+    return AssessedTable(sources.total, with_axes(errors, {}), of_arm, sources.to_json(), {}, bias)
 
 
 def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:
@@ -246,8 +248,7 @@ class CondensedPair:
         receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
         metadata = Metadata(effect_ledger=ledger, receipt=receipt)
-        band, curves = assessed.band, assessed.curve_error
-        return replace(table, error_estimate=band, curve_error=curves, metadata=metadata), solved
+        return assessed.stated(replace(table, metadata=metadata)), solved
 
     def solve(
         self,

@@ -17,7 +17,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.analysis.pairs.pair_contact import Bodies, OperatingPoint, OperatingPoints, PairContact
-from fe_contact.contact import Candidates, ContactModel, ContactProblem, ContactSolution, Start, solve_contact
+from fe_contact.contact import (
+    Candidates,
+    ContactModel,
+    ContactProblem,
+    ContactSolution,
+    Start,
+    load_arm,
+    solve_contact,
+)
 from fe_contact.contact.assembly import together
 from fe_contact.contact.problem import condition_numbers
 from fe_contact.geometry import ParallelAxes
@@ -104,9 +112,17 @@ def _solve_block(bodies: Bodies, block: _ContactBlock) -> _SolvedBlock:
 
 
 def _deflect_block(bodies: Bodies, block: _ContactBlock) -> tuple[tuple[FloatArray, ...], ...]:
-    """Return the STE (rows, L) in m of each model for each set of loads alone: one task."""
-    solved = _solve_block(bodies, block).solutions
-    return tuple(tuple(solution.deflection for solution in each) for each in solved)
+    """Return the curves (rows, L, 2) of each model for each set of loads alone: one task."""
+    solved = _solve_block(bodies, block)
+    return tuple(
+        tuple(_curves(block.pair, problem, solution) for solution in each)
+        for problem, each in zip(solved.problems, solved.solutions, strict=True)
+    )
+
+
+def _curves(pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
+    """Return transmission error and load arm of a solution, (rows, L, 2) in m."""
+    return np.stack([solution.deflection, load_arm(pair, problem, solution)], axis=-1)
 
 
 TASK_SECONDS = 0.1
@@ -167,7 +183,7 @@ def _solved_lines(
 
 
 def _deflections(lines: Sequence[_Line], workers: Workers) -> list[list[FloatArray]]:
-    """Solve lines of one set of loads; of each line the STE (T P, L) in m of every model."""
+    """Solve lines of one set of loads; of each line the curves (T P, L, 2) in m of every model."""
     return [
         [_rows([block[k][0] for block in blocks], line.pitches) for k in range(len(line.whole.models))]
         for line, blocks in zip(lines, _by_line(lines, workers, _deflect_block, False), strict=True)
@@ -338,7 +354,7 @@ def deflected_operating_points(
     known: Sequence[Candidates] | None = None,
     starts: Sequence[Start] | None = None,
 ) -> list[FloatArray]:
-    """Return the STE (T P, L) in m of places.
+    """Return transmission error and load arm (T P, L, 2) in m of places.
 
     Parameters
     ----------
@@ -386,15 +402,15 @@ def _deflected_here(
     known: Sequence[Candidates] | None,
     starts: Sequence[Start] | None,
 ) -> Iterator[FloatArray]:
-    """Yield the STE of places, solved in this process; parameters of `deflected_operating_points`."""
+    """Yield the curves of places, solved in this process; parameters of `deflected_operating_points`."""
     for k, point in enumerate(points):
         if known is not None:
             point.contact.assemble(point.model, known[k])
         if pitches is None:
             start = None if starts is None else starts[k]
-            yield point.solve(position[k], load, start=start)[1].deflection
+            yield _curves(point.contact.pair, *point.solve(position[k], load, start=start))
         else:
-            yield point.solve_pitches(position[k], load, pitches)[1].deflection
+            yield _curves(point.contact.pair, *point.solve_pitches(position[k], load, pitches))
 
 
 def _started(line: _Line, starts: Sequence[Start]) -> _Line:

@@ -134,6 +134,28 @@ class BearingForces(Part):
 LINEAR: Json = {"source": "linear response"}
 Forces = Annotated[BearingForces, Source("forces", missing=LINEAR)]
 """Where the bearing forces of a study of housings come from."""
+
+
+class ExcitationFigures(Part):
+    """A harmonic of a mesh at its torque on the driving gear: amplitudes that excite, each with its error.
+
+    Null: the table states no error.
+    """
+
+    mesh: str
+    torque_n_m: float
+    harmonic: int
+    order: float
+    transmission_error_um: float
+    error_of_transmission_error_um: float | None
+    load_moment_n_m: float
+    error_of_load_moment_n_m: float | None
+    friction_force_n: float
+    error_of_friction_force_n: float | None
+
+
+Excitations = Annotated[list[ExcitationFigures], Source("excitations", missing=[])]
+"""What excites a linear response; empty where forces are those of a run."""
 Ledger = Annotated[Json, Source("effect_ledger", document=True, turned=boundary_ledger)]
 """The effect ledger of a scene."""
 Seconds = Annotated[dict[str, float], Source("seconds")]

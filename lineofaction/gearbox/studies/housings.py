@@ -17,7 +17,6 @@ from dynamics.linearize import ForcedResponse, forced_response
 from dynamics.noise import HousingRadiation, kept_radiation
 from dynamics.orders import BearingOrders, bearing_orders
 from dynamics.results import RunResult
-from dynamics.scene import Scene
 from dynamics.types import FloatArray
 from dynamics.vibration import ReportedHarmonics
 from host import cpu_seconds
@@ -30,6 +29,7 @@ from lineofaction.gearbox.schemas.figures import LINEAR
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.excitations import excitations_of
 from lineofaction.gearbox.units import RPM
 
 Result = TypeVar("Result")
@@ -79,7 +79,7 @@ def bearing_forces(subject: TabledScene, inputs: OverOrders, means: Means) -> Re
     The facts of both have `forces`: where they come from, and of a run how its windows hold.
     """
     if means.run is None:
-        response = response_of(subject.scene, inputs, means)
+        response = response_of(subject, inputs, means)
         return replace(response, facts=response.facts | {"forces": LINEAR})
     began = cpu_seconds()
     with boundary_errors():
@@ -103,15 +103,19 @@ def _run_forces(orders: BearingOrders) -> Json:
     }
 
 
-def response_of(scene: Scene, inputs: OverOrders, means: Means) -> ForcedResponse:
-    """Return the forced response of a scene."""
+def response_of(subject: TabledScene, inputs: OverOrders, means: Means) -> ForcedResponse:
+    """Return the forced response of a scene; among its facts are the `excitations`."""
     with boundary_errors():
-        return forced_response(
-            assemble(scene),
+        system = assemble(subject.scene)
+        response = forced_response(
+            system,
             [value * RPM for value in inputs.speed_rpm],
             inputs.orders,
             progress=lambda fraction: means.report("response", fraction),
         )
+    return replace(
+        response, facts=response.facts | {"excitations": excitations_of(response, system, subject)}
+    )
 
 
 def no_surface(housings: list[str]) -> BadInput:

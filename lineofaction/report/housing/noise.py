@@ -40,6 +40,7 @@ from lineofaction.report.housing.forces import (
     total_line,
 )
 from lineofaction.report.presentation import Presentation, dynamics_page, model_text
+from lineofaction.report.response.excitations import excitation_figures, excitation_table
 
 LINES, SHOWN = 160, 6
 """Cells of the map in frequency; lines of orders and bearings."""
@@ -414,6 +415,7 @@ def _region_table(sound: RadiatedSound) -> Table:
 def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
     draws = (_sound_map, _level_over_speed, _third_octaves, _bearing_levels, _panel_intensity)
     shown = tuple(figure for draw in draws if (figure := draw(sound)) is not None)
+    shown += excitation_figures(sound.facts)
     if sound.facts.get("over_time") is None:
         return shown
     return (*shown, third_octaves_over_time(sound.facts))
@@ -464,6 +466,8 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield _loudest_table(sound)
     yield _region_table(sound)
     yield from _sentences(sound)
+    if (excites := excitation_table(sound.facts)) is not None:
+        yield excites
     yield from (f"{what}: {words}" for what, words in _limits(sound))
     yield from _model_tables(sound)
     yield from _uncertainty_tables(sound.facts)

@@ -30,6 +30,7 @@ from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import surface_panels
 from lineofaction.report.housing.forces import force_words, row_axis
 from lineofaction.report.presentation import Presentation, dynamics_page, model_text
+from lineofaction.report.response.excitations import excitation_figures, excitation_table
 
 SHOWN = 12
 """Modes in the table of contributions."""
@@ -265,8 +266,9 @@ def _words(result: HousingVibrationResult) -> str:
 
 def _page(result: HousingVibrationResult) -> Page:
     shape = _shape_figure(result)
-    figures = (_velocity_figure(result), _contribution_figure(result), _transfer_figure(result))
-    drawn = figures if shape is None else (figures[0], shape, *figures[1:])
+    first, *others = (_velocity_figure(result), _contribution_figure(result), _transfer_figure(result))
+    shapes = () if shape is None else (shape,)
+    drawn = (first, *shapes, *others, *excitation_figures(result.analysis.facts))
     whole = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.analysis.facts)
     rests = Table("Forces that move the housing", ("what", "how"), force_words(result.analysis.facts))
     accuracy = Section("Accuracy of the velocities", tables=(rests,), part=Part.ACCURACY)
@@ -303,6 +305,8 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
     analysis, vibration = result.analysis, result.analysis.vibration
     yield _largest_table(result)
     yield _contribution_table(result)
+    if (excites := excitation_table(analysis.facts)) is not None:
+        yield excites
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
     if beyond.size:
         orders = ", ".join(f"{order:.4g}" for order in beyond)

@@ -24,6 +24,7 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.marks import shown_orders
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
+from lineofaction.report.response.excitations import excitation_figures, excitation_table
 
 LEAST_SHARE = 1e-3
 """%, of what is listed."""
@@ -134,19 +135,6 @@ def _bearing_force(response: ForcedResponse) -> FloatArray:
     return np.asarray(np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1)))
 
 
-def _excitation_table(response: ForcedResponse) -> Table:
-    """List what excites, of the orders of the largest mesh forces."""
-    columns = "mesh", "order", "transmission error, nm", "moment of the load, N m", "friction, N"
-    excitations = (1e9 * response.static_transmission_error, response.load_moment, response.friction_force)
-    rows = []
-    for mesh, name in enumerate(response.mesh):
-        size = np.max(np.abs(response.mesh_force[mesh]), axis=0)
-        for h in shown_orders(response.order, size, SHOWN_ORDERS, response.facts):
-            sizes = (number(abs(each[mesh, h]), 3) for each in excitations)
-            rows.append((name, f"{response.order[h]:.4g}", *sizes))
-    return Table("What excites: amplitudes at the static mesh forces", columns, tuple(rows))
-
-
 def _peak_table(response: ForcedResponse) -> Table:
     every = peaks(response)
     listed = [
@@ -201,14 +189,14 @@ def _largest(what: str, names: Sequence[str], size: FloatArray, response: Forced
 
 
 def _figures(response: ForcedResponse) -> tuple[Figure, ...]:
-    figure = _response_figure(response)
-    return (figure, _power_figure(response)) if _loses_power(response) else (figure,)
+    figures = (_response_figure(response), *excitation_figures(response.facts))
+    return (*figures, _power_figure(response)) if _loses_power(response) else figures
 
 
 def _text(response: ForcedResponse) -> Iterator[Table | str]:
     yield _peak_table(response)
-    if response.load_moment.size:
-        yield _excitation_table(response)
+    if (excites := excitation_table(response.facts)) is not None:
+        yield excites
     parting = response.speed[~response.in_contact] / RPM
     if parting.size:
         where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"

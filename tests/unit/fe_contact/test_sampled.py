@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.analysis.estimates import assessed_table as solved_again
 from fe_contact.analysis.estimates import position_errors
+from fe_contact.analysis.estimates import table_sample as solved_again
 from fe_contact.sampled import sample_of, some_positions, spread, spread_around
 from fe_contact.ste.curve import AT_NODES
 

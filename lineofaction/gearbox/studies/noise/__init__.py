@@ -8,6 +8,7 @@ from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import (
     Equilibrium,
+    Excitations,
     Figures,
     Forces,
     HousingCost,
@@ -201,6 +202,7 @@ class NoiseFigures(Figures):
     sensitivities_left_out: dict[str, str]
     equilibrium: Equilibrium | None
     forces: Forces
+    excitations: Excitations
     over_time: Annotated[SoundOverTimeFigures | None, Source("over_time", missing=None, document=True)]
     cpu_seconds: Seconds
     reduction_cost: ReductionCosts

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Ledger, Part, ReductionCosts, Seconds
+from lineofaction.gearbox.schemas.figures import (
+    Equilibrium,
+    Excitations,
+    Figures,
+    Ledger,
+    Part,
+    ReductionCosts,
+    Seconds,
+)
 from lineofaction.gearbox.schemas.studied import OverOrders
 
 
@@ -63,6 +71,7 @@ class ResponseFigures(Figures):
     order: list[float]
     meshes: dict[str, MeshResponse]
     bearings: dict[str, BearingResponse]
+    excitations: Excitations
     peaks: list[PeakFigures]
     parting_rpm: list[float]
     natural_frequency_hz: list[float]

@@ -19,7 +19,7 @@ class _ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
     inputs, answer, file = Inputs, ResponseFigures, array_file(ForcedResponse)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ForcedResponse:
-        return with_facts_of_scene(response_of(subject.scene, inputs, means), subject)
+        return with_facts_of_scene(response_of(subject, inputs, means), subject)
 
     def _derived(self, response: ForcedResponse) -> Json:
         force, power = response.bearing_force, response.power

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from lineofaction.gearbox.schemas.figures import Figures, Forces, Ledger, Part, ReductionCosts, Seconds
+from lineofaction.gearbox.schemas.figures import (
+    Excitations,
+    Figures,
+    Forces,
+    Ledger,
+    Part,
+    ReductionCosts,
+    Seconds,
+)
 from lineofaction.gearbox.schemas.studied import OverSpeedsOrRun
 
 
@@ -74,6 +82,7 @@ class VibrationFigures(Figures):
     surface_mm_per_s: list[list[float]] | None
     contributions: Contributions
     forces: Forces
+    excitations: Excitations
     cpu_seconds: Seconds
     reduction_cost: ReductionCosts
     effect_ledger: Ledger

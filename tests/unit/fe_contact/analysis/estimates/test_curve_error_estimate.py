@@ -16,7 +16,8 @@ from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.options import LEVELS, Run
 from fe_contact.planning.plan import SLICE_ORDER, face_discretization
-from fe_contact.ste.curve import SOURCES
+from fe_contact.ste.curve import OF_LOAD_ARM, SOURCES, all_sources
+from fe_contact.ste.curve_quantities import quantity_changes
 from fe_contact.ste.fields import DIMENSIONS
 
 FORCE = 3000.0
@@ -97,6 +98,35 @@ def test_what_few_slices_change_is_carried_on_along_the_curve():
     assert stated[1] == pytest.approx(expected, rel=1e-9)
     assert expected < 0.9 * made.remaining_slices * abs(np.ptp(own) - np.ptp(sliced))
     assert stated[0] == pytest.approx(abs(left.mean()), rel=1e-3)
+
+
+@pytest.mark.law
+def test_load_arms_of_two_tables_differ_by_no_more_than_both_state():
+    """Mean, peak-to-peak and five harmonics, of other meshes, slices and positions."""
+    how = {"model": "3d", "normal_forces": [FORCE]}
+    fine = analyze(helical(), level="standard", positions=128, **how)
+    for positions in (16, 64):
+        rough = analyze(helical(), level="draft", positions=positions, **how)
+        arms = rough.load_arm[:, :, 0, 0], fine.load_arm[:, :, 0, 0]
+        apart = quantity_changes(rough.position, *arms, 1, fine.position)[:7]
+        stated = sum(all_sources(each.load_arm_error[:, :7, :, 0, 0]) for each in (rough, fine))
+        assert np.all(apart <= stated)
+        assert np.median(stated / apart) < 20.0
+
+
+@pytest.mark.law
+def test_a_mean_arm_errs_although_its_change_crosses_zero():
+    """Of meshes that move the arm about its mean, the mean errs by half of how far they move it."""
+    table = analyze(helical(), level="draft", model="3d", normal_forces=[FORCE], positions=32)
+    mean, ripple = table.load_arm_error[OF_LOAD_ARM.index("discretisation"), :2, 0, 0, 0]
+    assert mean > 0.1 * ripple
+
+
+@pytest.mark.law
+def test_a_load_that_does_not_travel_has_no_error():
+    table = analyze(spur(), normal_forces=[FORCE], level="draft", model="plane_strain", positions=16)
+    assert table.load_arm_error.shape == (3, 22, 1, 1, 1)
+    assert not table.load_arm_error.any() and not table.load_arm.any()
 
 
 def test_no_harmonic_of_a_helical_pair_errs_by_less_than_its_share():

@@ -1,0 +1,66 @@
+"""Errors of what excites at one load of a table: transmission error, arm of the load, sense of sliding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from fe_contact.analysis.estimates.position_errors import errors_by_halves
+from fe_contact.ste import SteDatabase
+from fe_contact.ste.curve import AT_NODES, METHOD, OperatingPoint, all_sources, errors_by_source
+from fe_contact.ste.curve_quantities import FIRST_HARMONIC, HARMONICS, MEAN, mean_of_curves
+from fe_contact.ste.extraction import sliding_sums
+from fe_contact.types import FloatArray
+
+
+@dataclass(frozen=True)
+class ExcitationErrors:
+    """Errors (20,) of the amplitudes of the mesh harmonics, >= 0; NaN: not estimated.
+
+    Attributes
+    ----------
+    transmission_error, load_arm : ndarray
+        m; of the transmission error with what the method leaves out.
+    friction : ndarray
+        Of the friction over the largest, the coefficient of friction times the mesh force.
+    """
+
+    transmission_error: FloatArray
+    load_arm: FloatArray
+    friction: FloatArray
+
+
+def excitation_errors(table: SteDatabase, force: float) -> ExcitationErrors:
+    """Return the errors at a normal force in N, of the alignments of the table the largest.
+
+    Beyond the stored loads they are those of the nearest. Load shares err at most by the part by which the
+    mean transmission error does, if one pair's errs and that of the other does not: by it the friction errs,
+    and by what half of the positions miss.
+    """
+    at = float(np.clip(force, table.force[0], table.force[-1]))
+    of_ste, of_arm, of_shares = (np.zeros(HARMONICS) for _ in range(3))
+    mean = mean_of_curves(table.position, table.static_transmission_error, table.period)
+    for m, d in product(range(table.misalignment.size), range(table.center_distance_change.size)):
+        stated = _stated(table, at, m, d)
+        of_ste = np.maximum(of_ste, all_sources(stated)[FIRST_HARMONIC:])
+        of_mesh = all_sources(np.delete(stated, AT_NODES.index(METHOD), axis=0))[MEAN]
+        of_shares = np.maximum(of_shares, of_mesh / np.interp(at, table.force, mean[:, m, d]))
+        if table.load_arm_error.size:
+            arms = all_sources(table.load_arm_error[:, FIRST_HARMONIC:, :, m, d])
+            of_arm = np.maximum(of_arm, [np.interp(at, table.force, each) for each in arms])
+    unknown = np.full(HARMONICS, np.nan)
+    sliding = sliding_sums(table)[0].reshape(table.position.size, -1)
+    missed = errors_by_halves(table.position, sliding, table.period).curves[FIRST_HARMONIC:].max(axis=1)
+    return ExcitationErrors(
+        of_ste, of_arm if table.load_arm_error.size else unknown, np.hypot(of_shares, missed)
+    )
+
+
+def _stated(table: SteDatabase, force: float, m: int, d: int) -> FloatArray:
+    """Return the errors (sources, 22) of the transmission error by source at an alignment, m."""
+    if not table.curve_error.size:
+        return np.full((len(AT_NODES), FIRST_HARMONIC + HARMONICS), np.nan)
+    alignment = float(table.misalignment[m]), float(table.center_distance_change[d])
+    return errors_by_source(table, OperatingPoint(force, *alignment))

@@ -1,0 +1,148 @@
+"""A table solved again at some of its points, on the rougher discretizations that measure its errors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
+from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
+from fe_contact.contact import Candidates
+from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of, some_positions, spread, spread_around
+from fe_contact.ste import SteDatabase
+from fe_contact.types import FloatArray, IntArray
+
+# Bodies, slices and corrections change; where teeth touch does not, so that the candidates of the run serve
+# again unless the slices are others.
+
+Axes = tuple[FloatArray, FloatArray, FloatArray]
+"""Loads in N, misalignments and changes of the center distance in m of a table."""
+
+
+@dataclass(frozen=True)
+class TableSample:
+    """Points of a table (P positions of each of T pitches, F, M, D) that are solved again.
+
+    Attributes
+    ----------
+    position : ndarray, shape (P,)
+        Of the table, in the first base pitch.
+    period : int
+        Base pitches T.
+    axes : tuple of ndarray
+        Loads, misalignments, changes of the center distance.
+    rows : ndarray of int, shape (R,)
+        Positions that are solved.
+    nodes : tuple of ndarray of int
+        Loads (f), misalignments (m) and changes of the center distance (d) that are.
+    """
+
+    position: FloatArray
+    period: int
+    axes: Axes
+    rows: IntArray
+    nodes: tuple[IntArray, IntArray, IntArray]
+
+    @classmethod
+    def of(cls, position: FloatArray, period: int, axes: Axes) -> TableSample:
+        """Take at least 32 positions, four loads and three alignments of each axis, as far as there are."""
+        load, skew, change = axes
+        most = (
+            sample_of(load.size, LOADS),
+            sample_of(skew.size, ALIGNMENTS),
+            sample_of(change.size, ALIGNMENTS),
+        )
+        return cls(position, period, axes, some_positions(position.size), most)
+
+    @property
+    def places(self) -> list[int]:
+        """The places of the alignments that are solved, center distance running fastest."""
+        _, skews, changes = self.nodes
+        return [int(m) * self.axes[2].size + int(d) for m in skews for d in changes]
+
+    @property
+    def knots(self) -> FloatArray:
+        """Positions of all pitches that are solved, (T R,)."""
+        return (np.arange(self.period)[:, None] + self.position[self.rows]).ravel()
+
+    @property
+    def every_row(self) -> IntArray:
+        """Their rows among those of the table, (T R,)."""
+        return (np.arange(self.period)[:, None] * self.position.size + self.rows).ravel()
+
+    def shaped(self, by_place: Sequence[FloatArray]) -> FloatArray:
+        """Stack arrays (..., f) of the places solved into (..., f, m, d)."""
+        stacked = np.stack(by_place, axis=-1)
+        return stacked.reshape(*stacked.shape[:-1], self.nodes[1].size, self.nodes[2].size)
+
+    def spread(self, values: FloatArray) -> FloatArray:
+        """Carry values (..., f, m, d) on to all loads and alignments, (..., F, M, D)."""
+        for axis, (knots, sample) in enumerate(zip(self.axes, self.nodes, strict=True), start=-3):
+            values = spread(knots, sample, values, axis)
+        return values
+
+    def spread_points(self, values: FloatArray) -> FloatArray:
+        """Carry values (T R, f, m, d) on to all points of the table, (T P, F, M, D)."""
+        knots = (np.arange(self.period)[:, None] + self.position).ravel()
+        return spread_around(knots, self.period, self.every_row, self.spread(values))
+
+    def taken(self, table: SteDatabase) -> FloatArray:
+        """Return the table's own STE and load arm at the points, (2, T R, f, m, d) in m."""
+        curves = np.stack([table.static_transmission_error, table.load_arm])
+        return np.asarray(curves[np.ix_(np.arange(2), self.every_row, *self.nodes)])
+
+    def solved(self, points: OperatingPoints, known: OperatingPoints) -> FloatArray:
+        """Solve the points on other places, (2, T R, f, m, d) in m; `known` are those of the table."""
+        pitches, load = np.arange(self.period), self.axes[0][self.nodes[0]]
+        chosen = [points.places[k] for k in self.places]
+        where = [self.position[self.rows]] * len(chosen)
+        candidates = self._candidates(chosen[0], [known.places[k] for k in self.places])
+        curves = deflected_operating_points(chosen, where, load, pitches, points.workers, candidates)
+        return self.shaped([np.moveaxis(each, -1, 0) for each in curves])
+
+    def _candidates(self, point: OperatingPoint, known: Sequence[OperatingPoint]) -> list[Candidates] | None:
+        """Return those of the table's places, which do not depend on the bodies.
+
+        None in other slices and under other load patches, which have candidates of their own.
+        """
+        plans = point.contact.plan, known[0].contact.plan
+        first, second = ((plan.discretization.slices, plan.patch) for plan in plans)
+        if first != second:
+            return None
+        return [own.contact.candidates(own.model, self.position).rows(self.rows) for own in known]
+
+
+@dataclass(frozen=True)
+class Nested:
+    """STE and load arm at some points of a table, from the run's own and rougher discretizations.
+
+    Attributes
+    ----------
+    sample : TableSample
+        The points.
+    table : ndarray, shape (2, T R, f, m, d)
+        The table's own, m.
+    plane : ndarray
+        Without the correction for a finite width; `table` if there is none.
+    patched : ndarray
+        Under the wider load patches of the coarse meshes, without that correction.
+    coarse : ndarray
+        Under these on the coarse meshes.
+    sliced : ndarray
+        In half the slices; `table` in the plane.
+    """
+
+    sample: TableSample
+    table: FloatArray
+    plane: FloatArray
+    patched: FloatArray
+    coarse: FloatArray
+    sliced: FloatArray
+
+    @property
+    def parts(self) -> tuple[Nested, Nested]:
+        """Those of the STE and of the load arm, arrays (T R, f, m, d)."""
+        every = np.stack([self.table, self.plane, self.patched, self.coarse, self.sliced], axis=1)
+        return Nested(self.sample, *every[0]), Nested(self.sample, *every[1])

@@ -1,0 +1,56 @@
+"""What excites a scene: transmission error, moment of the load and friction, each with its error."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from bounds.types import Json
+from dynamics.assembly.assemble import System
+from dynamics.linearize import HarmonicResponse
+from dynamics.linearize.operating_speeds import mesh_frequencies
+from fe_contact.analysis.estimates.excitation_errors import excitation_errors
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.convert.scene import TabledScene
+
+
+def excitations_of(response: HarmonicResponse, system: System, subject: TabledScene) -> list[Json]:
+    """Return what excites in the harmonics of every mesh with a table, in SI.
+
+    Copies of a planet excite as the one that the scene names. An error that the table does not state is None.
+    """
+    rate = mesh_frequencies(system, np.ones(1))[:, 0]
+    step = rate / next((own for own in rate if own), 1.0)
+    rows: list[Json] = []
+    for mesh, table in subject.databases.items():
+        index = response.mesh.index(mesh)
+        if step[index]:
+            largest_friction = (system.scene.meshes[index].friction or 0.0) * abs(response.mean_force[index])
+            rows += _of_mesh(response, index, table, float(step[index]), largest_friction)
+    return rows
+
+
+def _of_mesh(
+    response: HarmonicResponse, mesh: int, table: SteDatabase, step: float, largest_friction: float
+) -> Iterator[Json]:
+    """Yield the harmonics of a mesh, which are `step` apart in the orders of the response."""
+    force = abs(float(response.mean_force[mesh]))
+    torque = force * table.facts.base_radius[0]
+    errors = excitation_errors(table, table.facts.normal_force(torque))
+    slides = largest_friction * bool(np.any(response.friction_force[mesh]))
+    by_name = {
+        "transmission_error": (response.static_transmission_error, errors.transmission_error),
+        "load_moment": (response.load_moment, force * errors.load_arm),
+        "friction_force": (response.friction_force, slides * errors.friction),
+    }
+    for harmonic in range(1, errors.load_arm.size + 1):
+        (at,) = np.nonzero(np.isclose(response.order, harmonic * step, rtol=1e-6))
+        if at.size:
+            row: Json = {"mesh": response.mesh[mesh], "torque": torque}
+            row |= {"harmonic": harmonic, "order": float(response.order[at[0]])}
+            for name, (values, error) in by_name.items():
+                own = float(error[harmonic - 1])
+                row[name] = float(abs(values[mesh, at[0]]))
+                row[f"error_of_{name}"] = own if np.isfinite(own) else None
+            yield row

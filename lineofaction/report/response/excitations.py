@@ -1,0 +1,89 @@
+"""What excites a linear response, by mesh and harmonic, each amplitude with its error."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table, number
+
+Row = Mapping[str, Any]
+SHOWN = 6
+"""Harmonics of each mesh that are listed and drawn."""
+_QUANTITIES = {
+    "transmission_error": ("transmission error, nm", 1e9),
+    "load_moment": ("moment of the load F z_c, N m", 1.0),
+    "friction_force": ("friction, N", 1.0),
+}
+_WIDTH = 0.8
+"""Of all bars of a harmonic together."""
+
+
+def excitation_table(facts: Mapping[str, Any]) -> Table | None:
+    """List what excites, of every mesh its first harmonics; None where it is not known, as of a run."""
+    rows = _shown(facts)
+    if not rows:
+        return None
+    head = "mesh", "load, N m", "harmonic", "order", *(label for label, _ in _QUANTITIES.values())
+    cells = tuple(
+        (
+            row["mesh"],
+            number(row["torque"], 4),
+            str(row["harmonic"]),
+            f"{row['order']:.4g}",
+            *(_with_error(row, name, scale) for name, (_, scale) in _QUANTITIES.items()),
+        )
+        for row in rows
+    )
+    return Table("What excites: amplitudes at the static mesh forces, each with its error", head, cells)
+
+
+def excitation_figures(facts: Mapping[str, Any]) -> tuple[Figure, ...]:
+    """Draw what excites: a panel for each quantity that does, a color for each mesh."""
+    rows, table = _shown(facts), excitation_table(facts)
+    if table is None:
+        return ()
+    meshes = list(dict.fromkeys(row["mesh"] for row in rows))
+    acting = [name for name in _QUANTITIES if any(row[name] for row in rows)]
+    largest = max(rows, key=lambda row: float(row["transmission_error"]))
+    size = number(1e9 * largest["transmission_error"], 3)
+    figure = Figure(
+        key="excitations",
+        title="What excites",
+        caption="Amplitudes of the harmonics at the static mesh forces; from bottom to top of the pale bars "
+        "they lie within the errors of the table.",
+        alternative=f"The largest transmission error is {size} nm in harmonic {largest['harmonic']} of "
+        f"{largest['mesh']}.",
+        content=tuple(_panel(rows, name, meshes) for name in acting),
+        table=table,
+    )
+    return (figure,) if acting else ()
+
+
+def _shown(facts: Mapping[str, Any]) -> list[Row]:
+    return [row for row in facts.get("excitations", ()) if row["harmonic"] <= SHOWN]
+
+
+def _with_error(row: Row, name: str, scale: float) -> str:
+    error, value = row[f"error_of_{name}"], number(scale * row[name], 3)
+    return value if error is None else f"{value} ± {number(scale * error, 2)}"
+
+
+def _panel(rows: list[Row], name: str, meshes: list[str]) -> Panel:
+    label, scale = _QUANTITIES[name]
+    width, bars = _WIDTH / len(meshes), []
+    for index, mesh in enumerate(meshes):
+        own = [row for row in rows if row["mesh"] == mesh]
+        at = np.array([row["harmonic"] for row in own]) + (index - 0.5 * (len(meshes) - 1)) * width
+        size = scale * np.array([row[name] for row in own])
+        error = scale * np.array([row[f"error_of_{name}"] or 0.0 for row in own])
+        bars.append(Bars(mesh, at, size, 0.0, width, palette.category(index)))
+        bars.append(
+            Bars("error", at, size + error, np.maximum(size - error, 0.0), 0.4 * width, palette.INK, True)
+        )
+    names = tuple((float(k), str(k)) for k in range(1, SHOWN + 1))
+    x = Axis("harmonic of the mesh", limits=(0.4, SHOWN + 0.6), names=names)
+    return Panel(x, Axis(label), bars=tuple(bars))
