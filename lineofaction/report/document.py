@@ -23,6 +23,7 @@ from lineofaction.report.drawing.figure import Figure, Table
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.page import Headline, Page, Section, html, sound_json
+from lineofaction.report.drawing.printing import pdf
 from lineofaction.report.drawing.tables import one_effects_section
 from lineofaction.report.pair import pair_lead, pair_title
 from lineofaction.report.presentation import presentation_of
@@ -293,7 +294,7 @@ def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | Non
     inputs : Path or sequence of Path
         STE databases, runs and results of studies, at most one of each kind; the file says which it is.
     output : Path
-        The page.
+        The page; as PDF by its ending, without what is folded, case and receipt.
     images : Path, optional
         Folder for the PNG files, made if missing; left out: none are written.
 
@@ -312,8 +313,10 @@ def write_whole(
     """Write a page from its caller, under what is implausible; parameters as for `write_report`."""
     page = replace(page, alarms=(*(f"Warning: {text}" for text in warnings), *page.alarms))
     drawn = {figure.key: png(figure) for section in page.sections for figure in section.figures}
+    text = html(page, drawn)
+    content = pdf(text, output) if output.suffix == ".pdf" else text.encode("utf-8")
     with whole_file(output) as draft:
-        draft.write_bytes(html(page, drawn).encode("utf-8"))
+        draft.write_bytes(content)
     written = [output]
     if images is not None:
         images.mkdir(parents=True, exist_ok=True)

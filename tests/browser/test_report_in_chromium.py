@@ -11,6 +11,7 @@ import pytest
 from page_visit import PATIENCE
 from playwright.sync_api import Browser, Page
 
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.document import write_report
 
 # curves of every figure; all panels together
@@ -168,13 +169,53 @@ def test_the_numbers_open_by_keyboard(visit: Visit) -> None:
     assert table.is_visible()
 
 
-def test_print_shows_the_images_and_all_numbers(visit: Visit) -> None:
-    visit.page.emulate_media(media="print")
-    assert visit.page.locator("#ste .still").is_visible()
-    assert not visit.page.locator("#ste .plot").is_visible()
-    visit.page.evaluate("dispatchEvent(new Event('beforeprint'))")
-    assert visit.page.locator("details:not([open])").count() == 0
-    visit.page.emulate_media(media="screen")
+def test_print_shows_pictures_with_one_title_and_what_was_opened(visit: Visit) -> None:
+    page = visit.page
+    page.locator("#ste details").evaluate("node => { node.open = true; }")
+    page.emulate_media(media="print")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert page.locator("#ste .still").is_visible()
+    assert not page.locator("#ste .plot").is_visible()
+    assert not page.locator("#ste h3").is_visible()  # the picture has it
+    assert page.locator("#ste table").is_visible()
+    assert not page.locator("#ripple table").first.is_visible()
+    unprinted = page.locator("section.unprinted h2").all_text_contents()
+    assert "Case" in unprinted and any(title.startswith("Receipt") for title in unprinted)
+    assert not any(section.is_visible() for section in page.locator("section.unprinted").all())
+    page.emulate_media(media="screen")
+    assert page.locator("#ste h3").is_visible()
+
+
+@pytest.fixture(scope="module")
+def printed(browser: Browser, report: Path, tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    del browser  # skips where there is none
+    folder = tmp_path_factory.mktemp("printed")
+    files = [report.with_name(name) for name in ("ste.nc", "flanks.nc", "run.nc")]
+    return write_report(files, folder / "report.pdf")[0].read_bytes()
+
+
+def test_a_pdf_has_few_pages_of_a4_and_no_empty_one(printed: bytes) -> None:
+    boxes = re.findall(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", printed)
+    assert printed.startswith(b"%PDF-")
+    assert len(printed) < 3_000_000
+    assert 3 <= len(boxes) <= 14  # of three results, 21 plots
+    for width, height in boxes:
+        assert float(width) / 72.0 * 25.4 == pytest.approx(210.0, abs=0.5)
+        assert float(height) / 72.0 * 25.4 == pytest.approx(297.0, abs=0.5)
+
+
+@pytest.mark.parametrize(
+    ("browser_of_caller", "bound"),
+    [("/bin/false", "must be a page that false prints: CalledProcessError"), ("", "no browser is installed")],
+)
+def test_a_pdf_without_a_browser_is_refused_and_leaves_nothing(
+    browser_of_caller: str, bound: str, report: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CHROMIUM", browser_of_caller)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(BadInput, match=bound):
+        write_report(report.with_name("ste.nc"), tmp_path / "page.pdf")
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.law

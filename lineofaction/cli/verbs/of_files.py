@@ -425,7 +425,7 @@ def _report(
         ),
     ],
     output: Annotated[
-        Path | None, to_file("Page to write; default: report.html, here or in the folder.")
+        Path | None, to_file("Page to write, .html or .pdf; default: report.html, here or in the folder.")
     ] = None,
     images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
     flank: Annotated[

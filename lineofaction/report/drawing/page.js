@@ -5,7 +5,4 @@ for (const node of document.querySelectorAll(".plot")) {
   const fall = () => { node.hidden = true; node.nextElementSibling.style.display = "block"; };
   drawn.push(Plotly.newPlot(node, figure.data, figure.layout, config).catch(fall));
 }
-addEventListener("beforeprint", () => {
-  for (const folded of document.querySelectorAll("details")) folded.open = true;
-});
 Promise.all(drawn).then(() => { document.documentElement.dataset.drawn = "yes"; });

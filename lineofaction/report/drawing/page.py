@@ -18,6 +18,8 @@ from lineofaction.report.drawing.interactive import plotly_figure
 Json = dict[str, Any]
 SCRIPT, STYLE_SHEET = "player.js", "player.css"
 """The page of the service has the same."""
+_ROWS_OF_A_PAGE, _TALL = 40, 1.3
+"""In print: the most rows of a table that is not cut; height over width of a picture that gets a page."""
 # In this page players stand in the document: the script joins them to their plot once that is drawn.
 _JOINED = """
 for (const group of document.querySelectorAll(".player")) {
@@ -109,7 +111,12 @@ def html(page: Page, images: dict[str, bytes]) -> str:
     """Write `page`; `images` are the PNG bytes of every figure by its key."""
     body = "\n".join(_section(section, index, images) for index, section in enumerate(page.sections, start=1))
     heard = any(figure.sound for section in page.sections for figure in section.figures)
-    style = "\n" + _text("page.css") + (_text(STYLE_SHEET) if heard else "")
+    title = re.sub(r"[^\w .,:;()/+-]", " ", page.title)
+    style = (
+        f'\n@page {{ @top-left {{ content: "{title}"; }} }}\n'
+        + _text("page.css")
+        + (_text(STYLE_SHEET) if heard else "")
+    )
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
@@ -151,19 +158,23 @@ def _section(section: Section, index: int, images: dict[str, bytes]) -> str:
     figures = "\n".join(_figure(figure, images[figure.key]) for figure in section.figures)
     tables = "\n".join([*map(_table, section.tables), *map(_folded, section.folded)])
     title = escape(section.title)
-    head = f'<section aria-labelledby="part-{index}">\n<h2 id="part-{index}">{title}</h2>'
+    aside = section.part is Part.RECEIPT or not (section.figures or section.tables)
+    kept = ' class="unprinted"' if aside else ""
+    head = f'<section{kept} aria-labelledby="part-{index}">\n<h2 id="part-{index}">{title}</h2>'
     return f"{head}\n{text}{figures}{tables}</section>"
 
 
 def _figure(figure: Figure, image: bytes) -> str:
     """One plot with its caption, its still image and its numbers."""
     still = base64.b64encode(image).decode("ascii")
+    width, height = (int.from_bytes(image[at : at + 4], "big") for at in (16, 20))  # of a PNG
+    tall = " tall" if height > _TALL * width else ""
     alternative = escape(f"{figure.title}. {figure.alternative}", quote=True)
     numbers = _folded(figure.table, "Numbers") if figure.table else ""
     return (
         f'<figure id="{figure.key}">\n<h3>{escape(figure.title)}</h3>\n'
         f'<div class="plot" role="img" aria-label="{alternative}" data-figure="{figure.key}-data"></div>'
-        f'<img class="still" alt="{alternative}" src="data:image/png;base64,{still}">\n'
+        f'<img class="still{tall}" alt="{alternative}" src="data:image/png;base64,{still}">\n'
         f"<figcaption><strong>{escape(figure.alternative)}</strong> {escape(figure.caption)}</figcaption>\n"
         f"{_player(figure)}{numbers}"
         f'<script type="application/json" id="{figure.key}-data">{_embedded(figure)}</script>\n</figure>'
@@ -189,8 +200,10 @@ def _table(table: Table) -> str:
         f'<th scope="col"{m}>{escape(cell)}</th>' for m, cell in zip(marks, table.head, strict=True)
     )
     rows = "".join(_row(row, marks) for row in table.rows)
+    name = escape(table.caption, quote=True)
+    short = " short" if len(table.rows) <= _ROWS_OF_A_PAGE else ""
     return (
-        f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(table.caption, quote=True)}">'
+        f'<div class="scroll{short}" tabindex="0" role="region" aria-label="{name}">'
         f"<table>\n<caption>{escape(table.caption)}</caption>\n<thead><tr>{head}</tr></thead>\n"
         f"<tbody>{rows}</tbody></table></div>"
     )

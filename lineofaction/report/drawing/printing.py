@@ -1,0 +1,51 @@
+"""A page as PDF: printed by the Chromium of this machine, without network."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from lineofaction.gearbox.problems import BadInput
+
+_BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
+_LIMIT_S = 120.0
+_FLAGS = (
+    "--headless", "--disable-gpu", "--no-pdf-header-footer", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync", "--no-first-run", "--disable-extensions",
+)  # fmt: skip
+
+
+def pdf(page: str, named: Path) -> bytes:
+    """Return a page of HTML as PDF, A4 with page numbers.
+
+    Parameters
+    ----------
+    named : Path
+        The file that is written, for the refusal.
+
+    Raises
+    ------
+    BadInput
+        There is no browser (the variable ``CHROMIUM`` names one), it fails, or it takes over two minutes.
+    """
+    found = (shutil.which(name) for name in (os.environ.get("CHROMIUM", ""), *_BROWSERS))
+    browser = next((path for path in found if path), None)
+    if browser is None:
+        advice = "Install Chromium or Chrome, name one in CHROMIUM, or write an .html page and print that."
+        raise BadInput.of("output", str(named), "a page where no browser is installed", advice)
+    # a browser of the superuser has no sandbox; what it opens here is our own page
+    sandbox = ["--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []
+    with TemporaryDirectory() as folder:
+        source, printed = Path(folder) / "page.html", Path(folder) / "page.pdf"
+        source.write_text(page, encoding="utf-8")
+        own = [f"--user-data-dir={folder}/profile", f"--print-to-pdf={printed}", source.as_uri()]
+        try:
+            call = [browser, *_FLAGS, *sandbox, *own]
+            subprocess.run(call, check=True, capture_output=True, timeout=_LIMIT_S)
+            return printed.read_bytes()
+        except (OSError, subprocess.SubprocessError) as error:
+            bound = f"a page that {Path(browser).name} prints: {type(error).__name__}"
+            raise BadInput.of("output", str(named), bound, "Write an .html page and print that.") from None
