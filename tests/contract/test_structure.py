@@ -14,7 +14,7 @@ BUDGETS = {
     ("fe_contact",): (39_740, 709),
     ("dynamics",): (42_007, 798),
     ("lineofaction.gearbox",): (23_673, 472),
-    ("lineofaction.report",): (11_059, 206),
+    ("lineofaction.report",): (11_126, 207),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_972, 71),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_417, 151),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 787
+MOST_FILES = 788
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
