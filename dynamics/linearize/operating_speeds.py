@@ -12,6 +12,7 @@ from bounds import above, at_least
 from dynamics.assembly.assemble import System
 from dynamics.checks import finite
 from dynamics.errors import InputError
+from dynamics.mechanism.kinematics import proportional_speeds
 from dynamics.mechanism.phases import repeating_phases
 from dynamics.types import FloatArray
 
@@ -41,7 +42,7 @@ def law_speeds(system: System, speed: float) -> FloatArray:
 
     They keep the proportion of their extreme speeds in the scene, and their senses: `speed` is a magnitude.
     """
-    extreme = np.array([part.speed.extreme for part in system.scene.references])
+    extreme = proportional_speeds(system.scene)
     return np.asarray(extreme * (speed / abs(extreme[leading_law(system)])))
 
 

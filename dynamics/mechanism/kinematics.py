@@ -144,6 +144,12 @@ class Kinematics:
         return np.array(rates).reshape(len(rates), len(self.law_shaft))
 
 
+def proportional_speeds(scene: Scene) -> FloatArray:
+    """Return the speeds (k,) of all laws in proportion; trains that all start from rest, alike."""
+    extreme = np.array([part.speed.extreme for part in scene.references])
+    return extreme if np.any(extreme) else np.ones(extreme.size)
+
+
 def solve_kinematics(scene: Scene) -> Kinematics:
     """Solve for the speeds of all shafts.
 

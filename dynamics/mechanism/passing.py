@@ -1,4 +1,4 @@
-"""What passes at which order of a shaft: teeth in mesh, turns of shafts, elements of bearings."""
+"""What passes at which order of a shaft: teeth in mesh, planets, turns of shafts, elements of bearings."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.errors import InputError
-from dynamics.mechanism.kinematics import Kinematics
-from dynamics.scene.scene import Scene
+from dynamics.mechanism.kinematics import Kinematics, proportional_speeds
+from dynamics.meshes.gear_mesh import GearMesh
+from dynamics.scene.scene import Scene, on_axis
+from dynamics.shafts.bodies import GearBody
 from dynamics.types import FloatArray
 
-MESH, SHAFT, BEARING = "mesh", "shaft", "bearing"
+MESH, SIDEBAND, SHAFT, BEARING = "mesh", "sideband", "shaft", "bearing"
 TURNS, PASSINGS = 4, 3
 """Harmonics of shafts (unbalance, misalignment, ovality) and of bearings that are looked at."""
 SAME = 1e-9
@@ -26,13 +28,16 @@ class Excitation:
     Attributes
     ----------
     kind : str
-        `MESH`, `SHAFT` or `BEARING`.
+        `MESH`, `SIDEBAND`, `SHAFT` or `BEARING`.
     name : str
-        Of the mesh, shaft or bearing; `part` of a bearing is the ring or element that is passed.
+        Of the mesh, shaft or bearing; `part` of a bearing is the ring or element that is passed, of a
+        sideband the side.
     rate : float
         Repetitions per revolution of the shaft that orders are of, > 0.
     harmonics : int
         Multiples of the rate that are looked at, from 1.
+    beside : tuple of float
+        Added to the order of each harmonic, of sidebands; empty: nothing.
     """
 
     kind: str
@@ -40,6 +45,11 @@ class Excitation:
     part: str
     rate: float
     harmonics: int
+    beside: tuple[float, ...] = ()
+
+    def order(self, harmonic: int) -> float:
+        """Return the order of a harmonic."""
+        return harmonic * self.rate + (self.beside[harmonic - 1] if self.beside else 0.0)
 
 
 @dataclass(frozen=True)
@@ -76,7 +86,7 @@ def excitations(scene: Scene, kinematics: Kinematics, shaft: str, harmonics: int
     InputError
         The shaft is at rest.
     """
-    law = _law_speeds(scene)
+    law = proportional_speeds(scene)
     turns = kinematics.float_ratio @ law
     unit = abs(float(turns[scene.shaft_index(shaft)]))
     if unit <= SAME * float(np.max(np.abs(turns))):
@@ -92,6 +102,7 @@ def excitations(scene: Scene, kinematics: Kinematics, shaft: str, harmonics: int
             Excitation(SHAFT, part.name, "", abs(float(turn)) / unit, TURNS)
             for part, turn in zip(scene.shafts, turns, strict=True)
         ),
+        *_of_planets(scene, turns / unit, rates, harmonics),
         *_of_bearings(scene, np.abs(turns) / unit),
     ]
     return tuple(part for part in parts if part.rate > SAME)
@@ -99,15 +110,46 @@ def excitations(scene: Scene, kinematics: Kinematics, shaft: str, harmonics: int
 
 def shaft_rates(scene: Scene, kinematics: Kinematics, shaft: str) -> dict[str, float]:
     """Return the revolutions of every shaft per revolution of `shaft`, without senses, by name."""
-    turns = np.abs(kinematics.float_ratio @ _law_speeds(scene))
+    turns = np.abs(kinematics.float_ratio @ proportional_speeds(scene))
     unit = float(turns[scene.shaft_index(shaft)])
     return {part.name: float(turn) / unit for part, turn in zip(scene.shafts, turns, strict=True)}
 
 
-def _law_speeds(scene: Scene) -> FloatArray:
-    """Return the speeds (k,) of all laws in proportion; trains that all start from rest, alike."""
-    extreme = np.array([part.speed.extreme for part in scene.references])
-    return extreme if np.any(extreme) else np.ones(extreme.size)
+def _of_planets(scene: Scene, turns: FloatArray, rates: FloatArray, harmonics: int) -> Iterator[Excitation]:
+    """Yield the sidebands next to the harmonics of meshes of equally spaced planets on a carrier that turns.
+
+    N planets pass the ground at theta + phi_p, and their mesh with a central gear of Z teeth is at Z (theta +
+    phi_p), theta being the angle of the carrier against the gear: of harmonic k with what repeats n times a
+    revolution of the carrier, the sum over the planets is left where k Z + n is a multiple of N, and cancels
+    elsewhere (McFadden and Smith 1985). A gear that overtakes the carrier counts backwards.
+    """
+    central = [_central_gear(scene, mesh) for mesh in scene.meshes]
+    for mesh, gear, rate in zip(scene.meshes, central, rates, strict=True):
+        number = sum(gear is not None and other is gear for other in central)
+        if gear is None or number < 2:
+            continue
+        shaft = scene.shaft_index(gear.shaft)
+        carrier = scene.frame_index(shaft)
+        assert carrier is not None  # a central gear is on the axis of one
+        turn = float(turns[carrier])
+        teeth = gear.teeth if (turn - float(turns[shaft])) * turn >= 0.0 else -gear.teeth
+        below = [(harmonic * teeth) % number or number for harmonic in range(1, harmonics + 1)]
+        sides = {"lower": [-n for n in below], "upper": [number - n or number for n in below]}
+        for side, passes in sides.items():
+            beside = tuple(n * abs(turn) for n in passes)
+            if abs(turn) > SAME:
+                yield Excitation(SIDEBAND, mesh.name, side, float(rate), harmonics, beside)
+
+
+def _central_gear(scene: Scene, mesh: GearMesh) -> GearBody | None:
+    """Return the sun or ring of a mesh with a planet, None of any other."""
+    gears = [scene.gear(name) for name in (mesh.driver, mesh.driven)]
+    shafts = [scene.shaft(gear.shaft) for gear in gears]
+    frame = shafts[0].frame
+    if frame is None or frame != shafts[1].frame:
+        return None
+    central = [gear for gear, shaft in zip(gears, shafts, strict=True) if on_axis(shaft, scene.shaft(frame))]
+    return central[0] if len(central) == 1 else None
 
 
 def _of_bearings(scene: Scene, turns: FloatArray) -> Iterator[Excitation]:
@@ -135,7 +177,7 @@ def passing(every: Iterable[Excitation], order: float) -> list[Passing]:
         Per revolution of the shaft that the rates are of, > 0.
     """
     beside = [
-        Passing(each, harmonic, harmonic * each.rate, harmonic * each.rate / order - 1.0)
+        Passing(each, harmonic, each.order(harmonic), each.order(harmonic) / order - 1.0)
         for each in every
         for harmonic in range(1, each.harmonics + 1)
     ]

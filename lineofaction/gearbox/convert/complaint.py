@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
 from bounds import engineering
 from bounds.types import Json
@@ -14,6 +15,7 @@ from dynamics.mechanism.passing import (
     MESH,
     SAME,
     SHAFT,
+    SIDEBAND,
     Excitation,
     Passing,
     excitations,
@@ -32,6 +34,8 @@ KM_H = 1.0 / 3.6
 HARMONICS, TOLERANCE = 10, 0.05
 NEAREST, NAMED = 6, 3
 """Harmonics that are listed beside a complaint, and that are named where none passes."""
+EXCITATION, HARMONIC = "excitation", "harmonic number"
+"""Ranks of what passes: by the force that excites; where that is not known, as if it fell with the number."""
 _SURFACE = "Give a housing by step_file, mesh_file or modes_file, or leave the microphone out."
 
 
@@ -53,6 +57,8 @@ class Complaint:
         What is within the tolerance, and at least the `NEAREST` harmonics, the nearest first.
     turns : mapping of str to float
         Revolutions of every shaft per revolution of `shaft`.
+    levels : mapping of str to tuple of float
+        Forces, N, by which the harmonics of meshes excite at the loads of the scene; empty: not known.
     bearing : str or None
         Where it is measured; None: on the bearing that feels it most.
     per_pitch : float
@@ -68,16 +74,39 @@ class Complaint:
     passing: tuple[Passing, ...]
     turns: Mapping[str, float]
     per_pitch: float
+    levels: Mapping[str, tuple[float, ...]]
     bearing: str | None = None
 
     @property
     def within(self) -> tuple[Passing, ...]:
-        """What passes within the tolerance: meshes, then what is not one and nearer than all of them."""
+        """What passes within the tolerance: meshes, the likeliest first, then what is nearer than all.
+
+        A harmonic is as likely as its excitation is large (`ranked_by`), and less the farther off it is: at
+        the tolerance, which counts as two standard deviations, by exp(-2).
+        """
         near = [each for each in self.passing if each.within(self.tolerance)]
         meshes = [each for each in near if each.excitation.kind == MESH]
         closest = abs(meshes[0].distance) if meshes else math.inf
         others = [e for e in near if e.excitation.kind != MESH and abs(e.distance) < closest]
-        return (*meshes, *others)
+        known = self.ranked_by == EXCITATION
+        return (*sorted(meshes, key=lambda each: -self._likelihood(each, known=known)), *others)
+
+    @property
+    def ranked_by(self) -> str:
+        """What meshes within the tolerance are ranked by beside the distance: `EXCITATION` or `HARMONIC`."""
+        near = [each for each in self.passing if each.within(self.tolerance)]
+        meshes = [each for each in near if each.excitation.kind == MESH]
+        known = all(math.isfinite(self.level(each)) for each in meshes)
+        return EXCITATION if meshes and known else HARMONIC
+
+    def _likelihood(self, each: Passing, *, known: bool) -> float:
+        size = self.level(each) if known else 1.0 / each.harmonic
+        return round(size * math.exp(-2.0 * (each.distance / self.tolerance) ** 2), 12)
+
+    def level(self, each: Passing) -> float:
+        """Return the force by which a harmonic of a mesh excites, N; NaN: not known."""
+        levels = self.levels.get(each.excitation.name, ()) if each.excitation.kind == MESH else ()
+        return levels[each.harmonic - 1] if each.harmonic <= len(levels) else math.nan
 
     def hertz(self, order: float) -> float | None:
         """Return the frequency of an order of the shaft, Hz; None: at any speed."""
@@ -94,8 +123,12 @@ class Complaint:
         return marks
 
 
-def complaint_of(scene: SceneInput, moving: Scene) -> Complaint:
+def complaint_of(
+    scene: SceneInput, moving: Scene, levels: Mapping[str, tuple[float, ...]] = MappingProxyType({})
+) -> Complaint:
     """Return the complaint of a scene that has one, about the parts it has as written.
+
+    `levels` are those of the complaint.
 
     Raises `BadInput`: no such shaft turns, nothing passes within the tolerance, the speed is beyond a table
     of torques, or a microphone hears nothing.
@@ -126,6 +159,7 @@ def complaint_of(scene: SceneInput, moving: Scene) -> Complaint:
         tuple(each for each in every if each.within(reach)),
         {part.name: turns[part.name] for part in scene.shafts},
         1.0 / rate,
+        levels,
         stated.bearing,
     )
     if not complaint.within:
@@ -193,6 +227,7 @@ def _as_written(every: Iterable[Excitation], scene: SceneInput) -> list[Excitati
     """Return the excitations of the parts that the scene names; copies of a planet pass where it does."""
     names = {
         MESH: {part.name for part in scene.meshes},
+        SIDEBAND: {part.name for part in scene.meshes},
         SHAFT: {part.name for part in scene.shafts},
         BEARING: {part.name for part in scene.rolling_bearings},
     }
@@ -230,15 +265,19 @@ def grouped(every: Iterable[Passing]) -> list[tuple[Passing, ...]]:
     return [tuple(group) for group in groups.values()]
 
 
-_SEVERAL = {MESH: "meshes", SHAFT: "shafts", BEARING: "bearings"}
+_SEVERAL = {MESH: "meshes", SIDEBAND: "meshes", SHAFT: "shafts", BEARING: "bearings"}
 
 
 def words(alike: Sequence[Passing]) -> str:
     """Name a harmonic of one part, or of several as `grouped` returns them."""
     of = alike[0].excitation
-    kind = of.kind if len(alike) == 1 else _SEVERAL[of.kind]
+    kind = _SEVERAL[of.kind]
+    if len(alike) == 1:
+        kind = MESH if of.kind == SIDEBAND else of.kind
     names = ", ".join(f'"{each.excitation.name}"' for each in alike)
     number = "order" if of.kind == SHAFT else "harmonic"
+    if of.kind == SIDEBAND:
+        return f"{of.part} sideband by the planets of harmonic {alike[0].harmonic} of {kind} {names}"
     return f"{number} {alike[0].harmonic} of {f'the {of.part} of ' if of.part else ''}{kind} {names}"
 
 

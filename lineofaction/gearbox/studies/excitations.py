@@ -31,6 +31,30 @@ def excitations_of(response: HarmonicResponse, system: System, subject: TabledSc
     return rows
 
 
+def excitation_levels(system: System, subject: TabledScene) -> dict[str, tuple[float, ...]]:
+    """Return by mesh the forces, N, by which its harmonics excite: transmission error times mean stiffness.
+
+    At the nominal mesh force, or the highest that is stored, and the stored alignment nearest to none. Meshes
+    without a table or without load are left out.
+    """
+    levels, flanks = {}, system.flanks
+    names = [mesh.name for mesh in system.scene.meshes]
+    for mesh, table in subject.databases.items():
+        index = names.index(mesh)
+        torque = abs(float(flanks.nominal_force[index])) * table.facts.base_radius[0]
+        if torque > 0.0:
+            skew, change = table.misalignment, table.center_distance_change
+            curve = table.curve(
+                force=min(table.facts.normal_force(torque), float(table.force[-1])),
+                misalignment=float(np.clip(0.0, skew[0], skew[-1])),
+                center_distance_change=float(np.clip(0.0, change[0], change[-1])),
+                allow_failed=True,
+            )
+            stiffness = float(flanks.mean_stiffness[index])
+            levels[mesh] = tuple(stiffness * harmonic.value for harmonic in curve.harmonics)
+    return levels
+
+
 def _of_mesh(
     response: HarmonicResponse, mesh: int, table: SteDatabase, step: float, largest_friction: float
 ) -> Iterator[Json]:

@@ -29,7 +29,7 @@ from lineofaction.gearbox.schemas.figures import LINEAR
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.excitations import excitations_of
+from lineofaction.gearbox.studies.excitations import excitation_levels, excitations_of
 from lineofaction.gearbox.units import RPM
 
 Result = TypeVar("Result")
@@ -56,7 +56,8 @@ def facts_of_scene(subject: TabledScene) -> Json:
     costs = {name: asdict(body.cost) for name, body in subject.housings.items() if body.cost is not None}
     if subject.inputs.complaint is None:
         return {"reduction_cost": costs}
-    return {"reduction_cost": costs, "complaint": complaint_of(subject.inputs, subject.scene).marks}
+    levels = excitation_levels(assemble(subject.scene), subject)
+    return {"reduction_cost": costs, "complaint": complaint_of(subject.inputs, subject.scene, levels).marks}
 
 
 def radiation_of(

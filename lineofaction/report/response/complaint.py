@@ -10,7 +10,7 @@ import numpy as np
 from bounds import engineering
 from dynamics.mechanism.passing import MESH, SAME, Passing
 from lineofaction.gearbox.convert.complaint import Complaint, beside, grouped, sentence, words
-from lineofaction.gearbox.studies.complaint.run import AnsweredComplaint, OrderForce
+from lineofaction.gearbox.studies.complaint.run import AnsweredComplaint
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
@@ -106,14 +106,15 @@ def _passing_table(answer: AnsweredComplaint) -> Table:
         "frequency, Hz": lambda alike: number(complaint.hertz(alike[0].order) or np.nan, 5),
         "off, %": lambda alike: f"{100.0 * alike[0].distance:+.2f}",
         "within": lambda alike: "yes" if alike[0] in complaint.within else "no",
-        "force, N": lambda alike: _force(forces.get(alike[0])),
+        "excites by, N": lambda alike: _newtons(max(map(complaint.level, alike))),
+        "force, N": lambda alike: _newtons(forces[alike[0]].force if alike[0] in forces else np.nan),
         "on bearing": lambda alike: forces[alike[0]].bearing if alike[0] in forces else "",
     }
     return Table.of(f"Orders of {complaint.shaft} beside the complaint", _listed(complaint), columns)
 
 
-def _force(own: OrderForce | None) -> str:
-    return "" if own is None or not np.isfinite(own.force) else number(own.force, 3)
+def _newtons(force: float) -> str:
+    return number(force, 3) if np.isfinite(force) else ""
 
 
 def _mode_table(answer: AnsweredComplaint) -> Table:
@@ -131,7 +132,9 @@ def _mode_table(answer: AnsweredComplaint) -> Table:
 def _headlines(answer: AnsweredComplaint) -> tuple[Headline, ...]:
     complaint = answer.complaint
     first, *others = grouped(complaint.within)
-    shown = [Headline("complaint", words(first), beside(complaint, first[0]))]
+    several = any(alike[0].excitation.kind == MESH for alike in others)
+    ranked = f"; the likeliest by distance and {complaint.ranked_by}" if several else ""
+    shown = [Headline("complaint", words(first), beside(complaint, first[0]) + ranked)]
     if others:
         names = "; ".join(f"{words(alike)} {beside(complaint, alike[0])}" for alike in others)
         shown.append(Headline("passes there too", names, _apart(first[0], [alike[0] for alike in others])))

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from pytest import approx
 
-from dynamics.mechanism.passing import MESH
+from dynamics.mechanism.passing import MESH, SIDEBAND
 from lineofaction.gearbox.convert.complaint import Complaint, complaint_of
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
@@ -65,10 +65,10 @@ def planetary(held: str = "ring") -> Json:
     return scene
 
 
-def asked(scene: Json, **fields: Any) -> Complaint:
+def asked(scene: Json, levels: dict[str, tuple[float, ...]] | None = None, **fields: Any) -> Complaint:
     """Return the complaint of a scene, all of it checked as every study does."""
     stated = validated(SceneInput, scene | {"complaint": fields})
-    return complaint_of(stated, check_scene(stated, {}))
+    return complaint_of(stated, check_scene(stated, {}), levels or {})
 
 
 PAIR, UNIT = train((25, 61)), train((25, 63), (21, 74))
@@ -138,6 +138,64 @@ def test_orders_are_counted_as_results_count_them() -> None:
     assert complaint.marks["order"] == approx(2.0 / 3.0)
     assert complaint.marks["axes"]["speed of shaft 2, rpm"] == approx(3000.0 * 25 * 21 / (63 * 74))
     assert complaint.marks["axes"]["frequency, Hz"] == 833.0
+
+
+def test_a_far_harmonic_is_no_better_for_being_a_little_nearer() -> None:
+    """30/41 and 22/61: 1 x 30 and 4 x 22 x 30/41 = 64.39; 61 of 60 and 64.39 lies between twice and that."""
+    complaint = asked(train((30, 41), (22, 61)), order=62.5)
+    near, far = complaint.within
+    assert (near.excitation.name, near.harmonic, far.excitation.name, far.harmonic) == (
+        "mesh 0",
+        2,
+        "mesh 1",
+        4,
+    )
+    assert abs(far.distance) < abs(near.distance) and complaint.ranked_by == "harmonic number"
+    assert complaint.marks["order"] == approx(2.0)
+
+
+def test_what_excites_more_is_likelier() -> None:
+    """The same with 1 N by harmonic 2 of the first stage, 3 N by harmonic 4 of the second."""
+    levels = {"mesh 0": (9.0, 1.0), "mesh 1": (9.0, 9.0, 9.0, 3.0)}
+    complaint = asked(train((30, 41), (22, 61)), levels, order=62.5)
+    assert [each.excitation.name for each in complaint.within] == ["mesh 1", "mesh 0"]
+    assert complaint.ranked_by == "excitation"
+    # a level that is not known leaves none to rank by
+    unknown = asked(train((30, 41), (22, 61)), {"mesh 0": (9.0, 1.0)}, order=62.5)
+    assert unknown.ranked_by == "harmonic number"
+
+
+@pytest.mark.law
+@pytest.mark.parametrize(
+    ("order", "side", "harmonic"),
+    # ring of 99 at rest, 3 planets: 99 is a multiple of 3, so that 99 - 3, 99 + 3 and 198 + 3 pass
+    [(96.0, "lower", 1), (102.0, "upper", 1), (201.0, "upper", 2)],
+)
+def test_planets_pass_beside_the_harmonics_of_their_meshes(order: float, side: str, harmonic: int) -> None:
+    complaint = asked(planetary(), order=order, shaft="carrier")
+    bands = [each for each in complaint.within if each.excitation.kind == SIDEBAND]
+    assert {(each.excitation.name, each.excitation.part, each.harmonic) for each in bands} == {
+        ("sun mesh", side, harmonic),
+        ("ring mesh", side, harmonic),
+    }
+    assert all(each.distance == approx(0.0, abs=1e-9) for each in bands)
+
+
+@pytest.mark.law
+def test_sidebands_are_those_that_the_planets_leave() -> None:
+    """7 planets, ring of 99 at rest: 98 and 105 are multiples of 7, of the sun as well; of 3: 96, 102."""
+    for number, orders in ((3, {96.0, 102.0}), (7, {98.0, 105.0})):
+        scene = planetary()
+        scene["planets"][0]["number"] = number
+        complaint = asked(scene, order=99.0, shaft="carrier", tolerance_percent=20.0)
+        for mesh in ("ring mesh", "sun mesh"):
+            assert {
+                round(each.order, 6)
+                for each in complaint.passing
+                if (each.excitation.kind, each.excitation.name) == (SIDEBAND, mesh)
+            } == orders
+    held = asked(planetary("carrier"), frequency_hz=1340.0, speed_rpm=1000.0, shaft="sun")
+    assert not any(each.excitation.kind == SIDEBAND for each in held.passing)
 
 
 def with_balls(count: int, diameter_mm: float, pitch_diameter_mm: float) -> Json:

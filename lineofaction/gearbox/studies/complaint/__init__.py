@@ -14,7 +14,10 @@ class ComplaintFigures(Figures):
     """What passes where it is complained of, the likeliest first, and the modes within reach."""
 
     class PassingFigures(Part):
-        """A harmonic of a mesh, a shaft or a bearing; its force is that of the linear response."""
+        """A harmonic of a mesh, a shaft or a bearing, or a sideband of one.
+
+        Its force is that of the linear response; the excitation is transmission error times mean stiffness.
+        """
 
         kind: str
         name: str
@@ -25,6 +28,7 @@ class ComplaintFigures(Figures):
         distance_percent: float
         bearing: str
         force_n: float | None
+        excitation_n: float | None
 
     class ModeFigures(Part):
         """A mode by which the frequency is amplified."""
@@ -41,6 +45,7 @@ class ComplaintFigures(Figures):
     frequency_hz: float | None
     speed_rpm: float | None
     tolerance_percent: float
+    ranked_by: str
     passing: list[PassingFigures]
     nearest: list[PassingFigures]
     modes: list[ModeFigures]

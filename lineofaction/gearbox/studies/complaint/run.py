@@ -21,6 +21,7 @@ from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.complaint import ComplaintFigures, Inputs
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
+from lineofaction.gearbox.studies.excitations import excitation_levels
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import with_facts_of_scene
 from model_studies import in_unit
@@ -89,9 +90,10 @@ class _ComplaintStudy(SceneStudy[Inputs, ComplaintFigures, AnsweredComplaint]):
         return {}
 
     def compute(self, subject: TabledScene, _inputs: Inputs, means: Means) -> AnsweredComplaint:
-        complaint = complaint_of(subject.inputs, subject.scene)
         with boundary_errors():
             system = assemble(subject.scene)
+        complaint = complaint_of(subject.inputs, subject.scene, excitation_levels(system, subject))
+        with boundary_errors():
             speed = _leading_speed(complaint, subject)
             reach = None if complaint.frequency is None else RESOLVED * complaint.frequency
             modes = modal_analysis(system, speed, highest_frequency=reach)
@@ -125,6 +127,7 @@ def _figures_of(each: Passing, complaint: Complaint) -> Json:
         "order": each.order,
         "frequency": complaint.hertz(each.order),
         "distance_percent": 100.0 * each.distance,
+        "excitation": complaint.level(each),
     }
 
 
