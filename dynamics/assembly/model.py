@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from bounds import above
 from dynamics.effects import Effect, EffectLedger, MeshEffect, RotorEffect
@@ -55,8 +56,8 @@ def _on_rotors(
     rotors = loaded_rotors(mechanism, flanks)
     names = [rotor.shaft.name for rotor in mechanism.rotors]
     for effect in registry:
-        verdicts = dict(zip(names, effect.verdicts(rotors), strict=True))
-        ledger = ledger.decide(effect, choices.get(effect.name, "auto"), verdicts)
+        choice = choices.get(effect.name, "auto")
+        ledger = ledger.decide(effect, choice, names, partial(effect.verdicts, rotors))
     for effect in registry:
         on = [entry.verdict if entry.on else None for entry in ledger.of(effect.name)]
         mechanism = effect.extend(mechanism, on)
@@ -68,9 +69,10 @@ def _on_meshes(
 ) -> tuple[Flanks, EffectLedger]:
     """Decide the effects of meshes too, and add the flanks that they add."""
     flanks, scene, meshes = train.flanks, train.mechanism.scene, train.meshes
+    names = [mesh.mesh.name for mesh in meshes]
     for effect in registry:
-        verdicts = {mesh.mesh.name: effect.called_for(mesh) for mesh in meshes}
-        ledger = ledger.decide(effect, scene.effects.get(effect.name, "auto"), verdicts)
+        choice = scene.effects.get(effect.name, "auto")
+        ledger = ledger.decide(effect, choice, names, partial(effect.verdicts, meshes))
         on = [index for index, mesh in enumerate(scene.meshes) if ledger.on(effect.name, mesh.name)]
         flanks = effect.extend(flanks, scene.meshes, on)
     return flanks, ledger

@@ -56,6 +56,8 @@ class Effect:
     at_rest : bool or None
         Whether static deflections follow it. True: wherever the scene has what it needs; False: never, it is
         one of motion; None: where the scene calls for it, as in a run.
+    compulsory : bool
+        Whether there are scenes that cannot do without it, whatever they choose.
     """
 
     name: ClassVar[str]
@@ -63,6 +65,7 @@ class Effect:
     adds: ClassVar[tuple[str, ...]] = ()
     linear: ClassVar[bool] = True
     at_rest: ClassVar[bool | None] = None
+    compulsory: ClassVar[bool] = False
 
     def prepared(self, scene: Scene) -> Scene:
         """Return `scene` with what the effect, if it is not switched off, changes of its parts.
@@ -104,6 +107,10 @@ class MeshEffect(Effect):
     def called_for(self, mesh: LoadedMesh) -> Verdict:
         """Decide for one mesh."""
         raise NotImplementedError
+
+    def verdicts(self, meshes: Sequence[LoadedMesh]) -> Sequence[Verdict]:
+        """Decide for all meshes of a scene."""
+        return [self.called_for(mesh) for mesh in meshes]
 
     def extend(self, flanks: Flanks, meshes: Sequence[GearMesh], on: Sequence[int]) -> Flanks:
         """Return `flanks` with those that the effect adds to the meshes `on`."""

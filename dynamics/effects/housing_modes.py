@@ -24,6 +24,7 @@ class HousingModes(RotorEffect):
 
     name = "housing_modes"
     at_rest = False
+    compulsory = True
     adds = (HOUSING_AMPLITUDES,)
     cost = "a freedom per row of the housing's matrices, a force element per bearing in it, implicit steps"
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from dynamics.checks import one_of
 from dynamics.effects.effect import Effect, MeshEffect, RotorEffect, Verdict
@@ -18,6 +19,17 @@ CHOICES = ("auto", "on", "off")
 
 
 @dataclass(frozen=True)
+class _Verdicts:
+    """What the parts of a scene call for, made when it is first read."""
+
+    make: Callable[[], Sequence[Verdict]]
+
+    @cached_property
+    def made(self) -> Sequence[Verdict]:
+        return self.make()
+
+
+@dataclass(frozen=True)
 class _LedgerEntry:
     """One decision.
 
@@ -27,14 +39,20 @@ class _LedgerEntry:
         The shaft or the mesh that it is decided for.
     choice : str
         What the scene requests: ``"auto"``, ``"on"``, ``"off"``.
-    verdict : Verdict
-        What the scene calls for.
+    verdicts : _Verdicts
+        Of all parts; `index` is that of this one.
     """
 
     decided: Effect
     part: str
     choice: str
-    verdict: Verdict
+    verdicts: _Verdicts
+    index: int
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the scene calls for."""
+        return self.verdicts.made[self.index]
 
     @property
     def effect(self) -> str:
@@ -44,6 +62,8 @@ class _LedgerEntry:
     @property
     def on(self) -> bool:
         """The decision: an explicit choice is obeyed as far as the scene allows, else the verdict."""
+        if self.choice == "off" and not self.decided.compulsory:
+            return False
         obeyed = self.choice != "auto" and self.possible
         return self.choice == "on" if obeyed else self.verdict.on
 
@@ -95,9 +115,12 @@ class EffectLedger:
 
     entries: tuple[_LedgerEntry, ...] = ()
 
-    def decide(self, effect: Effect, choice: str, verdicts: Mapping[str, Verdict]) -> EffectLedger:
-        """Return the ledger with the decisions on one more effect, by part."""
-        made = (_LedgerEntry(effect, part, choice, verdict) for part, verdict in verdicts.items())
+    def decide(
+        self, effect: Effect, choice: str, parts: Sequence[str], verdicts: Callable[[], Sequence[Verdict]]
+    ) -> EffectLedger:
+        """Return the ledger with the decisions on one more effect; `verdicts` gives those of its `parts`."""
+        later = _Verdicts(verdicts)
+        made = (_LedgerEntry(effect, part, choice, later, index) for index, part in enumerate(parts))
         return EffectLedger((*self.entries, *made))
 
     def with_entries_of(self, other: EffectLedger, addition: str) -> EffectLedger:
@@ -107,15 +130,15 @@ class EffectLedger:
 
     def without(self, additions: frozenset[str], reason: str, choices: Mapping[str, str]) -> EffectLedger:
         """Return the ledger in which no effect that adds one of `additions` is possible."""
+
+        def impossible(entry: _LedgerEntry) -> _LedgerEntry:
+            verdict = replace(entry.verdict, on=False, possible=False, reason=reason)
+            choice = choices.get(entry.effect, "auto")
+            return replace(entry, choice=choice, verdicts=_Verdicts(lambda: (verdict,)), index=0)
+
         return EffectLedger(
             tuple(
-                entry
-                if additions.isdisjoint(entry.decided.adds)
-                else replace(
-                    entry,
-                    choice=choices.get(entry.effect, "auto"),
-                    verdict=replace(entry.verdict, on=False, possible=False, reason=reason),
-                )
+                entry if additions.isdisjoint(entry.decided.adds) else impossible(entry)
                 for entry in self.entries
             )
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -45,26 +45,63 @@ NOT_CHECKED = "no; toggling it measures it (ablation)"
 POSITIONS = 32
 
 
-def _effect_ledger(
-    system: System,
-    checks: Sequence[Check],
-    automatic: Mapping[str, str],
-    influences: Mapping[str, Influence],
-) -> Json:
-    """Return entries, estimates, what the model leaves out, and the `checks` of the run.
+@dataclass(frozen=True)
+class RunFacts:
+    """What is known of a run beside its series.
 
-    `automatic` are effects that were left to "auto" and are not as the scene calls for them, and why: for the
-    tolerance, or because a run without them showed that they are needed. `influences` are what leaving
-    effects out in all their parts is estimated to change.
+    Attributes
+    ----------
+    scene : Scene
+        Its effects as decided.
+    audit : EnergyAudit or None
+        None if not requested.
+    checks : sequence of Check
+        Of the run on its own model.
+    automatic : mapping of str to str
+        Effects that were left to "auto" and are not as the scene calls for them, and why: for the tolerance,
+        or because a run without them showed that they are needed.
+    influences : mapping of str to Influence
+        What leaving effects out in all their parts is estimated to change.
     """
-    deflection = _mean_deflection(system)
-    whole = system.ledger.to_json()
-    entries = [_ledger_entry(entry, deflection, checks, automatic, influences) for entry in whole["entries"]]
+
+    system: System
+    scene: Scene
+    audit: EnergyAudit | None
+    checks: Sequence[Check]
+    automatic: Mapping[str, str]
+    influences: Mapping[str, Influence]
+
+    @classmethod
+    def of(
+        cls,
+        system: System,
+        end: Ending,
+        checks: RunChecks,
+        clock: StageClock,
+        decided: Decided,
+        before: EarlierRun,
+    ) -> RunFacts:
+        """Gather them; `before` is the run that this one repeats."""
+        with clock.stage("influence_estimates"):
+            influences = _known_influences(decided, system, end)
+        clock.book("influence_estimates", decided.taken)
+        audit = None
+        if system.scene.outputs.energy_audit:
+            audit = EnergyAudit.from_arrays(end.work, end.stored, end.fallen)
+        held = [*checks.checks(), *([] if audit is None else [audit.check()])]
+        automatic = {**decided.automatic, **before.reasons}
+        return cls(system, decided.scene, audit, held, automatic, influences)
+
+
+def _effect_ledger(run: RunFacts) -> Json:
+    """Return entries, estimates, what the model leaves out, and the checks of the run."""
+    deflection = _mean_deflection(run.system)
+    whole = run.system.ledger.to_json()
     return {
         **whole,
-        "entries": entries,
-        "influences": {name: influence.to_json() for name, influence in influences.items()},
-        "checks": [check.to_json() for check in checks],
+        "entries": [_ledger_entry(entry, deflection, run) for entry in whole["entries"]],
+        "influences": {name: influence.to_json() for name, influence in run.influences.items()},
+        "checks": [check.to_json() for check in run.checks],
     }
 
 
@@ -79,24 +116,18 @@ def _mean_deflection(system: System) -> float:
     return max(deflections)
 
 
-def _ledger_entry(
-    entry: Json,
-    deflection: float,
-    checks: Sequence[Check],
-    automatic: Mapping[str, str],
-    influences: Mapping[str, Influence],
-) -> Json:
+def _ledger_entry(entry: Json, deflection: float, run: RunFacts) -> Json:
     name = entry["effect"]
-    own = [check for check in checks if (check.effect, check.part) == (entry["effect"], entry["part"])]
+    own = [check for check in run.checks if (check.effect, check.part) == (entry["effect"], entry["part"])]
     assessed = {
         "relative_influence": entry["influence_m"] / deflection if deflection > 0.0 else None,
         "checked": "; ".join(check.reason for check in own) or NOT_CHECKED,
         "holds": all(check.holds for check in own) if own else None,
     }
-    if entry["price"] and not entry["on"] and name in influences:
-        assessed["price"] = f"left out: {influences[name].words}"
-    if name in automatic and entry["possible"]:
-        assessed |= {"choice": "auto", "reason": automatic[name], "price": ""}
+    if entry["price"] and not entry["on"] and name in run.influences:
+        assessed["price"] = f"left out: {run.influences[name].words}"
+    if name in run.automatic and entry["possible"]:
+        assessed |= {"choice": "auto", "reason": run.automatic[name], "price": ""}
     return {**entry, **assessed}
 
 
@@ -299,12 +330,10 @@ LEAST_WORK = 500_000
 
 
 def documents(
-    system: System,
+    run: RunFacts,
     end: Ending,
-    checks: RunChecks,
     clock: StageClock,
     error: Json,
-    decided: Decided,
     before: EarlierRun = FIRST,
     choice: MethodChoice | None = None,
 ) -> dict[str, Any]:
@@ -312,21 +341,13 @@ def documents(
 
     `before` is the run that this one repeats, `choice` that of its method; None: it never started.
     """
-    automatic = {**decided.automatic, **before.reasons}
-    with clock.stage("influence_estimates"):
-        influences = _known_influences(decided, system, end)
-    clock.book("influence_estimates", decided.taken)
-    audit = None
-    if system.scene.outputs.energy_audit:
-        audit = EnergyAudit.from_arrays(end.work, end.stored, end.fallen)
-    held = [*checks.checks(), *([] if audit is None else [audit.check()])]
+    system = run.system
     steps = int(end.count[Count.ACCEPTED] + end.count[Count.REJECTED])
     method = {"method": choice.to_json(end.end / steps, end.taken.cpu_seconds)} if choice and steps else {}
     return {
         "status": end.status,
         "statistics": _statistics(system, end),
-        "energy": audit,
-        "effect_ledger": _effect_ledger(system, held, automatic, influences),
+        "energy": run.audit,
         "receipt": {
             "seconds": clock.seconds,
             "wall_seconds": clock.wall_seconds,
@@ -338,22 +359,25 @@ def documents(
         | before.to_json()
         | _bearings_at_rest(system)
         | system.corrections,
-        "case": _resolved_case(system),
     }
 
 
-Description = Callable[[System, Scene], dict[str, Any]]
+Description = Callable[[RunFacts], dict[str, Any]]
 
 
-def described(system: System, scene: Scene) -> dict[str, Any]:
-    """Return the fields of `RunResult` that need no run: what is implausible about a scene, and its modes."""
-    warnings = [finding.to_json() for finding in scene_findings(scene)]
-    return {"warnings": warnings, "modes": _modes_of_run(system)}
+def described(run: RunFacts) -> dict[str, Any]:
+    """Return ledger, resolved case and modes of a run, and what is implausible about its scene."""
+    return {
+        "effect_ledger": _effect_ledger(run),
+        "case": _resolved_case(run.system),
+        "warnings": [finding.to_json() for finding in scene_findings(run.scene)],
+        "modes": _modes_of_run(run.system),
+    }
 
 
-def undescribed(_system: System, _scene: Scene) -> dict[str, Any]:
-    """Return none of them: a study takes the responses of a run alone."""
-    return {}
+def undescribed(run: RunFacts) -> dict[str, Any]:
+    """Return the ledger of a run that violates an assumption, else nothing: a study takes responses alone."""
+    return {} if all(check.holds for check in run.checks) else {"effect_ledger": _effect_ledger(run)}
 
 
 def _known_influences(decided: Decided, system: System, end: Ending) -> Mapping[str, Influence]:

@@ -34,6 +34,7 @@ from dynamics.results.run_result import SAMPLED, RunFile, attributes
 from dynamics.scene import Integration, Scene
 from dynamics.simulation.documents import (
     Description,
+    RunFacts,
     described,
     documents,
     finer,
@@ -194,7 +195,12 @@ def run_scene(
 def _needed_effects(
     scene: Scene, ledger: Json, partial: RunResult | None = None, file: Path | None = None
 ) -> dict[str, str]:
-    """Return the effects that a run is to be repeated with; raises where it cannot be left as it is."""
+    """Return the effects that a run is to be repeated with; raises where it cannot be left as it is.
+
+    A run whose assumptions all hold may have no `ledger`.
+    """
+    if not ledger:
+        return {}
     needed = needed_effects(ledger) if scene.on_violation == "repeat" else {}
     wrong = "" if needed else ending(ledger["checks"], scene.on_violation)
     if wrong and file is not None:
@@ -289,8 +295,10 @@ def _result(
     with clock.stage("outputs"):
         parts = _checked_series(system, trajectory.states.rows, trajectory.samples, checks)
         series = _joined(parts, trajectory.samples)
-    about = documents(system, trajectory, checks, clock, error, decided, before, choice)
-    return RunResult(**series, **about, **describe(system, decided.scene))
+    facts = RunFacts.of(system, trajectory, checks, clock, decided, before)
+    return RunResult(
+        **series, **documents(facts, trajectory, clock, error, before, choice), **describe(facts)
+    )
 
 
 def _checked_series(
@@ -488,8 +496,9 @@ def _write(
         with start.clock.stage("outputs"):
             for series in _checked_series(system, leg.spool.states, end.samples, checks):
                 file.append(series)
-        about = documents(system, end, checks, start.clock, error, decided, before, start.choice)
-        file.publish(attributes(about | described(system, decided.scene)))
+        facts = RunFacts.of(system, end, checks, start.clock, decided, before)
+        about = documents(facts, end, start.clock, error, before, start.choice) | described(facts)
+        file.publish(attributes(about))
     return dict(about["effect_ledger"])
 
 
