@@ -21,12 +21,13 @@ def _itself(data: Any) -> tuple[Any, ...]:
 
 
 class _Identity:
-    """Data by the identity of its parts: arrays have no hash."""
+    """Data by the identity of its parts, names by their letters: arrays have no hash."""
 
     __slots__ = ("data", "parts")
 
     def __init__(self, data: Any, parts: tuple[Any, ...]) -> None:
-        self.data, self.parts = data, tuple(map(id, parts))
+        self.data = data
+        self.parts = tuple(part if isinstance(part, str) else id(part) for part in parts)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Identity) and self.parts == other.parts
@@ -45,7 +46,10 @@ def identity_cached(make: Function) -> Function:
 
 
 def cached_by(parts: Parts) -> Callable[[Function], Function]:
-    """Return `identity_cached` for data that is the same if the `parts` of it are that `make` reads."""
+    """Return `identity_cached` for data that is the same if the `parts` of it are that `make` reads.
+
+    Parts that are names are the same if they are equal.
+    """
 
     def cached(make: Function) -> Function:
         @lru_cache(maxsize=KEPT)

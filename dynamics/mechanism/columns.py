@@ -36,19 +36,26 @@ def housing_columns(rotors: Bodies, index: int) -> slice:
 
 
 def rigid_motion(arm: FloatArray) -> FloatArray:
-    """Return (3, 6): displacement of a point at `arm` (3,) from a body's center per freedom of the body.
+    """Return displacement and rotation at `arm` (3,) from a body's center per freedom of the body, (6, 6).
 
     u_point = u + r x arm for the small rotation r.
     """
-    x, y, z = arm
-    cross = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
-    return np.hstack([np.eye(3), cross])
+    x, y, z = arm.tolist()
+    return np.array(
+        [
+            [1.0, 0.0, 0.0, 0.0, z, -y],
+            [0.0, 1.0, 0.0, -z, 0.0, x],
+            [0.0, 0.0, 1.0, y, -x, 0.0],
+            [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        ]
+    )
 
 
 def section(rotor: Rotor, point: FloatArray) -> FloatArray:
     """Return the motion of a rotor at `point` (3,) per rigid freedom, (6, 6): displacement and rotation."""
-    moves = rigid_motion(point - rotor.center)
-    return np.vstack([moves, np.eye(6)[3:]])
+    return rigid_motion(point - rotor.center)
 
 
 def section_rows(rotors: Bodies, index: int, z: float) -> FloatArray:

@@ -28,7 +28,7 @@ def carried_motion(rotors: Bodies, free: IntArray) -> FloatArray:
         if rotor.carrier is None:
             continue
         arm = rotor.center - rotors[rotor.carrier].center
-        with_carrier = np.vstack([rigid_motion(arm), np.eye(6)[3:5]])
+        with_carrier = rigid_motion(arm)[:5]
         for kind in range(PLANET_KINDS):
             if 6 * index + kind not in free:
                 motion[6 * index + kind, 6 * rotor.carrier : 6 * rotor.carrier + 6] = with_carrier[kind]

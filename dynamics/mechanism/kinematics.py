@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 
 from dynamics.errors import InputError
+from dynamics.identity_cache import cached_by
 from dynamics.mechanism.base_pitches import with_common_base_pitches
-from dynamics.mechanism.line_of_action import line_of_action
+from dynamics.mechanism.line_of_action import lines_of_action
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
@@ -127,17 +129,17 @@ class Kinematics:
     sense: tuple[int, ...]
     mesh_sense: tuple[int, ...]
 
-    @property
+    @cached_property
     def imposed(self) -> frozenset[int]:
         """Shafts whose rotation is no freedom."""
         return frozenset(s for s, rigid in zip(self.law_shaft, self.rigid, strict=True) if rigid)
 
-    @property
+    @cached_property
     def float_ratio(self) -> FloatArray:
         """`ratio` as floats, (shafts, laws)."""
         return np.array([[float(value) for value in row] for row in self.ratio])
 
-    @property
+    @cached_property
     def float_mesh_rate(self) -> FloatArray:
         """`mesh_rate` as floats, (meshes, laws)."""
         rates = [[float(value) for value in row] for row in self.mesh_rate]
@@ -150,6 +152,13 @@ def proportional_speeds(scene: Scene) -> FloatArray:
     return extreme if np.any(extreme) else np.ones(extreme.size)
 
 
+def _train(scene: Scene) -> tuple[object, ...]:
+    """Return what the kinematic motion follows from: of meshes the gears alone."""
+    gears = (name for mesh in scene.meshes for name in (mesh.name, mesh.driver, mesh.driven))
+    return (scene.shafts, scene.gears, scene.couplings, scene.drives, scene.free_rotations, *gears)
+
+
+@cached_by(_train)
 def solve_kinematics(scene: Scene) -> Kinematics:
     """Solve for the speeds of all shafts.
 
@@ -288,8 +297,7 @@ def check_motion(scene: Scene) -> Kinematics:
     """
     scene, _ = with_common_base_pitches(scene)
     kinematics = solve_kinematics(scene)
-    for index, sense in enumerate(kinematics.mesh_sense):
-        line_of_action(scene, index, sense)
+    lines_of_action(scene, kinematics.mesh_sense)
     check_loads(scene, kinematics)
     return kinematics
 

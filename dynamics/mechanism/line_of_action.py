@@ -9,6 +9,7 @@ import numpy as np
 
 from bounds import Quantity, Text, above
 from dynamics.errors import InputError
+from dynamics.identity_cache import cached_by
 from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import Wrench, gear_row
 from dynamics.scene.scene import Scene
@@ -48,6 +49,17 @@ def _cross(first: FloatArray, second: FloatArray) -> FloatArray:
     """Return `first` x `second`, (3,) each, to the bits of NumPy's in a sixth of its time."""
     (a, b, c), (x, y, z) = first, second
     return np.array([b * z - c * y, c * x - a * z, a * y - b * x])
+
+
+def _pairs(scene: Scene) -> tuple[object, ...]:
+    gears = (name for mesh in scene.meshes for name in (mesh.driver, mesh.driven))
+    return (scene.shafts, scene.gears, *gears)
+
+
+@cached_by(_pairs)
+def lines_of_action(scene: Scene, senses: tuple[int, ...]) -> tuple[LineOfAction, ...]:
+    """Return `line_of_action` of every mesh, by the sense of each."""
+    return tuple(line_of_action(scene, index, sense) for index, sense in enumerate(senses))
 
 
 def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:

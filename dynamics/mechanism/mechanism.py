@@ -28,7 +28,7 @@ from dynamics.mechanism.columns import column_count
 from dynamics.mechanism.connections import full_matrix
 from dynamics.mechanism.freedoms import rotational_inertia
 from dynamics.mechanism.kinematics import Kinematics, mesh_shafts, solve_kinematics
-from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
+from dynamics.mechanism.line_of_action import LineOfAction, lines_of_action
 from dynamics.mechanism.supports import gather_supports
 from dynamics.scene.scene import Scene
 from dynamics.types import BoolArray, FloatArray
@@ -299,7 +299,7 @@ def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
     scene, corrected = with_common_base_pitches(scene)
     kinematics = solve_kinematics(scene)
     rotors = Bodies(tuple(build_rotor(scene, shaft) for shaft in scene.shafts))
-    lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
+    lines = lines_of_action(scene, kinematics.mesh_sense)
     coasts = COAST_FLANKS in additions.possible
     forces = _nominal_forces(scene, kinematics, rotational_inertia(rotors), coasts=coasts)
     duties = bearing_duties(scene, rotors, forces)

@@ -20,6 +20,7 @@ from dynamics.checks import distinct, finite, not_negative, one_of, positive, wi
 from dynamics.errors import InputError, SolveError
 from dynamics.forces import SpeedTorque
 from dynamics.forces.laws import STATED, StatedLaws
+from dynamics.identity_cache import cached_by
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.joints.housing import DEFINITE
 from dynamics.loads import AppliedForce, LoadTorque, TimeLaw, Unbalance
@@ -256,6 +257,30 @@ def _temperatures(scene: Scene) -> Iterator[tuple[str, Any, bool]]:
             yield f"{kind}[{index}].seat_temperature", part.seat_temperature, False
 
 
+def _check_references(scene: Scene) -> None:
+    """Something turns."""
+    if not scene.references:
+        suggestion = "Add a drive, or a free rotation where only torques move the train."
+        raise InputError("drives", 0, "at least one drive or free rotation", suggestion)
+    if not scene.free_rotations and all(drive.speed.extreme == 0.0 for drive in scene.drives):
+        suggestion = "Its sign sets the driving flank. If torques move it, add a free rotation."
+        raise InputError("drives[0].speed", 0.0, "not zero all the time", suggestion)
+
+
+def _bodies_and_loads(scene: Scene) -> tuple[object, ...]:
+    return (*scene.parts.values(), scene.gravity, scene.temperatures)
+
+
+@cached_by(_bodies_and_loads)
+def _check_parts(scene: Scene) -> None:
+    """All parts fit each other; once for scenes that differ by their run alone."""
+    _check_names(scene)
+    _check_references(scene)
+    _check_temperatures(scene)
+    for check in (_check_frames, _check_gravity, _check_couplings, _check_housings, _check_bearing_laws):
+        check(scene)
+
+
 PLACED = ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings", "forces", "unbalances")
 """Kinds whose parts lie within the length of their shaft."""
 ON_VIOLATION = ("repeat", "fail", "report")
@@ -331,20 +356,7 @@ class Scene(StatedLaws):
         if self.highest_frequency is not None:
             positive("highest_frequency", self.highest_frequency)
         check_samples(self.duration, self.outputs.sample_rate or LEAST_RATE)
-        _check_names(self)
-        self._check_references()
-        _check_temperatures(self)
-        for check in (_check_frames, _check_gravity, _check_couplings, _check_housings, _check_bearing_laws):
-            check(self)
-
-    def _check_references(self) -> None:
-        """Something turns."""
-        if not self.references:
-            suggestion = "Add a drive, or a free rotation where only torques move the train."
-            raise InputError("drives", 0, "at least one drive or free rotation", suggestion)
-        if not self.free_rotations and all(drive.speed.extreme == 0.0 for drive in self.drives):
-            suggestion = "Its sign sets the driving flank. If torques move it, add a free rotation."
-            raise InputError("drives[0].speed", 0.0, "not zero all the time", suggestion)
+        _check_parts(self)
 
     @property
     def parts(self) -> dict[str, tuple[Any, ...]]:

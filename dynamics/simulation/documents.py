@@ -357,17 +357,22 @@ def documents(
         }
         | method
         | before.to_json()
-        | _bearings_at_rest(system)
         | system.corrections,
     }
 
 
-Description = Callable[[RunFacts], dict[str, Any]]
+Description = Callable[[RunFacts, dict[str, Any]], dict[str, Any]]
 
 
-def described(run: RunFacts) -> dict[str, Any]:
-    """Return ledger, resolved case and modes of a run, and what is implausible about its scene."""
-    return {
+def described(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
+    """Return `documents` with what the scene alone says, and the ledger: all fields that are no series.
+
+    That is the resolved case, modes, what is implausible, bearings at rest, the error of neglected effects.
+    """
+    receipt = about["receipt"]
+    error = receipt["error"] | {"left_out_effects": _left_out_effects(run.system)}
+    return about | {
+        "receipt": receipt | {"error": error} | _bearings_at_rest(run.system),
         "effect_ledger": _effect_ledger(run),
         "case": _resolved_case(run.system),
         "warnings": [finding.to_json() for finding in scene_findings(run.scene)],
@@ -375,9 +380,22 @@ def described(run: RunFacts) -> dict[str, Any]:
     }
 
 
-def undescribed(run: RunFacts) -> dict[str, Any]:
-    """Return the ledger of a run that violates an assumption, else nothing: a study takes responses alone."""
-    return {} if all(check.holds for check in run.checks) else {"effect_ledger": _effect_ledger(run)}
+def _left_out_effects(system: System) -> Json:
+    """Return what neglected effects would move the flanks by at rest; bearing forces are not known."""
+    off = [entry for entry in system.ledger.entries if not entry.on and entry.influence > 0.0]
+    largest = max((entry.influence for entry in off), default=0.0)
+    return {
+        "rms": largest,
+        "unit": "m",
+        "source": "largest static displacement along the line of action by one effect that is off",
+        "effects": {f"{entry.effect} of {entry.part}": entry.influence for entry in off},
+    }
+
+
+def undescribed(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
+    """Return `documents`, and the ledger where an assumption is violated: a study takes responses alone."""
+    held = all(check.holds for check in run.checks)
+    return about if held else about | {"effect_ledger": _effect_ledger(run)}
 
 
 def _known_influences(decided: Decided, system: System, end: Ending) -> Mapping[str, Influence]:

@@ -144,15 +144,14 @@ TABLE_REST = 1.0 / 3.0
 def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
     """Return the estimates of a run, measured in windows of it; the requested error where it is too short.
 
-    Sources: time steps, table interpolation between positions, neglected effects.
+    Sources: time steps, and table interpolation between positions.
     """
     requested, integration = requested_error(system.scene.integration), system.scene.integration
-    left_out = _left_out_effects(system)
     began = cpu_seconds()
     full = system.scene.outputs.receipt == "full"
     looked = _windows(system, states_of, samples) if full else []
     if not looked:
-        return {**requested, "left_out_effects": left_out}
+        return requested
     steps = [window.repeated(window.system, finer(integration)) for window in looked]
     coarse = with_decimated_tables(system)
     tables = [window.repeated(window.on_laws_of(coarse), integration) for window in looked]
@@ -161,21 +160,8 @@ def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
         "time_step": _estimate(steps, TIME_STEP_REST, "runs of windows at a tenth of the tolerance")
         or requested["time_step"],
         "table_interpolation": _estimate(tables, TABLE_REST, "runs of windows on every second position"),
-        "left_out_effects": left_out,
         "windows": [[window.first, window.stop - 1] for window in looked],
         "cpu_seconds": seconds,
-    }
-
-
-def _left_out_effects(system: System) -> Json:
-    """Return what neglected effects would move the flanks by at rest; bearing forces are not known."""
-    off = [entry for entry in system.ledger.entries if not entry.on and entry.influence > 0.0]
-    largest = max((entry.influence for entry in off), default=0.0)
-    return {
-        "rms": largest,
-        "unit": "m",
-        "source": "largest static displacement along the line of action by one effect that is off",
-        "effects": {f"{entry.effect} of {entry.part}": entry.influence for entry in off},
     }
 
 

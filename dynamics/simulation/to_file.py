@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, replace
@@ -195,11 +194,8 @@ def run_scene(
 def _needed_effects(
     scene: Scene, ledger: Json, partial: RunResult | None = None, file: Path | None = None
 ) -> dict[str, str]:
-    """Return the effects that a run is to be repeated with; raises where it cannot be left as it is.
-
-    A run whose assumptions all hold may have no `ledger`.
-    """
-    if not ledger:
+    """Return the effects that a run is to be repeated with; raises where it cannot be left as it is."""
+    if not ledger:  # of a run that nothing is said of, whose assumptions all hold
         return {}
     needed = needed_effects(ledger) if scene.on_violation == "repeat" else {}
     wrong = "" if needed else ending(ledger["checks"], scene.on_violation)
@@ -296,9 +292,8 @@ def _result(
         parts = _checked_series(system, trajectory.states.rows, trajectory.samples, checks)
         series = _joined(parts, trajectory.samples)
     facts = RunFacts.of(system, trajectory, checks, clock, decided, before)
-    return RunResult(
-        **series, **documents(facts, trajectory, clock, error, before, choice), **describe(facts)
-    )
+    about = documents(facts, trajectory, clock, error, before, choice)
+    return RunResult(**series, **describe(facts, about))
 
 
 def _checked_series(
@@ -355,8 +350,6 @@ def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:
 
 
 CHECKPOINT_EVERY = 5.0  # s of wall time
-REPEATED = "repeated.json"
-"""In the folder of a run that repeats another: which effects are on because of that, and what it took."""
 
 
 def interrupted_run(path: str | Path) -> Path:
@@ -410,7 +403,7 @@ def simulate_to_file(
     path = Path(path)
     folder = interrupted_run(path)
     going = (progress, cancel, checkpoint_every)
-    before = _read_earlier(folder) if resume else FIRST
+    before = EarlierRun.read(folder) if resume else FIRST
     warn_of(scene_findings(scene))
     decided = decide_effects(scene)
     run = _run_to_file(before.of(decided), path, before, going, resume=resume)
@@ -418,7 +411,7 @@ def simulate_to_file(
         before = before.then(needed, run.seconds)
         for checkpoint in folder.glob("*.checkpoint"):
             checkpoint.unlink()  # of a system without these effects
-        (folder / REPEATED).write_text(json.dumps(before.to_json()), encoding="utf-8")
+        before.write(folder)
         run = _run_to_file(before.of(decided), path, before, going, run)
     if run.status is not RunStatus.CANCELLED:
         _remove(folder)
@@ -460,17 +453,6 @@ def _run_to_file(
     return _MadeRun(end.status, ledger, sum(clock.seconds.values()), start.trail, leg.march.widths)
 
 
-def _read_earlier(folder: Path) -> EarlierRun:
-    """Return the run that an interrupted one repeats; the first run if it repeats none."""
-    try:
-        run = json.loads((folder / REPEATED).read_text(encoding="utf-8"))["repeated"]
-        return EarlierRun({str(k): str(v) for k, v in run["turned_on"].items()}, float(run["seconds"]))
-    except FileNotFoundError:
-        return FIRST
-    except (OSError, ValueError, KeyError, AttributeError) as error:
-        raise ResultError(f"{REPEATED}: not readable. Start a new run.") from error
-
-
 def _difference(system: System, leg: _Leg, check: _Leg, end: Ending) -> Json:
     total = 0.0
     for first, stop in blocks(end.samples):
@@ -497,7 +479,7 @@ def _write(
             for series in _checked_series(system, leg.spool.states, end.samples, checks):
                 file.append(series)
         facts = RunFacts.of(system, end, checks, start.clock, decided, before)
-        about = documents(facts, end, start.clock, error, before, start.choice) | described(facts)
+        about = described(facts, documents(facts, end, start.clock, error, before, start.choice))
         file.publish(attributes(about))
     return dict(about["effect_ledger"])
 

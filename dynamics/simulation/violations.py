@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from dynamics.assembly.assemble import System
+from dynamics.errors import ResultError
 from dynamics.influence import Decided
 from dynamics.influence.neglected_check import ANY_PART
 from dynamics.integrators.start_value import StartValue, Trail, added_rows
@@ -13,6 +16,10 @@ from dynamics.motion.sampled_states import States
 from dynamics.types import Json
 
 StatesOf = Callable[[int, int], States]
+
+
+REPEATED = "repeated.json"
+"""In the folder of a run that repeats another: which effects are on because of that, and what it took."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +50,24 @@ class EarlierRun:
         if not self.turned_on:
             return {}
         return {"repeated": {"turned_on": dict(self.turned_on), "seconds": self.seconds, "since": self.since}}
+
+    @classmethod
+    def read(cls, folder: Path) -> EarlierRun:
+        """Return the run that an interrupted one in `folder` repeats; the first run if it repeats none.
+
+        Raises `ResultError`: the file is damaged.
+        """
+        try:
+            run = json.loads((folder / REPEATED).read_text(encoding="utf-8"))["repeated"]
+            return cls({str(k): str(v) for k, v in run["turned_on"].items()}, float(run["seconds"]))
+        except FileNotFoundError:
+            return FIRST
+        except (OSError, ValueError, KeyError, AttributeError) as error:
+            raise ResultError(f"{REPEATED}: not readable. Start a new run.") from error
+
+    def write(self, folder: Path) -> None:
+        """Leave it to whoever continues in `folder`."""
+        (folder / REPEATED).write_text(json.dumps(self.to_json()), encoding="utf-8")
 
     def then(self, needed: Mapping[str, str], seconds: float) -> EarlierRun:
         """Return what a further repetition repeats."""

@@ -15,6 +15,7 @@ from dynamics.bearings.catalog import from_catalog
 from dynamics.effects.ledger import mechanism_of
 from dynamics.forces import SpeedTorque
 from dynamics.forces.laws import STATED
+from dynamics.identity_cache import cached_by, identity_cached
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.loads import AngleLaw, AppliedForce, BySpeed, LoadTorque, Orders, SpeedCurve, TimeLaw, Unbalance
 from dynamics.loads.load_course import CONSTANT, Course
@@ -36,9 +37,10 @@ from lineofaction.gearbox.convert.housings import ANY_STIFFNESS, housing_of, pla
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.bearings import BearingInput, BushingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.bodies import DiscInput, GearBodyInput, ShaftInput
+from lineofaction.gearbox.schemas.housings import TemperaturesInput
 from lineofaction.gearbox.schemas.loads import DriveInput, ForceInput, LoadTorqueInput, SpeedTorqueInput
 from lineofaction.gearbox.schemas.meshes import CoastFlankInput, MeshInput, PeriodicInput, StiffnessMeshInput
-from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.scene import IntegrationInput, OutputsInput, SceneInput
 from lineofaction.gearbox.units import DEGREE, MM, RPM, UM
 
 if TYPE_CHECKING:
@@ -114,15 +116,21 @@ def _check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) -
 
 
 # Parts of a scene file in SI, each by its table; what a table shares with its part is not said here again.
+# Scenes that have the same tables of a kind share its parts.
 
 
-def _all(scene: SceneInput, kind: str, made: Callable[[Any], T]) -> tuple[T, ...]:
-    """Return the parts of a kind; errors are named by the place in the list."""
-    parts = []
-    for index, table in enumerate(getattr(scene, kind)):
-        with named(f"{kind}[{index}]"):
-            parts.append(made(table))
-    return tuple(parts)
+def _each(kind: str, made: Callable[[Any], T]) -> Callable[[tuple[BaseModel, ...]], tuple[T, ...]]:
+    """Return what makes the parts of a kind; errors are named by the place in the list."""
+
+    @identity_cached
+    def of(tables: tuple[BaseModel, ...]) -> tuple[T, ...]:
+        parts = []
+        for index, table in enumerate(tables):
+            with named(f"{kind}[{index}]"):
+                parts.append(made(table))
+        return tuple(parts)
+
+    return of
 
 
 def _plain(kind: type[T]) -> Callable[[BaseModel], T]:
@@ -147,8 +155,13 @@ def _rolling_bearing_of(table: RollingBearingInput) -> RollingBearing:
     return RollingBearing(**in_si(RollingBearing, table), row=row)
 
 
+@cached_by(lambda scene: (*scene.bushings, "", *scene.planet_bearings))
+def _laws(scene: SceneInput) -> dict[str, Any]:
+    """Return what all bearings do that is not linear, by the kinds of `StatedLaws`."""
+    return {kind: tuple(_laws_of(kind, scene)) for kind in STATED}
+
+
 def _laws_of(kind: str, scene: SceneInput) -> Iterator[Any]:
-    """Yield what all bearings do that is not linear, of a kind of `StatedLaws`."""
     for path, bearing in _bearings(scene):
         for name, table in bearing.laws[kind].items():
             with named(f"{path}.{name}"):
@@ -160,10 +173,11 @@ def _bearings(scene: SceneInput) -> Iterator[tuple[str, BearingInput]]:
     yield from ((f"planet_bearings[{index}]", part) for index, part in enumerate(scene.planet_bearings))
 
 
-def _shafts(scene: SceneInput) -> tuple[Shaft, ...]:
+@identity_cached
+def _shafts(tables: tuple[ShaftInput, ...]) -> tuple[Shaft, ...]:
     """Return the shafts; a diameter is one section of steel, an inertia alone is rigid."""
     shafts = []
-    for index, table in enumerate(scene.shafts):
+    for index, table in enumerate(tables):
         sections = _sections(index, table)
         with named(f"shafts[{index}]"):
             inertia = part_of(Inertia, table.inertia, "inertia") or Inertia()
@@ -194,6 +208,15 @@ def _disc(table: DiscInput) -> DiscBody:
     with inside("cylinder"):
         steel = hollow_cylinder(size.outer_diameter_mm * MM, size.width_mm * MM, size.bore_diameter_mm * MM)
         return replace(placed, inertia=steel)
+
+
+@identity_cached
+def _gears(tables: tuple[GearBodyInput, ...], teeth: tuple[_Teeth, ...]) -> tuple[GearBody, ...]:
+    gears = []
+    for index, (table, own) in enumerate(zip(tables, teeth, strict=True)):
+        with named(f"gears[{index}]"):
+            gears.append(_gear(table, own))
+    return tuple(gears)
 
 
 def _gear(table: GearBodyInput, teeth: _Teeth) -> GearBody:
@@ -261,6 +284,25 @@ def _course(force: ForceInput) -> Course:
         angles = tuple(phase * DEGREE for phase in phases)
         return Orders(shaft, force.orders, force.amplitude or (), angles, force.mean)
     return CONSTANT if force.turn_factor is None else Orders.table(shaft, force.turn_factor)
+
+
+_ALONE: Mapping[str, Callable[[Any], tuple[Any, ...]]] = {
+    kind: _each(kind, made)
+    for kind, made in {
+        "discs": _disc,
+        "bushings": _bushing,
+        "drives": _drive,
+        "planet_bearings": _plain(PlanetBearing),
+        "couplings": _plain(Coupling),
+        "speed_torques": _speed_torque,
+        "free_rotations": _plain(FreeRotation),
+        "rolling_bearings": _rolling_bearing_of,
+        "loads": _load_torque,
+        "forces": _force,
+        "unbalances": _plain(Unbalance),
+    }.items()
+}
+"""What makes the parts of each kind that follow from their tables alone."""
 
 
 def _has_bent_shafts(database: SteDatabase) -> bool:
@@ -442,41 +484,37 @@ def _assembled(
 ) -> Scene:
     teeth = _teeth_of(scene, facts)
     _check_center_distances(scene, facts)
-    gears = _all(scene, "gears", lambda gear: _gear(gear, teeth[gear.name]))
-    with named("outputs"):
-        outputs = Outputs(**in_si(Outputs, scene.outputs))
-    with named("integration"):
-        integration = Integration(**in_si(Integration, scene.integration))
     with named("temperatures"):
-        temperatures = _temperatures(scene)
-    laws: dict[str, Any] = {kind: tuple(_laws_of(kind, scene)) for kind in STATED}
+        temperatures = _temperatures(scene.temperatures)
     with named(""):
         return Scene(
             **in_si(Scene, scene, scene.run, scene.accuracy),
-            shafts=_shafts(scene),
-            gears=gears,
-            discs=_all(scene, "discs", _disc),
-            bushings=_all(scene, "bushings", _bushing),
+            shafts=_shafts(scene.shafts),
+            gears=_gears(scene.gears, tuple(teeth[gear.name] for gear in scene.gears)),
             meshes=meshes,
-            drives=_all(scene, "drives", _drive),
-            planet_bearings=_all(scene, "planet_bearings", _plain(PlanetBearing)),
-            couplings=_all(scene, "couplings", _plain(Coupling)),
-            speed_torques=_all(scene, "speed_torques", _speed_torque),
-            free_rotations=_all(scene, "free_rotations", _plain(FreeRotation)),
             housings=tuple(housings),
-            rolling_bearings=_all(scene, "rolling_bearings", _rolling_bearing_of),
-            **laws,
-            loads=_all(scene, "loads", _load_torque),
-            forces=_all(scene, "forces", _force),
-            unbalances=_all(scene, "unbalances", _plain(Unbalance)),
+            **{kind: parts(getattr(scene, kind)) for kind, parts in _ALONE.items()},
+            **_laws(scene),
             temperatures=temperatures,
-            outputs=outputs,
-            integration=integration,
+            outputs=_outputs(scene.outputs),
+            integration=_integration(scene.integration),
         )
 
 
-def _temperatures(scene: SceneInput) -> Temperatures | None:
-    table = scene.temperatures
+@identity_cached
+def _outputs(table: OutputsInput) -> Outputs:
+    with named("outputs"):
+        return Outputs(**in_si(Outputs, table))
+
+
+@identity_cached
+def _integration(table: IntegrationInput) -> Integration:
+    with named("integration"):
+        return Integration(**in_si(Integration, table))
+
+
+@identity_cached
+def _temperatures(table: TemperaturesInput | None) -> Temperatures | None:
     if table is None:
         return None
     material = part_of(Material, table.housing_material, "housing_material")

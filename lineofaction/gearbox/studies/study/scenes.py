@@ -7,7 +7,7 @@ import json
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -160,7 +160,7 @@ class VariedScene:
             inputs = self.inputs(values)
             solids = inputs.housings, inputs.shafts, inputs.bushings, inputs.rolling_bearings
             databases = self._databases_of(inputs, self.expensive(values))
-            housings = self._kept("housings", solids, lambda: reduced_in(inputs, Path(self.home)))
+            housings = self._kept(("reduced housings",), solids, lambda: reduced_in(inputs, Path(self.home)))
             return dynamic_scene(inputs, databases, housings)
         except (ServiceError, FeContactError) as error:
             raise LeftOut(str(error)) from error
@@ -170,19 +170,43 @@ class VariedScene:
         return {name: values[name] for name in self._of_flanks}
 
     def inputs(self, values: Mapping[str, float]) -> SceneInput:
-        """Return the scene file at values of the factors; raises `BadInput`."""
-        table = self._table()
-        for name, value in values.items():
-            for place in self.places[name]:
+        """Return the scene file at values of the factors; raises `BadInput`.
+
+        Parts of the file without other values are the same objects in all of them.
+        """
+        own = [(place, value) for name, value in values.items() for place in self.places[name]]
+        try:
+            return SceneInput.model_validate(vars(self._base) | self._varied(own))
+        except (ValidationError, BadInput):  # its words are those of the whole scene
+            table = self._table()
+            for place, value in own:
                 with_value(table, place, value)
-        return scene_of_json(table)
+            return scene_of_json(table)
+
+    def _varied(self, own: Sequence[tuple[Place, float]]) -> dict[str, BaseModel | tuple[BaseModel, ...]]:
+        """Return the tables and lists of tables that have other values."""
+        by_part: dict[Place, list[tuple[Place, float]]] = {}
+        for place, value in own:
+            depth = 2 if isinstance(place[1], int) else 1
+            by_part.setdefault(place[:depth], []).append((place[depth:], value))
+        changed: dict[str, Any] = {}
+        for (kind, *index), inside in by_part.items():
+            section = changed.get(str(kind), getattr(self._base, str(kind)))
+            part = section[index[0]] if index else section
+            made = self._kept((kind, *index), repr(inside), partial(_with_values, part, inside))
+            changed[str(kind)] = (*section[: index[0]], made, *section[index[0] + 1 :]) if index else made
+        return changed
 
     @cached_property
-    def _last(self) -> dict[str, tuple[Any, Any]]:
-        """The tables and the housings made last, with what decides them."""
+    def _base(self) -> SceneInput:
+        return scene_of_json(self._table())
+
+    @cached_property
+    def _last(self) -> dict[Place, tuple[Any, Any]]:
+        """The parts, the tables and the housings made last, with what decides them."""
         return {}
 
-    def _kept(self, name: str, key: object, make: Callable[[], Any]) -> Any:
+    def _kept(self, name: Place, key: object, make: Callable[[], Any]) -> Any:
         known = self._last.get(name)
         if known is None or known[0] != key:
             known = self._last[name] = key, make()
@@ -198,7 +222,7 @@ class VariedScene:
     @cached_property
     def _condensed(self) -> dict[str, CondensedPair]:
         """Gears with their compliance, of the meshes whose flanks change."""
-        inputs = scene_of_json(self._table())
+        inputs = self._base
         changed = {mesh_of_case(place) for name in self._of_flanks for place in self.places[name]}
         return {mesh.name: self._compliance_of(mesh) for k, mesh in enumerate(inputs.meshes) if k in changed}
 
@@ -214,7 +238,7 @@ class VariedScene:
         if not values:
             return self.databases
         key, others = tuple(values.items()), lambda: {**self.databases, **self._other_flanks(inputs)}
-        tables: Mapping[str, SteDatabase] = self._kept("tables", key, others)
+        tables: Mapping[str, SteDatabase] = self._kept(("tables",), key, others)
         return tables
 
     def _other_flanks(self, inputs: SceneInput) -> dict[str, SteDatabase]:
@@ -229,6 +253,14 @@ class VariedScene:
             at = float(known.misalignment[0]), float(known.center_distance_change[0])
             tables[mesh.name] = bodies.table(pair, torques, *at)
         return tables
+
+
+def _with_values(part: BaseModel, values: Sequence[tuple[Place, float]]) -> BaseModel:
+    """Return a part with other values; raises `ValidationError`, `BadInput`."""
+    table = part.model_dump(mode="json")
+    for place, value in values:
+        with_value(table, place, value)
+    return type(part).model_validate_json(json.dumps(table))
 
 
 def scene_of_json(table: Json) -> SceneInput:
