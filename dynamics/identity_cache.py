@@ -16,18 +16,24 @@ Parts = Callable[[Any], tuple[Any, ...]]
 
 
 def _itself(data: Any) -> tuple[Any, ...]:
-    """Return the parts of data: those of a tuple, of all else itself."""
-    return data if type(data) is tuple else (data,)
+    return (data,)
+
+
+def _key(part: Any) -> Any:
+    """Return what tells a part from others: of tuples their parts, of names their letters, else identity."""
+    if type(part) is tuple:
+        return tuple(map(_key, part))
+    return part if isinstance(part, str) else id(part)
 
 
 class _Identity:
-    """Data by the identity of its parts, names by their letters: arrays have no hash."""
+    """Data by the identity of its parts: arrays have no hash."""
 
     __slots__ = ("data", "parts")
 
     def __init__(self, data: Any, parts: tuple[Any, ...]) -> None:
         self.data = data
-        self.parts = tuple(part if isinstance(part, str) else id(part) for part in parts)
+        self.parts = _key(parts)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Identity) and self.parts == other.parts
@@ -39,17 +45,14 @@ class _Identity:
 def identity_cached(make: Function) -> Function:
     """Return `make`, which then returns the same object for the same data and equal further arguments.
 
-    A tuple is the same if its parts are. Data and results are frozen: who changes an array in place gets what
-    was made before.
+    A tuple is the same if its parts are, a name if its letters are. Data and results are frozen: who changes
+    an array in place gets what was made before.
     """
     return cached_by(_itself)(make)
 
 
 def cached_by(parts: Parts) -> Callable[[Function], Function]:
-    """Return `identity_cached` for data that is the same if the `parts` of it are that `make` reads.
-
-    Parts that are names are the same if they are equal.
-    """
+    """Return `identity_cached` for data that is the same if the `parts` of it are that `make` reads."""
 
     def cached(make: Function) -> Function:
         @lru_cache(maxsize=KEPT)

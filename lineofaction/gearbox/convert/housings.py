@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dynamics.errors import InputError
+from dynamics.identity_cache import identity_cached
 from dynamics.joints import Housing
 from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES, check_mesh_content
 from lineofaction.gearbox.convert.declared import in_si
@@ -96,8 +97,13 @@ def housings_in(
     return reduced | {name: ReducedHousing.from_netcdf(folder / file) for name, file in files.items()}
 
 
-def housing_of(index: int, housing: HousingInput, reduced: ReducedHousing | None) -> Housing:
-    """Return a housing, `reduced` if it is given by its solid."""
+@identity_cached
+def housings_of(pairs: tuple[tuple[HousingInput, ReducedHousing | None], ...]) -> tuple[Housing, ...]:
+    """Return housings, reduced those that are given by their solids; scenes that have the same share them."""
+    return tuple(_housing_of(index, *pair) for index, pair in enumerate(pairs))
+
+
+def _housing_of(index: int, housing: HousingInput, reduced: ReducedHousing | None) -> Housing:
     if not housing.is_solid:
         return _of_matrices(index, housing)
     from dynamics.housings import scene_housing  # noqa: PLC0415 (start-up time)

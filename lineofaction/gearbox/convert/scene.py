@@ -3,71 +3,42 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Mapping, Sequence, Set
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from pydantic import BaseModel
-
-from bounds import inside
-from dynamics.bearings import BallBearing, Bushing, CatalogLine, PlanetBearing, RollerBearing, RollingBearing
-from dynamics.bearings.catalog import from_catalog
 from dynamics.effects.ledger import mechanism_of
-from dynamics.forces import SpeedTorque
-from dynamics.forces.laws import STATED
-from dynamics.identity_cache import cached_by, identity_cached
-from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
-from dynamics.loads import AngleLaw, AppliedForce, BySpeed, LoadTorque, Orders, SpeedCurve, TimeLaw, Unbalance
-from dynamics.loads.load_course import CONSTANT, Course
+from dynamics.identity_cache import identity_cached
+from dynamics.joints import Housing
 from dynamics.mechanism import with_planets
 from dynamics.mechanism.base_pitches import PRINTED
 from dynamics.mechanism.kinematics import check_motion
-from dynamics.meshes import CoastFlank, GearMesh, MeshTable
+from dynamics.meshes import GearMesh, MeshTable
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
-from dynamics.scene import Integration, Outputs, Scene
-from dynamics.shafts import BeamSection, DiscBody, GearBody, Inertia, Shaft, hollow_cylinder
-from dynamics.solid_housing import Material
-from dynamics.temperatures import Temperatures
+from dynamics.scene import Scene
 from fe_contact.ste import PairFacts, SteDatabase
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.complaint import complaint_of
-from lineofaction.gearbox.convert.declared import in_si, part_of
+from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
-from lineofaction.gearbox.convert.housings import ANY_STIFFNESS, housing_of, placeholder
+from lineofaction.gearbox.convert.housings import ANY_STIFFNESS, housings_of, placeholder
+from lineofaction.gearbox.convert.scene_parts import GearTeeth, meshes_of, parts_of
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas.bearings import BearingInput, BushingInput, RollingBearingInput
-from lineofaction.gearbox.schemas.bodies import DiscInput, GearBodyInput, ShaftInput
-from lineofaction.gearbox.schemas.housings import TemperaturesInput
-from lineofaction.gearbox.schemas.loads import DriveInput, ForceInput, LoadTorqueInput, SpeedTorqueInput
-from lineofaction.gearbox.schemas.meshes import CoastFlankInput, MeshInput, PeriodicInput, StiffnessMeshInput
-from lineofaction.gearbox.schemas.scene import IntegrationInput, OutputsInput, SceneInput
-from lineofaction.gearbox.units import DEGREE, MM, RPM, UM
+from lineofaction.gearbox.schemas.meshes import MeshInput, PeriodicInput, StiffnessMeshInput
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.units import DEGREE, MM, UM
 
 if TYPE_CHECKING:
     from dynamics.housings import ReducedHousing
-
-T = TypeVar("T")
 
 # The gears that the meshes describe, and their axes.
 
 _SAME = 1e-6  # relative; lengths that are typed with a few digits agree to this
 
 
-@dataclass(frozen=True)
-class _Teeth:
-    """One gear as its mesh describes it; SI units, the helix angle with the hand's sign."""
-
-    teeth: int
-    base_radius: float
-    base_helix_angle: float
-    pitch_diameter: float
-    face_width: float
-    internal: bool = False
-
-
-def _teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, _Teeth]:
+def _teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, GearTeeth]:
     """Teeth of every gear, by name; a gear in two meshes must be the same in both."""
-    by_name: dict[str, _Teeth] = {}
+    by_name: dict[str, GearTeeth] = {}
     for index, mesh in enumerate(scene.meshes):
         if mesh.wheel_drives and not facts[mesh.name].internal:
             bound = "left out: the wheel of this case is no ring gear"
@@ -89,13 +60,13 @@ def _teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, _T
     return by_name
 
 
-def _side(facts: PairFacts, side: int) -> _Teeth:
+def _side(facts: PairFacts, side: int) -> GearTeeth:
     """Return one gear of a pair; the hands of external gears are opposite, those in a ring gear the same."""
     radius = facts.base_radius[side]
     hand = facts.helix_hand if side == 0 or facts.internal else -facts.helix_hand
     diameter = 2.0 * radius / math.cos(facts.working_pressure_angle)
     helix, ring = hand * facts.base_helix_angle, facts.internal and side == 1
-    return _Teeth(facts.teeth[side], radius, helix, diameter, facts.face_width, ring)
+    return GearTeeth(facts.teeth[side], radius, helix, diameter, facts.face_width, ring)
 
 
 def _check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:
@@ -115,196 +86,6 @@ def _check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) -
             raise BadInput.of(field, list(second), bound, f"That is the center distance of mesh {mesh.name}.")
 
 
-# Parts of a scene file in SI, each by its table; what a table shares with its part is not said here again.
-# Scenes that have the same tables of a kind share its parts.
-
-
-def _each(kind: str, made: Callable[[Any], T]) -> Callable[[tuple[BaseModel, ...]], tuple[T, ...]]:
-    """Return what makes the parts of a kind; errors are named by the place in the list."""
-
-    @identity_cached
-    def of(tables: tuple[BaseModel, ...]) -> tuple[T, ...]:
-        parts = []
-        for index, table in enumerate(tables):
-            with named(f"{kind}[{index}]"):
-                parts.append(made(table))
-        return tuple(parts)
-
-    return of
-
-
-def _plain(kind: type[T]) -> Callable[[BaseModel], T]:
-    """Return what makes parts that share all their fields with their tables."""
-    return lambda table: kind(**in_si(kind, table))
-
-
-def _bushing(table: BushingInput) -> Bushing:
-    """Return a bushing; force and moment of its preload where one of them is given."""
-    force, moment = table.preload_force_n, table.preload_moment_n_m
-    preload = None if force is None and moment is None else (*(force or (0.0,) * 3), *(moment or (0.0,) * 2))
-    return Bushing(**in_si(Bushing, table), preload=preload)
-
-
-def _rolling_bearing_of(table: RollingBearingInput) -> RollingBearing:
-    """Return a rolling bearing, its row as written or by its catalog line."""
-    row = part_of(BallBearing, table.ball, "ball") or part_of(RollerBearing, table.roller, "roller")
-    if row is None:
-        assert table.catalog is not None  # the schema comes first
-        with inside("catalog"):
-            row = from_catalog(**in_si(CatalogLine, table.catalog))
-    return RollingBearing(**in_si(RollingBearing, table), row=row)
-
-
-@cached_by(lambda scene: (*scene.bushings, "", *scene.planet_bearings))
-def _laws(scene: SceneInput) -> dict[str, Any]:
-    """Return what all bearings do that is not linear, by the kinds of `StatedLaws`."""
-    return {kind: tuple(_laws_of(kind, scene)) for kind in STATED}
-
-
-def _laws_of(kind: str, scene: SceneInput) -> Iterator[Any]:
-    for path, bearing in _bearings(scene):
-        for name, table in bearing.laws[kind].items():
-            with named(f"{path}.{name}"):
-                yield STATED[kind](bushing=bearing.name, **in_si(STATED[kind], table) | table.renamed)
-
-
-def _bearings(scene: SceneInput) -> Iterator[tuple[str, BearingInput]]:
-    yield from ((f"bushings[{index}]", part) for index, part in enumerate(scene.bushings))
-    yield from ((f"planet_bearings[{index}]", part) for index, part in enumerate(scene.planet_bearings))
-
-
-@identity_cached
-def _shafts(tables: tuple[ShaftInput, ...]) -> tuple[Shaft, ...]:
-    """Return the shafts; a diameter is one section of steel, an inertia alone is rigid."""
-    shafts = []
-    for index, table in enumerate(tables):
-        sections = _sections(index, table)
-        with named(f"shafts[{index}]"):
-            inertia = part_of(Inertia, table.inertia, "inertia") or Inertia()
-            shafts.append(Shaft(**in_si(Shaft, table), inertia=inertia, sections=sections))
-    return tuple(shafts)
-
-
-def _sections(index: int, shaft: ShaftInput) -> tuple[BeamSection, ...]:
-    """Return the pieces; their lengths, which agree with the shaft's, to the last digit."""
-    if shaft.diameter_mm is not None:
-        return (BeamSection(shaft.length_mm * MM, shaft.diameter_mm * MM),)
-    parts = shaft.sections or ()
-    together = sum(part.length_mm for part in parts)
-    sections = []
-    for number, part in enumerate(parts):
-        with named(f"shafts[{index}].sections[{number}]"):
-            length = part.length_mm * (shaft.length_mm / together) * MM
-            sections.append(BeamSection(**in_si(BeamSection, part) | {"length": length}))
-    return tuple(sections)
-
-
-def _disc(table: DiscInput) -> DiscBody:
-    inertia = part_of(Inertia, table.inertia, "inertia") or Inertia()
-    placed = DiscBody(**in_si(DiscBody, table), inertia=inertia)
-    if table.cylinder is None:
-        return placed
-    size = table.cylinder
-    with inside("cylinder"):
-        steel = hollow_cylinder(size.outer_diameter_mm * MM, size.width_mm * MM, size.bore_diameter_mm * MM)
-        return replace(placed, inertia=steel)
-
-
-@identity_cached
-def _gears(tables: tuple[GearBodyInput, ...], teeth: tuple[_Teeth, ...]) -> tuple[GearBody, ...]:
-    gears = []
-    for index, (table, own) in enumerate(zip(tables, teeth, strict=True)):
-        with named(f"gears[{index}]"):
-            gears.append(_gear(table, own))
-    return tuple(gears)
-
-
-def _gear(table: GearBodyInput, teeth: _Teeth) -> GearBody:
-    inertia = part_of(Inertia, table.inertia, "inertia")
-    if inertia is None:
-        inertia = hollow_cylinder(teeth.pitch_diameter, teeth.face_width, table.bore_diameter_mm * MM)
-    own = {name: value for name, value in vars(teeth).items() if name != "pitch_diameter"}
-    return GearBody(**in_si(GearBody, table), **own, inertia=inertia)
-
-
-def _mesh(index: int, mesh: MeshInput, table: MeshTable, base_pitch: float) -> GearMesh:
-    with named(f"meshes[{index}]"):
-        return GearMesh(
-            **in_si(GearMesh, mesh), table=table, coast=_coast_flank(mesh.coast_flank, base_pitch)
-        )
-
-
-def _coast_flank(flank: CoastFlankInput | None, base_pitch: float) -> CoastFlank | None:
-    """Return the coast flank; teeth that are equally thick share the pitch less the backlash."""
-    if flank is None:
-        return None
-    backlash = flank.backlash_um * UM
-    thickness = flank.tooth_thickness
-    with named("coast_flank"):
-        return CoastFlank(backlash, 0.5 * (1.0 - backlash / base_pitch) if thickness is None else thickness)
-
-
-def _drive(table: DriveInput) -> ImposedRotation:
-    law: TimeLaw | AngleLaw
-    if table.angle_deg is not None:
-        law = AngleLaw(table.time_s, tuple(value * DEGREE for value in table.angle_deg))
-    else:
-        law = TimeLaw(table.time_s, tuple(v * RPM for v in table.speed_rpm or ()), table.course)
-    return ImposedRotation(**in_si(ImposedRotation, table) | {"speed": law})
-
-
-def _load_torque(table: LoadTorqueInput) -> LoadTorque:
-    law = TimeLaw(table.time_s, table.torque_n_m, table.course)
-    return LoadTorque(**in_si(LoadTorque, table) | {"torque": law})
-
-
-def _speed_torque(table: SpeedTorqueInput) -> SpeedTorque:
-    speed = [value * RPM for value in table.speed_rpm]
-    if table.kind == "table":
-        curve = SpeedCurve.table(speed, table.torque_n_m)
-    elif table.kind == "quadratic":
-        curve = SpeedCurve.quadratic(table.torque_n_m[0], speed[0])
-    else:
-        curve = SpeedCurve.constant(table.torque_n_m[0], speed[0])
-    return SpeedTorque(**in_si(SpeedTorque, table), curve=curve)
-
-
-def _force(table: ForceInput) -> AppliedForce:
-    return AppliedForce(**in_si(AppliedForce, table) | {"course": _course(table)})
-
-
-def _course(force: ForceInput) -> Course:
-    shaft, factor = force.of_shaft or force.shaft, force.factor or ()
-    if force.time_s is not None:
-        return TimeLaw(force.time_s, factor, force.course)
-    if force.speed_rpm is not None:
-        return BySpeed(SpeedCurve.table([value * RPM for value in force.speed_rpm], factor), shaft)
-    if force.orders is not None:
-        phases = force.phase_deg or (0.0,) * len(force.orders)
-        angles = tuple(phase * DEGREE for phase in phases)
-        return Orders(shaft, force.orders, force.amplitude or (), angles, force.mean)
-    return CONSTANT if force.turn_factor is None else Orders.table(shaft, force.turn_factor)
-
-
-_ALONE: Mapping[str, Callable[[Any], tuple[Any, ...]]] = {
-    kind: _each(kind, made)
-    for kind, made in {
-        "discs": _disc,
-        "bushings": _bushing,
-        "drives": _drive,
-        "planet_bearings": _plain(PlanetBearing),
-        "couplings": _plain(Coupling),
-        "speed_torques": _speed_torque,
-        "free_rotations": _plain(FreeRotation),
-        "rolling_bearings": _rolling_bearing_of,
-        "loads": _load_torque,
-        "forces": _force,
-        "unbalances": _plain(Unbalance),
-    }.items()
-}
-"""What makes the parts of each kind that follow from their tables alone."""
-
-
 def _has_bent_shafts(database: SteDatabase) -> bool:
     ledger = database.metadata.effect_ledger
     entries = ledger if isinstance(ledger, list) else ledger.get("entries", [])
@@ -316,11 +97,12 @@ def _has_bent_shafts(database: SteDatabase) -> bool:
 # Meshes in closed form: the facts of their gears and their tables.
 
 
-def _closed_forms(scene: SceneInput) -> dict[str, tuple[PairFacts, MeshTable]]:
+@identity_cached
+def _closed_forms(meshes: tuple[MeshInput, ...]) -> dict[str, tuple[PairFacts, MeshTable]]:
     """Return facts and table of every mesh that states its stiffness, by name."""
     return {
         mesh.name: (_facts(f"meshes[{index}].stiffness", mesh.stiffness), _table(index, mesh.stiffness))
-        for index, mesh in enumerate(scene.meshes)
+        for index, mesh in enumerate(meshes)
         if mesh.stiffness is not None
     }
 
@@ -422,7 +204,7 @@ def dynamic_scene(
     facts = {name: database.facts for name, database in databases.items()}
     with boundary_errors():
         tables: dict[str, MeshTable] = {name: table.force_table() for name, table in databases.items()}
-    housings = [housing_of(i, part, reduced.get(part.name)) for i, part in enumerate(scene.housings)]
+    housings = housings_of(tuple((part, reduced.get(part.name)) for part in scene.housings))
     bent = {name for name, database in databases.items() if _has_bent_shafts(database)}
     return _moving(scene, facts, tables, housings, bent)
 
@@ -460,13 +242,14 @@ def _moving(
     Facts and tables are those of the meshes with a database, `bent` the names of those whose tables have the
     bending of their shafts in them.
     """
-    closed = _closed_forms(scene)
+    closed = _closed_forms(scene.meshes)
     facts = {**facts, **{name: pair for name, (pair, _) in closed.items()}}
     tables = {**tables, **{name: table for name, (_, table) in closed.items()}}
-    stated = (
-        _mesh(i, mesh, tables[mesh.name], facts[mesh.name].base_pitch) for i, mesh in enumerate(scene.meshes)
+    meshes = meshes_of(
+        tuple((mesh, tables[mesh.name]) for mesh in scene.meshes),
+        tuple(facts[mesh.name].base_pitch for mesh in scene.meshes),
+        tuple(mesh.name in bent for mesh in scene.meshes),
     )
-    meshes = tuple(replace(mesh, bent_shafts=mesh.name in bent) for mesh in stated)
     one_of_each = _assembled(scene, facts, meshes, housings)
     with named(""):
         check_motion(one_of_each)
@@ -484,41 +267,13 @@ def _assembled(
 ) -> Scene:
     teeth = _teeth_of(scene, facts)
     _check_center_distances(scene, facts)
-    with named("temperatures"):
-        temperatures = _temperatures(scene.temperatures)
     with named(""):
         return Scene(
             **in_si(Scene, scene, scene.run, scene.accuracy),
-            shafts=_shafts(scene.shafts),
-            gears=_gears(scene.gears, tuple(teeth[gear.name] for gear in scene.gears)),
+            **parts_of(scene, tuple(teeth[gear.name] for gear in scene.gears)),
             meshes=meshes,
             housings=tuple(housings),
-            **{kind: parts(getattr(scene, kind)) for kind, parts in _ALONE.items()},
-            **_laws(scene),
-            temperatures=temperatures,
-            outputs=_outputs(scene.outputs),
-            integration=_integration(scene.integration),
         )
-
-
-@identity_cached
-def _outputs(table: OutputsInput) -> Outputs:
-    with named("outputs"):
-        return Outputs(**in_si(Outputs, table))
-
-
-@identity_cached
-def _integration(table: IntegrationInput) -> Integration:
-    with named("integration"):
-        return Integration(**in_si(Integration, table))
-
-
-@identity_cached
-def _temperatures(table: TemperaturesInput | None) -> Temperatures | None:
-    if table is None:
-        return None
-    material = part_of(Material, table.housing_material, "housing_material")
-    return Temperatures(**in_si(Temperatures, table) | {"housing_material": material})
 
 
 def _with_all_planets(inputs: SceneInput, scene: Scene) -> Scene:

@@ -32,7 +32,7 @@ from rexs_unit import (
 
 from bounds.types import FloatArray
 from dynamics.bearings.loaded_bearing import LoadedBearing
-from lineofaction.gearbox.convert.scene import _rolling_bearing_of
+from lineofaction.gearbox.convert.scene_parts import _rolling_bearing_of
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.rexs.model import Document
