@@ -76,7 +76,8 @@ class BearingForce(NamedTuple):
         """
         missing = [None] * (self.freedoms - q.shape[1])
         state = [*local, *q.T, *missing, *v.T]
-        signals, part = np.repeat(self.constant[:, None], q.shape[0], axis=1), np.empty(q.shape[0])
+        signals, part = np.empty((self.constant.size, q.shape[0])), np.empty(q.shape[0])
+        signals[:] = self.constant[:, None]
         for signal, (start, end) in enumerate(zip(self.first[:-1], self.first[1:], strict=True)):
             for entry in range(start, end):
                 signals[signal] += np.multiply(self.weight[entry], state[self.column[entry]], out=part)

@@ -14,7 +14,7 @@ from dynamics.bearings.matrix import congruent, matrix_rows
 from dynamics.bearings.seat import SEAT, seat_matrix
 from dynamics.errors import SolveError
 from dynamics.forces.elements import Elements, potential
-from dynamics.forces.laws import OF_BEARINGS, STATED
+from dynamics.forces.laws import OF_BEARINGS, STATED, among
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
 from dynamics.kernels.local_state import LocalState
@@ -70,7 +70,7 @@ def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray
 
 def bearing_rows(arrays: SystemArrays) -> IntArray:
     """Return the rows of bearings that are not linear."""
-    bearing = np.isin(arrays.elements.law, OF_BEARINGS)
+    bearing = among(arrays.elements.law, OF_BEARINGS)
     return np.flatnonzero(np.repeat(bearing, np.diff(arrays.elements.first)))
 
 
@@ -96,7 +96,7 @@ def _on_bearings(arrays: SystemArrays, matrix: FloatArray, q: FloatArray) -> _An
     elements = arrays.elements
     local, force, stiffness = local_state(arrays, 0.0, q, np.zeros(q.size)), matrix @ q, matrix.copy()
     largest = float(np.max(np.abs(force / arrays.scale), initial=0.0))
-    bearings = np.flatnonzero(np.isin(elements.law, OF_BEARINGS))
+    bearings = np.flatnonzero(among(elements.law, OF_BEARINGS))
     for e in bearings:
         rows = slice(elements.first[e], elements.first[e + 1])
         gradient = arrays.direction[rows]

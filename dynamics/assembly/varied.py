@@ -59,15 +59,16 @@ def _operating_points_at(system: System, displacement: FloatArray, time: float =
     Those of the bodies displaced by `displacement` (n,) where the mesh's table follows them, else the mesh's
     constant ones.
     """
-    rest = np.zeros(displacement.size)
-    coordinate = local_state(system.arrays, time, displacement, rest).coordinate
     elements, laws = system.arrays.elements, system.arrays.elements.laws.spatial_flank
     points = np.array(
         [[mesh.misalignment, mesh.center_distance_change] for mesh in system.scene.meshes]
     ).reshape(-1, 2)
-    for index in range(points.shape[0]):
-        if elements.law[index] != SPATIAL_FLANK:
-            continue
+    spatial = np.flatnonzero(elements.law[: points.shape[0]] == SPATIAL_FLANK)
+    if spatial.size == 0:
+        return points
+    rest = np.zeros(displacement.size)
+    coordinate = local_state(system.arrays, time, displacement, rest).coordinate
+    for index in spatial:
         entry = elements.entry[index]
         for axis in range(2):
             if laws.row[entry, axis] > 0 and laws.follows[entry, axis] == 1:

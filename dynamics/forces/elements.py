@@ -123,10 +123,11 @@ class Elements(NamedTuple):
                 laws,
             )
         )
-        local = by_address(make_local(packed, 0))
-        for law in map(Law, np.unique(packed.law)):
-            for each in COMPILED[law].routines:
-                each.prepare(by_address(getattr(packed.laws, law.name.lower())), local)
+        present = (Law(law) for law in np.unique(packed.law))
+        apart = [(law, each) for law in present for each in COMPILED[law].routines]
+        local = by_address(make_local(packed, 0)) if apart else None
+        for law, each in apart:
+            each.prepare(by_address(getattr(packed.laws, law.name.lower())), local)
         return packed
 
 

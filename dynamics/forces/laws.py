@@ -10,7 +10,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cache
 from typing import Any, NamedTuple, get_args, get_type_hints
+
+import numpy as np
 
 from dynamics.bearings.ball_elements import BallElements, axial_seat, balls, balls_energy
 from dynamics.bearings.linear_bearing import LinearBearingLaws, linear_bearing, linear_bearing_energy
@@ -42,6 +45,7 @@ from dynamics.loads.load_laws import (
 )
 from dynamics.meshes.flank_force import FlankLaws, flank, flank_energy
 from dynamics.meshes.spatial_flank import SpatialFlankLaws, spatial_energy, spatial_flank
+from dynamics.types import BoolArray, IntArray
 
 
 class Law(IntEnum):
@@ -142,4 +146,16 @@ STATED_OF_BEARINGS: dict[Any, Law] = {
 }
 """Kinds of a `BearingLaw`, by their arrays."""
 OF_BEARINGS = (*STATED_OF_BEARINGS.values(), Law.LINEAR_BEARING)
+
+
+def among(law: IntArray, laws: tuple[Law, ...]) -> BoolArray:
+    """Return which elements, by their `law` (E,), have one of `laws`."""
+    return np.asarray(_marked(laws)[law])
+
+
+@cache
+def _marked(laws: tuple[Law, ...]) -> BoolArray:
+    return np.array([law in laws for law in Law])
+
+
 """Laws of bearings; each is the gradient of an energy without hollows."""

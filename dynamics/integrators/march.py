@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from copy import deepcopy
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -139,6 +138,12 @@ def stored_energy(
     return np.array([kinetic, linear + bearing, mesh])
 
 
+def _audited_energy(system: System, control: Control, time: float, work: Workspace) -> FloatArray:
+    if not control.audit:
+        return np.zeros(3)
+    return stored_energy(system.arrays, time, work.q, work.v, work.moved)
+
+
 @compiled
 def _in_elements(elements: Elements, local: LocalState) -> tuple[float, float]:
     """Energies that flanks and that bearings store."""
@@ -188,7 +193,7 @@ class March:
     ring : SampleRing
         The points that the anti-alias filter sees, likewise.
     initial : (3,) array
-        Kinetic, bushing and mesh energy at the start, J.
+        Kinetic, bushing and mesh energy at the start, J; 0 without an audit.
     samples : int
         Of the whole run.
     """
@@ -225,7 +230,7 @@ class Ending:
     end : float
         Time of the last step's end, s; the energies refer to it.
     stored : (2, 3) array
-        Kinetic, bushing and mesh energy at the start and at the end, J.
+        Kinetic, bushing and mesh energy at the start and at the end, J; 0 without an audit.
     work : (7,) array
         Works over the run, J, in the order of `Power`.
     fallen : float
@@ -267,8 +272,8 @@ def start_march(
         work.v[:] = velocity
     scene = system.scene
     samples = int(np.floor(scene.duration * system.sampling.rate * (1.0 + 1e-12))) + 1
-    initial = stored_energy(system.arrays, 0.0, start.displacement, work.v, work.moved)
     control = _control(system, integration)
+    initial = _audited_energy(system, control, 0.0, work)
     sampler = Sampler.of(system)
     ring = SampleRing.of(system.arrays, sampler)
     run = by_address(system.arrays), by_address(work)
@@ -329,7 +334,7 @@ def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -
     They are filtered as if the motion went on turned about its last point. The march itself stays as it
     is, and can go on.
     """
-    work, ring = march.work, deepcopy(by_value(march.ring))
+    work, ring = march.work, _copied(march.ring)
     end, before = float(work.time[0]), int(work.counts[Count.OUTPUT])
     counted = work._replace(counts=work.counts.copy())
     due = int(counted.counts[Count.POINT] - 1) // march.sampler.factor + 1
@@ -339,7 +344,7 @@ def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -
     held = by_address(counted), march.compiled.sampler, by_address(ring)
     continue_past_the_end(*held, march.sampler.taps.size // 2, by_address(room))
     sink.keep(before, samples - before)
-    final = stored_energy(march.system.arrays, end, work.q, work.v, work.moved)
+    final = _audited_energy(march.system, march.control, end, work)
     done = work.work.copy()
     done[Power.POSITION] += final[2] - march.initial[2]
     return Ending(
@@ -354,6 +359,13 @@ def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -
         taken,
         _sample_figures(march.system, ring, int(work.counts[Count.POINT]), samples),
     )
+
+
+def _copied(arrays: Any) -> Any:
+    """Return a named tuple of arrays, and of such tuples, with arrays of its own."""
+    own = by_value(arrays)
+    parts = (_copied(part) if isinstance(part, tuple) else np.array(part) for part in own)
+    return type(own)(*parts)
 
 
 def _control(system: System, integration: Integration) -> Control:

@@ -9,7 +9,7 @@ import numpy as np
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
 from dynamics.assembly.bearing_rest import bearing_rows, rest_on_bearings
-from dynamics.forces.laws import Law
+from dynamics.forces.laws import Law, among
 from dynamics.meshes.table_lookup import table_deflection
 from dynamics.motion.force_balance import (
     ForceBalance,
@@ -166,7 +166,7 @@ def _solve(arrays: SystemArrays, matrix: FloatArray, force: FloatArray, q: Float
 def _per_mesh(arrays: SystemArrays, values: FloatArray) -> FloatArray:
     """Return the sum of `values` (R,) over the flanks of each mesh, (m,)."""
     elements = arrays.elements
-    flank = np.isin(elements.law, (Law.FLANK, Law.SPATIAL_FLANK))
+    flank = among(elements.law, (Law.FLANK, Law.SPATIAL_FLANK))
     total = np.zeros(int(np.max(elements.mesh[flank], initial=-1)) + 1)
     np.add.at(total, elements.mesh[flank], values[elements.first[:-1][flank]])
     return total

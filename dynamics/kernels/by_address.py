@@ -58,7 +58,7 @@ class _Addressed:
         words: list[int] = []
         self._numba_type_ = _lay_out(value, words)
         self._words = np.array(words, dtype=np.int64)
-        self._address = self._words.ctypes.data
+        self._address = _address_of(self._words)
         self.value = value
 
     def __getattr__(self, name: str) -> Any:

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.forces.laws import Law
+from dynamics.forces.laws import Law, among
 from dynamics.linearize.operating_speeds import CommonPeriod, law_speeds
 from dynamics.loads.load_course import BySpeed, Orders
 from dynamics.loads.time_law import TimeLaw
@@ -32,7 +32,7 @@ def load_harmonics(
     force = np.zeros((speed.size, harmonics.size, direction.shape[1]), dtype=complex)
     column_of = {int(harmonic): column for column, harmonic in enumerate(harmonics)}
     course = _Course(system, period, np.abs(speed), time)
-    for e in np.flatnonzero(np.isin(elements.law, (Law.APPLIED_FORCE, Law.UNBALANCE))):
+    for e in np.flatnonzero(among(elements.law, (Law.APPLIED_FORCE, Law.UNBALANCE))):
         entry, first = int(elements.entry[e]), int(elements.first[e])
         applied = elements.law[e] == Law.APPLIED_FORCE
         rows = course.of_force(entry) if applied else course.of_unbalance(entry)

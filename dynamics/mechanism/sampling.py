@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
+from dynamics.identity_cache import KEPT, cached_by
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.phases import cage_turns, load_orders
 from dynamics.scene.scene import LEAST_RATE, Scene, check_samples
@@ -77,12 +79,7 @@ class Sampling:
 
     def filter_taps(self) -> FloatArray:
         """Return the weights (taps,) of the filter, symmetric, with the sum 1."""
-        at = np.arange(self.taps) - self.taps // 2
-        if self.stop_band == 0.0:
-            return np.asarray(at == 0, dtype=float)
-        shape = 0.1102 * (DESIGN - 8.7)  # of a stop band above 50 dB (Kaiser 1974)
-        weight = np.sinc(at / self.factor) * np.kaiser(self.taps, shape)
-        return np.asarray(weight / np.sum(weight))
+        return _filter_taps(self.taps, self.factor if self.stop_band else 0)
 
     def points(self) -> Sampling:
         """Return a sampling of the same rate that looks nowhere else and filters nothing."""
@@ -91,6 +88,17 @@ class Sampling:
     def to_json(self) -> Json:
         """Return what the receipt says."""
         return {**asdict(self), "edge": self.edge}
+
+
+@lru_cache(maxsize=KEPT)
+def _filter_taps(taps: int, factor: int) -> FloatArray:
+    """Return the weights (taps,) of a filter to every `factor`-th point; 0: of none."""
+    at = np.arange(taps) - taps // 2
+    if factor == 0:
+        return np.asarray(at == 0, dtype=float)
+    shape = 0.1102 * (DESIGN - 8.7)  # of a stop band above 50 dB (Kaiser 1974)
+    weight = np.sinc(at / factor) * np.kaiser(taps, shape)
+    return np.asarray(weight / np.sum(weight))
 
 
 def order_rate(scene: Scene, kinematics: Kinematics) -> float:
@@ -125,12 +133,18 @@ def top_passing_frequency(scene: Scene, kinematics: Kinematics) -> float:
 
 def _highest(scene: Scene, rate: FloatArray) -> float:
     """Return the highest frequency over the run of what turns at `rate` (r, k) per turn of each law, Hz."""
-    time = np.linspace(0.0, scene.duration, SPEED_POINTS)
+    speed = _speeds(scene, scene.duration)
+    return float(np.max(np.abs(rate @ speed), initial=0.0)) / (2.0 * math.pi)
+
+
+@cached_by(lambda scene: (scene.drives, scene.free_rotations))
+def _speeds(scene: Scene, duration: float) -> FloatArray:
+    """Return the speed of every law at points all over a run and at its knots, (k, T) in rad/s."""
+    time = np.linspace(0.0, duration, SPEED_POINTS)
     knots = [np.asarray(part.speed.time, dtype=float) for part in scene.references]
     inside = np.concatenate(knots)
-    time = np.union1d(time, inside[(inside >= 0.0) & (inside <= scene.duration)])
-    speed = np.array([part.speed(time) for part in scene.references])
-    return float(np.max(np.abs(rate @ speed), initial=0.0)) / (2.0 * math.pi)
+    time = np.union1d(time, inside[(inside >= 0.0) & (inside <= duration)])
+    return np.array([part.speed(time) for part in scene.references])
 
 
 def choose_sampling(scene: Scene, kinematics: Kinematics, mode: float) -> Sampling:

@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.elements import Elements
-from dynamics.forces.laws import Law
+from dynamics.forces.laws import Law, among
 from dynamics.kernels.local_state import LocalState
 from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray
@@ -114,9 +114,11 @@ def at_mean_loads(arrays: SystemArrays) -> SystemArrays:
 
 def mean_loads(arrays: SystemArrays, time: float) -> FloatArray:
     """Return the forces (n,) of loads at the speeds of the kinematic motion at `time`, means over a turn."""
-    none = np.zeros(arrays.mass.shape[0])
+    none, loads = np.zeros(arrays.mass.shape[0]), among(arrays.elements.law, LOADS)
+    if not np.any(loads):
+        return none
     local = local_state(at_mean_loads(arrays), time, none, none)
-    rows = np.repeat(np.isin(arrays.elements.law, LOADS), np.diff(arrays.elements.first))
+    rows = np.repeat(loads, np.diff(arrays.elements.first))
     return np.asarray(-local.force[rows] @ arrays.direction[rows])
 
 

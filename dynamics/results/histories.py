@@ -14,7 +14,7 @@ from dynamics.mechanism.additions import CENTER_DISTANCE_CHANGE, LOAD_ARM, MISAL
 from dynamics.mechanism.freedoms import ROTATION
 from dynamics.mechanism.line_of_action import common_face_width, table_sense
 from dynamics.motion.motion import ACCELERATION, FRACTION, QUANTA_PER_TURN, SPEED, WHOLE
-from dynamics.motion.observation import Observed, observe_laws, static_deflections
+from dynamics.motion.observation import Observed, static_deflections
 from dynamics.motion.sampled_states import States
 from dynamics.types import FloatArray, IntArray
 
@@ -108,14 +108,14 @@ def filtered(system: System, states: States, seen: Observed) -> _Signals:
 
 
 def histories(
-    system: System, time: FloatArray, states: States, seen: Observed, signals: _Signals
+    system: System, time: FloatArray, laws: FloatArray, states: States, seen: Observed, signals: _Signals
 ) -> dict[str, Any]:
     """Return the series of `RunResult` made of `signals`, for the `states` at `time` (T,) as `seen`.
 
-    Positions, contact and the extremes of the mesh forces are those of the unfiltered motion.
+    `laws` (4, k, T) is the motion of the laws. Positions, contact and the extremes of the mesh forces are
+    those of the unfiltered motion.
     """
-    arrays, scene = system.arrays, system.scene
-    laws = observe_laws(arrays, time)
+    scene = system.scene
     q, v, moved = signals.q, signals.v, states.moved
     outputs = scene.outputs
     force, moment = _on_the_ground(system, laws, signals.force, q, v, moved)
@@ -150,9 +150,11 @@ def histories(
     }
 
 
-def checked_series(system: System, time: FloatArray, states: States, seen: Observed) -> dict[str, Any]:
+def checked_series(
+    system: System, time: FloatArray, laws: FloatArray, states: States, seen: Observed
+) -> dict[str, Any]:
     """Return the series that a run is checked by (`RunChecks`): of points of the motion, not filtered."""
-    laws, driving = observe_laws(system.arrays, time), system.driving_rows
+    driving = system.driving_rows
     return {
         "time": time,
         "position": seen.position[: len(system.scene.meshes)],

@@ -15,7 +15,7 @@ from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.bearings.row_law import row_law
 from dynamics.errors import SolveError
 from dynamics.forces.elements import Elements
-from dynamics.forces.laws import Law
+from dynamics.forces.laws import Law, among
 from dynamics.influence import Decided, Influence, estimate_influences
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.march import Ending
@@ -28,7 +28,7 @@ from dynamics.linearize.linear_system import LinearSystem, freedom_parts, linear
 from dynamics.linearize.operating_speeds import leading_law, mesh_frequencies
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.bearing_elements import BearingElement
-from dynamics.motion.observation import local_state, observe, static_deflections
+from dynamics.motion.observation import local_state, observe, observe_laws, static_deflections
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
 from dynamics.results import EnergyAudit, StepStatistics
@@ -290,7 +290,7 @@ def _bearings_at_rest(system: System) -> Json:
     without such bearings or without an equilibrium.
     """
     elements = system.arrays.elements
-    rows = np.flatnonzero(np.isin(elements.law, ROWS))
+    rows = np.flatnonzero(among(elements.law, ROWS))
     rest = static_equilibrium(system) if rows.size else None
     if rest is None or not rest.status.usable:
         return {}
@@ -410,11 +410,11 @@ def _known_influences(decided: Decided, system: System, end: Ending) -> Mapping[
 def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return all series of `RunResult` for the `states` at `time` (T,), and those to check, unfiltered."""
     seen = observe(system.arrays, time, states.q, states.v, states.moved)
+    motion = system, time, observe_laws(system.arrays, time), states, seen
     if system.sampling.stop_band == 0.0:
-        points = histories(system, time, states, seen, unfiltered(system, seen, states))
+        points = histories(*motion, unfiltered(system, seen, states))
         return points, points
-    series = histories(system, time, states, seen, filtered(system, states, seen))
-    return series, checked_series(system, time, states, seen)
+    return histories(*motion, filtered(system, states, seen)), checked_series(*motion)
 
 
 def finer(integration: Integration) -> Integration:
