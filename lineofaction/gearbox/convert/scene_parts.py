@@ -252,23 +252,21 @@ def _temperatures(table: TemperaturesInput | None) -> Temperatures | None:
         return Temperatures(**in_si(Temperatures, table) | {"housing_material": material})
 
 
-_ALONE: Mapping[str, Callable[[Any], tuple[Any, ...]]] = {
-    kind: _each(kind, made)
-    for kind, made in {
-        "discs": _disc,
-        "bushings": _bushing,
-        "drives": _drive,
-        "planet_bearings": _plain(PlanetBearing),
-        "couplings": _plain(Coupling),
-        "speed_torques": _speed_torque,
-        "free_rotations": _plain(FreeRotation),
-        "rolling_bearings": _rolling_bearing_of,
-        "loads": _load_torque,
-        "forces": _force,
-        "unbalances": _plain(Unbalance),
-    }.items()
+_ALONE: Mapping[str, Callable[[Any], Any]] = {
+    "discs": _disc,
+    "bushings": _bushing,
+    "drives": _drive,
+    "planet_bearings": _plain(PlanetBearing),
+    "couplings": _plain(Coupling),
+    "speed_torques": _speed_torque,
+    "free_rotations": _plain(FreeRotation),
+    "rolling_bearings": _rolling_bearing_of,
+    "loads": _load_torque,
+    "forces": _force,
+    "unbalances": _plain(Unbalance),
 }
-"""What makes the parts of each kind that follow from their tables alone."""
+"""What makes a part of each kind that follows from its table alone."""
+_LISTS = {kind: _each(kind, made) for kind, made in _ALONE.items()}
 
 
 def parts_of(scene: SceneInput, teeth: tuple[GearTeeth, ...]) -> dict[str, Any]:
@@ -279,7 +277,7 @@ def parts_of(scene: SceneInput, teeth: tuple[GearTeeth, ...]) -> dict[str, Any]:
     return {
         "shafts": _shafts(scene.shafts),
         "gears": _gears(scene.gears, teeth),
-        **{kind: parts(getattr(scene, kind)) for kind, parts in _ALONE.items()},
+        **{kind: parts(getattr(scene, kind)) for kind, parts in _LISTS.items()},
         **_laws(scene),
         "temperatures": _temperatures(scene.temperatures),
         "outputs": _outputs(scene.outputs),

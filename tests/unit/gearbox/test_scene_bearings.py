@@ -20,7 +20,8 @@ from dynamics.housings import ReducedHousing, ReducedMatrices, Ring, SeatFrame, 
 from dynamics.integrators import static_equilibrium
 from dynamics.mechanism.bodies import modal_housing
 from lineofaction.gearbox.convert.declared import in_si
-from lineofaction.gearbox.convert.scene import _laws_of, dynamic_scene
+from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.convert.scene_parts import _laws_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput

@@ -190,11 +190,14 @@ class VariedScene:
             depth = 2 if isinstance(place[1], int) else 1
             by_part.setdefault(place[:depth], []).append((place[depth:], value))
         changed: dict[str, Any] = {}
-        for (kind, *index), inside in by_part.items():
-            section = changed.get(str(kind), getattr(self._base, str(kind)))
-            part = section[index[0]] if index else section
-            made = self._kept((kind, *index), repr(inside), partial(_with_values, part, inside))
-            changed[str(kind)] = (*section[: index[0]], made, *section[index[0] + 1 :]) if index else made
+        for at, inside in by_part.items():
+            kind, numbers = str(at[0]), [int(number) for number in at[1:]]
+            section = changed.get(kind, getattr(self._base, kind))
+            part = section[numbers[0]] if numbers else section
+            made = self._kept(at, repr(inside), partial(_with_values, part, inside))
+            for number in numbers:
+                made = (*section[:number], made, *section[number + 1 :])
+            changed[kind] = made
         return changed
 
     @cached_property
