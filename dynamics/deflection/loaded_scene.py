@@ -109,7 +109,8 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
 def with_loads(scene: Scene, case: LoadCase) -> Scene:
     """Return `scene` with the constant loads and the forces of `case`, which its flanks carry.
 
-    Drives and speeds stay. Raises `InputError`: as `loaded_scene`.
+    Every drive holds its largest speed: the torque of a run-up's acceleration is none of the case. Raises
+    `InputError`: as `loaded_scene`.
     """
     stated = {part.name: part for part in case.forces}
     pushed = replace(scene, forces=tuple(_stated(force, stated.get(force.name)) for force in scene.forces))
@@ -118,6 +119,9 @@ def with_loads(scene: Scene, case: LoadCase) -> Scene:
         factor = _factor(pushed, _speed(leader_of(scene), case), case.torque)
     return replace(
         pushed,
+        drives=tuple(
+            replace(drive, speed=TimeLaw.constant(float(drive.speed.extreme))) for drive in scene.drives
+        ),
         loads=tuple(
             replace(load, torque=TimeLaw.constant(factor * float(load.torque(0.0)))) for load in scene.loads
         ),

@@ -16,9 +16,11 @@ from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing
 from dynamics.deflection import CAUSES, LoadCase, deflect, equivalent_load, loaded_scene
 from dynamics.deflection.deflect import _cycle_times
+from dynamics.deflection.loaded_scene import with_loads
 from dynamics.deflection.mesh_alignment import rest_over
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
+from dynamics.integrators import static_equilibrium
 from dynamics.joints import FreeRotation, Housing
 from dynamics.loads import TimeLaw
 from dynamics.mechanism.line_of_action import misalignment_gradient
@@ -248,6 +250,15 @@ def test_a_torque_on_the_leading_shaft_sets_the_factor():
     assert case.meshes[1].force == pytest.approx(factor.meshes[1].force, rel=1e-9)
     out = next(load for load in case.bearings if load.name == "out.left")
     assert out.speed == pytest.approx(200.0 / ratio, rel=1e-12)
+
+
+def test_a_run_up_adds_nothing_to_the_torque_of_a_load_case():
+    scene = gear_pair_scene(spring_table(4e8), speed=TimeLaw.ramp(100.0, 300.0, 0.05))
+    own = static_equilibrium(assemble(scene)).mesh_force[0]
+    loaded = with_loads(scene, LoadCase("load", torque=60.0, speed=200.0))
+    force = static_equilibrium(assemble(loaded)).mesh_force[0]
+    assert force == pytest.approx(60.0 / BASE_RADIUS, rel=1e-9)
+    assert own > 1.01 * 100.0 / BASE_RADIUS  # accelerating the driven gear takes torque, too
 
 
 def test_a_free_train_is_held_where_its_law_is():
