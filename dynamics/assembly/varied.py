@@ -1,4 +1,4 @@
-"""An assembled system with decimated tables, a later start, or the static reference where it rests."""
+"""An assembled system with other tables, a later start, or the static reference where it rests."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.assembly.assemble import System
+from dynamics.errors import InputError
 from dynamics.forces.elements import SPATIAL_FLANK
 from dynamics.kernels.by_address import by_address
+from dynamics.mechanism.flanks import mean_stiffness, with_technique
+from dynamics.meshes.mesh_table import MeshTable
 from dynamics.meshes.packed_tables import pack_tables
 from dynamics.meshes.technique import table_at, table_at_operating_point
 from dynamics.motion.motion import QUANTA_PER_TURN
@@ -26,6 +29,57 @@ def with_decimated_tables(system: System, every: int = 2) -> System:
     )
     changed = by_address(elements._replace(laws=laws))
     return replace(system, arrays=by_address(system.arrays._replace(elements=changed)))
+
+
+def with_flank(system: System, mesh: int, table: MeshTable) -> System:
+    """Return `system` with another table of a driving flank; which effects act is not decided anew.
+
+    Parameters
+    ----------
+    mesh : int
+        Its index in the scene.
+    table : MeshTable
+        At one misalignment and center distance.
+
+    Raises
+    ------
+    InputError
+        The table has several operating points, or cannot have the technique of the mesh.
+    """
+    if np.size(table.misalignment) > 1 or np.size(table.center_distance_change) > 1:
+        raise InputError("table", "several operating points", "a table at one of them")
+    elements, flanks, part = system.arrays.elements, system.flanks, system.scene.meshes[mesh]
+    point = float(table.misalignment[0]), float(table.center_distance_change[0])
+    used = with_technique(part.technique, table_at(table, *point), float(flanks.nominal_force[mesh]))
+    force = float(flanks.nominal_force[mesh]) or float(used.level[1])
+    stiffness = mean_stiffness(used, force)
+    damped = 1.0 if part.damping is not None else (stiffness / flanks.mean_stiffness[mesh]) ** 0.5
+    plain, spatial = elements.laws.flank, elements.laws.spatial_flank
+    plain = plain._replace(
+        table=by_address(plain.table.with_table(mesh, used)), damping=_scaled(plain.damping, mesh, damped)
+    )
+    if elements.law[mesh] == SPATIAL_FLANK:
+        entry = int(elements.entry[mesh])
+        spatial = spatial._replace(
+            grid=spatial.grid.with_table(entry, used), damping=_scaled(spatial.damping, entry, damped)
+        )
+    changed = by_address(elements._replace(laws=elements.laws._replace(flank=plain, spatial_flank=spatial)))
+    tables = tuple(used if index == mesh else own for index, own in enumerate(flanks.tables))
+    return replace(
+        system,
+        arrays=by_address(system.arrays._replace(elements=changed)),
+        flanks=replace(
+            flanks,
+            law=plain,
+            tables=tables,
+            mean_stiffness=_scaled(flanks.mean_stiffness, mesh, stiffness / flanks.mean_stiffness[mesh]),
+        ),
+    )
+
+
+def _scaled(values: FloatArray, index: int, factor: float) -> FloatArray:
+    """Return values with one of them times a factor."""
+    return np.where(np.arange(values.size) == index, factor * values, values)
 
 
 def starting_at(system: System, time: float, moved: IntArray) -> System:

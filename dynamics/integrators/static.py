@@ -23,6 +23,7 @@ from dynamics.types import FloatArray, IntArray, StaticStatus
 
 ITERATION_LIMIT = 50
 RESIDUAL_LIMIT = 1e-10  # of the largest force
+CLOSE_LIMIT = 1e-12  # of a rest that is compared with one beside it
 LEAST_TOUCH = 1e-3  # of the first level: force of the first guess where there is no load
 LOST_CONTACT = 1e-6  # of the largest force: below it a search without end has run out of contact
 
@@ -57,10 +58,7 @@ def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
     is. Loads that change with an angle act by their means over a turn.
     """
     system = replace(system, arrays=at_mean_loads(system.arrays))
-    arrays, moment = system.arrays, np.array([time])
-    torque = np.array([float(load.torque(time)) for load in system.scene.loads])
-    inertial = observe_laws(arrays, moment)[3, :, 0] @ arrays.inertial
-    external = np.asarray(torque @ arrays.load.direction + inertial + arrays.constant)
+    external = _external(system, time)
     guess = _first_guess(system, time, external)
     solution = _newton(system, time, guess, external, parting=False)
     if solution.status.usable:
@@ -69,8 +67,32 @@ def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
     return parted if parted.status.usable else solution
 
 
+def equilibrium_near(system: System, displacement: FloatArray, time: float = 0.0) -> StaticSolution:
+    """Balance a system as `static_equilibrium` does, from displacements (n,) near those of its rest.
+
+    It is closer to balance, so that rests of systems that differ a little can be told apart.
+    """
+    system = replace(system, arrays=at_mean_loads(system.arrays))
+    external = _external(system, time)
+    return _newton(system, time, displacement, external, parting=False, limit=CLOSE_LIMIT)
+
+
+def _external(system: System, time: float) -> FloatArray:
+    """Return loads and inertia of the imposed motion on the freedoms (n,), those of mean loads."""
+    arrays = system.arrays
+    torque = np.array([float(load.torque(time)) for load in system.scene.loads])
+    inertial = observe_laws(arrays, np.array([time]))[3, :, 0] @ arrays.inertial
+    return np.asarray(torque @ arrays.load.direction + inertial + arrays.constant)
+
+
 def _newton(
-    system: System, time: float, q: FloatArray, external: FloatArray, *, parting: bool
+    system: System,
+    time: float,
+    q: FloatArray,
+    external: FloatArray,
+    *,
+    parting: bool,
+    limit: float = RESIDUAL_LIMIT,
 ) -> StaticSolution:
     """Search from `q`, with meshes that may part on the way or not."""
     arrays = system.arrays
@@ -81,7 +103,7 @@ def _newton(
     )
     for iteration in range(ITERATION_LIMIT + 1):
         size = _size(arrays, balance)
-        if size <= RESIDUAL_LIMIT * scale:
+        if size <= limit * scale:
             force = balance.local.force[system.driving_rows]
             return StaticSolution(StaticStatus.CONVERGED, q, force, size, iteration)
         update = _solve(arrays, balance.stiffness, balance.force, q)

@@ -6,6 +6,7 @@ from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_resp
 from dynamics.linearize.linear_system import Modes, linearize, natural_modes
 from dynamics.linearize.modal_analysis import ModalAnalysis, modal_analysis
 from dynamics.linearize.operating_speeds import common_period
+from dynamics.linearize.other_flanks import OtherFlanks
 from dynamics.linearize.transfer import FlankTransfer, flank_transfer
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "HarmonicResponse",
     "ModalAnalysis",
     "Modes",
+    "OtherFlanks",
     "common_period",
     "flank_transfer",
     "forced_response",

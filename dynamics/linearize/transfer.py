@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -167,28 +167,46 @@ class FlankTransfer(ArrayFile):
         same = own.shape == self.gradient.shape and at.linear.freedom == self.freedom
         if not same or np.max(np.abs(own - self.gradient), initial=0.0) > SAME * np.max(np.abs(own)):
             raise InputError("system", "another scene", "the scene of the transfer with other tables")
-        return _flanks_of(at, self.harmonics)
+        return excitation_of(at, self.harmonics)
 
     def inputs(self, flanks: FlankExcitation) -> ComplexArray:
         """Return the inputs (1, v) that stand for other flanks, (S, H, 1 + R); (1, 0) for the scene's own.
 
         Raises `SolveError`: nothing bounds the vibration at one of the frequencies.
         """
-        omega = 2j * math.pi * self.frequency[..., None]
-        taken = np.zeros_like(self.motion)
-        for start, end in pairwise(self.first.tolist()):
-            own = slice(start, end)
-            stiffer = flanks.tangent[own, own] - self.tangent[own, own]
-            damped = flanks.viscous[own, own] - self.viscous[own, own]
-            if np.any(stiffer) or np.any(damped):
-                moved = self.motion[own]
-                taken[own] = np.tensordot(stiffer, moved, 1) + omega * np.tensordot(damped, moved, 1)
-        taken = np.moveaxis(taken, 0, 2)
+        taken = self._taken(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
         right = (flanks.force - self.force).T[None] - taken[..., 0]
         v = solved(np.eye(len(self.force)) + taken[..., 1:], right[..., None])[..., 0]
         if not np.all(np.isfinite(v)):
             raise SolveError("the vibration is unbounded with these flanks at one of the frequencies")
         return np.concatenate([np.ones((*v.shape[:2], 1)), v], axis=2)
+
+    def input_changes(
+        self, flanks: FlankExcitation, inputs: ComplexArray, changes: Sequence[FlankExcitation]
+    ) -> ComplexArray:
+        """Return the changes (S, H, 1 + R, d) of `inputs` of flanks, to first order in d small `changes`.
+
+        Differentiated, (1 + X A) dv = de' - dX (A v + G u_0).
+        """
+        taken = self._taken(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
+        moved = np.einsum("rshc,shc->rsh", self.motion, inputs)[..., None]
+        right = [
+            change.force.T[None] - self._taken(change.tangent, change.viscous, moved)[..., 0]
+            for change in changes
+        ]
+        v = solved(np.eye(len(self.force)) + taken[..., 1:], np.stack(right, axis=-1))
+        return np.concatenate([np.zeros((*v.shape[:2], 1, v.shape[3])), v], axis=2)
+
+    def _taken(self, stiffer: FloatArray, damped: FloatArray, moved: ComplexArray) -> ComplexArray:
+        """Return the forces (S, H, R, c) that changed tangents (R, R) take of motions (R, S, H, c)."""
+        omega, taken = 2j * math.pi * self.frequency[..., None], np.zeros_like(moved)
+        for start, end in pairwise(self.first.tolist()):
+            own = slice(start, end)
+            tangent, viscous = stiffer[own, own], damped[own, own]
+            if np.any(tangent) or np.any(viscous):
+                part = moved[own]
+                taken[own] = np.tensordot(tangent, part, 1) + omega * np.tensordot(viscous, part, 1)
+        return np.moveaxis(taken, 0, 2)
 
     def response(self, flanks: FlankExcitation) -> TransferredResponse:
         """Return the linear response with other flanks; raises `SolveError` as `inputs` does."""
@@ -277,7 +295,8 @@ def _rows(at: Excited) -> IntArray:
     return np.concatenate([np.arange(own.start, own.stop) for own in _parts(at)]).astype(np.int64)
 
 
-def _flanks_of(at: Excited, harmonics: IntArray) -> FlankExcitation:
+def excitation_of(at: Excited, harmonics: IntArray) -> FlankExcitation:
+    """Return what the flanks of a system about its equilibrium excite in `harmonics` (H,)."""
     arrays, start = at.system.arrays, at.linear.equilibrium
     static, excited_rows = flank_forces(at, harmonics)
     local, rows = local_state(arrays, at.time, start.displacement, np.zeros(at.linear.scale.size)), _rows(at)
@@ -299,7 +318,7 @@ def _computed(
     progress: Callable[[float], None] | None,
 ) -> FlankTransfer:
     """Solve a block of speeds at a time."""
-    flanks, rows, parts = _flanks_of(at, harmonics), _rows(at), _parts(at)
+    flanks, rows, parts = excitation_of(at, harmonics), _rows(at), _parts(at)
     gradient, inputs = at.system.arrays.direction[rows], 1 + rows.size
     block = max(BLOCK // max(harmonics.size * gradient.shape[1] * inputs, 1), 1)
     motion, force, omega, residual = [], [], [], 0.0
@@ -352,7 +371,7 @@ def _bearing_columns(at: Excited, omega: FloatArray, u: ComplexArray, rows: IntA
 
 def _content_key(at: Excited, speed: FloatArray, harmonics: IntArray, orders: int) -> str:
     """Return the hash of everything that decides the transfer functions."""
-    system, linear, flanks = at.system, at.linear, _flanks_of(at, harmonics)
+    system, linear, flanks = at.system, at.linear, excitation_of(at, harmonics)
     local = local_state(system.arrays, at.time, linear.equilibrium.displacement, np.zeros(linear.scale.size))
     terms = gyroscopic_terms(system, speed) if at.turning else []
     loads = load_harmonics(system, at.period, speed, harmonics, at.time)

@@ -67,9 +67,7 @@ def flank_laws(mechanism: Mechanism) -> Flanks:
             raise error.within(f"meshes[{index}]") from None
     packed = pack_tables(static)
     typical = np.where(nominal > 0.0, nominal, [table.level[1] for table in static])
-    stiffness = np.array(
-        [_mean_stiffness(table, force) for table, force in zip(static, typical, strict=True)]
-    )
+    stiffness = np.array([mean_stiffness(table, force) for table, force in zip(static, typical, strict=True)])
     damping = [  # as given, or from the ratio, of the gears rotating against each other on the mesh
         2.0 * mesh.damping_ratio * float(np.sqrt(stiffness[f] / mesh_mobility(mechanism, f)))
         if mesh.damping is None
@@ -82,7 +80,7 @@ def flank_laws(mechanism: Mechanism) -> Flanks:
 
 
 @identity_cached
-def _mean_stiffness(table: PlainTable, force: float) -> float:
+def mean_stiffness(table: PlainTable, force: float) -> float:
     """Return the tangent stiffness at `force` (N), mean over the positions of `table`, N/m."""
     packed = pack_tables([table])
     deflections = [(x, table_deflection(packed, 0, x, force)) for x in table.position]

@@ -67,6 +67,25 @@ class GridTables(NamedTuple):
             np.concatenate([*(number.ravel() for number in kept.values()), np.empty(0)]),
         )
 
+    def with_table(self, flank: int, table: MeshTable) -> GridTables:
+        """Return the tables with another one of a flank, behind all others."""
+        own = GridTables.packed([table])
+        shape, channels, axis_first, first = (
+            each.copy() for each in (self.shape, self.channels, self.axis_first, self.first)
+        )
+        shape[flank], channels[flank] = own.shape[0], own.channels[0]
+        axis_first[flank] = own.axis_first[0] + self.axis.size
+        first[flank] = self.number.size
+        return GridTables(
+            self.base.with_table(flank, table),
+            shape,
+            channels,
+            axis_first,
+            np.concatenate([self.axis, own.axis]),
+            first,
+            np.concatenate([self.number, own.number]),
+        )
+
     def decimated(self, every: int = 2) -> GridTables:
         """Return the tables on each `every`-th knot of position."""
         shape, first = self.shape.copy(), self.first.copy()

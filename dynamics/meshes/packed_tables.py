@@ -101,6 +101,14 @@ class PackedTables(NamedTuple):
         parts = [_decimated(_part(self, int(index)), every) for index in flank]
         return _joined(parts, part_of.tolist(), self.shift, self.period)
 
+    def with_table(self, flank: int, table: MeshTable) -> PackedTables:
+        """Return the tables with another one of a flank."""
+        parts = [_part(self, index) for index in range(len(self.offset))]
+        parts[flank] = _laid_out(table)
+        shift, period = self.shift.copy(), self.period.copy()
+        shift[flank], period[flank] = float(table.position[0]), float(table.period)
+        return _joined(parts, range(len(parts)), shift, period)
+
 
 def kept_knots(knots: int, every: int) -> IntArray:
     """Return the knots that stay, and the one that closes the period."""

@@ -330,6 +330,41 @@ def assembled_table(
 # From contact solutions to the arrays of the STE database.
 
 
+def table_of_solution(
+    pair: ParallelAxes,
+    problem: ContactProblem,
+    solution: ContactSolution,
+    position: FloatArray,
+    misalignment: float,
+) -> SteDatabase:
+    """Return a solution of one alignment, at the center distance of `pair`, as a table without errors.
+
+    Parameters
+    ----------
+    position : ndarray, shape (P,)
+        Those of one base pitch, which the solution may repeat.
+    misalignment : float
+        m.
+    """
+    period = len(solution.deflection) // position.size
+    pairs = np.arange(problem.candidates.pair.min(), problem.candidates.pair.max() + 1)
+    fields = _contact_fields(pair, problem, solution, pairs)
+    return SteDatabase(
+        position=(np.arange(period)[:, None] + position).ravel(),
+        force=solution.load,
+        torque=pair.torque(solution.load),
+        misalignment=np.array([misalignment]),
+        center_distance_change=np.zeros(1),
+        facts=PairFacts.of(pair),
+        period=period,
+        error_estimate=np.full((*solution.deflection.shape, 1, 1), np.nan),
+        metadata=Metadata(),
+        pair=pairs,
+        no_load_transmission_error=solution.no_load[:, None, None],
+        **{name: values[:, :, None, None] for name, values in fields.items()},
+    )
+
+
 def table_fields(
     points: OperatingPoints, solved: list[tuple[ContactProblem, ContactSolution]]
 ) -> dict[str, NDArray[Any]]:

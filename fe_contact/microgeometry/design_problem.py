@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import chain
-from typing import Protocol
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -23,7 +24,7 @@ PENALTY = 10.0
 
 @dataclass(frozen=True)
 class Assessed:
-    """One design: its objective in m, by how much it exceeds the limits, and the merit that is minimized."""
+    """One design: its objective, by how much it exceeds the limits, and the merit that is minimized."""
 
     objective: float
     violation: float
@@ -35,8 +36,15 @@ class Assessed:
         return self.violation, self.objective
 
 
+class Merit(Protocol):
+    """The merit of designs about one of them."""
+
+    def least(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
+        """Return the step (d,) between two ends (d,) at which the merit is least, and that merit."""
+
+
 class _Memory(Protocol):
-    """Objective in m and violation of designs (d,) at positions (P,)."""
+    """Objective and violation of designs (d,) at positions (P,)."""
 
     def find(self, values: FloatArray, position: FloatArray) -> tuple[float, float] | None:
         """Return what is known."""
@@ -46,20 +54,19 @@ class _Memory(Protocol):
 
 
 @dataclass(frozen=True)
-class DesignProblem:
-    """The variables, their assessment, and the scale of the merit.
+class SearchProblem(ABC):
+    """The variables, what is solved of a design, and the limits that it has to keep.
 
     Attributes
     ----------
     scale : float
-        m; merits are in parts of it.
+        Objective of the start; merits are relative to it.
     memory : Memory, optional
         Of designs that were assessed before.
     """
 
     evaluator: Evaluator
     variables: tuple[DesignVariable, ...]
-    objective: Objective
     limits: Limits
     scale: float
     memory: _Memory | None = None
@@ -73,6 +80,11 @@ class DesignProblem:
         """Names of the variables."""
         return tuple(variable.name for variable in self.variables)
 
+    @property
+    def ranges(self) -> FloatArray:
+        """What the variables reach over (d,), m."""
+        return np.array([variable.high - variable.low for variable in self.variables])
+
     def values(self, point: FloatArray) -> dict[str, float]:
         """Return the design at a point (d,) of the unit cube, ``gear.quantity`` to m."""
         inside = np.clip(point, 0.0, 1.0).tolist()
@@ -84,7 +96,7 @@ class DesignProblem:
         fractions = [(x - low) / (high - low) for x, (low, high) in zip(values, ends, strict=True)]
         return np.asarray(np.clip(np.array(fractions), 0.0, 1.0))
 
-    def rough(self, positions: int) -> DesignProblem:
+    def rough(self, positions: int) -> Self:
         """Return the problem at fewer positions, equally spaced in a base pitch; itself if they are not."""
         if positions >= self.evaluator.position.size:
             return self
@@ -100,39 +112,63 @@ class DesignProblem:
         if self.memory is not None and self.memory.find(key, position) is None:
             self.memory.add(key, position, (assessed.objective, assessed.violation))
 
-    def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, LinearMerit]:
+    @abstractmethod
+    def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, Merit]:
         """Evaluate the design at a point (d,) with its derivatives, nodes of its scatter by workers.
 
         Its merit to first order has NaN where the contact cannot be solved.
         """
+
+    @abstractmethod
+    def evaluated(self, values: dict[str, float]) -> tuple[float, float]:
+        """Return objective and violation of a design, ``gear.quantity`` to m."""
+
+    @abstractmethod
+    def relative(self, objective: float) -> float:
+        """Return the merit of an objective: 1 of the start's."""
+
+    def _with_merit(self, objective: float, violation: float) -> Assessed:
+        if not math.isfinite(objective):
+            return Assessed(math.inf, math.inf, math.inf)
+        return Assessed(objective, violation, self.relative(objective) + PENALTY * violation)
+
+    def _figures(self, values: dict[str, float]) -> tuple[float, float]:
+        """Return objective and violation of a design, from the memory if it is there."""
+        key, position = np.array(list(values.values())), self.evaluator.position
+        known = None if self.memory is None else self.memory.find(key, position)
+        return self.evaluated(values) if known is None else known
+
+
+@dataclass(frozen=True)
+class DesignProblem(SearchProblem):
+    """The search for the least ripple: the objective is made of the expected peak-to-peak, m."""
+
+    objective: Objective = field(kw_only=True)
+
+    def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, LinearMerit]:
+        """Evaluate the design at a point (d,), its merit exact over curves that are linear."""
         values = self.values(point)
         tasks = [(values, nodes) for nodes in self.evaluator.runs]
         by = workers if len(tasks) > 1 else InProcess()
         design = joined(self.evaluator, [*chain(*by.run(_linearized_nodes, self, tasks))])
         objective, violation = self._assessed(design.evaluation)
-        ranges = np.array([variable.high - variable.low for variable in self.variables])
         merit = LinearMerit(
             design.evaluation.ste / self.scale,
-            design.curves * (ranges / self.scale),
+            design.curves * (self.ranges / self.scale),
             self.evaluator.nodes.weight,
             self.objective.rows(self.evaluator.load.size),
-            tuple((value, by * ranges) for value, by in design.limits),
+            tuple((value, by * self.ranges) for value, by in design.limits),
             PENALTY,
         )
         return self._with_merit(objective, violation), merit
 
-    def _with_merit(self, objective: float, violation: float) -> Assessed:
-        if not math.isfinite(objective):
-            return Assessed(math.inf, math.inf, math.inf)
-        return Assessed(objective, violation, objective / self.scale + PENALTY * violation)
-
-    def _figures(self, values: dict[str, float]) -> tuple[float, float]:
-        """Return objective in m and violation of a design, from the memory if it is there."""
-        key, position = np.array(list(values.values())), self.evaluator.position
-        known = None if self.memory is None else self.memory.find(key, position)
-        if known is not None:
-            return known
+    def evaluated(self, values: dict[str, float]) -> tuple[float, float]:
+        """Return objective in m and violation of a design."""
         return self._assessed(self.evaluator.evaluate(values))
+
+    def relative(self, objective: float) -> float:
+        """Return the objective in parts of the scale."""
+        return objective / self.scale
 
     def _assessed(self, evaluated: Evaluation) -> tuple[float, float]:
         """Return objective in m and violation of an evaluated design."""
@@ -206,7 +242,7 @@ class CountedMerit:
 
     def __init__(
         self,
-        problem: DesignProblem,
+        problem: SearchProblem,
         budget: Budget,
         most: int,
         workers: Workers = InProcess(),  # noqa: B008 (frozen)
@@ -220,7 +256,7 @@ class CountedMerit:
         self._budget.take(self._most)
         return self._counted(self.problem.assess(point), point)
 
-    def linearize(self, point: FloatArray) -> tuple[float, LinearMerit]:
+    def linearize(self, point: FloatArray) -> tuple[float, Merit]:
         """Assess a design, and return its merit with what is known about it to first order."""
         self._budget.take(self._most)
         began = spent(self.workers)
@@ -265,11 +301,11 @@ class CountedMerit:
 
     @property
     def spread(self) -> float:
-        """Largest less least objective of its designs that could be assessed, m."""
+        """Largest less least objective of its designs that could be assessed."""
         known = [own.objective for own, _ in self.designs if math.isfinite(own.objective)]
         return max(known) - min(known) if known else 0.0
 
 
-def _assess(problem: DesignProblem, point: FloatArray) -> Assessed:
+def _assess(problem: SearchProblem, point: FloatArray) -> Assessed:
     """Assess a design: one task."""
     return problem.assess(point)

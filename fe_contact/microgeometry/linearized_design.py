@@ -342,8 +342,8 @@ def linearized_nodes(
     nodes: Sequence[int],
 ) -> list[LinearizedNode]:
     """Solve a design, ``gear.quantity`` to m, at some nodes, and differentiate it by the variables named."""
-    parts = (_differentiated(*solved, names) for solved in evaluator.solved(values, nodes))
-    return [LinearizedNode(part.figures, part.ste, _limit_rows(part, limits)) for part in parts]
+    parts = (differentiated(*solved, names) for solved in evaluator.solved(values, nodes))
+    return [LinearizedNode(part.figures, part.ste, limit_rows(part, limits)) for part in parts]
 
 
 def joined(evaluator: Evaluator, parts: Sequence[LinearizedNode]) -> _LinearizedDesign:
@@ -364,16 +364,18 @@ def linearized(
     return joined(evaluator, linearized_nodes(evaluator, values, names, limits, nodes))
 
 
-def _differentiated(
+def differentiated(
     pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution, names: Sequence[str]
 ) -> _Solved:
+    """Return a solution of some loads with its derivatives by the variables named."""
     strips = CarryingStrips.of(pair, problem, solution)
     steps = tuple(_Difference.of(pair, name) for name in names)
     opened = np.stack([step.opened(strips) for step in steps])
     return _Solved(pair, problem, solution, LoadFigures.of(problem, solution), steps, strips, opened)
 
 
-def _limit_rows(solved: _Solved, limits: Limits) -> tuple[Rows, ...]:
+def limit_rows(solved: _Solved, limits: Limits) -> tuple[Rows, ...]:
+    """Return by how much each limit that is set is exceeded, with derivatives."""
     rows: list[Rows] = []
     if limits.max_pressure is not None:
         rows.append(_pressure(solved, limits.max_pressure))

@@ -168,7 +168,7 @@ class LinearMerit:
 
     def least(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
         """Return the step (d,) between two ends (d,) at which the merit is least, and that merit."""
-        made = _Program(self.by.shape[-1])
+        made = LinearProgram(self.by.shape[-1])
         nodes, loads = self.by.shape[0], self.by.shape[2]
         reach = np.maximum(np.abs(low), np.abs(high))
         top, bottom = made.columns(nodes * loads), made.columns(nodes * loads)
@@ -187,7 +187,7 @@ class LinearMerit:
         return made.solve(low, high, objective, exceeded, self.penalty)
 
 
-class _Program:
+class LinearProgram:
     """A linear program in `count` steps and further columns, row by row."""
 
     def __init__(self, count: int) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from bounds import engineering, written
 from fe_contact.errors import SolveError
 from fe_contact.microgeometry.confirmation import ConfirmedDesign, DesignStudy, confirm, design_study, rising
-from fe_contact.microgeometry.design_problem import Cancelled, DesignProblem
+from fe_contact.microgeometry.design_problem import Cancelled, DesignProblem, SearchProblem
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest, Outcome, Perturbation
 from fe_contact.microgeometry.scatter import MISALIGNMENT, Scatter
@@ -154,7 +154,9 @@ def _posed(study: DesignStudy, request: OptimizationRequest, memory: Path | None
     SolveError
         Its contact cannot be solved.
     """
-    problem = DesignProblem(study.evaluator, request.variables, request.objective, request.limits, 1.0)
+    problem = DesignProblem(
+        study.evaluator, request.variables, request.limits, 1.0, objective=request.objective
+    )
     if memory is not None:
         problem = replace(problem, memory=_DesignMemory.of(memory, request, study.evaluator))
     assessed = problem.assess(problem.place(request.own))
@@ -323,8 +325,8 @@ def _on_bounds(choice: _Choice, request: OptimizationRequest) -> list[str]:
 # Searches from several starts, here or by workers; cancelled, what they found so far is kept.
 
 
-def _search_all(
-    problem: DesignProblem,
+def search_all(
+    problem: SearchProblem,
     search: Search,
     own: tuple[float, ...],
     run: Run,
@@ -348,7 +350,7 @@ def _search_all(
 
 
 def _here(
-    problem: DesignProblem,
+    problem: SearchProblem,
     search: Search,
     begins: list[tuple[int, FloatArray]],
     run: Run,
@@ -367,7 +369,7 @@ def _here(
 
 
 def _remotely(
-    problem: DesignProblem,
+    problem: SearchProblem,
     search: Search,
     begins: list[tuple[int, FloatArray]],
     run: Run,
@@ -399,7 +401,7 @@ def _to_the_end(workers: Workers, cancel: Cancel) -> Workers:
     return OrHere(workers, told)
 
 
-def _search_one(shared: tuple[DesignProblem, Search], begin: tuple[int, FloatArray]) -> SearchRun:
+def _search_one(shared: tuple[SearchProblem, Search], begin: tuple[int, FloatArray]) -> SearchRun:
     """Search from one start: one task; an interrupted worker gives what it has."""
     return search_from(*shared, begin[1], begin[0], ending=(Cancelled, KeyboardInterrupt))
 
@@ -441,7 +443,7 @@ def optimize(
     study = design_study(request.space, request.torques, request.further_torques, clock, run, request.checked)
     with clock.stage("search"):
         problem = _posed(study, request, memory)
-        runs = _search_all(problem, request.search, request.own, run, cancel)
+        runs = search_all(problem, request.search, request.own, run, cancel)
     choice = _choose(problem, runs, request, study, clock, run, cancel)
     run.progress("confirmation", 1.0)
     with clock.stage("sensitivity"):

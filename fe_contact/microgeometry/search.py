@@ -20,9 +20,9 @@ from fe_contact.microgeometry.design_problem import (
     Cancelled,
     CountedMerit,
     Design,
-    DesignProblem,
+    Merit,
+    SearchProblem,
 )
-from fe_contact.microgeometry.objective import LinearMerit
 from fe_contact.types import FloatArray, Json
 from model_studies.progress import unreported
 from model_studies.workers import InProcess, Workers, WorkersLost, spent
@@ -175,7 +175,7 @@ class _Walk:
     place: FloatArray
     region: float = FIRST_REGION
     value: float = np.inf
-    linear: LinearMerit | None = None
+    linear: Merit | None = None
 
 
 def _begun(merit: CountedMerit, walk: _Walk) -> _Walk:
@@ -225,7 +225,7 @@ def _each_followed(merit: CountedMerit, walks: Sequence[_Walk], most: int | None
         yield walk
 
 
-def _walked(problem: DesignProblem, task: tuple[_Walk, int | None, int]) -> tuple[_Walk, list[Design]]:
+def _walked(problem: SearchProblem, task: tuple[_Walk, int | None, int]) -> tuple[_Walk, list[Design]]:
     """Follow a walk: one task.
 
     It may assess one design more than are left: the caller, who counts them, ends there as it would here.
@@ -343,7 +343,7 @@ class SearchRun:
     explored : int
         Of the evaluations, those at few positions.
     spread : float
-        Largest less least objective of all others, m.
+        Largest less least objective of all others.
     """
 
     place: FloatArray
@@ -361,7 +361,7 @@ class SearchRun:
 
 
 def search_from(
-    problem: DesignProblem,
+    problem: SearchProblem,
     search: Search,
     start: FloatArray,
     index: int,
@@ -409,7 +409,7 @@ def search_from(
 
 
 def _best(
-    problem: DesignProblem, merit: CountedMerit, rough: CountedMerit, start: FloatArray
+    problem: SearchProblem, merit: CountedMerit, rough: CountedMerit, start: FloatArray
 ) -> tuple[Assessed, FloatArray]:
     """Return the best design; where exploration was cut short its best has yet to be assessed in full."""
     known = [] if merit.best is None else [merit.best]

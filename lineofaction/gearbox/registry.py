@@ -95,10 +95,11 @@ def _either(_work: Callable[[], _Work[P, T, F]]) -> Takes[Concatenate[CaseLike |
 def _as(call: Callable[P, None], _work: Callable[[], _Work[..., T, F]]) -> Takes[P, T, F]:
     """Take what a function takes: what is studied, by its name, and the file of what is varied."""
     subject, file = signature(call).parameters.values()
-    return Takes(subject.name, from_file=True, bare=file.default is not Parameter.empty)
+    name = subject.name.replace("_", " ")
+    return Takes(name, from_file=True, bare=file.default is not Parameter.empty)
 
 
-def _case_and_file(case: CaseLike, study: StudyLike) -> None: ...
+def _either_and_file(case_or_scene: CaseLike | SceneLike, study: StudyLike) -> None: ...
 
 
 def _scene_and_file(scene: SceneLike, study: StudyLike) -> None: ...
@@ -172,14 +173,23 @@ class Studies:
         aliases=("--image",),
     )
     optimize = StudyOf(
-        _as(_case_and_file, lambda: OPTIMIZE),
+        _as(_either_and_file, lambda: OPTIMIZE),
         "Optimize the flanks",
         "Search better flanks",
-        "Choose flank modifications for the least peak-to-peak STE over torques and scatter.",
+        "Choose flank modifications: of a case for the least peak-to-peak STE over torques and scatter, of a "
+        "mesh of a scene for what is heard least.",
         "examples/palermo_spur_20_20.toml examples/optimize_tip_relief.toml -o best",
         group="design",
         kind="optimization",
-        stages=(("compliance", 0.2), ("search", 0.6), ("confirmation", 0.2)),
+        stages=(
+            ("analysis", 0.1),
+            ("deflection", 0.05),
+            ("transfer functions", 0.05),
+            ("radiation", 0.05),
+            ("compliance", 0.1),
+            ("search", 0.5),
+            ("confirmation", 0.15),
+        ),
         version="4",
         folder="optimum",
         further=(".toml",),

@@ -14,6 +14,7 @@ from lineofaction.gearbox.studies.deflect import LoadCaseInput, LoadCases
 from lineofaction.gearbox.studies.scatter import Inputs as ToleranceInputs
 
 PAIRS = 200
+BEARING_FORCE, SOUND_POWER = "bearing_force", "sound_power"
 
 _GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
 _RELIEVED = {"tip_relief_um": 20.0, "tip_relief_length_mm": 1.5}

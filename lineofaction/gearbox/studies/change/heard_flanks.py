@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -32,14 +32,14 @@ from fe_contact.microgeometry.scatter import MISALIGNMENT
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.housings import FOLDER
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
-from lineofaction.gearbox.studies.change import HeardInput, Inputs
+from lineofaction.gearbox.studies.change import BEARING_FORCE, SOUND_POWER, HeardInput
+from lineofaction.gearbox.studies.change.question import HeardQuestion
 from lineofaction.gearbox.studies.change.result import ALL
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.deflect.cases import load_cases
 from lineofaction.gearbox.studies.housings import radiation_of
 from lineofaction.gearbox.units import RPM
 
-BEARING_FORCE, SOUND_POWER = "bearing_force", "sound_power"
 UNITS = {BEARING_FORCE: "dB re 1 N", SOUND_POWER: "dB(A) re 1 pW"}
 
 
@@ -51,13 +51,19 @@ class FlankLevels(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _LoadCase:
+class HeardLoad:
     """A load case: its transfer functions, the form of what is heard, and the lines of its harmonics.
 
-    `lines` is (K, H): 1 where a harmonic of the common period belongs to a line.
+    Attributes
+    ----------
+    system : System
+        Assembled, with the flanks about which the transfer functions are.
+    lines : (K, H) array
+        1 where a harmonic of the common period belongs to a line.
     """
 
     load: LoadCase
+    system: System = field(repr=False)
     transfer: FlankTransfer
     form: QuantityForm
     lines: FloatArray
@@ -88,7 +94,7 @@ class HeardFlanks:
     mesh: str
     bodies: CondensedPair
     over_speeds: str
-    load_cases: tuple[_LoadCase, ...]
+    load_cases: tuple[HeardLoad, ...]
     torque: FloatArray
 
     def table(self, pair: ParallelAxes, misalignment: float = 0.0) -> SteDatabase:
@@ -116,33 +122,55 @@ class HeardFlanks:
 
 
 def heard_flanks(
-    subject: TabledScene, mesh: str, inputs: Inputs, bodies: CondensedPair, table: SteDatabase, means: Means
+    subject: TabledScene,
+    mesh: str,
+    question: HeardQuestion,
+    bodies: CondensedPair,
+    table: SteDatabase,
+    means: Means,
 ) -> HeardFlanks:
     """Solve the transfer functions of a scene under every load case, about the flanks of a table."""
-    scene = _scene_with(subject, mesh, table)
-    loads = load_cases(inputs.load_cases)
-    systems = [assemble(with_loads(scene, load)) for load in loads]
-    index = [part.name for part in scene.meshes].index(mesh)
-    speed, transfers = np.array(inputs.speed_rpm) * RPM, []
+    cases = heard_loads(subject, mesh, question, [table] * len(question.load_cases), means)
+    torque = mesh_torques(subject, mesh, cases)
+    return HeardFlanks(subject, mesh, bodies, question.heard.over_speeds, cases, torque)
+
+
+def heard_loads(
+    subject: TabledScene, mesh: str, question: HeardQuestion, tables: Sequence[SteDatabase], means: Means
+) -> tuple[HeardLoad, ...]:
+    """Solve the transfer functions under every load case, each about the flanks of its own table."""
+    scenes = [_scene_with(subject, mesh, table) for table in tables]
+    loads = load_cases(question.load_cases)
+    systems = [assemble(with_loads(scene, load)) for scene, load in zip(scenes, loads, strict=True)]
+    index = mesh_index(scenes[0], mesh)
+    speed, transfers = np.array(question.speed_rpm) * RPM, []
     for done, system in enumerate(systems):
         period = common_period(system)
         if not period.pitches[index]:
             raise InputError("mesh", mesh, "one that turns")
-        orders = math.ceil(inputs.orders * abs(period.pitches[index]) / period.counted)
+        orders = math.ceil(question.orders * abs(period.pitches[index]) / period.counted)
         transfers.append(flank_transfer(system, speed, orders, cache=means.home / FOLDER))
         means.report("transfer functions", (done + 1) / len(systems))
-    model = _sound_model(subject, scene, transfers[0].frequency, inputs.heard, means)
+    model = _sound_model(subject, scenes[0], transfers[0].frequency, question.heard, means)
     cases = []
     for load, system, transfer in zip(loads, systems, transfers, strict=True):
         step = abs(common_period(system).pitches[index])
-        own = step * np.arange(1, inputs.orders + 1)
+        own = step * np.arange(1, question.orders + 1)
         lines = np.vstack([np.ones(transfer.harmonics.size), own[:, None] == transfer.harmonics])
-        cases.append(_LoadCase(load, transfer, _form(transfer, model, inputs.heard), lines))
-    force = np.array(
-        [transfer.excitation(own).mean_force[index] for transfer, own in zip(transfers, systems, strict=True)]
-    )
-    torque = force * subject.databases[mesh].facts.base_radius[0]
-    return HeardFlanks(subject, mesh, bodies, inputs.heard.over_speeds, tuple(cases), torque)
+        cases.append(HeardLoad(load, system, transfer, _form(transfer, model, question.heard), lines))
+    return tuple(cases)
+
+
+def mesh_index(scene: Scene, mesh: str) -> int:
+    """Return which of the meshes one is."""
+    return [part.name for part in scene.meshes].index(mesh)
+
+
+def mesh_torques(subject: TabledScene, mesh: str, cases: Sequence[HeardLoad]) -> FloatArray:
+    """Return the torque on the driving gear of a mesh under load cases (L,), N m."""
+    index = mesh_index(subject.scene, mesh)
+    force = [case.transfer.excitation(case.system).mean_force[index] for case in cases]
+    return np.array(force) * subject.databases[mesh].facts.base_radius[0]
 
 
 def line_names(orders: int) -> tuple[str, ...]:

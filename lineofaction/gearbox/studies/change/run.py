@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from bounds.types import Json
-from dynamics.settings.load_case import DRIVE
 from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
@@ -23,7 +22,6 @@ from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.change import ChangeFigures, Inputs
 from lineofaction.gearbox.studies.change.heard_flanks import (
-    SOUND_POWER,
     UNITS,
     FlankLevels,
     HeardFlanks,
@@ -31,10 +29,9 @@ from lineofaction.gearbox.studies.change.heard_flanks import (
     line_names,
     quantity_of,
 )
+from lineofaction.gearbox.studies.change.question import check_heard, heard_mesh
 from lineofaction.gearbox.studies.change.result import DesignLevels, FlankChange
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
-from lineofaction.gearbox.studies.deflect.cases import check_cases
-from lineofaction.gearbox.studies.housings import require_surface
 from lineofaction.gearbox.studies.scatter.run import PLANE, tolerance_request
 from lineofaction.gearbox.studies.study.scenes import FLANKS
 from lineofaction.gearbox.units import RPM
@@ -54,24 +51,14 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
         """Refuse another pair than the scene's, tolerances that it cannot have, and what it does not hear."""
         if inputs.tolerances.samples > MOST_PAIRS:
             raise BadInput.of("tolerances.samples", inputs.tolerances.samples, f"at most {MOST_PAIRS}")
-        if inputs.heard.quantity == SOUND_POWER:
-            require_surface(scene)
-        if inputs.heard.bearing is not None:
-            known = [part.name for part in scene.bushings]
-            known += [part.name for part in scene.rolling_bearings]
-            known += [part.name for part in scene.planet_bearings]
-            _require_named("heard.bearing", inputs.heard.bearing, known)
-        for index, case in enumerate(check_cases(scene, inputs.load_cases)):
-            if case.direction != DRIVE:
-                bound = f'"{DRIVE}": the flanks that are compared are the driving ones'
-                raise BadInput.of(f"load_cases[{index}].direction", case.direction, bound)
-        mesh = _mesh_of(scene, inputs)
+        check_heard(scene, inputs)
+        mesh = heard_mesh(scene, inputs.mesh)
         if mesh.case is not None:
             _designs(mesh.case, inputs)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> FlankChange:
         clock = StageClock(means.workers.cost)
-        mesh = _mesh_of(subject.inputs, inputs)
+        mesh = heard_mesh(subject.inputs, inputs.mesh)
         assert mesh.case is not None  # a scene with its tables has its cases written out
         before, after = _designs(mesh.case, inputs)
         tolerances, sampling = before.tolerances, before.sampling
@@ -140,24 +127,6 @@ def _load_case(result: FlankChange, load: int) -> Json:
 def _quantiles(nominal: float, band: FloatArray) -> Json:
     low, median, high = band.tolist()
     return {"nominal_db": float(nominal), "low_db": low, "median_db": median, "high_db": high}
-
-
-def _require_named(field: str, name: str, known: list[str]) -> None:
-    if name not in known:
-        raise BadInput.of(field, name, f"one of {', '.join(known)}" if known else "left out: there is none")
-
-
-def _mesh_of(scene: SceneInput, inputs: Inputs) -> MeshInput:
-    """Return the mesh whose flanks are compared; raises `BadInput`."""
-    by_name = {mesh.name: mesh for mesh in scene.meshes if mesh.case or mesh.case_file}
-    if inputs.mesh is None and len(by_name) == 1:
-        return next(iter(by_name.values()))
-    if not by_name:
-        raise BadInput.of("scene.meshes", None, "at least one mesh with a case", "Give it case or case_file.")
-    if inputs.mesh is None:
-        raise BadInput.of("mesh", None, f"one of {', '.join(by_name)}", "Name the mesh of the flanks.")
-    _require_named("mesh", inputs.mesh, list(by_name))
-    return by_name[inputs.mesh]
 
 
 def _designs(case: Case, inputs: Inputs) -> tuple[ToleranceRequest, ToleranceRequest]:

@@ -12,8 +12,11 @@ from fe_contact.flank.modification import FlankModification
 from lineofaction.gearbox.schemas.case import Load, Misalignment
 from lineofaction.gearbox.schemas.declared import Figure, figures, with_fields
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
-from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
+from lineofaction.gearbox.schemas.model import BoundaryModel, Name, refuse
 from lineofaction.gearbox.schemas.query import MANY, ONE, ONE_OR_MANY
+from lineofaction.gearbox.schemas.studied import OverOrders
+from lineofaction.gearbox.studies.change import HeardInput
+from lineofaction.gearbox.studies.deflect import LoadCaseInput, LoadCases
 
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
 _EACH = (Strict(False), Field(min_length=1, max_length=64))
@@ -141,8 +144,54 @@ class SearchInput(BoundaryModel):
     )
 
 
+class HeardObjectiveInput(OverOrders, HeardInput):
+    """What is heard of a scene: a level over speeds and load cases, which is minimized."""
+
+    mesh: Name | None = Field(
+        default=None,
+        description="Mesh of the scene whose flanks are varied; left out: the only one with a case",
+        examples=["mesh"],
+    )
+    load_cases: LoadCases = Field(
+        default=(LoadCaseInput(name="load"),),
+        description="Load cases on the driving flanks; default: the loads of the scene at t = 0",
+        examples=[[{"name": "cruise", "torque_n_m": 60.0, "speed_rpm": 3000.0}]],
+    )
+    misalignment_um: Misalignments | None = Field(
+        default=None,
+        description="Misalignment of the mesh in um, one value or one for each load case; left out: those of "
+        "the deflection of the scene",
+        examples=[[3.0]],
+    )
+    over_loads: Literal["worst", "energy_mean"] = Field(
+        default="worst",
+        description="The loudest load case, or the mean of the power by the shares of the load cases",
+        examples=["energy_mean"],
+    )
+    counted_orders: Annotated[
+        tuple[Annotated[int, Field(ge=1, le=100)], ...], Strict(False), Field(max_length=100)
+    ] = Field(default=(), description="Orders of the mesh that count; left out: all", examples=[[1]])
+
+    @property
+    def heard(self) -> HeardInput:
+        """What is made of the scene's vibration."""
+        return self
+
+    @model_validator(mode="after")
+    def _heard_orders(self) -> Self:
+        """Refuse orders that are not heard, and misalignments of other load cases."""
+        for index, order in enumerate(self.counted_orders):
+            if order > self.orders:
+                refuse(f"counted_orders[{index}]", order, f"at most orders, {self.orders}", "Raise orders.")
+        stated, loads = self.misalignment_um, len(self.load_cases)
+        if isinstance(stated, tuple) and len(stated) not in (1, loads):
+            bound = f"one value, or {loads}, one for each load case"
+            refuse("misalignment_um", f"{len(stated)} values", bound)
+        return self
+
+
 class Inputs(BoundaryModel):
-    """An optimization of a case's flank modifications."""
+    """An optimization of flank modifications: of a case by its ripple, of a scene by what is heard."""
 
     class VariablesInput(BoundaryModel):
         """Design variables of both gears."""
@@ -213,6 +262,11 @@ class Inputs(BoundaryModel):
     scatter: ScatterInput = Field(default=ScatterInput(), description="Assembly and manufacturing deviations")
     objective: ObjectiveInput = Field(default=ObjectiveInput(), description="Objective to minimize")
     limits: LimitsInput = Field(default=LimitsInput(), description="Limits to meet")
+    heard: HeardObjectiveInput | None = Field(
+        default=None,
+        description="Of a scene: what is heard, and is minimized in place of the peak-to-peak",
+        examples=[{"speed_rpm": [1000.0, 2000.0, 3000.0], "orders": 3}],
+    )
     search: SearchInput = Field(default=SearchInput(), description="Search method and its settings")
 
     @model_validator(mode="after")
@@ -232,8 +286,51 @@ class Inputs(BoundaryModel):
         return self
 
 
+class HeardDesignFigures(Part):
+    """A design by its load cases; its values by gear and field of a case file."""
+
+    values: dict[str, dict[str, float]]
+    objective_db: Annotated[float, Source("objective.value")]
+    objective_error_db: Annotated[float, Source("objective.error")]
+    violation: float
+    peak_to_peak_um: list[float]
+    peak_to_peak_error_um: list[float]
+    max_pressure_mpa: Annotated[list[float], Source("pressure")]
+    face_load_factor: list[float]
+    edge_load_share: list[float]
+
+
+class HeardFigures(Part):
+    """What is heard before and after, by load case then by order ("all": all of them together)."""
+
+    class LineFigures(Part):
+        """An order of the mesh, or all orders together."""
+
+        order: str
+        before_db: float
+        after_db: float
+        error_db: float
+
+    mesh: str
+    quantity: str
+    unit: str
+    over_speeds: str
+    over_loads: str
+    load_case: list[str]
+    torque_n_m: list[float]
+    misalignment_um: list[float]
+    gain_db: Annotated[float, Source("gain.value")]
+    gain_error_db: Annotated[float, Source("gain.error")]
+    start: HeardDesignFigures
+    optimum: HeardDesignFigures
+    levels: list[list[LineFigures]]
+    worse: list[str]
+    parting: list[str]
+    ended: str
+
+
 class OptimizeFigures(Figures):
-    """The start and the optimum, what was free, and how the search ended."""
+    """The start and the optimum, what was free, and how the search ended; of a scene what is heard."""
 
     class VariableFigures(Part):
         """What was free, between bounds in the unit of its name."""
@@ -297,17 +394,18 @@ class OptimizeFigures(Figures):
     outcome: Annotated[str, Source("outcome.value")]
     reason: str
     variables: list[VariableFigures]
-    torque_n_m: list[float]
-    misalignment_um: list[float]
-    nodes: NodeFigures
-    gain_um: Annotated[float, Source("gain.value")]
-    gain_error_um: Annotated[float, Source("gain.error")]
-    start: DesignFigures
-    optimum: DesignFigures
     evaluations: int
-    runs: list[SearchFigures]
     best_run: int
-    sensitivity: list[StepFigures]
-    not_tried: list[str]
     cost: Json
-    asked: Json
+    heard: HeardFigures | None = None
+    torque_n_m: list[float] | None = None
+    misalignment_um: list[float] | None = None
+    nodes: NodeFigures | None = None
+    gain_um: Annotated[float | None, Source("gain.value")] = None
+    gain_error_um: Annotated[float | None, Source("gain.error")] = None
+    start: DesignFigures | None = None
+    optimum: DesignFigures | None = None
+    runs: list[SearchFigures] | None = None
+    sensitivity: list[StepFigures] | None = None
+    not_tried: list[str] | None = None
+    asked: Json | None = None

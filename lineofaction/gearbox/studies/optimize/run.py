@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -27,58 +28,100 @@ from fe_contact.microgeometry.search import (
 from fe_contact.microgeometry.variables import DesignVariable
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.meshes import MeshInput
+from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
-from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
+from lineofaction.gearbox.studies.change.question import check_heard, heard_mesh
+from lineofaction.gearbox.studies.computation import Computation, Means, record_file
 from lineofaction.gearbox.studies.optimize import (
     GearScatterInput,
     GearVariablesInput,
+    HeardObjectiveInput,
     Inputs,
     OptimizeFigures,
     ScatterInput,
     SearchInput,
 )
+from lineofaction.gearbox.studies.optimize.heard_search import heard_optimum
+from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.units import UM, factor, in_um
 
 MPA = 1e6
 
 
-def _write_case(result: Optimization, checked: CheckedCase, target: Path) -> None:
+def _write_case(
+    result: Optimization | HeardOptimization, checked: CheckedCase | SceneInput, target: Path
+) -> None:
     """Write the case with the best design as a case file: what was given of the case, and the best flanks."""
-    content = checked.case.model_dump(mode="json", exclude_unset=True)
+    content: Json = (
+        checked.case.model_dump(mode="json", exclude_unset=True)
+        if isinstance(checked, CheckedCase)
+        else copy.deepcopy(getattr(result, "case", {}))
+    )
     for gear, fields in _at_boundary(result.optimum.values).items():
         content["pair"][gear] |= {name: float(f"{value:.6g}") for name, value in fields.items()}
     target.write_text(f"# {result.reason}\n\n{toml_text(content)}", encoding="utf-8")
 
 
-class _OptimizeStudy(CaseStudy[Inputs, OptimizeFigures, Optimization]):
-    inputs, answer, file = Inputs, OptimizeFigures, record_file(("optimization", Optimization))
+class _OptimizeStudy(
+    Computation[
+        CheckedCase | SceneInput,
+        CheckedCase | TabledScene,
+        Inputs,
+        OptimizeFigures,
+        Optimization | HeardOptimization,
+    ]
+):
+    inputs, answer = Inputs, OptimizeFigures
+    file = record_file(("optimization", Optimization), ("heard optimization", HeardOptimization))
     interruptible = True
     writers = MappingProxyType({".toml": _write_case})
 
-    def check(self, case: CheckedCase, study: Inputs) -> None:
-        with boundary_errors():
-            _ = case.request(_library_request, study).checked
+    def check(self, subject: CheckedCase | SceneInput, study: Inputs) -> None:
+        """Refuse what the subject does not have, and a search that cannot be."""
+        if isinstance(subject, CheckedCase):
+            if study.heard is not None:
+                raise BadInput.of("heard", "given", "left out with a case", "A scene is heard: name one.")
+            with boundary_errors():
+                _ = subject.request(_library_request, study).checked
+            return
+        heard, mesh = _heard_of(subject, study)
+        check_heard(subject, heard)
+        if mesh.case is not None:
+            with boundary_errors():
+                _ = _request_of(mesh.case, study).checked
 
-    def normalized(self, case: CheckedCase, study: Inputs) -> Json:
+    def normalized(self, subject: CheckedCase | SceneInput, study: Inputs) -> Json:
         """Return all inputs, with the usual variables if none are named."""
-        return super().normalized(case, _with_variables(case.case, study))
+        case = subject.case if isinstance(subject, CheckedCase) else _heard_of(subject, study)[1].case
+        return super().normalized(subject, study if case is None else _with_variables(case, study))
 
-    def compute(self, case: CheckedCase, study: Inputs, means: Means) -> Optimization:
-        """Optimize the modifications of a case; when it is cancelled, end with the best so far.
+    def compute(
+        self, subject: CheckedCase | TabledScene, study: Inputs, means: Means
+    ) -> Optimization | HeardOptimization:
+        """Optimize the modifications of a case or of a mesh; cancelled, end with the best so far.
 
-        Designs are remembered: another attempt, or another deadline, goes on from them.
+        Designs of a case are remembered: another attempt, or another deadline, goes on from them.
         """
         with boundary_errors():
-            run = means.analysis
+            if isinstance(subject, TabledScene):
+                heard, mesh = _heard_of(subject.inputs, study)
+                assert mesh.case is not None  # a scene with its tables has its cases written out
+                return heard_optimum(subject, mesh, heard, _request_of(mesh.case, study), means)
             return optimize(
-                case.request(_library_request, study),
-                run,
+                subject.request(_library_request, study),
+                means.analysis,
                 cancel=means.cancel or never,
                 memory=means.home / "searches",
             )
 
-    def _derived(self, result: Optimization) -> Json:
+    def _derived(self, result: Optimization | HeardOptimization) -> Json:
+        return _heard_figures(result) if isinstance(result, HeardOptimization) else self._of_case(result)
+
+    def _of_case(self, result: Optimization) -> Json:
         limits = dict(result.asked["limits"])
         pressure = limits.pop("max_pressure_pa")
         limits = {"max_pressure_mpa": None if pressure is None else pressure / MPA, **limits}
@@ -107,10 +150,64 @@ class _OptimizeStudy(CaseStudy[Inputs, OptimizeFigures, Optimization]):
             "asked": in_um(result.asked) | requested,
         }
 
-    def warnings(self, result: Optimization) -> list[Json]:
+    def warnings(self, result: Optimization | HeardOptimization) -> list[Json]:
         """Return the torques at which the best design ripples more than the start."""
+        if isinstance(result, HeardOptimization):
+            return []
         before, after = result.start.harris_map, result.optimum.harris_map
         return [_worse_load_warning(before, after, int(index)) for index in result.rising]
+
+
+OF_CASE = ("torque_n_m", "misalignment_um", "objective")
+"""Fields that a scene has in its load cases, and in what is heard."""
+
+
+def _heard_of(scene: SceneInput, study: Inputs) -> tuple[HeardObjectiveInput, MeshInput]:
+    """Return what is heard of a scene, and the mesh; raises `BadInput`."""
+    if study.heard is None:
+        advice = "For example heard = { speed_rpm = [1000, 2000, 3000] }."
+        raise BadInput.of("heard", None, "given with a scene", advice)
+    for name in OF_CASE:
+        if getattr(study, name) != type(study).model_fields[name].default:
+            raise BadInput.of(name, "given", "left out with a scene", "Its loads are heard.load_cases.")
+    try:
+        return study.heard, heard_mesh(scene, study.heard.mesh)
+    except BadInput as error:
+        raise error.within("heard") from None
+
+
+def _request_of(case: Case, study: Inputs) -> OptimizationRequest:
+    """Return the request of the flanks of a mesh; raises `BadInput`."""
+    request: OptimizationRequest = CheckedCase(case).request(_library_request, study)
+    return request
+
+
+def _heard_figures(result: HeardOptimization) -> Json:
+    lines = [
+        [
+            {
+                "order": name,
+                "before_db": float(result.start.level[load, line]),
+                "after_db": float(result.optimum.level[load, line]),
+                "error_db": float(
+                    result.start.level_error[load, line] + result.optimum.level_error[load, line]
+                ),
+            }
+            for line, name in enumerate(result.lines)
+        ]
+        for load in range(result.torque.size)
+    ]
+    designs = {
+        name: (design, {"values": _at_boundary(design.values)})
+        for name, design in (("start", result.start), ("optimum", result.optimum))
+    }
+    told = {"worse": list(result.worse()), "parting": list(result.partings()), "ended": result.ended()}
+    of_case = dict.fromkeys(("gain", "gain_error", "start", "optimum", "runs", "torque", "misalignment"))
+    variables = [
+        {"name": boundary_name(var.name), "bounds": _range(var.name, var.low, var.high)}
+        for var in result.variables
+    ]
+    return of_case | {"variables": variables, "heard": (result, {**designs, "levels": lines, **told})}
 
 
 def _with_variables(case: Case, study: Inputs) -> Inputs:

@@ -63,7 +63,7 @@ def searched(
     limits: Limits = NO_LIMITS,
 ) -> tuple[dict[str, float], SearchRun]:
     """Search with a simplex, whose moves are those of a mirrored problem mirrored."""
-    problem = DesignProblem(assessed, variables, WeightedMean(), limits, 1e-6)
+    problem = DesignProblem(assessed, variables, limits, 1e-6, objective=WeightedMean())
     search = Search(NelderMead(), evaluations=60, positions=POSITIONS)
     run = search_from(problem, search, problem.place(begin), 0)
     return problem.values(run.place), run
@@ -292,7 +292,7 @@ def test_the_best_slope_is_the_compromise_of_the_loads_by_their_weights(weights:
     free, objective = (DesignVariable(SLOPE, -24e-6, 24e-6),), WeightedMean(weights)
     assessed = evaluator_of_loads(HELICAL, [300.0, 300.0], skews.tolist())
     assessed = replace(assessed, contact=replace(assessed.contact, pair=modified(HELICAL, level)))
-    problem = DesignProblem(assessed, free, objective, NO_LIMITS, 1e-6)
+    problem = DesignProblem(assessed, free, NO_LIMITS, 1e-6, objective=objective)
     search = Search(NelderMead(), evaluations=40, positions=POSITIONS)
     run = search_from(problem, search, np.array([0.4]), 0)
     slopes = np.linspace(-24e-6, 24e-6, 25)

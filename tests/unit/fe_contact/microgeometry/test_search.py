@@ -284,7 +284,7 @@ def test_positions_of_every_analysis_join_until_the_limits_are_kept(
     monkeypatch.setattr(choice, "confirm", confirm)
     monkeypatch.setattr(choice, "search_from", search_from)
     problem = DesignProblem(
-        cast(Any, Places(np.array([0.0, 0.5]))), (VARIABLE,), WeightedMean(), Limits(), 1.0
+        cast(Any, Places(np.array([0.0, 0.5]))), (VARIABLE,), Limits(), 1.0, objective=WeightedMean()
     )
     asked: Any = SimpleNamespace(own=(0.0,), search=Search())
     checked = SimpleNamespace(predicted=lambda *_: SimpleNamespace(cpu_seconds=0.0))

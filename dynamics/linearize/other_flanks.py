@@ -1,0 +1,79 @@
+"""Other flanks of one mesh of an assembled scene: what they excite, and how it changes with their table.
+
+The scene is assembled once. Another table moves the equilibrium, from which the rest follows; which effects act
+is not decided anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dynamics.assembly.assemble import System
+from dynamics.assembly.varied import with_flank
+from dynamics.errors import SolveError
+from dynamics.integrators.static import equilibrium_near
+from dynamics.linearize.flank_cycles import flank_cycles
+from dynamics.linearize.steady_vibration import Excited, excited
+from dynamics.linearize.transfer import FlankExcitation, FlankTransfer, excitation_of
+from dynamics.meshes import MeshTable
+from dynamics.types import IntArray
+
+
+@dataclass(frozen=True)
+class OtherFlanks:
+    """A scene about its loaded equilibrium, and the mesh whose flanks are others.
+
+    Attributes
+    ----------
+    mesh : int
+        Its index in the scene.
+    harmonics : (H,) int array
+        Multiples of the common period's frequency.
+    """
+
+    at: Excited
+    mesh: int
+    orders: int
+    harmonics: IntArray
+
+    @classmethod
+    def of(cls, system: System, mesh: int, transfer: FlankTransfer) -> OtherFlanks:
+        """Look at an assembled scene; raises as `excited`."""
+        at = excited(system, transfer.time, transfer.orders)
+        return cls(at, mesh, transfer.orders, transfer.harmonics)
+
+    def with_table(self, table: MeshTable) -> OtherFlanks:
+        """Return the scene about its equilibrium with another table of the mesh, as `with_flank` has it.
+
+        Raises
+        ------
+        InputError
+            As `with_flank`.
+        SolveError
+            There is no static equilibrium.
+        """
+        at, before = self.at, self.at.linear
+        system = with_flank(at.system, self.mesh, table)
+        rest = equilibrium_near(system, before.equilibrium.displacement, at.time)
+        if not rest.status.usable:
+            raise SolveError(f"no static equilibrium: {rest.status.name.lower()}, {rest.residual:.3g} N left")
+        linear = replace(before, equilibrium=rest)
+        cycles = flank_cycles(system, linear, at.time, self.orders)
+        return replace(self, at=replace(at, system=system, linear=linear, cycles=cycles))
+
+    @property
+    def excitation(self) -> FlankExcitation:
+        """What the flanks excite."""
+        return excitation_of(self.at, self.harmonics)
+
+    def changes(self, tables: Sequence[MeshTable]) -> list[FlankExcitation]:
+        """Return how the excitation changes with tables that are a little different, as differences."""
+        own = self.excitation
+        return [_difference(self.with_table(table).excitation, own) for table in tables]
+
+
+def _difference(first: FlankExcitation, second: FlankExcitation) -> FlankExcitation:
+    return FlankExcitation(*(np.asarray(a - b) for a, b in zip(first, second, strict=True)))

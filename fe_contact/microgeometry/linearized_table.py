@@ -1,0 +1,86 @@
+"""Tables of a design at its loads, with the derivatives of their curves by its variables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fe_contact.analysis.tables import table_of_solution
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.evaluator import Evaluator, LoadFigures
+from fe_contact.microgeometry.linearized_design import differentiated, limit_rows
+from fe_contact.microgeometry.objective import NO_LIMITS, Limits, Rows
+from fe_contact.ste import SteDatabase
+from fe_contact.types import FloatArray
+
+
+@dataclass(frozen=True)
+class TabledLoads:
+    """Loads of one misalignment at one node of the scatter: their figures, and their table.
+
+    Attributes
+    ----------
+    by : mapping
+        Fields of the table to their derivatives by d variables (d, P, F), per m; empty where none are taken.
+        Those of the tangent compliance are differences between the loads.
+    limits : tuple of Rows
+        As of `LinearizedNode`.
+    """
+
+    figures: LoadFigures
+    table: SteDatabase
+    by: Mapping[str, FloatArray]
+    limits: tuple[Rows, ...]
+
+    def moved(self, step: Sequence[float] | FloatArray) -> SteDatabase:
+        """Return the table, to first order, of a design that differs by a step (d,), m."""
+        changes = {
+            name: getattr(self.table, name) + np.tensordot(step, by, 1)[:, :, None, None]
+            for name, by in self.by.items()
+        }
+        return replace(self.table, **changes)
+
+
+def tabled_loads(
+    evaluator: Evaluator,
+    values: Mapping[str, float],
+    nodes: Iterable[int],
+    names: Sequence[str] = (),
+    limits: Limits = NO_LIMITS,
+) -> Iterator[TabledLoads]:
+    """Solve a design, ``gear.quantity`` to m, at some nodes; yield a table for each misalignment of its loads.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Variables by which the tables and the limits are differentiated.
+    """
+    for node in nodes:
+        solved = evaluator.solved(values, (node,))
+        for group, (pair, problem, solution) in zip(evaluator.groups, solved, strict=True):
+            skew = float(evaluator.misalignments[node, group[0]])
+            table = table_of_solution(pair, problem, solution, evaluator.position, skew)
+            yield _tabled(pair, problem, solution, table, names, limits)
+
+
+def _tabled(
+    pair: ParallelAxes,
+    problem: ContactProblem,
+    solution: ContactSolution,
+    table: SteDatabase,
+    names: Sequence[str],
+    limits: Limits,
+) -> TabledLoads:
+    if not names:
+        return TabledLoads(LoadFigures.of(problem, solution), table, {}, ())
+    design = differentiated(pair, problem, solution, names)
+    arm = np.stack([design.strips.arm_change(each) for each in design.opened])
+    by = {
+        "static_transmission_error": design.ste,
+        "tangent_compliance": np.gradient(design.ste, solution.load, axis=2),
+        "load_arm": arm,
+    }
+    return TabledLoads(design.figures, table, by, limit_rows(design, limits))

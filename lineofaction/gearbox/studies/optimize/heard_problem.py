@@ -1,0 +1,278 @@
+"""The search for flanks that are heard least: levels of a scene by the tables of a design, and their merit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.errors import DynamicsError
+from dynamics.linearize import OtherFlanks
+from dynamics.types import FloatArray
+from fe_contact.errors import FeContactError
+from fe_contact.microgeometry.design_problem import PENALTY, Assessed, SearchProblem
+from fe_contact.microgeometry.evaluator import LoadFigures
+from fe_contact.microgeometry.linearized_table import TabledLoads, tabled_loads
+from fe_contact.microgeometry.objective import LinearProgram, Rows
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.studies.change.heard_flanks import HeardLoad
+from model_studies.workers import InProcess, Workers
+
+BESIDE_EACH = np.array([1.0 - 1e-3, 1.0, 1.0 + 1e-3])
+"""Loads of a table in parts of that of a load case: beside it, for how arm and stiffness change with it."""
+STEP = 2e-9
+"""Largest change of a transmission error, m, over which the derivative of an excitation is a difference."""
+CUTS, CLOSE = 40, 1e-3
+"""Linear programs of a step at most, and where they end, in parts of the merit."""
+FOLLOWED = 12
+"""Rows that each of them takes cuts of: the largest."""
+
+
+class Powers(NamedTuple):
+    """Powers or mean squares P(x) = c + g x + x Q x of designs a step x (d,) away, at S speeds.
+
+    `constant` (..., S), `slope` (..., S, d), `bend` (..., S, d, d), which is positive semidefinite.
+    """
+
+    constant: FloatArray
+    slope: FloatArray
+    bend: FloatArray
+
+
+@dataclass(frozen=True)
+class HeardAt:
+    """A load case of the scene, and what other flanks excite there.
+
+    Attributes
+    ----------
+    counted : (H,) array
+        1 where a harmonic of the common period counts.
+    share : float
+        Of the duration; those of all load cases add up to 1.
+    """
+
+    case: HeardLoad
+    others: OtherFlanks
+    counted: FloatArray
+    share: float
+
+    def power(self, table: SteDatabase) -> FloatArray:
+        """Return what is heard of a table at each speed (S,)."""
+        transfer, form = self.case.transfer, self.case.form
+        inputs = transfer.inputs(self.others.with_table(table.force_table()).excitation)
+        return np.asarray(form.weighted(inputs) @ self.counted)
+
+    def lines(self, table: SteDatabase) -> tuple[FloatArray, float]:
+        """Return powers (S, K) of a table by the lines, and by what share of the mesh force flanks part."""
+        transfer, form = self.case.transfer, self.case.form
+        flanks = self.others.with_table(table.force_table()).excitation
+        least = transfer.response(flanks).least_mesh_force.min(axis=1)
+        parting = float(np.max(-least / np.abs(flanks.mean_force), initial=0.0))
+        return form.weighted(transfer.inputs(flanks)) @ self.case.lines.T, parting
+
+    def powers(self, tabled: TabledLoads) -> Powers:
+        """Return what is heard of designs about a table, to first order of what excites."""
+        transfer, form = self.case.transfer, self.case.form
+        flanks = self.others.with_table(tabled.table.force_table())
+        excitation = flanks.excitation
+        inputs = transfer.inputs(excitation)
+        largest = np.abs(tabled.by["static_transmission_error"]).max(axis=(1, 2))
+        steps = STEP / np.where(largest > 0.0, largest, 1.0)
+        beside = [tabled.moved(step).force_table() for step in np.diag(steps)]
+        changes = transfer.input_changes(excitation, inputs, flanks.changes(beside)) / steps
+        moved = np.swapaxes(changes.conj(), 2, 3)
+        weight = form.weighting * self.counted
+        along = (moved @ (form.matrix @ inputs[..., None]))[..., 0].real
+        across = (moved @ form.matrix @ changes).real
+        return Powers(
+            np.asarray(form.weighted(inputs) @ self.counted),
+            np.asarray(2.0 * np.einsum("sh,sha->sa", weight, along)),
+            np.asarray(np.einsum("sh,shab->sab", weight, across)),
+        )
+
+
+@dataclass(frozen=True)
+class HeardObjective:
+    """One level over speeds and load cases.
+
+    Attributes
+    ----------
+    worst_speed, worst_load : bool
+        Whether the largest power counts, or the mean.
+    """
+
+    at: tuple[HeardAt, ...] = field(repr=False)
+    worst_speed: bool
+    worst_load: bool
+
+    def rows(self, values: FloatArray) -> FloatArray:
+        """Return what is the largest of (R, ...): of values (L, S, ...) by load case and speed."""
+        if not self.worst_load:
+            share = np.array([each.share for each in self.at])
+            values = np.tensordot(share, values, 1)[None]
+        if not self.worst_speed:
+            values = values.mean(axis=1, keepdims=True)
+        return values.reshape(-1, *values.shape[2:])
+
+    def level(self, power: FloatArray) -> float:
+        """Return the level of powers (L, S), dB."""
+        return float(self.at[0].case.form.decibels(self.rows(power).max()))
+
+
+@dataclass(frozen=True)
+class HeardMerit:
+    """Amplitude of designs a step away over that of the start: convex in the step, as powers are quadratic.
+
+    Attributes
+    ----------
+    powers : Powers
+        R rows, of which the largest counts, over the power of the start.
+    limits : tuple of Rows
+        Of each limit: by how much it is exceeded.
+    """
+
+    powers: Powers
+    limits: tuple[Rows, ...]
+    penalty: float
+
+    def least(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
+        """Return the step (d,) between two ends (d,) at which the merit is least, and that merit.
+
+        By cutting planes: tangents of the largest rows, where the last program ended.
+        """
+        reach = np.maximum(np.abs(low), np.abs(high))
+        step = best = np.zeros(low.size)
+        found, cuts = self._merit(step), [self._cuts(step)]
+        for _ in range(CUTS):
+            program = LinearProgram(low.size)
+            (objective,) = program.columns(1, least=0.0)
+            for value, by in cuts:
+                program.below(value, by, reach, objective)
+            exceeded = program.columns(len(self.limits), least=0.0)
+            for column, (value, by) in zip(exceeded, self.limits, strict=True):
+                program.below(value, by, reach, column)
+            step, bound = program.solve(low, high, objective, exceeded, self.penalty)
+            merit = self._merit(step)
+            if merit < found:
+                best, found = step, merit
+            if not found - bound > CLOSE * found:
+                break
+            cuts.append(self._cuts(step))
+        return best, found
+
+    def amplitudes(self, step: FloatArray) -> FloatArray:
+        """Return the amplitudes of the rows (R,) after a step (d,)."""
+        constant, slope, bend = self.powers
+        return np.sqrt(np.maximum(constant + slope @ step + (bend @ step) @ step, 0.0))
+
+    def _cuts(self, step: FloatArray) -> Rows:
+        """Return tangents of the largest rows: values at no step, and derivatives."""
+        amplitude = self.amplitudes(step)
+        kept = np.argsort(-amplitude)[:FOLLOWED]
+        kept = kept[amplitude[kept] > 0.0]
+        by = (self.powers.slope + 2.0 * self.powers.bend @ step)[kept] / (2.0 * amplitude[kept, None])
+        return amplitude[kept] - by @ step, by
+
+    def _merit(self, step: FloatArray) -> float:
+        excess = sum(max(0.0, float(np.max(value + by @ step))) for value, by in self.limits)
+        return float(self.amplitudes(step).max()) + self.penalty * excess
+
+
+@dataclass(frozen=True)
+class HeardProblem(SearchProblem):
+    """The search for the lowest level: the objective is in dB, the merit the amplitude over the start's.
+
+    The evaluator has three loads for each load case: a little below it, its own, and a little above.
+    """
+
+    heard: HeardObjective = field(kw_only=True)
+
+    def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, HeardMerit]:
+        """Evaluate the design at a point (d,) with the derivatives of what excites."""
+        values = self.values(point)
+        tasks = [(values, nodes) for nodes in self.evaluator.runs]
+        by = workers if len(tasks) > 1 else InProcess()
+        try:
+            parts = [*chain(*by.run(_linearized_nodes, self, tasks))]
+        except (FeContactError, DynamicsError):
+            return self._with_merit(math.inf, math.inf), _no_merit(point.size)
+        powers = Powers(*(np.stack(each) for each in zip(*(part[1] for part in parts), strict=True)))
+        expected = Powers(*(np.tensordot(self.evaluator.nodes.weight, each, 1) for each in powers))
+        objective = self.heard.level(expected.constant)
+        violation = self._violation([figures for part in parts for figures in part[0]])
+        start = self.heard.at[0].case.form.reference * 10.0 ** (self.scale / 10.0)
+        rows = Powers(*(self.heard.rows(each) / start for each in expected))
+        ranges, limits = self.ranges, _joined([part[2] for part in parts])
+        scaled = Powers(rows.constant, rows.slope * ranges, rows.bend * ranges[:, None] * ranges)
+        merit = HeardMerit(scaled, tuple((value, by * ranges) for value, by in limits), PENALTY)
+        return self._with_merit(objective, violation), merit
+
+    def evaluated(self, values: dict[str, float]) -> tuple[float, float]:
+        """Return level in dB and violation of a design; infinite where it cannot be solved."""
+        try:
+            parts = [_node(self, values, node) for node in range(self.evaluator.nodes.weight.size)]
+        except (FeContactError, DynamicsError):
+            return math.inf, math.inf
+        power = np.tensordot(self.evaluator.nodes.weight, np.stack([part[1] for part in parts]), 1)
+        return self.heard.level(power), self._violation([each for part in parts for each in part[0]])
+
+    def relative(self, objective: float) -> float:
+        """Return the amplitude over that of the start."""
+        return float(10.0 ** ((objective - self.scale) / 20.0))
+
+    def _violation(self, figures: Sequence[LoadFigures]) -> float:
+        return self.evaluator.evaluation(figures).violation(self.limits)
+
+    def tables_of(self, tabled: Sequence[TabledLoads]) -> list[TabledLoads]:
+        """Return which of the tables of a node each load case has."""
+        groups = self.evaluator.groups
+        own = [BESIDE_EACH.size * load + 1 for load in range(len(self.heard.at))]
+        return [tabled[next(g for g, group in enumerate(groups) if load in group)] for load in own]
+
+
+_Node = tuple[list[LoadFigures], FloatArray]
+
+
+def _node(problem: HeardProblem, values: dict[str, float], node: int) -> _Node:
+    """Return figures of a design at a node of its scatter, and its powers (L, S)."""
+    tabled = list(tabled_loads(problem.evaluator, values, (node,)))
+    at = zip(problem.heard.at, problem.tables_of(tabled), strict=True)
+    return [each.figures for each in tabled], np.stack([load.power(own.table) for load, own in at])
+
+
+def _linearized_nodes(
+    problem: HeardProblem, task: tuple[dict[str, float], tuple[int, ...]]
+) -> list[tuple[list[LoadFigures], Powers, tuple[Rows, ...]]]:
+    """Linearize a design at some nodes: one task."""
+    values, nodes = task
+    parts = []
+    for node in nodes:
+        tabled = list(tabled_loads(problem.evaluator, values, (node,), problem.names, problem.limits))
+        at = zip(problem.heard.at, problem.tables_of(tabled), strict=True)
+        powers = [load.powers(own) for load, own in at]
+        stacked = Powers(*(np.stack(each) for each in zip(*powers, strict=True)))
+        parts.append(([each.figures for each in tabled], stacked, _joined([own.limits for own in tabled])))
+    return parts
+
+
+def _joined(limits: Sequence[tuple[Rows, ...]]) -> tuple[Rows, ...]:
+    """Return the rows of each limit of several tables, in one."""
+    return tuple(
+        (np.concatenate([part[0] for part in each]), np.concatenate([part[1] for part in each]))
+        for each in zip(*limits, strict=True)
+    )
+
+
+def _no_merit(variables: int) -> HeardMerit:
+    """Return the merit about a design that cannot be solved: nothing leads away from it."""
+    nothing = Powers(np.zeros(1), np.zeros((1, variables)), np.zeros((1, variables, variables)))
+    return HeardMerit(nothing, (), PENALTY)
+
+
+def with_loads_beside(load: FloatArray, misalignment: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return loads (3 L,) and misalignments of an evaluator: those of the cases, and beside each."""
+    return np.outer(load, BESIDE_EACH).ravel(), np.repeat(misalignment, BESIDE_EACH.size)

@@ -1,0 +1,281 @@
+"""Search the flanks of a mesh that are heard least in a scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.assembly.assemble import assemble
+from dynamics.deflection.loaded_scene import with_loads
+from dynamics.linearize import OtherFlanks
+from dynamics.linearize.steady_vibration import excited
+from fe_contact.analysis.live.condensed_pair import CondensedPair
+from fe_contact.analysis.live.condensed_request import condensed_pair
+from fe_contact.analysis.tables import table_of_solution
+from fe_contact.errors import SolveError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.confirmation import DesignSpace, design_study
+from fe_contact.microgeometry.evaluator import Evaluator
+from fe_contact.microgeometry.optimization import OptimizationRequest
+from fe_contact.microgeometry.optimize import search_all
+from fe_contact.microgeometry.search import SearchRun, never
+from fe_contact.microgeometry.variables import modified
+from fe_contact.ste import SteDatabase
+from fe_contact.types import Estimate, FloatArray
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.schemas.meshes import MeshInput
+from lineofaction.gearbox.studies.change.heard_flanks import (
+    UNITS,
+    heard_loads,
+    line_names,
+    mesh_index,
+    quantity_of,
+)
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.deflect import Inputs as DeflectInputs
+from lineofaction.gearbox.studies.deflect.cases import load_cases
+from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
+from lineofaction.gearbox.studies.optimize import HeardObjectiveInput
+from lineofaction.gearbox.studies.optimize.heard_problem import (
+    BESIDE_EACH,
+    HeardAt,
+    HeardObjective,
+    HeardProblem,
+    with_loads_beside,
+)
+from lineofaction.gearbox.studies.optimize.result import HeardDesign, HeardOptimization
+from lineofaction.gearbox.units import RPM, UM
+from model_studies.stage_clock import StageClock
+
+
+@dataclass(frozen=True)
+class _Heard:
+    """What a search and its confirmation work on.
+
+    Attributes
+    ----------
+    torque, misalignment : (L,) arrays
+        Of the load cases on the driving gear, N m, and of the mesh, m.
+    """
+
+    problem: HeardProblem
+    bodies: CondensedPair
+    torque: FloatArray
+    misalignment: FloatArray
+
+
+def heard_optimum(
+    subject: TabledScene,
+    mesh: MeshInput,
+    question: HeardObjectiveInput,
+    request: OptimizationRequest,
+    means: Means,
+) -> HeardOptimization:
+    """Search from the flanks of a mesh, and tell start and optimum with their errors.
+
+    Parameters
+    ----------
+    request : OptimizationRequest
+        Pair, variables, scatter, limits, search and options; its torques do not count.
+
+    Raises
+    ------
+    InputError, SolveError
+        No such flanks, no equilibrium, or no contact of the start.
+    """
+    assert mesh.case is not None  # a scene with its tables has its cases written out
+    clock, run = StageClock(means.workers.cost), means.analysis
+    with clock.stage("deflection"):
+        misalignment = _misalignments(subject, mesh.name, question, means)
+    with clock.stage("transfer functions"):
+        heard = _heard(subject, mesh, question, request, misalignment, means)
+    with clock.stage("search"):
+        start, _ = heard.problem.evaluated(dict(zip(heard.problem.names, request.own, strict=True)))
+        if not math.isfinite(start):
+            raise SolveError("the contact of the start design cannot be solved at every position and load")
+        problem = replace(heard.problem, scale=start)
+        cancel = means.cancel or never
+        runs = search_all(problem, request.search, request.own, run, cancel)
+    best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
+    with clock.stage("confirmation"):
+        own = dict(zip(problem.names, request.own, strict=True))
+        heard = replace(heard, problem=problem)
+        designs = [_confirmed(heard, values) for values in (own, problem.values(runs[best].place))]
+    run.progress("confirmation", 1.0)
+    quantity = quantity_of(subject, question)
+    return HeardOptimization(
+        mesh.name,
+        quantity if question.bearing is None else f"{quantity} of {question.bearing}",
+        UNITS[quantity],
+        question.over_speeds,
+        question.over_loads,
+        line_names(question.orders),
+        request.variables,
+        tuple(case.name for case in question.load_cases),
+        heard.torque,
+        heard.misalignment,
+        np.array(question.speed_rpm) * RPM,
+        *designs,
+        runs,
+        best,
+        _tied(runs, best, designs[1].objective.error),
+        mesh.case.model_dump(mode="json", exclude_unset=True),
+        clock.to_json() | {"evaluations": sum(each.evaluations for each in runs)},
+    )
+
+
+def _misalignments(
+    subject: TabledScene, mesh: str, question: HeardObjectiveInput, means: Means
+) -> FloatArray:
+    """Return the misalignment of the mesh under each load case (L,), m: stated, or by the deflection."""
+    loads = len(question.load_cases)
+    if question.misalignment_um is not None:
+        return np.broadcast_to(np.asarray(question.misalignment_um, dtype=float) * UM, (loads,)).copy()
+    known = subject.databases[mesh]
+    if known.metadata.receipt["plan"]["model"] in ("plane_strain", "plane_stress"):
+        return np.full(loads, float(known.misalignment[0]))
+    deflected = DEFLECT.compute(subject, DeflectInputs(load_cases=question.load_cases), means)
+    if failure := DEFLECT.failure(deflected):
+        raise SolveError(failure)
+    return np.array(
+        [own.misalignment for case in deflected.deflection.cases for own in case.meshes if own.name == mesh]
+    )
+
+
+def _heard(
+    subject: TabledScene,
+    mesh: MeshInput,
+    question: HeardObjectiveInput,
+    request: OptimizationRequest,
+    misalignment: FloatArray,
+    means: Means,
+) -> _Heard:
+    """Return the problem of the search, its scale still open."""
+    assert mesh.case is not None
+    cache, known = means.home / "compliance", subject.databases[mesh.name]
+    bodies = condensed_pair(request.pair, known, dict(mesh.case.effects), cache, compute=True)
+    assert bodies is not None
+    torque = _torques(subject, mesh.name, question)
+    tables = [_table(bodies, request, *each) for each in zip(torque, misalignment, strict=True)]
+    loads = heard_loads(subject, mesh.name, question, tables, means)
+    evaluator = _evaluator(request, torque, misalignment, means)
+    shares = np.array([each.load.share for each in loads])
+    index = mesh_index(subject.scene, mesh.name)
+    counted = list(question.counted_orders)  # the first line is all orders, then each
+    at = tuple(
+        HeardAt(
+            case,
+            OtherFlanks.of(case.system, index, case.transfer),
+            case.lines[counted].sum(axis=0) if counted else case.lines[0],
+            float(share),
+        )
+        for case, share in zip(loads, shares / shares.sum(), strict=True)
+    )
+    objective = HeardObjective(at, question.over_speeds == "worst", question.over_loads == "worst")
+    problem = HeardProblem(evaluator, request.variables, request.limits, 0.0, heard=objective)
+    return _Heard(problem, bodies, torque, misalignment)
+
+
+def _torques(subject: TabledScene, mesh: str, question: HeardObjectiveInput) -> FloatArray:
+    """Return the torque on the driving gear of the mesh under each load case (L,), N m."""
+    index, radius = mesh_index(subject.scene, mesh), subject.databases[mesh].facts.base_radius[0]
+    systems = [assemble(with_loads(subject.scene, load)) for load in load_cases(question.load_cases)]
+    forces = [float(excited(system).linear.equilibrium.mesh_force[index]) for system in systems]
+    return np.array(forces) * radius
+
+
+def _table(
+    bodies: CondensedPair, request: OptimizationRequest, torque: float, misalignment: float
+) -> SteDatabase:
+    """Return the table of the start under a load case, with loads beside it."""
+    return bodies.table(request.pair, torque * BESIDE_EACH, misalignment)
+
+
+def _evaluator(
+    request: OptimizationRequest, torque: FloatArray, misalignment: FloatArray, means: Means
+) -> Evaluator:
+    """Return the evaluator of all designs, with three loads for each load case."""
+    points = sorted({*zip(torque.tolist(), misalignment.tolist(), strict=True)})
+    acting = {variable.name: variable.acting for variable in request.variables}
+    skews = [skew for _, skew in points]
+    space = DesignSpace(
+        request.pair, acting, request.scatter, skews, request.search.positions, request.options
+    )
+    study = design_study(space, [load for load, _ in points], (), StageClock(), means.analysis)
+    force = torque / float(request.pair.torque(1.0))
+    load, alignment = with_loads_beside(force, misalignment)
+    return replace(study.evaluator, load=load, misalignment=alignment)
+
+
+def _confirmed(heard: _Heard, values: dict[str, float]) -> HeardDesign:
+    """Tell a design, its errors by what rougher contacts change of it: fewer slices, coarser meshes."""
+    problem, pair = heard.problem, modified(heard.bodies.checked.request.pair, values)
+    points = list(zip(np.outer(heard.torque, BESIDE_EACH), heard.misalignment, strict=True))
+    tables = [heard.bodies.table(pair, *point) for point in points]
+    rougher = zip(*(_rougher(heard.bodies, pair, *point) for point in points), strict=True)
+    contacts = [_levels(problem, each) for each in (tables, *rougher)]
+    levels = np.stack([each.level for each in contacts])
+    objectives = np.array([each.objective for each in contacts])
+    objective, violation = problem.evaluated(values)
+    figures, own = problem.evaluator.evaluate(values), slice(1, None, BESIDE_EACH.size)
+    ripple = [table.peak_to_peak(force=float(table.force[1])) for table in tables]
+    return HeardDesign(
+        dict(values),
+        Estimate(objective, float(np.linalg.norm(objectives[1:] - objectives[0])), "dB"),
+        levels[0],
+        np.linalg.norm(levels[1:] - levels[0], axis=0),
+        np.array([each.value for each in ripple]),
+        np.array([each.error for each in ripple]),
+        figures.pressure.max(axis=0)[own],
+        figures.face_load_factor.max(axis=0)[own],
+        figures.edge_load_share.max(axis=0)[own],
+        contacts[0].parting,
+        violation,
+    )
+
+
+class _Levels(NamedTuple):
+    """Levels (L, K) of tables, dB, the objective without scatter, and where flanks part (L,)."""
+
+    level: FloatArray
+    objective: float
+    parting: FloatArray
+
+
+def _levels(problem: HeardProblem, tables: Sequence[SteDatabase]) -> _Levels:
+    """Return the levels of tables, one for each load case."""
+    heard, lines, parting = problem.heard, [], []
+    for at, table in zip(heard.at, tables, strict=True):
+        power, parts = at.lines(table)
+        over_speeds = power.max(axis=0) if heard.worst_speed else power.mean(axis=0)
+        lines.append(at.case.form.decibels(over_speeds))
+        parting.append(parts)
+    power = np.stack([at.power(table) for at, table in zip(heard.at, tables, strict=True)])
+    return _Levels(np.stack(lines), heard.level(power), np.array(parting))
+
+
+def _rougher(
+    bodies: CondensedPair, pair: ParallelAxes, torques: FloatArray, misalignment: float
+) -> list[SteDatabase]:
+    """Return the tables of flanks on rougher contacts."""
+    return [
+        table_of_solution(
+            solved.pair,
+            solved.problem,
+            solved.solution,
+            np.unique(np.mod(solved.problem.candidates.position, 1.0)),
+            misalignment,
+        )
+        for solved in bodies.solve_rougher(pair, torques, misalignment)
+    ]
+
+
+def _tied(runs: Sequence[SearchRun], best: int, error: float) -> int:
+    """Return how many other starts of the search ended in designs that are as quiet within an error, dB."""
+    own = runs[best].assessed
+    others = (run.assessed for k, run in enumerate(runs) if k != best)
+    return sum(each.violation <= own.violation and each.objective - own.objective <= error for each in others)

@@ -1,0 +1,187 @@
+"""Flanks that are heard least in a scene: levels before and after, and what gets worse."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from bounds.types import Json
+from fe_contact.microgeometry.optimization import Outcome
+from fe_contact.microgeometry.search import SearchRun
+from fe_contact.microgeometry.variables import DesignVariable
+from fe_contact.types import Estimate, FloatArray
+from lineofaction.gearbox.studies.change.result import ALL, AUDIBLE
+from model_studies import in_unit
+
+FALL = 60.0
+"""dB below the loudest line: what is lower is not told."""
+MORE = 0.01
+"""Parts by which a pressure or a face load factor has to rise to be told."""
+
+
+@dataclass(frozen=True)
+class HeardDesign:
+    """A design under L load cases in K lines.
+
+    Attributes
+    ----------
+    values : dict of str to float
+        ``gear.quantity`` to m.
+    objective : Estimate
+        dB.
+    level, level_error : (L, K) arrays
+        dB; the error is that of the discretization of the contact.
+    peak_to_peak, peak_to_peak_error : (L,) arrays
+        Of the transmission error without scatter, m.
+    pressure : (L,) array
+        Largest Hertzian pressure at any node of the scatter, Pa.
+    face_load_factor, edge_load_share : (L,) arrays
+    parting : (L,) array
+        Largest share of the static mesh force by which flanks part at a speed, 0: they do not.
+    violation : float
+        Of the limits, in parts of them.
+    """
+
+    values: dict[str, float]
+    objective: Estimate
+    level: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
+    level_error: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
+    peak_to_peak: FloatArray = field(metadata=in_unit("m", "load_case"))
+    peak_to_peak_error: FloatArray = field(metadata=in_unit("m", "load_case"))
+    pressure: FloatArray = field(metadata=in_unit("pa", "load_case"))
+    face_load_factor: FloatArray
+    edge_load_share: FloatArray
+    parting: FloatArray
+    violation: float
+
+
+@dataclass(frozen=True)
+class HeardOptimization:
+    """The start and the optimum of a search by what is heard.
+
+    Attributes
+    ----------
+    mesh, quantity, unit, over_speeds, over_loads : str
+        What is minimized, in words; the unit with its reference.
+    lines : tuple of str
+        `ALL` orders that count together, then the orders of the mesh.
+    load_case : tuple of str
+    torque, misalignment : (L,) arrays
+        On the driving gear of the mesh, N m, and of the mesh, m.
+    speed : (S,) array
+        Of the leading shaft, rad/s.
+    tied : int
+        Designs of the search that cannot be told from the optimum within its error.
+    case : dict
+        Of the mesh, as a case file has it.
+    cost : dict
+        Evaluations, and CPU seconds by stage.
+    """
+
+    mesh: str
+    quantity: str
+    unit: str
+    over_speeds: str
+    over_loads: str
+    lines: tuple[str, ...]
+    variables: tuple[DesignVariable, ...]
+    load_case: tuple[str, ...]
+    torque: FloatArray = field(metadata=in_unit("n_m", "load_case"))
+    misalignment: FloatArray = field(metadata=in_unit("m", "load_case"))
+    speed: FloatArray = field(metadata=in_unit("rad s-1", "speed"))
+    start: HeardDesign
+    optimum: HeardDesign
+    runs: tuple[SearchRun, ...]
+    best_run: int
+    tied: int
+    case: Json
+    cost: Json
+
+    @property
+    def gain(self) -> Estimate:
+        """By how much the level falls, dB; the errors are added, although both designs have one mesh."""
+        start, optimum = self.start.objective, self.optimum.objective
+        return Estimate(start.value - optimum.value, start.error + optimum.error, "dB")
+
+    @property
+    def evaluations(self) -> int:
+        """Designs that the search evaluated."""
+        return sum(run.evaluations for run in self.runs)
+
+    @property
+    def outcome(self) -> Outcome:
+        """What came of it: ties within the errors are ties."""
+        if self.optimum.violation > 0.0:
+            return Outcome.LIMITS_EXCEEDED
+        if self.gain.value > self.gain.error:
+            return Outcome.IMPROVED
+        if self.start.violation > 0.0:
+            return Outcome.LIMITS_KEPT
+        return Outcome.WITHIN_ERROR if self.gain.value > 0.0 else Outcome.NOT_IMPROVED
+
+    @property
+    def reason(self) -> str:
+        """The outcome in a sentence."""
+        gain, start, optimum = self.gain, self.start.objective, self.optimum.objective
+        levels = f"{start.value:.1f} to {optimum.value:.1f} {self.unit}, errors {gain.error:.2g} dB"
+        words = {
+            Outcome.IMPROVED: f"Quieter by {gain.value:.1f} dB: {levels}",
+            Outcome.WITHIN_ERROR: f"A tie: the optimum cannot be told from the start, {levels}",
+            Outcome.NOT_IMPROVED: f"No quieter flanks were found: {levels}",
+            Outcome.LIMITS_KEPT: f"The limits are kept, which the start exceeds: {levels}",
+            Outcome.LIMITS_EXCEEDED: f"The best design exceeds the limits by {self._exceeded}: {levels}",
+        }
+        return words[self.outcome]
+
+    @property
+    def _exceeded(self) -> str:
+        return f"{100.0 * self.optimum.violation:.2g} % of them, or of the load on tip edges"
+
+    def ended(self) -> str:
+        """Return how the search ended, and what cannot be told from its best, in a sentence."""
+        run = self.runs[self.best_run]
+        ended = "The search converged" if run.converged else f"The search ended: {run.ended.value}"
+        tie = (
+            f"; {self.tied} of its designs cannot be told from the best within the error" if self.tied else ""
+        )
+        return f"{ended}, {self.evaluations} designs{tie}."
+
+    def worse(self) -> Iterator[str]:
+        """Yield what gets worse: orders by load case, largest first, then ripple, pressure, K_Hbeta."""
+        before, after = self.start, self.optimum
+        change, error = after.level - before.level, before.level_error + after.level_error
+        floor = max(before.level.max(), after.level.max()) - FALL
+        for flat in np.argsort(-after.level, axis=None, kind="stable").tolist():
+            load, line = np.unravel_index(flat, change.shape)
+            told = change[load, line] >= max(AUDIBLE, error[load, line])
+            if told and after.level[load, line] > floor:
+                name = "all orders" if self.lines[line] == ALL else f"order {self.lines[line]}"
+                yield (
+                    f"{name} at {self.torque[load]:.4g} N m {change[load, line]:+.1f} dB to "
+                    f"{after.level[load, line]:.1f} dB"
+                )
+        ripple = after.peak_to_peak - before.peak_to_peak
+        rises = ripple > before.peak_to_peak_error + after.peak_to_peak_error
+        for load in np.flatnonzero(rises).tolist():
+            ends = 1e6 * before.peak_to_peak[load], 1e6 * after.peak_to_peak[load]
+            yield f"peak-to-peak STE at {self.torque[load]:.4g} N m {ends[0]:.3g} to {ends[1]:.3g} um"
+        yield from self._rising("largest pressure", before.pressure / 1e6, after.pressure / 1e6, "MPa")
+        yield from self._rising("K_Hbeta", before.face_load_factor, after.face_load_factor, "")
+
+    def _rising(self, name: str, before: FloatArray, after: FloatArray, unit: str) -> Iterator[str]:
+        for load in np.flatnonzero(after > (1.0 + MORE) * before).tolist():
+            ends = f"{before[load]:.3g} to {after[load]:.3g} {unit}".rstrip()
+            yield f"{name} at {self.torque[load]:.4g} N m {ends}"
+
+    def costs(self) -> str:
+        """Return what gets worse, in a sentence."""
+        worse = list(self.worse())
+        return f"Gets worse: {'; '.join(worse)}." if worse else "Nothing gets worse beyond its error."
+
+    def partings(self) -> Iterator[str]:
+        """Yield where flanks would part, so that no linear response holds."""
+        for name, design in (("the start", self.start), ("the optimum", self.optimum)):
+            for load in np.flatnonzero(design.parting > 0.0).tolist():
+                yield f"Flanks of {name} would part at {self.torque[load]:.4g} N m: no linear level holds."
