@@ -1,7 +1,7 @@
 """Other flanks of one mesh of an assembled scene: what they excite, and how it changes with their table.
 
-The scene is assembled once. Another table moves the equilibrium, from which the rest follows; which effects act
-is not decided anew.
+The scene is assembled once. Another table moves the equilibrium, from which the rest follows; which effects
+act is not decided anew.
 """
 
 from __future__ import annotations

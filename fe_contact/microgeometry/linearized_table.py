@@ -51,7 +51,7 @@ def tabled_loads(
     names: Sequence[str] = (),
     limits: Limits = NO_LIMITS,
 ) -> Iterator[TabledLoads]:
-    """Solve a design, ``gear.quantity`` to m, at some nodes; yield a table for each misalignment of its loads.
+    """Solve a design, ``gear.quantity`` to m, at some nodes; yield a table for each misalignment.
 
     Parameters
     ----------

@@ -11,7 +11,9 @@ from bounds import engineering
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from fe_contact.microgeometry.optimization import Optimization
 from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.units import UM, factor
+from lineofaction.report.design.heard_flanks import HEARD
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -195,4 +197,15 @@ def _text(result: Optimization) -> Iterator[Table | str]:
     yield f"{result.outcome.replace('_', ' ')}: {result.reason}; {result.evaluations} designs"
 
 
-PAGE = Presentation(_harris, _optimization_page, _text)
+RIPPLE = Presentation(_harris, _optimization_page, _text)
+
+
+def _shown_by(result: Optimization | HeardOptimization) -> Presentation:
+    return HEARD if isinstance(result, HeardOptimization) else RIPPLE
+
+
+PAGE = Presentation(
+    lambda result: _shown_by(result).figure(result),
+    lambda result: _shown_by(result).page(result),
+    lambda result: _shown_by(result).text(result),
+)

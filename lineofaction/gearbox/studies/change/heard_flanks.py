@@ -38,7 +38,7 @@ from lineofaction.gearbox.studies.change.result import ALL
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.deflect.cases import load_cases
 from lineofaction.gearbox.studies.housings import radiation_of
-from lineofaction.gearbox.units import RPM
+from lineofaction.gearbox.units import RPM, UM
 
 UNITS = {BEARING_FORCE: "dB re 1 N", SOUND_POWER: "dB(A) re 1 pW"}
 
@@ -185,7 +185,13 @@ def quantity_of(subject: TabledScene, heard: HeardInput) -> str:
 
 
 def _scene_with(subject: TabledScene, mesh: str, table: SteDatabase) -> Scene:
-    return dynamic_scene(subject.inputs, {**subject.databases, mesh: table}, subject.housings)
+    """Return the scene with another table of a mesh, which runs at the misalignment of that table."""
+    aligned = {"misalignment_um": float(table.misalignment[0]) / UM}
+    meshes = tuple(
+        part.model_copy(update=aligned) if part.name == mesh else part for part in subject.inputs.meshes
+    )
+    inputs = subject.inputs.model_copy(update={"meshes": meshes})
+    return dynamic_scene(inputs, {**subject.databases, mesh: table}, subject.housings)
 
 
 def _sound_model(

@@ -1,4 +1,4 @@
-"""The search for flanks that are heard least: levels of a scene by the tables of a design, and their merit."""
+"""The search for flanks that are heard least: levels by the tables of a design, and their merit."""
 
 from __future__ import annotations
 

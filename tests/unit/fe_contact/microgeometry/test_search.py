@@ -17,7 +17,7 @@ from fe_contact.microgeometry.confirmation import HarrisMap, rising
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
 from fe_contact.microgeometry.objective import Limits, LinearMerit, Objective, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Outcome
-from fe_contact.microgeometry.optimize import _conclusion, _search_all, _search_one
+from fe_contact.microgeometry.optimize import _conclusion, _search_one, search_all
 from fe_contact.microgeometry.search import (
     EXPLORED,
     DifferentialEvolution,
@@ -168,7 +168,7 @@ class Failing:
 
 def test_starts_that_have_ended_survive_an_interruption() -> None:
     search = Search(NelderMead(), starts=4, evaluations=60)
-    every = _search_all(
+    every = search_all(
         cast(DesignProblem, Bowl()), search, tuple(START), Run(workers=InProcess()), lambda: False
     )
     assert len(every) == 4
@@ -180,19 +180,19 @@ def test_starts_that_have_ended_survive_an_interruption() -> None:
 
     for workers in (Failing(9), Failing(2)):  # cancelled between two, and by a dead worker
         asked[0] = 0
-        kept = _search_all(
+        kept = search_all(
             cast(DesignProblem, Bowl()), search, tuple(START), Run(workers=workers), once_one_ended
         )
         assert len(kept) == 2
         for one, whole in zip(kept, every, strict=False):
             assert one.assessed == whole.assessed
     with pytest.raises(RuntimeError):
-        _search_all(cast(DesignProblem, Bowl()), search, tuple(START), Run(workers=Failing(2)), lambda: False)
+        search_all(cast(DesignProblem, Bowl()), search, tuple(START), Run(workers=Failing(2)), lambda: False)
 
 
 @pytest.mark.parametrize("workers", [InProcess(), Failing(0)])
 def test_cancelled_before_the_first_design_the_start_is_left(workers: Any) -> None:
-    (run,) = _search_all(
+    (run,) = search_all(
         cast(DesignProblem, Bowl()), Search(), tuple(START), Run(workers=workers), lambda: True
     )
     np.testing.assert_array_equal(run.place, START)

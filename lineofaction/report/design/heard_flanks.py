@@ -1,0 +1,128 @@
+"""Flanks that are heard least in a scene: levels before and after by load case, and what gets worse."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from bounds import engineering
+from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.studies.optimize.result import HeardOptimization
+from lineofaction.gearbox.units import UM, factor
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number
+from lineofaction.report.drawing.page import Headline, Page, Section
+from lineofaction.report.presentation import Presentation
+
+
+def _loads(result: HeardOptimization) -> tuple[str, ...]:
+    return tuple(f"{torque:.4g} N m" for torque in result.torque)
+
+
+def _levels_figure(result: HeardOptimization) -> Figure:
+    over = result.over_speeds.replace("_", " ")
+    return Figure(
+        key="heard",
+        title="Levels before and after optimization",
+        caption=f"{result.quantity.replace('_', ' ').capitalize()} by order, {over} over the speeds. Order "
+        "0: all of them.",
+        alternative=result.reason,
+        content=tuple(_panel(result, load) for load in range(result.torque.size)),
+        table=_levels_table(result),
+    )
+
+
+def _panel(result: HeardOptimization, load: int) -> Panel:
+    order = np.arange(len(result.lines), dtype=float)
+    designs = ("before", result.start, palette.VERMILLION), ("after", result.optimum, palette.BLUE)
+    lines = tuple(
+        Line(name, order, design.level[load], color, "solid", 1.6, markers=True)
+        for name, design, color in designs
+    )
+    return Panel(Axis("order of the mesh, 0: all"), Axis(result.unit), lines, title=_loads(result)[load])
+
+
+def _levels_table(result: HeardOptimization) -> Table:
+    head = ("load", "order", "before, dB", "after, dB", "change, dB", "± dB")
+    rows = []
+    before, after = result.start, result.optimum
+    for load, torque in enumerate(_loads(result)):
+        for line, name in enumerate(result.lines):
+            at = load, line
+            rows.append(
+                (
+                    torque,
+                    name,
+                    f"{before.level[at]:.1f}",
+                    f"{after.level[at]:.1f}",
+                    f"{after.level[at] - before.level[at]:+.1f}",
+                    number(before.level_error[at] + after.level_error[at], 2),
+                )
+            )
+    return Table(f"Levels without scatter, {result.unit}", head, tuple(rows))
+
+
+def _flank_table(result: HeardOptimization) -> Table:
+    head = (
+        "load", "misalignment, µm", "ripple before, µm", "± µm", "ripple after, µm", "± µm",
+        "pressure before, MPa", "after, MPa", "K_Hbeta before", "after",
+    )  # fmt: skip
+    before, after = result.start, result.optimum
+    rows = tuple(
+        (
+            torque,
+            number(result.misalignment[k] / UM, 3),
+            number(before.peak_to_peak[k] / UM, 3),
+            number(before.peak_to_peak_error[k] / UM, 2),
+            number(after.peak_to_peak[k] / UM, 3),
+            number(after.peak_to_peak_error[k] / UM, 2),
+            number(before.pressure[k] / 1e6, 4),
+            number(after.pressure[k] / 1e6, 4),
+            number(before.face_load_factor[k], 3),
+            number(after.face_load_factor[k], 3),
+        )
+        for k, torque in enumerate(_loads(result))
+    )
+    return Table("Peak to peak of the transmission error, pressure and K_Hbeta", head, rows)
+
+
+def _design_table(result: HeardOptimization) -> Table:
+    rows = []
+    for variable in result.variables:
+        name = boundary_name(variable.name)
+        values = result.start.values[variable.name], result.optimum.values[variable.name]
+        ends = (*values, variable.low, variable.high)
+        rows.append((name, *(number(value / factor(name), 4) for value in ends)))
+    return Table("Design", ("variable", "start", "optimum", "least", "most"), tuple(rows))
+
+
+def _text(result: HeardOptimization) -> Iterator[Table | str]:
+    yield f"{result.reason}."
+    yield result.costs()
+    yield " ".join((result.ended(), *result.partings()))
+    yield _design_table(result)
+    yield _levels_table(result)
+    yield _flank_table(result)
+
+
+def _page(result: HeardOptimization) -> Page:
+    gain = f"± {engineering(result.gain.error, 2)} dB"
+    heads = (
+        Headline("before", f"{result.start.objective.value:.1f} dB", result.unit),
+        Headline("after", f"{result.optimum.objective.value:.1f} dB", result.unit),
+        Headline("gain", f"{result.gain.value:.1f} dB", gain),
+    )
+    lead = f"{result.reason}. {result.costs()} {result.ended()}"
+    heard = Section("What is heard", "", (_levels_figure(result),), (_flank_table(result),))
+    design = Section("Design", "", tables=(_design_table(result),))
+    return Page(
+        f"Flanks of {result.mesh} that are heard least",
+        lead,
+        heads,
+        (heard, design),
+        tuple(result.partings()),
+    )
+
+
+HEARD = Presentation(_levels_figure, _page, _text)
