@@ -109,8 +109,8 @@ def _text(result: HeardOptimization) -> Iterator[Table | str]:
 def _page(result: HeardOptimization) -> Page:
     gain = f"± {engineering(result.gain.error, 2)} dB"
     heads = (
-        Headline("before", f"{result.start.objective.value:.1f} dB", result.unit),
-        Headline("after", f"{result.optimum.objective.value:.1f} dB", result.unit),
+        Headline("before", f"{result.start.objective.value:.1f} {result.unit}"),
+        Headline("after", f"{result.optimum.objective.value:.1f} {result.unit}"),
         Headline("gain", f"{result.gain.value:.1f} dB", gain),
     )
     lead = f"{result.reason}. {result.costs()} {result.ended()}"

@@ -105,12 +105,13 @@ class HeardFlanks:
         skew, change = float(known.misalignment[0]), float(known.center_distance_change[0])
         return self.bodies.table(pair, torques, skew + misalignment, change)
 
+    def system(self, table: SteDatabase, load: LoadCase) -> System:
+        """Return the scene with a table of the mesh under a load case."""
+        return assemble(with_loads(_scene_with(self.subject, self.mesh, table), load))
+
     def levels(self, table: SteDatabase) -> FlankLevels:
         """Return the levels with a table of the mesh."""
-        scene = _scene_with(self.subject, self.mesh, table)
-        found = [
-            case.levels(assemble(with_loads(scene, case.load)), self.over_speeds) for case in self.load_cases
-        ]
+        found = [case.levels(self.system(table, case.load), self.over_speeds) for case in self.load_cases]
         level, parting = zip(*found, strict=True)
         return FlankLevels(np.stack(level), np.array(parting))
 

@@ -53,7 +53,7 @@ from model_studies.stage_clock import StageClock
 
 
 @dataclass(frozen=True)
-class _Heard:
+class Heard:
     """What a search and its confirmation work on.
 
     Attributes
@@ -92,7 +92,7 @@ def heard_optimum(
     with clock.stage("deflection"):
         misalignment = _misalignments(subject, mesh.name, question, means)
     with clock.stage("transfer functions"):
-        heard = _heard(subject, mesh, question, request, misalignment, means)
+        heard = heard_problem(subject, mesh, question, request, misalignment, means)
     with clock.stage("search"):
         start, _ = heard.problem.evaluated(dict(zip(heard.problem.names, request.own, strict=True)))
         if not math.isfinite(start):
@@ -104,7 +104,7 @@ def heard_optimum(
     with clock.stage("confirmation"):
         own = dict(zip(problem.names, request.own, strict=True))
         heard = replace(heard, problem=problem)
-        designs = [_confirmed(heard, values) for values in (own, problem.values(runs[best].place))]
+        before, after = (_confirmed(heard, values) for values in (own, problem.values(runs[best].place)))
     run.progress("confirmation", 1.0)
     quantity = quantity_of(subject, question)
     return HeardOptimization(
@@ -119,10 +119,11 @@ def heard_optimum(
         heard.torque,
         heard.misalignment,
         np.array(question.speed_rpm) * RPM,
-        *designs,
+        before,
+        after,
         runs,
         best,
-        _tied(runs, best, designs[1].objective.error),
+        _tied(runs, best, after.objective.error),
         mesh.case.model_dump(mode="json", exclude_unset=True),
         clock.to_json() | {"evaluations": sum(each.evaluations for each in runs)},
     )
@@ -146,15 +147,15 @@ def _misalignments(
     )
 
 
-def _heard(
+def heard_problem(
     subject: TabledScene,
     mesh: MeshInput,
     question: HeardObjectiveInput,
     request: OptimizationRequest,
     misalignment: FloatArray,
     means: Means,
-) -> _Heard:
-    """Return the problem of the search, its scale still open."""
+) -> Heard:
+    """Return the problem of a search at misalignments (L,) in m, its scale 0 dB."""
     assert mesh.case is not None
     cache, known = means.home / "compliance", subject.databases[mesh.name]
     bodies = condensed_pair(request.pair, known, dict(mesh.case.effects), cache, compute=True)
@@ -177,7 +178,7 @@ def _heard(
     )
     objective = HeardObjective(at, question.over_speeds == "worst", question.over_loads == "worst")
     problem = HeardProblem(evaluator, request.variables, request.limits, 0.0, heard=objective)
-    return _Heard(problem, bodies, torque, misalignment)
+    return Heard(problem, bodies, torque, misalignment)
 
 
 def _torques(subject: TabledScene, mesh: str, question: HeardObjectiveInput) -> FloatArray:
@@ -211,7 +212,7 @@ def _evaluator(
     return replace(study.evaluator, load=load, misalignment=alignment)
 
 
-def _confirmed(heard: _Heard, values: dict[str, float]) -> HeardDesign:
+def _confirmed(heard: Heard, values: dict[str, float]) -> HeardDesign:
     """Tell a design, its errors by what rougher contacts change of it: fewer slices, coarser meshes."""
     problem, pair = heard.problem, modified(heard.bodies.checked.request.pair, values)
     points = list(zip(np.outer(heard.torque, BESIDE_EACH), heard.misalignment, strict=True))

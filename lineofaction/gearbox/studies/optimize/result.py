@@ -155,8 +155,8 @@ class HeardOptimization:
         floor = max(before.level.max(), after.level.max()) - FALL
         for flat in np.argsort(-after.level, axis=None, kind="stable").tolist():
             load, line = np.unravel_index(flat, change.shape)
-            told = change[load, line] >= max(AUDIBLE, error[load, line])
-            if told and after.level[load, line] > floor:
+            told = max(AUDIBLE, float(error[load, line]))
+            if change[load, line] >= told and after.level[load, line] > floor:
                 name = "all orders" if self.lines[line] == ALL else f"order {self.lines[line]}"
                 yield (
                     f"{name} at {self.torque[load]:.4g} N m {change[load, line]:+.1f} dB to "

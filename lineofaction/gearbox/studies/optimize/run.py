@@ -92,7 +92,7 @@ class _OptimizeStudy(
         check_heard(subject, heard)
         if mesh.case is not None:
             with boundary_errors():
-                _ = _request_of(mesh.case, study).checked
+                _ = request_of(mesh.case, study).checked
 
     def normalized(self, subject: CheckedCase | SceneInput, study: Inputs) -> Json:
         """Return all inputs, with the usual variables if none are named."""
@@ -110,7 +110,7 @@ class _OptimizeStudy(
             if isinstance(subject, TabledScene):
                 heard, mesh = _heard_of(subject.inputs, study)
                 assert mesh.case is not None  # a scene with its tables has its cases written out
-                return heard_optimum(subject, mesh, heard, _request_of(mesh.case, study), means)
+                return heard_optimum(subject, mesh, heard, request_of(mesh.case, study), means)
             return optimize(
                 subject.request(_library_request, study),
                 means.analysis,
@@ -176,7 +176,7 @@ def _heard_of(scene: SceneInput, study: Inputs) -> tuple[HeardObjectiveInput, Me
         raise error.within("heard") from None
 
 
-def _request_of(case: Case, study: Inputs) -> OptimizationRequest:
+def request_of(case: Case, study: Inputs) -> OptimizationRequest:
     """Return the request of the flanks of a mesh; raises `BadInput`."""
     request: OptimizationRequest = CheckedCase(case).request(_library_request, study)
     return request

@@ -1,0 +1,184 @@
+"""Flanks that are heard least in a scene: laws of levels, their derivatives and the search."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from small_inputs import small_inputs
+
+from fe_contact.microgeometry.design_problem import PENALTY
+from fe_contact.microgeometry.linearized_table import tabled_loads
+from fe_contact.microgeometry.objective import Limits
+from fe_contact.types import FloatArray
+from host.directories import cache_home
+from lineofaction.gearbox.registry import change, optimize
+from lineofaction.gearbox.studies.change.heard_flanks import HeardFlanks
+from lineofaction.gearbox.studies.change.question import heard_mesh
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.optimize import Inputs
+from lineofaction.gearbox.studies.optimize.heard_problem import HeardMerit, HeardProblem, Powers
+from lineofaction.gearbox.studies.optimize.heard_search import heard_problem
+from lineofaction.gearbox.studies.optimize.result import HeardOptimization
+from lineofaction.gearbox.studies.optimize.run import request_of
+from lineofaction.gearbox.workbench import tabled
+from model_studies.workers import InProcess
+
+Json = dict[str, Any]
+HALF: Json = {"name": "half", "factor": 0.5}
+HEARD: Json = {"speed_rpm": [300.0, 3000.0, 9000.0], "orders": 3, "load_cases": [HALF, {"name": "whole"}]}
+FREE: Json = {
+    "pinion": {"tip_relief_um": [0.0, 8.0], "profile_crowning_um": [0.0, 4.0]},
+    "wheel": {"tip_relief_um": [0.0, 8.0]},
+}
+FEW: Json = {"evaluations": 24, "sample": 4, "trials": 1, "positions": 32}
+
+
+def scene() -> Json:
+    """A spur pair in the plane whose flanks are relieved a little."""
+    own: Json = small_inputs("modes")["scene"]
+    pair = own["meshes"][0]["case"]["pair"]
+    for gear in ("pinion", "wheel"):
+        pair[gear] = pair[gear] | {"tip_relief_um": 3.0, "tip_relief_length_mm": 0.4}
+    return own
+
+
+def inputs(**heard: Any) -> Json:
+    return {"variables": FREE, "search": FEW, "heard": HEARD | heard}
+
+
+def problem(**heard: Any) -> HeardProblem:
+    study = Inputs.model_validate(inputs(**heard))
+    subject = tabled(scene())
+    mesh = heard_mesh(subject.inputs, None)
+    assert mesh.case is not None and study.heard is not None
+    request = request_of(mesh.case, study)
+    loads = len(study.heard.load_cases)
+    means = Means(cache_home(), lambda _stage, _part: None)
+    return heard_problem(subject, mesh, study.heard, request, np.zeros(loads), means).problem
+
+
+DESIGN = {"pinion.tip_relief": 5e-6, "pinion.profile_crowning": 1.5e-6, "wheel.tip_relief": 3.5e-6}
+
+
+@cache
+def problems() -> tuple[HeardProblem, HeardProblem]:
+    return problem(over_speeds="energy_mean", over_loads="energy_mean"), problem()
+
+
+@pytest.mark.law
+def test_a_design_is_as_loud_as_its_table_in_a_scene_assembled_anew() -> None:
+    own = problems()[0]
+    tabled_at = own.tables_of(list(tabled_loads(own.evaluator, DESIGN, (0,))))
+    subject = tabled(scene())
+    empty = HeardFlanks(subject, "mesh", None, "worst", (), np.zeros(0))  # type: ignore[arg-type]
+    for at, each in zip(own.heard.at, tabled_at, strict=True):
+        whole = at.case.transfer.excitation(empty.system(each.table, at.case.load))
+        power = at.case.form.weighted(at.case.transfer.inputs(whole)) @ at.counted
+        np.testing.assert_allclose(at.power(each.table), power, rtol=1e-7)
+
+
+def place(own: HeardProblem) -> FloatArray:
+    return own.place(tuple(DESIGN[name] for name in own.names))
+
+
+def level(own: HeardProblem, values: dict[str, float]) -> float:
+    return own.evaluated(values)[0]
+
+
+@pytest.mark.law
+def test_the_derivative_of_a_level_is_that_of_solved_contacts() -> None:
+    """Of the power over speeds and loads, central differences of 20 nm: no contact changes on the way."""
+    own = replace(problems()[0], scale=level(problems()[0], DESIGN))
+    assessed, merit = own.linearize(place(own), InProcess())
+    assert assessed.objective == pytest.approx(own.scale, abs=1e-9)
+    (slope,) = merit.powers.slope / own.ranges * 10.0 / np.log(10.0)  # dB/m about the start
+    step, differences = 2e-8, []
+    for name in own.names:
+        value = DESIGN[name]
+        above, below = (level(own, DESIGN | {name: value + side * step}) for side in (1.0, -1.0))
+        differences.append((above - below) / (2.0 * step))
+    np.testing.assert_allclose(slope, differences, atol=1e-4 * np.abs(differences).max())
+
+
+def test_a_mean_over_loads_or_speeds_is_no_louder_than_the_worst() -> None:
+    means, worst = level(problems()[0], DESIGN), level(problems()[1], DESIGN)
+    assert means < worst
+
+
+@cache
+def found() -> HeardOptimization:
+    result: HeardOptimization = optimize(scene(), inputs())
+    return result
+
+
+def test_the_optimum_is_no_louder_than_the_start_and_stays_in_its_bounds() -> None:
+    own = found()
+    assert own.outcome == "improved" and own.gain.value > own.gain.error
+    assert own.optimum.objective.value < own.start.objective.value
+    for variable in own.variables:
+        assert variable.low <= own.optimum.values[variable.name] <= variable.high
+
+
+def test_start_and_optimum_are_as_loud_as_a_comparison_of_their_flanks_says() -> None:
+    """The study of a change takes tables of all loads of the case, not of those that are heard."""
+    own = found()
+    case = copy.deepcopy(scene()["meshes"][0]["case"])
+    for name, value in own.optimum.values.items():
+        gear, quantity = name.split(".")
+        case["pair"][gear][f"{quantity}_um"] = 1e6 * value
+    compared = change(scene(), {"after": case, "tolerances": {"samples": 2}, **HEARD})
+    for design, side in ((own.start, compared.before), (own.optimum, compared.after)):
+        loud = side.nominal > side.nominal.max() - 25.0
+        np.testing.assert_allclose(design.level[loud], side.nominal[loud], atol=0.2)
+
+
+def test_limits_are_held_or_said_to_be_exceeded() -> None:
+    before = found().start.pressure.max() / 1e6
+    asked = inputs() | {"limits": {"max_pressure_mpa": 1.002 * before, "edge_load_share": 0.05}}
+    own: HeardOptimization = optimize(scene(), asked)
+    assert own.outcome != "limits_exceeded"
+    assert own.optimum.pressure.max() / 1e6 <= 1.002 * before * (1.0 + 1e-3)
+
+
+def test_what_gets_worse_is_said_first() -> None:
+    own = found()
+    louder = replace(own, start=own.optimum, optimum=own.start)
+    assert "Gets worse: all orders" in louder.costs() and louder.outcome == "not_improved"
+    assert replace(own, optimum=own.start).costs() == "Nothing gets worse beyond its error."
+
+
+def bowl(sizes: tuple[int, int], seed: int) -> HeardMerit:
+    """Rows of powers |a + B x|^2 with random a and B."""
+    rows, count = sizes
+    random = np.random.default_rng(seed)
+    a, b = random.normal(size=(rows, 3)), random.normal(size=(rows, 3, count))
+    slope, bend = 2.0 * np.einsum("rk,rkd->rd", a, b), np.einsum("rkd,rke->rde", b, b)
+    limit = random.normal(size=(4,)) - 1.0, random.normal(size=(4, count))
+    return HeardMerit(Powers((a * a).sum(axis=1), slope, bend), (limit,), PENALTY)
+
+
+def merit_at(merit: HeardMerit, step: FloatArray) -> float:
+    ((value, by),) = merit.limits
+    return float(merit.amplitudes(step).max()) + merit.penalty * max(0.0, float((value + by @ step).max()))
+
+
+@pytest.mark.parametrize("sizes", [(1, 2), (5, 3), (40, 4)])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_no_step_of_many_has_less_merit_than_the_least(sizes: tuple[int, int], seed: int) -> None:
+    merit, reach = bowl(sizes, seed), np.full(sizes[1], 0.4)
+    step, promised = merit.least(-reach, reach)
+    assert promised == pytest.approx(merit_at(merit, step))
+    trials = np.random.default_rng(9).uniform(-0.4, 0.4, (20_000, sizes[1]))
+    assert promised <= min(merit_at(merit, trial) for trial in trials) * (1.0 + 2e-3)
+
+
+def test_a_limit_of_pressure_is_a_row_of_the_merit() -> None:
+    own = replace(problems()[0], limits=Limits(max_pressure=1e9), scale=level(problems()[0], DESIGN))
+    _, merit = own.linearize(place(own), InProcess())
+    ((value, by),) = merit.limits
+    assert by.shape == (value.size, len(DESIGN))
