@@ -182,11 +182,11 @@ class Studies:
         group="design",
         kind="optimization",
         stages=(
-            ("analysis", 0.1),
+            ("analysis", 0.05),
+            ("compliance", 0.15),
             ("deflection", 0.05),
             ("transfer functions", 0.05),
             ("radiation", 0.05),
-            ("compliance", 0.1),
             ("search", 0.5),
             ("confirmation", 0.15),
         ),

@@ -85,6 +85,9 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
         ({"torque_n_m": 1.0, "normal_force_n": 1.0}, "normal_force_n"),
     ],
     "optimize": [
+        ({"heard": {"speed_rpm": [300.0]}}, "heard"),  # of a case
+        ({"heard": {"speed_rpm": [300.0], "orders": 2, "counted_orders": [3]}}, "heard.counted_orders[0]"),
+        ({"heard": {"speed_rpm": [300.0], "misalignment_um": [1.0, 2.0]}}, "heard.misalignment_um"),
         ({"variables": {"most_tip_relief_um": 0.0}}, "variables.most_tip_relief_um"),
         ({"variables": {"pinion": {"tip_relief_um": [40.0, 0.0]}}}, "variables.pinion.tip_relief_um"),
         ({"variables": {"pinion": {"tip_relief_um": [-1.0, 5.0]}}}, "variables.pinion.tip_relief_um"),

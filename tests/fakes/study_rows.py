@@ -273,6 +273,19 @@ def _change(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
     yield figures["pairs"], 4
 
 
+def _heard_optimum(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    heard = figures["heard"]
+    (levels,) = heard["levels"]
+    yield heard["torque_n_m"], [approx(1.0)]
+    yield heard["gain_db"], result.start.objective.value - result.optimum.objective.value
+    for design, side in (("start", "before_db"), ("optimum", "after_db")):
+        orders = sum(10.0 ** (0.1 * line[side]) for line in levels[1:])
+        yield levels[0][side], approx(10.0 * math.log10(orders))
+        relief = getattr(result, design).values["pinion.tip_relief"]
+        yield heard[design]["values"]["pinion"]["tip_relief_um"], approx(1e6 * relief)
+    yield (figures["runs"] if "runs" in figures else None, figures["outcome"]), (None, result.outcome.value)
+
+
 def _many_scenes(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
     (response,) = figures["responses"]
     yield response["mean"], (1e6 * result.figure[:, 0]).tolist()
@@ -327,6 +340,10 @@ def _vibration_columns(figures: Json) -> dict[str, Sequence[Any]]:
 
 NUMBER = r"-?[\d.]+"
 FEW_ORDERS: Json = {"speed_rpm": [300.0], "orders": 3}
+HEARD_LEAST: Json = {
+    "heard": FEW_ORDERS,
+    "search": {"evaluations": 8, "sample": 4, "trials": 1, "positions": 16},
+}
 
 ROWS = (
     StudyRow("flank", "case", _flank, ends=(r"\S.*: [\d.]+ MPa",)),
@@ -337,6 +354,7 @@ ROWS = (
     StudyRow("sensitivity", "case", _sensitivity, columns=_sensitivity_columns, own=("name",)),
     StudyRow("root-stress", "case", _root_stress, columns=_root_columns, ends=(r"\S.*: [\d.]+ MPa",)),
     StudyRow("optimize", "case", _optimum),
+    StudyRow("optimize", "scene", _heard_optimum, HEARD_LEAST),
     StudyRow("scatter", "case", _scatter),
     StudyRow("sweep", "case", _sweep, columns=_sweep_columns),
     StudyRow(
