@@ -283,7 +283,7 @@ def _heard_optimum(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
         yield levels[0][side], approx(10.0 * math.log10(orders))
         relief = getattr(result, design).values["pinion.tip_relief"]
         yield heard[design]["values"]["pinion"]["tip_relief_um"], approx(1e6 * relief)
-    yield (figures["runs"] if "runs" in figures else None, figures["outcome"]), (None, result.outcome.value)
+    yield (figures.get("runs"), figures["outcome"]), (None, result.outcome.value)
 
 
 def _many_scenes(figures: Json, result: Any, _table: SteDatabase) -> Pairs:

@@ -49,7 +49,7 @@ from lineofaction.gearbox.studies.optimize.heard_problem import (
 )
 from lineofaction.gearbox.studies.optimize.result import HeardDesign, HeardOptimization
 from lineofaction.gearbox.units import RPM, UM
-from model_studies.progress import unreported
+from model_studies.progress import silent
 from model_studies.stage_clock import StageClock
 
 
@@ -207,8 +207,8 @@ def _evaluator(
     space = DesignSpace(
         request.pair, acting, request.scatter, skews, request.search.positions, request.options
     )
-    silent = replace(means.analysis, progress=unreported)
-    study = design_study(space, [load for load, _ in points], (), StageClock(), silent)
+    run = replace(means.analysis, progress=silent)
+    study = design_study(space, [load for load, _ in points], (), StageClock(), run)
     force = torque / float(request.pair.torque(1.0))
     load, alignment = with_loads_beside(force, misalignment)
     return replace(study.evaluator, load=load, misalignment=alignment)
