@@ -11,10 +11,10 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (39_740, 709),
-    ("dynamics",): (42_232, 802),
-    ("lineofaction.gearbox",): (23_864, 476),
-    ("lineofaction.report",): (11_129, 207),
+    ("fe_contact",): (39_901, 718),
+    ("dynamics",): (42_433, 807),
+    ("lineofaction.gearbox",): (24_886, 498),
+    ("lineofaction.report",): (11_270, 207),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_972, 71),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_417, 151),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 789
+MOST_FILES = 796
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
