@@ -27,6 +27,7 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.checks import integer
 from dynamics.errors import InputError, ResultError, SolveError
+from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import SAMPLES
 from dynamics.linearize.harmonic_response import bearing_forces, extremes
 from dynamics.linearize.load_harmonics import load_harmonics, load_multiples
@@ -180,6 +181,28 @@ class FlankTransfer(ArrayFile):
         if not np.all(np.isfinite(v)):
             raise SolveError("the vibration is unbounded with these flanks at one of the frequencies")
         return np.concatenate([np.ones((*v.shape[:2], 1)), v], axis=2)
+
+    def excitation_errors(
+        self, system: System, flanks: FlankExcitation, mesh: int, errors: tuple[FloatArray, ...]
+    ) -> list[FlankExcitation]:
+        """Return by how much flanks excite differently for three errors of what a mesh excites.
+
+        `errors` (H,) of amplitudes are those of the transmission error, m, of the arm of the load, m, and of
+        the friction along the sliding over the largest. Flanks without such a row err by nothing there.
+        """
+        static, arm, friction = errors
+        own, elements = slice(*self.first[mesh : mesh + 2]), system.arrays.elements
+        forces, load = np.zeros((3, *self.force.shape), dtype=complex), abs(flanks.mean_force[mesh])
+        forces[0, own] = flanks.tangent[own, own.start, None] * static
+        if elements.law[mesh] == Law.SPATIAL_FLANK:
+            laws, entry = elements.laws.spatial_flank, elements.entry[mesh]
+            tilting, _, sliding = (own.start + int(row) for row in laws.row[entry])
+            if laws.per_face[entry] > 0.0:
+                forces[1, tilting] = laws.per_face[entry] * load * arm
+            if sliding > own.start:
+                forces[2, sliding] = laws.friction[entry] * load * friction
+        none = np.zeros_like(self.tangent)
+        return [flanks._replace(force=force, tangent=none, viscous=none) for force in forces]
 
     def input_changes(
         self, flanks: FlankExcitation, inputs: ComplexArray, changes: Sequence[FlankExcitation]

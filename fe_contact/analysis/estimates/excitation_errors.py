@@ -51,16 +51,23 @@ def excitation_errors(table: SteDatabase, force: float) -> ExcitationErrors:
             arms = all_sources(table.load_arm_error[:, FIRST_HARMONIC:, :, m, d])
             of_arm = np.maximum(of_arm, [np.interp(at, table.force, each) for each in arms])
     unknown = np.full(HARMONICS, np.nan)
-    sliding = sliding_sums(table)[0].reshape(table.position.size, -1)
-    missed = errors_by_halves(table.position, sliding, table.period).curves[FIRST_HARMONIC:].max(axis=1)
+    sliding = sliding_sums(table)[0]
+    missed = errors_by_halves(table.position, sliding.reshape(len(sliding), -1), table.period).curves
+    by_load = missed.reshape(-1, *sliding.shape[1:]).max(axis=(2, 3))
+    missed_here = np.array([np.interp(at, table.force, each) for each in by_load[FIRST_HARMONIC:]])
     return ExcitationErrors(
-        of_ste, of_arm if table.load_arm_error.size else unknown, np.hypot(of_shares, missed)
+        of_ste, of_arm if table.load_arm_error.size else unknown, np.hypot(of_shares, missed_here)
     )
 
 
 def _stated(table: SteDatabase, force: float, m: int, d: int) -> FloatArray:
-    """Return the errors (sources, 22) of the transmission error by source at an alignment, m."""
+    """Return the errors (sources, 22) of the transmission error by source at an alignment, m.
+
+    An interval of loads that was not assessed, as of condensed gears, adds nothing.
+    """
     if not table.curve_error.size:
         return np.full((len(AT_NODES), FIRST_HARMONIC + HARMONICS), np.nan)
     alignment = float(table.misalignment[m]), float(table.center_distance_change[d])
-    return errors_by_source(table, OperatingPoint(force, *alignment))
+    errors = errors_by_source(table, OperatingPoint(force, *alignment))
+    between = np.nan_to_num(errors[len(AT_NODES) :])
+    return np.concatenate([errors[: len(AT_NODES)], between])

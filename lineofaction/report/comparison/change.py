@@ -17,17 +17,20 @@ BAND = f"{100 * (HIGH - LOW):.0f} %"
 
 
 def _loads(result: FlankChange) -> tuple[str, ...]:
-    return tuple(f"{torque:.4g} N m" for torque in result.torque)
+    """Name the load cases by their torques, those of the same torque by their numbers as well."""
+    torques = [f"{torque:.4g} N m" for torque in result.torque]
+    return tuple(name if torques.count(name) == 1 else f"{name} ({k + 1})" for k, name in enumerate(torques))
 
 
 def _change_figure(result: FlankChange) -> Figure:
     change = result.change_quantiles[:, :, 0]
     worst = int(np.argmax(change[1]))
+    heard = f"{result.quantity.replace('_', ' ')}, {result.over_speeds.replace('_', ' ')} over the speeds"
     return Figure(
         key="change",
         title="Levels of the pairs before and after",
-        caption=f"{len(result.deviation)} pairs, deviating alike before and after. All orders of "
-        f"{result.quantity.replace('_', ' ')}, {result.over_speeds.replace('_', ' ')} over the speeds.",
+        caption=f"{len(result.deviation)} pairs, deviating alike before (dashed) and after. All orders of "
+        f"{result.mesh} together: {heard}.",
         alternative=f"The median change is {change[1, worst]:+.1f} dB at {_loads(result)[worst]}.",
         content=(_levels_panel(result), _change_panel(result)),
     )
@@ -38,7 +41,7 @@ def _levels_panel(result: FlankChange) -> Panel:
     for k, load in enumerate(_loads(result)):
         color = palette.ordered(k, result.torque.size)
         lines.append(_distribution(f"{load}, before", result.before.pairs[:, k, 0], color, dashed=True))
-        lines.append(_distribution(f"{load}, after", result.after.pairs[:, k, 0], color))
+        lines.append(_distribution(load, result.after.pairs[:, k, 0], color))
     limit = () if result.requirement is None else (Reference("requirement", result.requirement),)
     return Panel(Axis(result.unit), Axis("share of all pairs"), tuple(lines), limit, title="Level")
 

@@ -72,6 +72,37 @@ def test_equal_flanks_change_nothing_of_any_pair() -> None:
     assert same.verdict().startswith("No change")
 
 
+@pytest.mark.law
+def test_levels_of_a_draft_differ_from_finer_ones_by_no_more_than_their_errors() -> None:
+    """As designed and the change, of all orders and of those within 25 dB; bands hold the errors."""
+    found = {}
+    for level in ("draft", "standard"):
+        own, after = scene(), copy.deepcopy(RELIEVED)
+        for each in (own["meshes"][0]["case"], after):
+            each["accuracy"] |= {"level": level, "receipt": "full"}
+        found[level] = change(own, {"after": after, "tolerances": {"samples": 2}, **QUESTION})
+    rough, fine = found["draft"], found["standard"]
+    loud = fine.before.nominal > fine.before.nominal[:, :1] - 25.0
+    for side in ("before", "after"):
+        low, high = getattr(rough, side).error + getattr(fine, side).error
+        off = getattr(fine, side).nominal - getattr(rough, side).nominal
+        assert np.all((off >= -low)[loud]) and np.all((off <= high)[loud])
+        assert np.all(high[loud] > 0.0)
+        low, median, high = getattr(rough, side).quantiles()
+        assert np.all(median - low >= getattr(rough, side).error[0] * (1.0 - 1e-9))
+
+
+@pytest.mark.law
+def test_all_orders_are_those_of_the_mesh() -> None:
+    """What an unbalance excites at the order of its shaft is heard with any flanks, and not compared."""
+    own = scene()
+    own["unbalances"] = [{"name": "heavy", "shaft": "input", "position_mm": 100.0, "amount_g_mm": 100.0}]
+    found = change(own, {"after": RELIEVED, "tolerances": {"samples": 2}, **QUESTION})
+    together = 10.0 * np.log10(np.sum(10.0 ** (0.1 * found.before.nominal[:, 1:]), axis=1))
+    assert np.all(found.before.nominal[:, 0] <= together + 1e-9)  # the loudest of each at speeds of its own
+    assert np.all(found.before.nominal[:, 0] >= found.before.nominal[:, 1:].max(axis=1) - 1e-9)
+
+
 def test_the_other_way_round_changes_the_sign() -> None:
     """Each level is one of a pair: it does not depend on which design the transfer functions are about."""
     back = compared(RELIEVED, case())

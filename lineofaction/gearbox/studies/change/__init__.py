@@ -78,8 +78,8 @@ class Inputs(OverOrders):
         default=None,
         ge=-300.0,
         le=300.0,
-        description="Highest level of all orders together that 95 % of the pairs may have after the change, "
-        "under every load case",
+        description="Highest level of all orders of the mesh that 95 % of the pairs may have after the "
+        "change, under every load case",
         examples=[72.0],
     )
 
@@ -100,7 +100,7 @@ class ChangeFigures(Figures):
         """A load case by the torque on the driving gear of the mesh."""
 
         class LineFigures(Part):
-            """An order of the mesh, or all orders together."""
+            """An order of the mesh, or all of them together."""
 
             order: str
             before: QuantileFigures

@@ -24,6 +24,7 @@ from dynamics.noise import (
 from dynamics.scene import Scene
 from dynamics.settings.load_case import LoadCase
 from dynamics.types import FloatArray
+from fe_contact.analysis.estimates.excitation_errors import excitation_errors
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
@@ -40,6 +41,8 @@ from lineofaction.gearbox.studies.deflect.cases import load_cases
 from lineofaction.gearbox.studies.housings import radiation_of
 from lineofaction.gearbox.units import RPM, UM
 
+CANCELED = 0.1
+"""Least part of an amplitude that errors in opposite phase leave: 20 dB."""
 UNITS = {BEARING_FORCE: "dB re 1 N", SOUND_POWER: "dB(A) re 1 pW"}
 
 
@@ -71,11 +74,37 @@ class HeardLoad:
     def levels(self, system: System, over_speeds: str) -> tuple[FloatArray, float]:
         """Return levels (K,) of flanks, dB, and by what share of the mesh force they part."""
         flanks = self.transfer.excitation(system)
-        power = self.form.weighted(self.transfer.inputs(flanks)) @ self.lines.T
-        heard = power.max(axis=0) if over_speeds == "worst" else power.mean(axis=0)
+        power = self.form.weighted(self.transfer.inputs(flanks))
         least = self.transfer.response(flanks).least_mesh_force.min(axis=1)
         apart = np.max(-least / np.abs(flanks.mean_force), initial=0.0)
-        return self.form.decibels(heard), float(apart)
+        return self._heard(power, over_speeds), float(apart)
+
+    def errors(self, system: System, mesh: int, table: SteDatabase, over_speeds: str) -> FloatArray:
+        """Return how far the levels may be below and above for the errors of a mesh's table, (2, K) dB.
+
+        Those of transmission error, load arm and friction are independent; each adds in phase at worst.
+        """
+        flanks = self.transfer.excitation(system)
+        torque = abs(float(flanks.mean_force[mesh])) * table.facts.base_radius[0]
+        errors = excitation_errors(table, table.facts.normal_force(torque))
+        known = np.minimum(np.arange(len(self.lines) - 1), errors.load_arm.size - 1)
+        of_table = errors.transmission_error, errors.load_arm, errors.friction
+        parts = tuple(own[known] @ self.lines[1:] for own in of_table)
+        changes = self.transfer.excitation_errors(system, flanks, mesh, parts)
+        inputs = self.transfer.inputs(flanks)
+        added = np.moveaxis(self.transfer.input_changes(flanks, inputs, changes), 3, 0)
+        off = np.sqrt(sum(self.form.weighted(each) for each in added))
+        size = np.sqrt(self.form.weighted(inputs))
+        low, own, high = (
+            self._heard(each**2, over_speeds)
+            for each in (np.maximum(size - off, CANCELED * size), size, size + off)
+        )
+        return np.stack([own - low, high - own])
+
+    def _heard(self, power: FloatArray, over_speeds: str) -> FloatArray:
+        """Return the levels (K,) of a weighted power (S, H), dB."""
+        lines = power @ self.lines.T
+        return self.form.decibels(lines.max(axis=0) if over_speeds == "worst" else lines.mean(axis=0))
 
 
 @dataclass(frozen=True)
@@ -114,6 +143,15 @@ class HeardFlanks:
         found = [case.levels(self.system(table, case.load), self.over_speeds) for case in self.load_cases]
         level, parting = zip(*found, strict=True)
         return FlankLevels(np.stack(level), np.array(parting))
+
+    def errors(self, table: SteDatabase) -> FloatArray:
+        """Return how far levels may be below and above by the errors of a table, (2, L, K) dB."""
+        mesh = mesh_index(self.subject.scene, self.mesh)
+        found = [
+            case.errors(self.system(table, case.load), mesh, table, self.over_speeds)
+            for case in self.load_cases
+        ]
+        return np.stack(found, axis=1)
 
     def of_pair(self, pair: ParallelAxes, names: Sequence[str], deviation: FloatArray) -> FlankLevels:
         """Return the levels of a design that deviates by (d,), m; no material is removed below zero."""
@@ -156,8 +194,8 @@ def heard_loads(
     cases = []
     for load, system, transfer in zip(loads, systems, transfers, strict=True):
         step = abs(common_period(system).pitches[index])
-        own = step * np.arange(1, question.orders + 1)
-        lines = np.vstack([np.ones(transfer.harmonics.size), own[:, None] == transfer.harmonics])
+        own = (step * np.arange(1, question.orders + 1))[:, None] == transfer.harmonics
+        lines = np.vstack([own.any(axis=0), own]).astype(float)
         cases.append(HeardLoad(load, system, transfer, _form(transfer, model, question.heard), lines))
     return tuple(cases)
 
@@ -175,7 +213,7 @@ def mesh_torques(subject: TabledScene, mesh: str, cases: Sequence[HeardLoad]) ->
 
 
 def line_names(orders: int) -> tuple[str, ...]:
-    """Return the names of the lines: all orders together, then each."""
+    """Return the names of the lines: all orders of the mesh together, then each."""
     return (ALL, *map(str, range(1, orders + 1)))
 
 

@@ -14,7 +14,7 @@ from model_studies import in_unit
 from model_studies.spread import rank_correlation
 
 ALL = "all"
-"""The line of all orders together."""
+"""The line of all orders of the mesh together: flanks change no others."""
 LOW, MEDIAN, HIGH = 0.05, 0.5, 0.95
 """Quantiles of the band of a level."""
 AUDIBLE = 0.5
@@ -31,20 +31,28 @@ class DesignLevels:
     pairs : (N, L, K) array
     parting : (L,) array
         Largest share of the static mesh force by which flanks part at a speed, 0: they do not.
+    error : (2, L, K) array
+        How far levels may be below and above what the table of the nominal design says; NaN: not known.
     """
 
     nominal: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
     pairs: FloatArray = field(metadata=in_unit("dB", "pair", "load_case", "line"))
     parting: FloatArray = field(metadata=in_unit("1", "load_case"))
+    error: FloatArray = field(metadata=in_unit("dB", "side", "load_case", "line"))
 
     def quantiles(self) -> FloatArray:
-        """Return the band (3, L, K) in which 90 % of the pairs lie, and its median, dB."""
-        return quantiles(self.pairs)
+        """Return the band (3, L, K) in which 90 % of the pairs lie, and its median, dB; with the errors."""
+        return _banded(self.pairs, *self.error)
 
 
-def quantiles(levels: FloatArray) -> FloatArray:
-    """Return the quantiles `LOW`, `MEDIAN` and `HIGH` (3, ...) of pairs (N, ...)."""
-    return np.asarray(np.quantile(levels, (LOW, MEDIAN, HIGH), axis=0))
+def _banded(levels: FloatArray, below: FloatArray, above: FloatArray) -> FloatArray:
+    """Return the quantiles `LOW`, `MEDIAN` and `HIGH` (3, ...) of pairs (N, ...), errors (...) in the ends.
+
+    The spread of the pairs and the errors of the table are independent: they add up in squares.
+    """
+    low, median, high = np.quantile(levels, (LOW, MEDIAN, HIGH), axis=0)
+    below, above = np.nan_to_num(below), np.nan_to_num(above)
+    return np.stack([median - np.hypot(median - low, below), median, median + np.hypot(high - median, above)])
 
 
 @dataclass(frozen=True)
@@ -56,7 +64,7 @@ class FlankChange:
     mesh, quantity, unit, over_speeds : str
         What is compared, in words; the unit with its reference.
     lines : tuple of str
-        `ALL` orders together, then the orders of the mesh.
+        `ALL` orders of the mesh together, then each.
     torque : (L,) array
         On the driving gear of the mesh, N m.
     speed : (S,) array
@@ -66,7 +74,7 @@ class FlankChange:
     deviation : (N, d) array
         m.
     requirement : float or None
-        Highest level of all orders together that `HIGH` of the pairs may have, dB.
+        Highest level of all orders of the mesh that `HIGH` of the pairs may have, dB.
     cost : dict
         CPU seconds by stage.
     """
@@ -97,8 +105,13 @@ class FlankChange:
 
     @cached_property
     def change_quantiles(self) -> FloatArray:
-        """The band of the change and its median (3, L, K), dB."""
-        return quantiles(self.change)
+        """The band of the change and its median (3, L, K), dB.
+
+        The errors of both tables count as independent; flanks that change nothing err alike.
+        """
+        differ = np.any(self.change != 0.0, axis=0)
+        before, after = self.before.error, self.after.error
+        return _banded(self.change, *(differ * np.hypot(after, before[::-1])))
 
     @property
     def louder_share(self) -> FloatArray:
@@ -119,7 +132,7 @@ class FlankChange:
         return bool(np.all(self.after.quantiles()[2, :, 0] <= self.requirement))
 
     def verdict(self) -> str:
-        """Return what the change brings of all orders together, in a sentence."""
+        """Return what the change brings of all orders of the mesh, in a sentence."""
         low, median, high = self.change_quantiles[:, :, 0]
         at = int(np.argmax(median))
         band = f"{median[at]:+.1f} dB ({low[at]:+.1f} to {high[at]:+.1f} dB) at {self.torque[at]:.4g} N m"

@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from bounds import engineering
 from bounds.types import Json
 from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.tolerance_study import ToleranceRequest
 from fe_contact.types import FloatArray
+from host import cpu_seconds
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -65,11 +67,16 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
         names, deviation = tuple(tolerances.widths), tolerances.sample(sampling.samples, sampling.seed)
         with boundary_errors():
             with clock.stage("transfer functions"):
-                heard, nominal = _heard(subject, mesh, (before.pair, after.pair), inputs, means)
+                heard, nominal, each = _heard(subject, mesh, (before.pair, after.pair), inputs, means)
+            expected = 2.0 * each * len(deviation)
+            means.report(
+                f"pairs; {len(deviation)} before and after: about {engineering(expected, 2)} CPU s", 0.0
+            )
             with clock.stage("pairs"):
                 levels = _levels(heard, (before.pair, after.pair), names, deviation, means)
         first, second = (
-            DesignLevels(own.level, pairs, own.parting) for own, pairs in zip(nominal, levels, strict=True)
+            DesignLevels(own.level, pairs, own.parting, error)
+            for (own, error), pairs in zip(nominal, levels, strict=True)
         )
         quantity = quantity_of(subject, inputs.heard)
         return FlankChange(
@@ -85,7 +92,7 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
             first,
             second,
             inputs.requirement_db,
-            clock.to_json(),
+            clock.to_json() | {"pairs_expected_cpu_seconds": expected},
         )
 
     def _derived(self, result: FlankChange) -> Json:
@@ -182,8 +189,8 @@ def _heard(
     pairs: tuple[ParallelAxes, ParallelAxes],
     inputs: Inputs,
     means: Means,
-) -> tuple[HeardFlanks, tuple[FlankLevels, FlankLevels]]:
-    """Return the scene in which flanks are heard, and both designs in it."""
+) -> tuple[HeardFlanks, list[tuple[FlankLevels, FloatArray]], float]:
+    """Return the scene in which flanks are heard, both designs with their errors, and CPU seconds of one."""
     assert mesh.case is not None
     database, cache = subject.databases[mesh.name], means.home / "compliance"
     bodies = condensed_pair(
@@ -191,10 +198,13 @@ def _heard(
     )
     assert bodies is not None
     empty = HeardFlanks(subject, mesh.name, bodies, inputs.heard.over_speeds, (), np.zeros(0))
-    tables = [empty.table(pair) for pair in pairs]
-    heard = heard_flanks(subject, mesh.name, inputs, bodies, tables[0], means)
-    before, after = (heard.levels(table) for table in tables)
-    return heard, (before, after)
+    first = empty.table(pairs[0])
+    heard = heard_flanks(subject, mesh.name, inputs, bodies, first, means)
+    before, began = heard.levels(first), cpu_seconds()
+    second = heard.table(pairs[1])
+    after = heard.levels(second)  # as every pair; all is compiled by now
+    each = cpu_seconds() - began
+    return heard, [(before, heard.errors(first)), (after, heard.errors(second))], each
 
 
 def _levels(

@@ -65,6 +65,26 @@ def test_the_response_is_linear_in_what_excites() -> None:
     np.testing.assert_allclose(2.0 * forces[0], forces[1], rtol=0.0, atol=1e-12 * np.abs(forces[1]).max())
 
 
+@pytest.mark.law
+def test_an_error_of_the_transmission_error_acts_as_it_does() -> None:
+    """As an error of all of it adds the response of far flanks less that of flanks that excite nothing."""
+    own = transfer()
+    system = assemble(unit(far_table()))
+    flanks = own.excitation(system)
+    none = np.zeros(flanks.static.shape[1])
+    errors = own.excitation_errors(system, flanks, 0, (flanks.static[0], none, none))
+    np.testing.assert_allclose(errors[0].force[0], flanks.force[0], rtol=1e-9)
+    assert not any(each.force.any() for each in errors[1:])
+    assert not errors[0].force[own.first[1] :].any()
+    silent = flanks._replace(force=flanks.force - errors[0].force)
+    np.testing.assert_allclose(
+        own.input_changes(flanks, own.inputs(flanks), errors)[..., 0],
+        own.inputs(flanks) - own.inputs(silent),
+        rtol=0.0,
+        atol=1e-9 * np.abs(own.inputs(flanks)).max(),
+    )
+
+
 def test_a_stage_moves_the_other_as_that_one_moves_it() -> None:
     """Reciprocity of the receptances, where the tangents of the flanks are symmetric."""
     receptance = flank_transfer(assemble(two_stages()), SPEEDS, 1).motion[..., 1:]
