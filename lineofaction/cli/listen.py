@@ -91,12 +91,12 @@ def _moment_cells(moment: Loudest | None, unit: str) -> dict[str, str]:
 def _receiver(scene: Path | None, point: str, microphone: str) -> Receiver | None:
     """Return where runs are heard by the options of the verb; None: as what the runs hold.
 
-    Raises `BadInput`: a scene without one of point and microphone, one of these without a scene, or no
-    position.
+    Without both it is the microphone of the scene's complaint. Raises `BadInput`: both, one of these without
+    a scene, or no position.
     """
     if scene is None and not point and not microphone:
         return None
-    if scene is None or bool(point) == bool(microphone):
+    if scene is None or (point and microphone):
         given = [name for name, value in (("--point", point), ("--microphone", microphone)) if value]
         bound = "given with --scene, one of --point and --microphone"
         raise BadInput.of("--scene", None if scene is None else str(scene), bound, f"Given: {given}.")
@@ -120,6 +120,7 @@ def _housing_sounds(
     receiver = replace(receiver, direction=view.direction)
     _require_no_view(view, receiver)
     scene, folder = assessed_scene(file)
+    receiver = receiver.in_scene(scene)
     sounds: list[_RunSound] = []
     remarks: list[str] = []
     with progress_bar() as report:

@@ -266,7 +266,7 @@ def _rows(matrix: FloatArray) -> tuple[tuple[float, ...], ...]:
         (["--point", "roof"], "known: lid"),
         (["--point", "lid", "--direction", "up"], "principal"),
         (["--point", "lid", *MICROPHONE], "one of --point and --microphone"),
-        ([], "one of --point and --microphone"),
+        ([], "no complaint with a microphone"),
         ([*MICROPHONE, "--bearing", "left"], "left out with --microphone"),
         ([*MICROPHONE, "--direction", "x"], "left out with --microphone"),
     ],
@@ -278,6 +278,21 @@ def test_what_cannot_be_heard_through_a_housing_is_refused(
     assert done.exit_code == 2
     assert words in " ".join(done.stderr.split())
     assert not (tmp_path / "a.wav").exists()
+
+
+def test_the_microphone_of_the_complaint_hears_where_none_is_named(
+    moved_file: Path, scene: Path, tmp_path: Path
+) -> None:
+    stated = MICROPHONE[1].split(",")
+    complained = scene.with_name("complained.toml")
+    text = scene.read_text("utf-8") + f"\n[complaint]\norder = 20.0\nmicrophone_mm = [{', '.join(stated)}]\n"
+    complained.write_text(text, "utf-8")
+    files = {}
+    for file, options in ((scene, MICROPHONE), (complained, [])):
+        files[file] = tmp_path / f"{file.stem}.wav"
+        done = loa("listen", moved_file, "-o", files[file], "--scene", file, *options)
+        assert done.exit_code == 0, done.stderr
+    assert files[scene].read_bytes() == files[complained].read_bytes()
 
 
 def test_a_scene_is_needed_and_one_that_sounds(moved_file: Path, tmp_path: Path) -> None:

@@ -7,25 +7,28 @@ from typing import Annotated, Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
-from lineofaction.gearbox.schemas.model import BoundaryModel, Coordinate, Row, exactly_one_of, refuse, stated
+from lineofaction.gearbox.schemas.model import BoundaryModel, Coordinate, Row, at_most_one_of, refuse, stated
 from lineofaction.gearbox.schemas.studied import RunHash
 
 Position = Annotated[Row[Coordinate], Field(min_length=3, max_length=3)]
 _PLACES = ("microphone_mm", "point")
+ONE_PLACE = "given, or point, one of both"
+ADVICE = "A microphone hears the sound pressure, a point its velocity."
 _TONE = ("frequency", "tone_to_noise")
 
 
 class Inputs(BoundaryModel):
     """A run that is heard through the housings of a scene, and where."""
 
-    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*_PLACES)))
+    model_config = ConfigDict(json_schema_extra=stated(at_most_one_of(*_PLACES)))
 
     run: RunHash = Field(
         description="Run whose forces on bearings move the housings of the scene", examples=["0" * 64]
     )
     microphone_mm: Position | None = Field(
         default=None,
-        description="Where the sound pressure is heard, in mm in the frame of the scene: free field",
+        description="Where the sound pressure is heard, in mm in the frame of the scene: free field; default "
+        "without a point: the microphone of the scene's complaint",
         examples=[[40.0, 60.0, 1000.0]],
     )
     point: str | None = Field(
@@ -37,11 +40,10 @@ class Inputs(BoundaryModel):
 
     @model_validator(mode="after")
     def _one_place(self) -> Self:
-        """Refuse both places and none, and a direction of a sound pressure."""
+        """Refuse both places, and a direction of a sound pressure."""
         names = [name for name in _PLACES if getattr(self, name) is not None]
-        if len(names) != 1:
-            advice = "A microphone hears the sound pressure, a point its velocity."
-            refuse("microphone_mm", names or None, "given, or point, one of both", advice)
+        if len(names) > 1:
+            refuse("microphone_mm", names, ONE_PLACE, ADVICE)
         if self.direction is not None and self.point is None:
             refuse("direction", self.direction, "left out with microphone_mm", "A pressure has none.")
         return self

@@ -23,7 +23,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
 from lineofaction.gearbox.studies.housings import no_surface, other_housings, require_surface
-from lineofaction.gearbox.studies.listen import Inputs, ListenFigures
+from lineofaction.gearbox.studies.listen import ADVICE, ONE_PLACE, Inputs, ListenFigures
 from lineofaction.gearbox.units import MM
 
 PRINCIPAL = "principal"
@@ -165,6 +165,18 @@ class Receiver:
     point: str = ""
     direction: str = ""
 
+    def in_scene(self, scene: SceneInput) -> Receiver:
+        """Return this, without a place the microphone of the scene's complaint.
+
+        Raises `BadInput`: the scene has none.
+        """
+        if self.point or self.microphone_mm:
+            return self
+        if scene.complaint is None or scene.complaint.microphone_mm is None:
+            bound = f"{ONE_PLACE}; the scene has no complaint with a microphone"
+            raise BadInput.of("microphone_mm", None, bound, ADVICE)
+        return replace(self, microphone_mm=tuple(scene.complaint.microphone_mm))
+
 
 @dataclass(frozen=True)
 class HeardRun:
@@ -242,6 +254,10 @@ def rms(recording: Recording) -> float:
     return math.sqrt(float((recording.samples**2).mean()))
 
 
+def _receiver(inputs: Inputs) -> Receiver:
+    return Receiver(tuple(inputs.microphone_mm or ()), inputs.point or "", inputs.direction or "")
+
+
 class _ListenStudy(Computation[SceneInput, HousedScene, Inputs, ListenFigures, HeardRun]):
     inputs, answer, file = Inputs, ListenFigures, record_file((KIND, HeardRun))
     tables = False
@@ -249,13 +265,14 @@ class _ListenStudy(Computation[SceneInput, HousedScene, Inputs, ListenFigures, H
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
         """Refuse a microphone where nothing radiates, and a point that no housing has."""
         if inputs.point is None:
+            _receiver(inputs).in_scene(scene)
             require_surface(scene)
         else:
             _require_point(inputs.point, [point.name for part in scene.housings for point in part.points])
 
     def compute(self, subject: HousedScene, inputs: Inputs, means: Means) -> HeardRun:
         assert means.run is not None  # the inputs name it
-        receiver = Receiver(tuple(inputs.microphone_mm or ()), inputs.point or "", inputs.direction or "")
+        receiver = _receiver(inputs).in_scene(subject.inputs)
         heard = heard_run(inputs.run, means.run, SceneHousings.of(subject, means), receiver)
         means.report("sound", 1.0)
         return heard
