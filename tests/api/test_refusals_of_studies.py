@@ -164,6 +164,7 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
         (CHANGE | {"tolerances": {"samples": 20_000}}, "tolerances.samples"),
         (CHANGE | {"heard": {"quantity": "sound_power"}}, "housings"),
         (CHANGE | {"heard": {"bearing": "output in"}}, "heard.bearing"),
+        (CHANGE | {"heard": {"microphone_mm": [0.0, 0.0, 500.0]}}, "housings"),
         (CHANGE | {"load_cases": []}, "load_cases"),
         (CHANGE | {"load_cases": [{"name": "back", "direction": "coast"}]}, "load_cases[0].direction"),
     ],

@@ -16,6 +16,7 @@ from fe_contact.microgeometry.linearized_table import tabled_loads
 from fe_contact.microgeometry.objective import Limits
 from fe_contact.types import FloatArray
 from host.directories import cache_home
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import change, optimize
 from lineofaction.gearbox.studies.change.heard_flanks import HeardFlanks
 from lineofaction.gearbox.studies.change.question import heard_mesh
@@ -155,6 +156,25 @@ def test_what_gets_worse_is_said_first() -> None:
     louder = replace(own, start=own.optimum, optimum=own.start)
     assert "Gets worse: all orders" in louder.costs() and louder.outcome == "not_improved"
     assert replace(own, optimum=own.start).costs() == "Nothing gets worse beyond its error."
+
+
+@pytest.mark.parametrize(
+    ("question", "field"),
+    [
+        ({}, "heard"),
+        ({"heard": HEARD, "torque_n_m": [1.0]}, "torque_n_m"),
+        ({"heard": HEARD | {"mesh": "second"}}, "heard.mesh"),
+        ({"heard": HEARD | {"quantity": "sound_power"}}, "housings"),
+        ({"heard": HEARD | {"microphone_mm": [0.0, 0.0, 1000.0]}}, "housings"),
+        ({"heard": HEARD | {"bearing": "output in"}}, "heard.bearing"),
+        ({"heard": HEARD | {"load_cases": [{"name": "back", "direction": "coast"}]}}, "direction"),
+        ({"heard": HEARD, "variables": {"pinion": {"helix_crowning_um": [0.0, 9.0]}}}, "helix_crowning_um"),
+    ],
+)
+def test_a_scene_without_what_is_heard_is_refused_by_its_field(question: Json, field: str) -> None:
+    with pytest.raises(BadInput) as caught:
+        optimize(scene(), question)
+    assert any(field in fault.field for fault in caught.value.faults)
 
 
 def bowl(sizes: tuple[int, int], seed: int) -> HeardMerit:

@@ -11,10 +11,12 @@ from lineofaction.gearbox.schemas.figures import Figures, Json, Part
 from lineofaction.gearbox.schemas.model import BoundaryModel, Name
 from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.deflect import LoadCaseInput, LoadCases
+from lineofaction.gearbox.studies.listen import Position
 from lineofaction.gearbox.studies.scatter import Inputs as ToleranceInputs
 
 PAIRS = 200
 BEARING_FORCE, SOUND_POWER = "bearing_force", "sound_power"
+SURFACE_VELOCITY, SOUND_PRESSURE = "surface_velocity", "sound_pressure"
 
 _GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
 _RELIEVED = {"tip_relief_um": 20.0, "tip_relief_length_mm": 1.5}
@@ -32,11 +34,22 @@ _AFTER = {
 class HeardInput(BoundaryModel):
     """What is compared: a quantity, and what is made of it over the speeds."""
 
-    quantity: Literal["sound_power", "bearing_force"] | None = Field(
+    quantity: Literal["sound_power", "sound_pressure", "surface_velocity", "bearing_force"] | None = Field(
         default=None,
-        description="Sound power of the housings in dB(A) re 1 pW, or force on bearings in dB re 1 N; left "
-        "out: sound power where a housing has a surface",
+        description="Sound power of the housings in dB(A) re 1 pW, sound pressure at a microphone in dB(A) "
+        "re 20 uPa, normal velocity of a housing's surface in dB re 1 nm/s, or force on bearings in dB re "
+        "1 N; left out: pressure with a microphone, power where a housing has a surface",
         examples=["bearing_force"],
+    )
+    housing: Name | None = Field(
+        default=None,
+        description="Housing whose surface or sound pressure is heard; left out: the only one with a surface",
+        examples=["case"],
+    )
+    microphone_mm: Position | None = Field(
+        default=None,
+        description="Where the sound pressure is heard, x, y, z in mm in the frame of the scene",
+        examples=[[0.0, 1000.0, 0.0]],
     )
     bearing: Name | None = Field(
         default=None,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -16,9 +16,12 @@ from dynamics.linearize import FlankTransfer, flank_transfer
 from dynamics.linearize.operating_speeds import common_period
 from dynamics.noise import (
     BearingForce,
+    Quantity,
     QuantityForm,
     SoundModel,
     SoundPower,
+    SoundPressure,
+    SurfaceVelocity,
     estimated_radiation,
 )
 from dynamics.scene import Scene
@@ -33,17 +36,28 @@ from fe_contact.microgeometry.scatter import MISALIGNMENT
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.housings import FOLDER
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
-from lineofaction.gearbox.studies.change import BEARING_FORCE, SOUND_POWER, HeardInput
-from lineofaction.gearbox.studies.change.question import HeardQuestion
+from lineofaction.gearbox.studies.change import (
+    BEARING_FORCE,
+    SOUND_POWER,
+    SOUND_PRESSURE,
+    SURFACE_VELOCITY,
+    HeardInput,
+)
+from lineofaction.gearbox.studies.change.question import HeardQuestion, heard_housing
 from lineofaction.gearbox.studies.change.result import ALL
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.deflect.cases import load_cases
 from lineofaction.gearbox.studies.housings import radiation_of
-from lineofaction.gearbox.units import RPM, UM
+from lineofaction.gearbox.units import MM, RPM, UM
 
 CANCELED = 0.1
 """Least part of an amplitude that errors in opposite phase leave: 20 dB."""
-UNITS = {BEARING_FORCE: "dB re 1 N", SOUND_POWER: "dB(A) re 1 pW"}
+UNITS = {
+    BEARING_FORCE: "dB re 1 N",
+    SOUND_POWER: "dB(A) re 1 pW",
+    SURFACE_VELOCITY: "dB re 1 nm/s",
+    SOUND_PRESSURE: "dB(A) re 20 uPa",
+}
 
 
 class FlankLevels(NamedTuple):
@@ -190,13 +204,16 @@ def heard_loads(
         orders = math.ceil(question.orders * abs(period.pitches[index]) / period.counted)
         transfers.append(flank_transfer(system, speed, orders, cache=means.home / FOLDER))
         means.report("transfer functions", (done + 1) / len(systems))
-    model = _sound_model(subject, scenes[0], transfers[0].frequency, question.heard, means)
+    model = _sound_model(
+        subject, scenes[0], transfers[0].frequency, quantity_of(subject, question.heard), means
+    )
     cases = []
     for load, system, transfer in zip(loads, systems, transfers, strict=True):
         step = abs(common_period(system).pitches[index])
         own = (step * np.arange(1, question.orders + 1))[:, None] == transfer.harmonics
         lines = np.vstack([own.any(axis=0), own]).astype(float)
-        cases.append(HeardLoad(load, system, transfer, _form(transfer, model, question.heard), lines))
+        form = _form(subject, transfer, model, question.heard)
+        cases.append(HeardLoad(load, system, transfer, form, lines))
     return tuple(cases)
 
 
@@ -219,8 +236,12 @@ def line_names(orders: int) -> tuple[str, ...]:
 
 def quantity_of(subject: TabledScene, heard: HeardInput) -> str:
     """Return the quantity that is heard: sound power where a housing has a surface, unless it is stated."""
+    if heard.quantity is not None:
+        return heard.quantity
+    if heard.microphone_mm is not None:
+        return SOUND_PRESSURE
     sounds = any(body.surface is not None for body in subject.housings.values())
-    return heard.quantity or (SOUND_POWER if sounds and heard.bearing is None else BEARING_FORCE)
+    return SOUND_POWER if sounds and heard.bearing is None else BEARING_FORCE
 
 
 def _scene_with(subject: TabledScene, mesh: str, table: SteDatabase) -> Scene:
@@ -234,22 +255,32 @@ def _scene_with(subject: TabledScene, mesh: str, table: SteDatabase) -> Scene:
 
 
 def _sound_model(
-    subject: TabledScene, scene: Scene, hertz: FloatArray, heard: HeardInput, means: Means
+    subject: TabledScene, scene: Scene, hertz: FloatArray, quantity: str, means: Means
 ) -> SoundModel:
-    """Return what radiates, with the estimate of its radiation."""
-    if quantity_of(subject, heard) != SOUND_POWER:
-        return SoundModel(scene, {}, {})
+    """Return what moves and radiates; of sound power with the estimate of its radiation."""
     bodies = {name: body for name, body in subject.housings.items() if body.surface is not None}
+    sounding = bodies if quantity == SOUND_POWER else {}
     radiation = {
         name: estimated_radiation(body, radiation_of(body, ElementalRadiators(), hertz, means))
-        for name, body in bodies.items()
+        for name, body in sounding.items()
     }
     return SoundModel(scene, bodies, radiation)
 
 
-def _form(transfer: FlankTransfer, model: SoundModel, heard: HeardInput) -> QuantityForm:
-    if model.housings:
-        return SoundPower().form(transfer, model)
-    names = transfer.bearing if heard.bearing is None else (heard.bearing,)
-    first, *others = (BearingForce(name).form(transfer, model) for name in names)
+def _form(
+    subject: TabledScene, transfer: FlankTransfer, model: SoundModel, heard: HeardInput
+) -> QuantityForm:
+    of_bearings = transfer.bearing if heard.bearing is None else (heard.bearing,)
+    parts: dict[str, Callable[[], tuple[Quantity, ...]]] = {
+        SOUND_POWER: lambda: (SoundPower(),),
+        SURFACE_VELOCITY: lambda: (SurfaceVelocity(heard_housing(subject.inputs, heard)),),
+        SOUND_PRESSURE: lambda: (SoundPressure(heard_housing(subject.inputs, heard), _microphone(heard)),),
+        BEARING_FORCE: lambda: tuple(map(BearingForce, of_bearings)),
+    }
+    first, *others = (each.form(transfer, model) for each in parts[quantity_of(subject, heard)]())
     return replace(first, matrix=sum((own.matrix for own in others), first.matrix))
+
+
+def _microphone(heard: HeardInput) -> tuple[float, float, float]:
+    x, y, z = heard.microphone_mm or (0.0, 0.0, 0.0)
+    return x * MM, y * MM, z * MM

@@ -9,7 +9,7 @@ from dynamics.settings.load_case import DRIVE
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.change import SOUND_POWER, HeardInput
+from lineofaction.gearbox.studies.change import BEARING_FORCE, SOUND_PRESSURE, SURFACE_VELOCITY, HeardInput
 from lineofaction.gearbox.studies.deflect import LoadCaseInput
 from lineofaction.gearbox.studies.deflect.cases import check_cases
 from lineofaction.gearbox.studies.housings import require_surface
@@ -28,20 +28,42 @@ class HeardQuestion(Protocol):
     def heard(self) -> HeardInput: ...  # noqa: D102
 
 
-def check_heard(scene: SceneInput, question: HeardQuestion) -> None:
-    """Refuse what a scene does not let hear, and loads on other than the driving flanks."""
-    heard = question.heard
-    if heard.quantity == SOUND_POWER:
+def check_heard(scene: SceneInput, heard: HeardInput) -> None:
+    """Refuse what a scene does not let hear."""
+    if heard.quantity not in (None, BEARING_FORCE) or heard.microphone_mm is not None:
         require_surface(scene)
+    pressure = heard.quantity == SOUND_PRESSURE or (
+        heard.quantity is None and heard.microphone_mm is not None
+    )
+    if pressure != (heard.microphone_mm is not None):
+        bound = "given with sound_pressure" if pressure else f"left out with {heard.quantity}"
+        raise BadInput.of("heard.microphone_mm", heard.microphone_mm, bound)
+    if pressure or heard.quantity == SURFACE_VELOCITY:
+        heard_housing(scene, heard)
     if heard.bearing is not None:
         known = [part.name for part in scene.bushings]
         known += [part.name for part in scene.rolling_bearings]
         known += [part.name for part in scene.planet_bearings]
         _require_named("heard.bearing", heard.bearing, known)
-    for index, case in enumerate(check_cases(scene, question.load_cases)):
+
+
+def check_driving(scene: SceneInput, load_cases: Sequence[LoadCaseInput]) -> None:
+    """Refuse load cases that cannot be, and loads on other than the driving flanks."""
+    for index, case in enumerate(check_cases(scene, load_cases)):
         if case.direction != DRIVE:
             bound = f'"{DRIVE}": the flanks that are heard are the driving ones'
             raise BadInput.of(f"load_cases[{index}].direction", case.direction, bound)
+
+
+def heard_housing(scene: SceneInput, heard: HeardInput) -> str:
+    """Return the housing whose surface is heard; raises `BadInput`."""
+    known = [part.name for part in scene.housings if part.has_surface]
+    if heard.housing is None and len(known) == 1:
+        return known[0]
+    if heard.housing is None:
+        raise BadInput.of("heard.housing", None, f"one of {', '.join(known)}", "Name the housing.")
+    _require_named("heard.housing", heard.housing, known)
+    return heard.housing
 
 
 def heard_mesh(scene: SceneInput, mesh: str | None) -> MeshInput:

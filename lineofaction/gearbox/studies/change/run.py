@@ -31,7 +31,7 @@ from lineofaction.gearbox.studies.change.heard_flanks import (
     line_names,
     quantity_of,
 )
-from lineofaction.gearbox.studies.change.question import check_heard, heard_mesh
+from lineofaction.gearbox.studies.change.question import check_driving, check_heard, heard_mesh
 from lineofaction.gearbox.studies.change.result import DesignLevels, FlankChange
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
 from lineofaction.gearbox.studies.scatter.run import PLANE, tolerance_request
@@ -53,7 +53,8 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
         """Refuse another pair than the scene's, tolerances that it cannot have, and what it does not hear."""
         if inputs.tolerances.samples > MOST_PAIRS:
             raise BadInput.of("tolerances.samples", inputs.tolerances.samples, f"at most {MOST_PAIRS}")
-        check_heard(scene, inputs)
+        check_heard(scene, inputs.heard)
+        check_driving(scene, inputs.load_cases)
         mesh = heard_mesh(scene, inputs.mesh)
         if mesh.case is not None:
             _designs(mesh.case, inputs)

@@ -34,7 +34,7 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
-from lineofaction.gearbox.studies.change.question import check_heard, heard_mesh
+from lineofaction.gearbox.studies.change.question import check_driving, check_heard, heard_mesh
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
 from lineofaction.gearbox.studies.optimize import (
     GearScatterInput,
@@ -171,6 +171,7 @@ def _heard_of(scene: SceneInput, study: Inputs) -> tuple[HeardObjectiveInput, Me
         if getattr(study, name) != type(study).model_fields[name].default:
             raise BadInput.of(name, "given", "left out with a scene", "Its loads are heard.load_cases.")
     try:
+        check_driving(scene, study.heard.load_cases)
         return study.heard, heard_mesh(scene, study.heard.mesh)
     except BadInput as error:
         raise error.within("heard") from None
