@@ -40,6 +40,10 @@ def physical_memory() -> int:
     return int(import_module("psutil").virtual_memory().total)
 
 
+def keep_freed_memory() -> None:
+    """Do nothing: the system has no such setting."""
+
+
 def most_open_files() -> float:
     """Return infinity: the system has no limit that a process can ask for."""
     return math.inf

@@ -19,6 +19,7 @@ from dynamics.simulation import run_scene, simulate_to_file, undescribed
 from dynamics.study.design import Design
 from dynamics.study.responses import Response, responses_of
 from dynamics.types import FloatArray, IntArray, Json
+from host import keep_freed_memory
 from model_studies import LeftOut, Progress, silent
 from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.workers import InProcess, Workers, task_cpu_seconds
@@ -247,6 +248,7 @@ def _batches(design: Design, scenes: Scenes) -> Iterator[tuple[tuple[int, ...], 
 
 def _run_batch(task: StudyTask, batch: Batch) -> list[_PointResult]:
     """Run the points of a batch."""
+    keep_freed_memory()
     return [_run_point(task, values) for values in batch]
 
 
