@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from dynamics.errors import InputError
 from dynamics.forces.elements import Element
 from dynamics.forces.frames import FrameCouplingLaws, FrameTerm, RotatingFrameLaws
 from dynamics.forces.laws import STATED_OF_BEARINGS, ElementLaws, Law
+from dynamics.kernels.by_address import by_address
 from dynamics.loads.applied_force import AppliedForce
 from dynamics.loads.load_course import BySpeed, Orders
 from dynamics.loads.load_laws import ForceCourseLaws, SpeedTorqueLaws, UnbalanceLaws
@@ -379,8 +381,17 @@ def _bearing_elements(model: Model) -> tuple[tuple[Element, ...], dict[str, Any]
         law, own, phase = STATED_OF_BEARINGS[part.arrays], entries[part.arrays], phases.get(at.name, -1)
         elements.append(Element(law, len(own), phase, gradient, offset, stiffness=at.typical))
         own.append(part.laid_out(mechanism.bearing_duty[at.name]))
-    packed = {law.name.lower(): arrays.packed(entries[arrays]) for arrays, law in STATED_OF_BEARINGS.items()}
+    packed = {
+        law.name.lower(): arrays.packed(own) if (own := entries[arrays]) else _none_of(arrays)
+        for arrays, law in STATED_OF_BEARINGS.items()
+    }
     return tuple(elements), packed
+
+
+@cache
+def _none_of(arrays: Any) -> Any:
+    """Return the arrays of a law that no bearing has."""
+    return by_address(arrays.packed([]))
 
 
 def _housed_elements(model: Model) -> tuple[tuple[Element, ...], LinearBearingLaws]:

@@ -163,7 +163,15 @@ class EffectLedger:
 
     def adding(self, addition: str) -> list[_LedgerEntry]:
         """Return the decisions on the effect that adds `addition`, one per part."""
-        return [entry for entry in self.entries if addition in entry.decided.adds]
+        return self._by_addition.get(addition, [])
+
+    @cached_property
+    def _by_addition(self) -> dict[str, list[_LedgerEntry]]:
+        rows: dict[str, list[_LedgerEntry]] = {}
+        for entry in self.entries:
+            for addition in entry.decided.adds:
+                rows.setdefault(addition, []).append(entry)
+        return rows
 
     def adds(self, addition: str, part: str | None = None) -> bool:
         """Whether `addition` is in the model of a part; None: of any."""

@@ -94,7 +94,7 @@ def choose_method(system: System, displacement: FloatArray, integration: Integra
     at_rest = np.zeros(n)
     balance = force_balance(arrays, 0.0, displacement, at_rest, at_rest)
     moved = np.linalg.solve(arrays.mass, np.hstack([balance.stiffness, balance.damping]))
-    first_order = np.block([[np.zeros((n, n)), np.eye(n)], [-moved]])
+    first_order = np.vstack([np.eye(n, 2 * n, n), -moved])
     rate = float(np.max(np.abs(np.linalg.eigvals(first_order)), initial=0.0))
     fastest = _fastest_excited(system, 0.5 * (balance.stiffness + balance.stiffness.T))
     wanted = RADIANS * (integration.tolerance / 1e-9) ** 0.2 / fastest if fastest > 0.0 else np.inf

@@ -87,8 +87,8 @@ class Sampler(NamedTuple):
         static, nominal = system.flanks.static, system.flanks.nominal_force
         rows, n = system.arrays.direction.shape
         bodies, outputs = system.arrays.sparse.modal.first, system.scene.outputs
-        own = np.arange(bodies)
-        q, v = np.split(np.arange(rows + 2 * bodies + nominal.size, rows + 2 * n + nominal.size), 2)
+        own, modal, first = np.arange(bodies), np.arange(n - bodies), rows + 2 * bodies + nominal.size
+        q, v = first + modal, first + modal.size + modal
         channels = np.concatenate([np.arange(rows), rows + own, q, rows + bodies + own, v])
         signals = system.bearing_map if outputs.bearing_forces else NO_SIGNALS
         bearings = signals._replace(column=channels[signals.column])

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import hashlib
 from ctypes import addressof, c_char
-from functools import cache
+from itertools import accumulate
 from numbers import Integral
 from typing import Any, TypeVar, cast
 
@@ -39,12 +39,15 @@ Tuple = TypeVar("Tuple")
 
 
 class _AddressType(types.Type):
-    """The compiled type of an address: the fields of the tuple there, each with its type and first word."""
+    """The compiled type of an address: the fields of the tuple there, each with its type and first word.
 
-    def __init__(self, name: str, fields: tuple[tuple[str, Any, int], ...]) -> None:
+    `size` is how many words it takes.
+    """
+
+    def __init__(self, name: str, fields: tuple[tuple[str, Any, int], ...], size: int) -> None:
         digest = hashlib.sha256(repr(fields).encode()).hexdigest()
         super().__init__(f"{name}At{digest[:12]}")  # short: it becomes part of every symbol
-        self.fields = fields
+        self.fields, self.size = fields, size
 
     def find(self, name: str) -> tuple[Any, int] | None:
         """Return type and first word of a field."""
@@ -55,9 +58,9 @@ class _Addressed:
     """A named tuple and the words by which compiled functions find its arrays; attributes are the tuple's."""
 
     def __init__(self, value: Any) -> None:
-        words: list[int] = []
-        self._numba_type_ = _lay_out(value, words)
-        self._words = np.array(words, dtype=np.int64)
+        self._listed: list[int] = []
+        self._numba_type_ = _lay_out(value, self._listed)
+        self._words = np.array(self._listed, dtype=np.int64)
         self._address = _address_of(self._words)
         self.value = value
 
@@ -90,17 +93,14 @@ def by_value(value: Tuple) -> Tuple:
 def _lay_out(value: Any, words: list[int]) -> _AddressType:
     """Append the words of a tuple, per array address and lengths, per number its bits; return its type."""
     kinds: list[Any] = []
-    first: list[int] = []
-    start = len(words)
     for field in value:
-        first.append(len(words) - start)
         if isinstance(field, np.ndarray):
             kinds.append((field.dtype.char, field.ndim))
             words.append(_address_of(field))
             words.extend(field.shape)
         elif isinstance(field, _Addressed):
             kinds.append(field._numba_type_)
-            words.extend(field._words.tolist())
+            words.extend(field._listed)
         elif isinstance(field, tuple):
             kinds.append(_lay_out(field, words))
         else:
@@ -109,9 +109,11 @@ def _lay_out(value: Any, words: list[int]) -> _AddressType:
             )
             words.append(int(np.float64(field).view(np.int64)) if kinds[-1] is float else int(field))
     cls: Any = type(value)
-    kind = _address_type(cls, tuple(kinds), tuple(first))
-    if _seen.setdefault(cls, kind) != kind:
-        raise TypeError(f"{kind} has other arrays than {_seen[cls]}")
+    if cls not in _seen:
+        _seen[cls] = kinds, _address_type(cls, kinds)
+    known, kind = _seen[cls]
+    if known != kinds:
+        raise TypeError(f"{_address_type(cls, kinds)} has other arrays than {kind}")
     return kind
 
 
@@ -125,13 +127,20 @@ def _address_of(array: Any) -> int:
 
 
 _NO_BYTES = c_char * 0
-_seen: dict[type, _AddressType] = {}
+_seen: dict[type, tuple[list[Any], _AddressType]] = {}
 
 
-@cache
-def _address_type(cls: Any, kinds: tuple[Any, ...], first: tuple[int, ...]) -> _AddressType:
-    fields = zip(cls._fields, (_field_type(kind) for kind in kinds), first, strict=True)
-    return _AddressType(cls.__name__, tuple(fields))
+def _address_type(cls: Any, kinds: list[Any]) -> _AddressType:
+    first = [0, *accumulate(map(_size, kinds))]
+    fields = zip(cls._fields, map(_field_type, kinds), first[:-1], strict=True)
+    return _AddressType(cls.__name__, tuple(fields), first[-1])
+
+
+def _size(kind: Any) -> int:
+    """Return how many words a field takes."""
+    if isinstance(kind, tuple):
+        return 1 + int(kind[1])
+    return kind.size if isinstance(kind, _AddressType) else 1
 
 
 def _field_type(kind: Any) -> Any:

@@ -9,6 +9,7 @@ import numpy as np
 
 from bounds import Quantity, Text, exactly
 from dynamics.errors import InputError
+from dynamics.identity_cache import cached_by
 from dynamics.scene.scene import Scene
 from dynamics.shafts import GearBody
 
@@ -32,6 +33,23 @@ def with_common_base_pitches(scene: Scene) -> tuple[Scene, Corrections]:
     InputError
         If the base pitches of two gears that mesh differ by more than `PRINTED`.
     """
+    corrected = _corrections(scene)
+    if not corrected:
+        return scene, {}
+    gears = tuple(
+        replace(gear, base_radius=corrected[gear.name][1]) if gear.name in corrected else gear
+        for gear in scene.gears
+    )
+    return replace(scene, gears=gears), dict(corrected)
+
+
+def _pairs(scene: Scene) -> tuple[object, ...]:
+    return (scene.gears, *((mesh.driver, mesh.driven) for mesh in scene.meshes))
+
+
+@cached_by(_pairs)
+def _corrections(scene: Scene) -> Corrections:
+    """Return what has to be corrected; raises `InputError`."""
     _check(scene)
     corrected: Corrections = {}
     for train in _trains(scene):
@@ -48,13 +66,7 @@ def with_common_base_pitches(scene: Scene) -> tuple[Scene, Corrections]:
                 advice = f"Base pitches of a train agree to {PRINTED:g}."
                 raise InputError(field, gear.base_radius, exactly(value, ", as its train has it"), advice)
             corrected[gear.name] = (gear.base_radius, float(value))
-    if not corrected:
-        return scene, corrected
-    gears = tuple(
-        replace(gear, base_radius=corrected[gear.name][1]) if gear.name in corrected else gear
-        for gear in scene.gears
-    )
-    return replace(scene, gears=gears), corrected
+    return corrected
 
 
 def _check(scene: Scene) -> None:

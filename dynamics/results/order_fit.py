@@ -25,7 +25,8 @@ def order_amplitudes(position: FloatArray, values: FloatArray, orders: int) -> F
     Those of `order_phasors` over all samples of `position` (T,), unwrapped base pitches.
     """
     cycles = np.outer(position - position[0], np.arange(1, orders + 1))
-    return np.asarray(np.abs(order_phasors(cycles, values)[0]))
+    solved = _fit(cycles, values.reshape(-1, position.size), None)[1]
+    return np.asarray(np.abs(_phasors(solved, (*values.shape[:-1], orders))))
 
 
 def order_phasors(
@@ -43,15 +44,25 @@ def order_phasors(
         Of the squares; default: all alike.
     """
     samples, orders = cycles.shape
-    angle, drift = 2.0 * np.pi * cycles, np.linspace(-1.0, 1.0, samples)
-    columns = np.column_stack([np.ones(samples), drift, np.cos(angle), np.sin(angle)])
     flat = values.reshape(-1, samples)
-    root = np.ones(samples) if weight is None else np.sqrt(weight)
-    solved = np.linalg.lstsq(columns * root[:, None], (flat * root).T, rcond=None)[0]
+    columns, solved = _fit(cycles, flat, weight)
     left = flat - (columns @ solved).T
-    coefficients = solved[2:].T
-    phasors = coefficients[:, :orders] - 1j * coefficients[:, orders:]
-    return phasors.reshape(*values.shape[:-1], orders), left.reshape(values.shape)
+    return _phasors(solved, (*values.shape[:-1], orders)), left.reshape(values.shape)
+
+
+def _fit(cycles: FloatArray, values: FloatArray, weight: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+    """Return the columns (T, 2 + 2 K) of the fit and the coefficients (2 + 2 K, N) of `values` (N, T)."""
+    angle, drift = 2.0 * np.pi * cycles, np.linspace(-1.0, 1.0, cycles.shape[0])
+    columns = np.column_stack([np.ones(drift.size), drift, np.cos(angle), np.sin(angle)])
+    if weight is None:
+        return columns, np.linalg.lstsq(columns, values.T, rcond=None)[0]
+    root = np.sqrt(weight)
+    return columns, np.linalg.lstsq(columns * root[:, None], (values * root).T, rcond=None)[0]
+
+
+def _phasors(solved: FloatArray, shape: tuple[int, ...]) -> ComplexArray:
+    coefficients, orders = solved[2:].T, shape[-1]
+    return np.asarray((coefficients[:, :orders] - 1j * coefficients[:, orders:]).reshape(shape))
 
 
 def orders_seen(position: FloatArray, most: int) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import accumulate
 from typing import Protocol
 
@@ -87,7 +88,7 @@ class Shaft:
         if self.inertia != Inertia():
             raise InputError("inertia", self.inertia.mass, "left out where sections are given")
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[tuple[Inertia, float], ...]:
         """Parts of the bare shaft: inertia about its own center, and its position from the left end, m."""
         if not self.sections:

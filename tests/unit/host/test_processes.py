@@ -30,6 +30,35 @@ def test_the_peak_follows_what_is_held_in_bytes() -> None:
     assert host.peak_memory() < host.physical_memory()
 
 
+FAULTS = """
+import resource, host
+if {kept}:
+    host.keep_freed_memory()
+def pages():
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    for _ in range(20):
+        blocks = [bytearray(2**20) for _ in range(8)]
+        del blocks
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
+pages()
+print(pages())
+"""
+"""Pages that a task gets which allocates 8 MiB again and again, and frees them."""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="a setting of the C library of Linux")
+def test_memory_that_is_kept_is_there_again() -> None:
+    kept, given_back = (
+        int(
+            subprocess.run(
+                [sys.executable, "-c", FAULTS.format(kept=on)], capture_output=True, check=True
+            ).stdout
+        )
+        for on in (True, False)
+    )
+    assert kept < 0.1 * given_back
+
+
 def test_children_count_once_they_have_ended() -> None:
     before, whole = host.children_cpu_seconds(), host.cpu_seconds()
     code = "import time\nwhile time.process_time() < 0.2: pass"
