@@ -12,14 +12,14 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (39_908, 718),
-    ("dynamics",): (42_456, 807),
+    ("dynamics",): (42_510, 807),
     ("lineofaction.gearbox",): (25_034, 499),
     ("lineofaction.report",): (11_273, 207),
     ("service",): (14_793, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_973, 71),
     ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_417, 151),
+    ("bounds", "host", "model_studies"): (4_441, 153),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 796
