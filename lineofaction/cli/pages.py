@@ -22,7 +22,7 @@ from lineofaction.cli.subjects import assessed_case
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.project import results_in
+from lineofaction.gearbox.project import file_of, results_in
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
@@ -190,16 +190,18 @@ def run_compare_flanks(
     files: Sequence[Path], question: FlankQuestion, output: Path, *, as_json: bool
 ) -> None:
     """Run the study of a change of flanks: of two case files, over the tolerances of a file."""
-    if len(files) != 2:
-        bound = "two case files beside a scene: the flanks before and after"
+    if len(files) > 2:
+        bound = (
+            "the case files of the flanks before and after, or of those after alone: before are the scene's"
+        )
         raise BadInput.of("files", [str(file) for file in files], bound)
     if question.speed_rpm is None:
         raise BadInput.of(
             "--speed-rpm", None, "given beside a scene", "For example --speed-rpm 500:6000:100."
         )
-    before, after = (read_model(Case, file) for file in files)
+    *before, after = (read_model(Case, file) for file in files)
     inputs: Json = {
-        "before": before,
+        "before": next(iter(before), None),
         "after": after,
         "mesh": question.mesh,
         "speed_rpm": number_list("--speed-rpm", question.speed_rpm),
@@ -210,7 +212,11 @@ def run_compare_flanks(
         inputs["tolerances"] = read_table(question.tolerances)
     if question.load_cases is not None:
         inputs |= read_table(question.load_cases)
-    options = {"scene": InputFile(question.scene), "study": validated(study.inputs, inputs), "output": output}
+    options = {
+        "scene": file_of(InputFile(question.scene), "scene"),
+        "study": validated(study.inputs, inputs),
+        "output": output,
+    }
     run_study(study, options | {"workers": 1, "scheduler": None, "json": as_json})
 
 

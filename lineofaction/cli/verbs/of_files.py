@@ -452,7 +452,7 @@ def _compare(
         list[Path],
         typer.Argument(
             help="Two STE databases, two runs, or one of them and a measurement (CSV, UFF); with --scene the "
-            "case files of the flanks before and after."
+            "case files of the flanks before and after, or after alone: before are the scene's."
         ),
     ],
     output: Annotated[Path, to_file("Page to write.")] = Path("comparison.html"),

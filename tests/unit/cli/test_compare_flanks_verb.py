@@ -8,6 +8,7 @@ import pytest
 from command_line import loa
 
 from lineofaction.cli import pages
+from lineofaction.gearbox.problems import EXIT_BAD_INPUT
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
@@ -34,8 +35,18 @@ def test_what_is_typed_reaches_the_study(monkeypatch: pytest.MonkeyPatch, tmp_pa
     assert seen["study"].mesh is None
 
 
-def test_speeds_and_two_files_are_required() -> None:
+def test_one_file_is_the_flanks_after_and_three_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = {}
+    monkeypatch.setattr(pages, "run_study", lambda study, options: seen.update(options))
+    loa("compare", SPUR, "--scene", SCENE, "--speed-rpm", "500,600")
+    assert seen["study"].before is None
+    assert seen["study"].after.pair.pinion.teeth == 20
+    loa("compare", SPUR, SPUR, "--scene", SCENE, "--speed-rpm", "500,600")
+    assert seen["study"].before == seen["study"].after
+    three = loa("compare", SPUR, SPUR, SPUR, "--scene", SCENE, "--speed-rpm", "500,600")
+    assert three.exit_code == EXIT_BAD_INPUT
+    assert "of those after alone" in three.output
+
+
+def test_speeds_are_required() -> None:
     assert "--speed-rpm 500:6000:100" in called()
-    alone = loa("compare", SPUR, "--scene", SCENE)
-    assert alone.exit_code != 0
-    assert "two case files beside a scene" in alone.output
