@@ -143,7 +143,6 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
     ],
     "vibration": [({}, "speed_rpm"), ({"speed_rpm": [300.0], "mode": 0}, "mode")],
     "listen": [
-        ({"run": ABSENT}, "run"),
         ({"run": ABSENT, "point": "cover", "microphone_mm": [0, 0, 1]}, "microphone_mm"),
         ({"run": ABSENT, "microphone_mm": [0, 0]}, "microphone_mm"),
         ({"run": ABSENT, "microphone_mm": [0, 0, 1], "direction": "x"}, "direction"),
