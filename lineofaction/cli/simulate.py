@@ -23,8 +23,9 @@ from lineofaction.cli.subjects import assessed_scene, tabled_scene
 from lineofaction.gearbox.convert.effects import model_lines
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
-from lineofaction.gearbox.result_files import run_json, stamp
+from lineofaction.gearbox.result_files import run_json, stamp, stamp_complaint
 from lineofaction.gearbox.stages import staged
+from lineofaction.gearbox.studies.housings import facts_of_scene
 from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.page import Headline
@@ -69,8 +70,10 @@ def run_simulate(
         advice = "There is none. Omit --resume to start a run."
         raise BadInput.of("--resume", str(output), "the file of a run that was interrupted", advice)
     with open_executor(*executor) as workers, progress_bar() as report:
-        _run(tabled_scene(scene, folder, service, report, workers).scene, output, report, resume=resume)
+        tabled = tabled_scene(scene, folder, service, report, workers)
+        _run(tabled.scene, output, report, resume=resume)
     stamp(output, warnings_so_far())
+    stamp_complaint(output, facts_of_scene(tabled))
     facts = {"file": str(output), **run_json(output)}
     if as_json:
         print_json(facts)

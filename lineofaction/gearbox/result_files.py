@@ -15,7 +15,7 @@ from lineofaction.gearbox.registry import study_of
 from lineofaction.gearbox.units import boundary_ledger
 from model_studies.netcdf import opened, opened_netcdf
 
-LEDGER, WARNINGS = "effect_ledger", "warnings"
+LEDGER, WARNINGS, COMPLAINT = "effect_ledger", "warnings", "complaint"
 
 
 def stamp(file: Path, warnings: Sequence[Json]) -> None:
@@ -26,6 +26,13 @@ def stamp(file: Path, warnings: Sequence[Json]) -> None:
     elif file.suffix == ".json":
         text = json.dumps(json.loads(file.read_text(encoding="utf-8")) | {WARNINGS: list(warnings)})
         file.write_text(f"{text}\n", encoding="utf-8")
+
+
+def stamp_complaint(file: Path, facts: Json) -> None:
+    """Write what the facts of a scene say of its complaint into the file of a run, if they say it."""
+    if COMPLAINT in facts:
+        with h5netcdf.File(file, "r+") as content:
+            content.attrs[COMPLAINT] = json.dumps(facts[COMPLAINT])
 
 
 def stamped(file: Path) -> list[Json]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -17,11 +18,12 @@ from fe_contact.ste import SteDatabase, in_own_model
 from host.directories import whole_file
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.result_files import stamped
+from lineofaction.gearbox.result_files import COMPLAINT, stamped
 from lineofaction.gearbox.study import Study
 from lineofaction.report.drawing.figure import Figure, Table
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.interactive import plotly_figure
+from lineofaction.report.drawing.marks import Marks, marked_sections, of_run
 from lineofaction.report.drawing.page import Headline, Page, Section, html, sound_json
 from lineofaction.report.drawing.printing import pdf
 from lineofaction.report.drawing.tables import one_effects_section
@@ -74,7 +76,7 @@ class Inputs:
     """The results that were read; at least one of them.
 
     `pages` are those of studies, by the kind of their results; `warnings` are those of all files, in words;
-    `view` is what of the run is shown.
+    `view` is what of the run is shown, `marks` what its scene complains of.
     """
 
     database: SteDatabase | None = None
@@ -82,6 +84,7 @@ class Inputs:
     pages: Mapping[str, Page] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     view: RunView = field(default_factory=RunView)
+    marks: Marks | None = None
 
     @property
     def only_page(self) -> Page | None:
@@ -112,7 +115,8 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
         key=lambda pair: list(STUDIES).index(pair[0].name),
     )
     pages = {study.kind: _study_page(study, file, database) for study, file in studies}
-    return Inputs(**read, pages=pages, warnings=warnings)
+    marks = json.loads(file_attributes(by_kind["run"][1]).get(COMPLAINT, "null")) if "run" in read else None
+    return Inputs(**read, pages=pages, warnings=warnings, marks=marks)
 
 
 def read_result(file: Path) -> SteDatabase | RunResult:
@@ -192,7 +196,7 @@ def _page_of(read: Inputs) -> Page:
         sections += study.sections
         alarms += study.alarms
     if run is not None:
-        sections += (*dynamic_results(run, read.view), *dynamic_making(run))
+        sections += (*_marked_results(run, read), *dynamic_making(run))
         alarms += dynamic_alarms(run)
     parts = []
     if read.database is not None:
@@ -202,6 +206,13 @@ def _page_of(read: Inputs) -> Page:
     if read.run is not None:
         parts.append(f"{read.run.time[-1]:.6g} s of motion at {read.run.sample_rate:.6g} samples per second")
     return Page(_title(read), "; ".join(parts), headlines_of(read), tuple(sections), tuple(alarms))
+
+
+def _marked_results(run: RunResult, read: Inputs) -> tuple[Section, ...]:
+    """Return the results of a run, in whose plots the complaint of its scene is marked."""
+    results = tuple(dynamic_results(run, read.view))
+    mesh = read.view.mesh or next(iter(run.mesh), "")
+    return results if read.marks is None else marked_sections(results, of_run(read.marks, mesh))
 
 
 def headlines_of(read: Inputs) -> tuple[Headline, ...]:

@@ -24,10 +24,12 @@ from lineofaction.gearbox.convert.housings import HousedScene, reduced_in
 from lineofaction.gearbox.convert.plausibility import scene_warnings
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.result_files import stamp_complaint
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.stages import TableFraction, staged
+from lineofaction.gearbox.studies.housings import facts_of_scene
 from lineofaction.gearbox.tabled_scene import checked_table
 from model_studies.progress import Report, by_cost
 from model_studies.workers import ByDask, InProcess, OrHere, Remembering, RunCost, Workers, dask_workers
@@ -153,6 +155,7 @@ def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     ordered = ordered_scene(order, progress)
     file = order.workspace / "run.nc"
     _run(ordered.tabled.scene, file, progress)
+    stamp_complaint(file, facts_of_scene(ordered.tabled))
     return (*ordered.products, Product(order.key, "run", file, ordered.warnings))
 
 

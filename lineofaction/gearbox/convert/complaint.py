@@ -57,6 +57,8 @@ class Complaint:
         What is within the tolerance, and at least the `NEAREST` harmonics, the nearest first.
     turns : mapping of str to float
         Revolutions of every shaft per revolution of `shaft`.
+    drivers : mapping of str to tuple of (str, float)
+        Of every mesh the shaft of its driving gear, and how often it repeats per revolution of `shaft`.
     levels : mapping of str to tuple of float
         Forces, N, by which the harmonics of meshes excite at the loads of the scene; empty: not known.
     bearing : str or None
@@ -74,6 +76,7 @@ class Complaint:
     passing: tuple[Passing, ...]
     turns: Mapping[str, float]
     per_pitch: float
+    drivers: Mapping[str, tuple[str, float]]
     levels: Mapping[str, tuple[float, ...]]
     bearing: str | None = None
 
@@ -114,9 +117,16 @@ class Complaint:
 
     @property
     def marks(self) -> Json:
-        """Return what plots mark: values by the labels of axes, and the order by which results count."""
-        order = self.within[0].order * self.per_pitch
-        marks: Json = {"order": order, "axes": {}, "bearing": self.bearing, "words": sentence(self)}
+        """Return what plots mark: values by the labels of axes, and the order by which results count.
+
+        `meshes` have it by which runs count: by the pitches of a mesh, over the speed of its driving gear.
+        """
+        own = self.within[0].order
+        marks: Json = {"order": own * self.per_pitch, "axes": {}, "bearing": self.bearing}
+        marks |= {"words": sentence(self), "meshes": {}}
+        for mesh, (shaft, rate) in self.drivers.items():
+            speed = None if self.speed is None else self.turns[shaft] * self.speed / RPM
+            marks["meshes"][mesh] = {"order": own / rate, "driver_rpm": speed}
         if self.speed is not None:
             speeds = {f"speed of {name}, rpm": turn * self.speed / RPM for name, turn in self.turns.items()}
             marks["axes"] = speeds | {"frequency, Hz": self.frequency}
@@ -159,12 +169,19 @@ def complaint_of(
         tuple(each for each in every if each.within(reach)),
         {part.name: turns[part.name] for part in scene.shafts},
         1.0 / rate,
+        _drivers(own, scene),
         levels,
         stated.bearing,
     )
     if not complaint.within:
         raise _nothing_passes(complaint, stated)
     return complaint
+
+
+def _drivers(every: Iterable[Excitation], scene: SceneInput) -> dict[str, tuple[str, float]]:
+    shafts = {gear.name: gear.shaft for gear in scene.gears}
+    rates = {each.name: each.rate for each in every if each.kind == MESH}
+    return {mesh.name: (shafts[mesh.driver], rates[mesh.name]) for mesh in scene.meshes if mesh.name in rates}
 
 
 def leading_shaft(moving: Scene) -> str:

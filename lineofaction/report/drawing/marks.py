@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Literal
 
@@ -24,6 +24,8 @@ from lineofaction.report.drawing.page import Page, Section
 NAME = "complaint"
 Marks = Mapping[str, Any]
 """``axes``: values by the labels of axes; ``order``: by which results count; ``bearing``; ``words``."""
+DRIVER = "speed of the driving gear, rpm"
+"""Label of the axis of a run."""
 BOLDER = 2.0
 """Width of the line of the order, of what it is without a complaint."""
 
@@ -34,6 +36,16 @@ def marks_of(result: Any) -> Marks | None:
     return facts.get(NAME)
 
 
+def of_run(marks: Marks, mesh: str) -> Marks:
+    """Return the marks in the plots of a run, whose orders and speeds are those of a mesh."""
+    own = marks["meshes"].get(mesh, {})
+    axes = {label: value for label, value in marks["axes"].items() if label == "frequency, Hz"}
+    if own:
+        axes |= {"mesh order": own["order"]}
+        axes |= {} if own["driver_rpm"] is None else {DRIVER: own["driver_rpm"]}
+    return {**marks, "order": own.get("order", np.nan), "axes": axes}
+
+
 def shown_orders(order: FloatArray, sizes: FloatArray, count: int, facts: Mapping[str, Any]) -> list[int]:
     """Return the indices of `count` orders (H,), the largest by sizes (H,), one of them the complaint's."""
     own = np.flatnonzero(np.isclose(order, facts.get(NAME, {}).get("order", np.nan), rtol=1e-6))
@@ -42,13 +54,17 @@ def shown_orders(order: FloatArray, sizes: FloatArray, count: int, facts: Mappin
 
 def marked_page(page: Page, marks: Marks) -> Page:
     """Return a page with the marks in all its plots, and what they stand for in its lead."""
-    sections = tuple(_marked_section(section, marks) for section in page.sections)
+    sections = marked_sections(page.sections, marks)
     lead = " ".join(text for text in (page.lead, f"Complaint: {marks['words']}.") if text)
     return replace(page, lead=lead, sections=sections)
 
 
-def _marked_section(section: Section, marks: Marks) -> Section:
-    return replace(section, figures=tuple(marked(figure, marks) for figure in section.figures))
+def marked_sections(sections: Iterable[Section], marks: Marks) -> tuple[Section, ...]:
+    """Return sections with the marks in all their plots."""
+    return tuple(
+        replace(section, figures=tuple(marked(figure, marks) for figure in section.figures))
+        for section in sections
+    )
 
 
 def marked(figure: Figure, marks: Marks) -> Figure:
@@ -63,13 +79,19 @@ def marked(figure: Figure, marks: Marks) -> Figure:
 
 def _marked_panel(panel: Panel, marks: Marks) -> Panel:
     own = tuple(
-        Reference(f"{NAME}, {engineering(value, 4)} {unit_of(axis.label)}", value, direction, 0.98)
+        Reference(f"{NAME}, {_words(axis, value)}", value, direction, 0.98)
         for axis, direction, value in _values(panel, marks)
         if _reaches(panel, axis, direction, value)
     )
-    name = f"order {marks['order']:.4g}"
-    lines = tuple(_bold(line) if line.name == name else line for line in panel.lines)
+    names = f"order {marks['order']:.4g}", f"{marks['order']:.4g}×"
+    lines = tuple(_bold(line) if line.name in names else line for line in panel.lines)
     return replace(panel, references=(*panel.references, *own), lines=lines)
+
+
+def _words(axis: Axis, value: float) -> str:
+    """Name a value in the unit of its axis, or after an axis without one."""
+    size, unit = engineering(value, 4), unit_of(axis.label)
+    return f"{axis.label} {size}" if unit == axis.label else f"{size} {unit}"
 
 
 def _bold(line: Line) -> Line:
@@ -99,7 +121,7 @@ def _reaches(panel: Panel, axis: Axis, direction: str, value: float) -> bool:
 def _beyond(panel: Panel, marks: Marks) -> list[str]:
     """Say which values of the complaint a panel does not reach."""
     return [
-        f"The {NAME}, {engineering(value, 4)} {unit_of(axis.label)}, lies beyond this axis."
+        f"The {NAME}, {_words(axis, value)}, lies beyond this axis."
         for axis, direction, value in _values(panel, marks)
         if not _reaches(panel, axis, direction, value)
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import tomllib
 from pathlib import Path
@@ -9,14 +10,17 @@ from typing import Any
 
 import pytest
 from pytest import approx
+from typer.testing import CliRunner
 
 from dynamics.mechanism.passing import MESH, SIDEBAND
+from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.complaint import Complaint, complaint_of
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.complaint import ComplaintFields, ComplaintInput, with_options
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.report.document import read_inputs
 
 Json = dict[str, Any]
 ROOT = Path(__file__).parents[3]
@@ -292,3 +296,18 @@ def test_an_option_replaces_what_it_is_an_alternative_to() -> None:
     by_shaft = with_options(own, ComplaintFields(speed_rpm=1000.0))
     assert by_shaft == {"frequency_hz": 1400.0, "speed_rpm": 1000.0}
     assert with_options(own, ComplaintFields(road_speed_km_h=50.0))["tire_radius_mm"] == 310.0
+
+
+def test_a_run_keeps_what_its_scene_complains_of(tmp_path: Path) -> None:
+    """By the mesh: its own order, and the speed of the shaft of its driving gear."""
+    scene = UNIT | {"complaint": {"frequency_hz": 833.0, "speed_rpm": 3000.0}, "run": {"duration_s": 1e-3}}
+    (tmp_path / "scene.json").write_text(json.dumps(scene))
+    done = CliRunner().invoke(app, ["simulate", str(tmp_path / "scene.json"), "-o", str(tmp_path / "run.nc")])
+    assert done.exit_code == 0, done.stderr
+    marks = read_inputs([tmp_path / "run.nc"]).marks
+    assert marks is not None
+    assert marks["meshes"] == {
+        "mesh 0": {"order": approx(2.0 / 3.0), "driver_rpm": approx(3000.0)},
+        "mesh 1": {"order": approx(2.0), "driver_rpm": approx(3000.0 * 25 / 63)},
+    }
+    assert marks["axes"]["frequency, Hz"] == 833.0

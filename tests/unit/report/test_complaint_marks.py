@@ -8,11 +8,15 @@ from typing import Any
 import numpy as np
 
 from lineofaction.report.drawing.figure import Axis, Figure, HeatMap, Line, Panel
-from lineofaction.report.drawing.marks import marked, marks_of, shown_orders
+from lineofaction.report.drawing.marks import marked, marks_of, of_run, shown_orders
 
 MARKS: dict[str, Any] = {
     "axes": {"speed of input, rpm": 1200.0, "speed of output, rpm": 600.0, "frequency, Hz": 400.0},
     "order": 2.0 / 3.0,
+    "meshes": {
+        "first": {"order": 2.0 / 3.0, "driver_rpm": 1200.0},
+        "second": {"order": 2.0, "driver_rpm": 600.0},
+    },
     "words": "400 Hz",
 }
 SPEED = np.array([300.0, 3000.0])
@@ -57,6 +61,28 @@ def test_only_the_order_of_the_complaint_is_bold() -> None:
         ("order 1", 1.0),
     ]
     assert panel.references == ()
+
+
+def test_a_run_is_marked_by_the_pitches_and_the_driver_of_the_mesh_that_is_shown() -> None:
+    """Order map and order cuts over the speed of the driving gear, and a waterfall over frequency."""
+    over = Axis("speed of the driving gear, rpm")
+    shade = HeatMap(SPEED, np.array([0.0, 4.0]), np.ones((2, 2)), "level, dB", 1.0)
+    cuts = tuple(Line(name, SPEED, SPEED, "#000", width=1.0) for name in ("1×", "2×"))
+    panels = (
+        Panel(over, Axis("mesh order"), shade=shade),
+        Panel(over, Axis("frequency, Hz", limits=(0.0, 500.0)), shade=shade),
+        Panel(Axis("time, s"), Axis("level, dB re 1 N"), cuts),
+    )
+    figure = marked(Figure("k", "title", "", "words", panels), of_run(MARKS, "second"))
+    lines = [[(each.direction, each.value) for each in panel.references] for panel in figure.content]
+    assert lines == [
+        [("vertical", 600.0), ("horizontal", 2.0)],
+        [("vertical", 600.0), ("horizontal", 400.0)],
+        [],
+    ]
+    assert [line.name for line in figure.content[2].lines] == ["1×", "2× (complaint)"]
+    plain = of_run(MARKS, "third")
+    assert plain["axes"] == {"frequency, Hz": 400.0} and np.isnan(plain["order"])
 
 
 def test_the_order_of_the_complaint_is_among_those_shown() -> None:
