@@ -15,7 +15,7 @@ from fe_contact.types import Estimate, FloatArray
 from lineofaction.gearbox.studies.change.result import ALL, AUDIBLE
 from model_studies import in_unit
 
-FALL = 60.0
+FALL = 25.0
 """dB below the loudest line: what is lower is not told."""
 MORE = 0.01
 """Parts by which a pressure or a face load factor has to rise to be told."""
