@@ -21,7 +21,7 @@ from lineofaction.gearbox.units import RPM
 LISTED = 5
 """Orders that are compared."""
 FOLLOWED = 3.0
-"""An order whose level falls by so many dB less than that of its STE has another cause."""
+"""An order whose level falls by so many dB more or less than that of its STE has another cause."""
 
 
 def multiples(order: float, ratios: Mapping[str, float]) -> dict[str, int]:
@@ -93,9 +93,11 @@ def verdict(
         f"sound of the STE alone {ste[1] - ste[0]:+.1f} dB, {ste[0]:.1f} to {ste[1]:.1f} dB(A)",
         f"sound with the load's travel along the face {change:+.1f} dB, {full[0]:.1f} to {full[1]:.1f} dB(A)",
     ]
-    if change > ste[1] - ste[0] + FOLLOWED:
+    apart = change - (ste[1] - ste[0])
+    if abs(apart) > FOLLOWED:
+        louder, quieter = "less ripple does not quiet this order", "this order is quieter by it"
         lines.append(
-            f"the travel adds {travel[0]:.1f} and {travel[1]:.1f} dB: less ripple does not quiet this order"
+            f"the travel adds {travel[0]:.1f} and {travel[1]:.1f} dB: {louder if apart > 0.0 else quieter}"
         )
     return lines
 

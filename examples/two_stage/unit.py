@@ -91,14 +91,23 @@ def file_of(stage: str) -> str:
     return f"{stage.replace(' ', '_')}.toml"
 
 
-def optimized(stage: str, output: Path, effort: Effort) -> Path:
-    """Optimize a stage over the spectrum that its deflection wrote and return its best case."""
-    case = output / f"deflection_{file_of(stage)}"
+def optimized(scene: Path, stage: str, output: Path, effort: Effort) -> Path:
+    """Search the flanks of a stage that are heard least over the load spectrum and return its best case.
+
+    The scene is the one with cases: each load is heard at the misalignment of its own deflection.
+    """
+    first, last, step = map(float, effort.speed_rpm.split(":"))
+    loads = tomllib.loads(scene.with_name("load_cases.toml").read_text("utf-8"))["load_cases"]
+    heard = {
+        "mesh": stage,
+        "speed_rpm": np.arange(first, last + 0.5 * step, step).tolist(),
+        "orders": ORDERS,
+        "load_cases": loads,
+    }
     study = output / "study.toml"
-    spectrum = case.with_name(f"{case.stem}_optimize.toml").read_text("utf-8")
     flanks = (UNIT / "flanks.toml").read_text("utf-8")
-    study.write_text(f"{spectrum}\n{flanks}\n{toml_text({'search': effort.search})}", "utf-8")
-    loa("optimize", case, study, "-o", output / "best.toml")
+    study.write_text(f"{flanks}\n{toml_text({'search': effort.search, 'heard': heard})}", "utf-8")
+    loa("optimize", scene, study, "-o", output / "best.toml")
     return output / "best.toml"
 
 
@@ -205,11 +214,13 @@ def main() -> None:
     scene = opened(folder / "before", effort)
     better = shutil.copytree(folder / "before", folder / "after", dirs_exist_ok=True) / "scene.toml"
     before = deflected(scene, folder / "deflected")
+    cased = Path(shutil.copy(scene, scene.with_name("cased.toml")))
     aligned(scene, before)
     old, old_ste = sounds_of(scene, effort)
     source = deciding(old, ORDER_OF)
     stage, _ = source
-    shutil.copy(optimized(stage, folder / "deflected", effort), better.with_name(file_of(stage)))
+    best = optimized(cased, stage, folder / "deflected", effort)
+    shutil.copy(best, better.with_name(file_of(stage)))
     after = deflected(better, folder / "deflected_after")
     aligned(better, after)
     new, new_ste = sounds_of(better, effort)

@@ -54,22 +54,20 @@ def test_the_unit_is_cast_deflected_optimized_and_heard(tmp_path: Path) -> None:
         row[0]: (float(row[1]), float(row[2])) for row in re.findall(r"(.+?) +([\d.]+) +([\d.]+)\n", printed)
     }
     assert "optimized: second stage" in printed
-    before, after = rows["second stage, peak-to-peak STE, um"]
-    assert after < 0.7 * before
     before, after = rows["second stage, harmonic 1 when heard, um"]
     excited = 20.0 * np.log10(after / before)
-    assert excited < -6.0
     before, after = rows["first stage, peak-to-peak STE, um"]
     assert after == pytest.approx(before, rel=0.02)
 
     sounds = {name: RadiatedSound.from_netcdf(tmp_path / name / "sound.nc") for name in ("before", "after")}
     peaks = [sound.orders.total_weighted_level.max() for sound in sounds.values()]
     assert rows["loudest of all speeds"] == pytest.approx(peaks, abs=0.051)
+    assert peaks[1] < peaks[0] - 5.0
     of_ste = [RadiatedSound.from_netcdf(tmp_path / name / "sound_of_ste.nc") for name in sounds]
     assert order_change(*of_ste) == pytest.approx(excited, abs=0.5)
     assert np.all(bearing_changes(*of_ste) < excited + 0.5)
-    assert excited + 3.0 < order_change(*sounds.values()) < -0.5
-    assert "less ripple does not quiet this order" in printed
+    assert order_change(*sounds.values()) < min(excited, 0.0) - 3.0
+    assert "this order is quieter by it" in printed
     for name, sound in sounds.items():
         recording = read_wav(tmp_path / f"{name}.wav")
         assert recording.unit == "Pa"
